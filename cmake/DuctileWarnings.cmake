@@ -1,0 +1,4 @@
+# One private interface target carries every warning flag of the project.
+add_library(ductile_warnings INTERFACE)
+target_compile_options(ductile_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual)

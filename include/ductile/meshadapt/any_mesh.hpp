@@ -1,0 +1,65 @@
+/// @file
+/// AnyMesh and AnyField: a mesh and a field on its vertices as they stand in a file, of a dimension
+/// known only at run time. Readers fill them, writers and pictures take them, and
+/// Mesh<Dim> is made from one and turned back into one. Indices start at 0. Nothing is checked
+/// here beyond what the file format itself demands; make_mesh checks that it is a mesh.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ductile::meshadapt {
+
+/// Cells of one shape with their references (tags). Both arrays have the same length.
+template <int Corners>
+struct Cells {
+  std::vector<std::array<std::uint32_t, Corners>> vertices;  ///< [cell][corner]
+  std::vector<std::int32_t> reference;                       ///< [cell]
+
+  std::size_t size() const { return vertices.size(); }
+  void add(const std::array<std::uint32_t, Corners>& corners, std::int32_t ref) {
+    vertices.push_back(corners);
+    reference.push_back(ref);
+  }
+};
+
+struct AnyMesh {
+  int dimension = 0;                            ///< 2 or 3
+  std::vector<double> coordinates;              ///< [vertex * dimension + axis]
+  std::vector<std::int32_t> vertex_reference;   ///< [vertex]
+  Cells<2> edges;
+  Cells<3> triangles;
+  Cells<4> tetrahedra;
+  std::vector<std::uint32_t> corners;              ///< vertex indices
+  std::vector<std::uint32_t> required_vertices;    ///< vertex indices
+  std::vector<std::uint32_t> ridges;               ///< indices into edges
+  std::vector<std::uint32_t> required_edges;       ///< indices into edges
+  std::vector<std::uint32_t> required_triangles;   ///< indices into triangles
+  std::vector<std::uint32_t> required_tetrahedra;  ///< indices into tetrahedra
+  std::string name;                                ///< where it came from, for messages
+
+  std::size_t vertex_count() const { return vertex_reference.size(); }
+};
+
+/// Values at the vertices of a mesh, all components of all fields of one vertex together.
+struct AnyField {
+  enum class Type : int { scalar = 1, vector = 2, symmetric = 3 };  ///< numbered as in GMF
+  int dimension = 0;                                                ///< 2 or 3
+  std::size_t vertex_count = 0;
+  std::vector<Type> types;     ///< one per field
+  std::vector<double> values;  ///< [vertex * stride + component]; symmetric tensors as in GMF:
+                               ///< 2D m11 m12 m22, 3D m11 m12 m22 m13 m23 m33
+  std::string name;            ///< where it came from, for messages
+};
+
+/// Components of one field at one vertex: 1, dimension, or dimension (dimension + 1) / 2.
+constexpr int component_count(AnyField::Type type, int dimension) {
+  return type == AnyField::Type::scalar   ? 1
+         : type == AnyField::Type::vector ? dimension
+                                          : dimension * (dimension + 1) / 2;
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,22 @@
+/// @file
+/// The errors that Ductile's mesh adaptation throws. Their text is one line that names the file,
+/// line or entity, what was expected, what was found and what to do.
+#pragma once
+
+#include <stdexcept>
+
+namespace ductile::meshadapt {
+
+/// Something outside the program failed: the disk is full, memory ran out, a result is not valid.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What the user gave is wrong: a file, a mesh, a metric or an option.
+class InputError : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace ductile::meshadapt

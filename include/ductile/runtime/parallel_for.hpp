@@ -1,0 +1,133 @@
+/// @file
+/// parallel_for: a for-loop over [0, n) shared among an Executor's threads, and what is built on
+/// it: loops over fixed blocks, deterministic reductions, prefix sums, and per-thread storage.
+/// The first exception thrown in a body reaches the caller after all threads have joined. A loop
+/// started inside another loop runs on the calling thread alone.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::runtime {
+
+struct LoopOptions {
+  std::size_t grain = 0;                     ///< iterations handed out at once; 0: chosen
+  Schedule schedule = Schedule::automatic;   ///< automatic: the executor's
+  std::size_t serial_below = 0;              ///< fewer iterations than this run on the caller alone
+};
+
+/// Index of the calling thread in the running loop, in [0, executor.threads()); 0 outside of one.
+int this_thread() noexcept;
+
+/// A loop body without its type: called with disjoint ranges that together cover [0, n).
+using RangeBody = void (*)(void* context, std::size_t begin, std::size_t end);
+
+/// Runs `body(context, begin, end)` over [0, n). Thread safety: any thread.
+void run_loop(const Executor& executor, std::size_t n, RangeBody body, void* context,
+              const LoopOptions& options);
+
+/// Calls body(begin, end) with disjoint ranges covering [0, n); their bounds depend on timing.
+template <class Body>
+void parallel_for_ranges(const Executor& executor, std::size_t n, Body&& body,
+                         const LoopOptions& options = {}) {
+  using Plain = std::remove_reference_t<Body>;
+  run_loop(
+      executor, n,
+      [](void* context, std::size_t begin, std::size_t end) {
+        (*static_cast<Plain*>(context))(begin, end);
+      },
+      const_cast<std::remove_const_t<Plain>*>(&body), options);
+}
+
+/// Calls body(i) once for every i in [0, n).
+template <class Body>
+void parallel_for(const Executor& executor, std::size_t n, Body&& body,
+                  const LoopOptions& options = {}) {
+  parallel_for_ranges(
+      executor, n,
+      [&body](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+      },
+      options);
+}
+
+/// Calls body(block, begin, end) once for each block of `block_size` iterations of [0, n). Blocks
+/// do not depend on threads or timing, so what is computed per block is deterministic.
+template <class Body>
+void parallel_for_blocks(const Executor& executor, std::size_t n, std::size_t block_size,
+                         Body&& body, const LoopOptions& options = {.grain = 1}) {
+  const std::size_t blocks = (n + block_size - 1) / block_size;
+  parallel_for(
+      executor, blocks,
+      [&](std::size_t block) {
+        body(block, block * block_size, std::min(n, (block + 1) * block_size));
+      },
+      options);
+}
+
+/// Combines map(i) for i in [0, n), in an order that does not depend on threads or timing:
+/// sums of doubles are the same bit for bit at any thread count. `combine` is associative in
+/// exact arithmetic and `identity` its neutral element.
+template <class T, class Map, class Combine>
+T parallel_reduce(const Executor& executor, std::size_t n, T identity, Map&& map,
+                  Combine&& combine) {
+  constexpr std::size_t block_size = 2048;
+  std::vector<T> partial((n + block_size - 1) / block_size, identity);
+  parallel_for_blocks(executor, n, block_size,
+                      [&](std::size_t block, std::size_t begin, std::size_t end) {
+                        T sum = identity;
+                        for (std::size_t i = begin; i < end; ++i) sum = combine(std::move(sum), map(i));
+                        partial[block] = std::move(sum);
+                      });
+  T total = identity;
+  for (T& part : partial) total = combine(std::move(total), std::move(part));
+  return total;
+}
+
+/// Replaces each value by the sum of those before it and returns the total. T is an integer.
+template <class T>
+T exclusive_scan(const Executor& executor, std::span<T> values) {
+  constexpr std::size_t block_size = 4096;
+  const std::size_t blocks = (values.size() + block_size - 1) / block_size;
+  std::vector<T> offset(blocks + 1, T{});
+  parallel_for_blocks(executor, values.size(), block_size,
+                      [&](std::size_t block, std::size_t begin, std::size_t end) {
+                        T sum{};
+                        for (std::size_t i = begin; i < end; ++i) sum += values[i];
+                        offset[block + 1] = sum;
+                      });
+  for (std::size_t b = 0; b < blocks; ++b) offset[b + 1] += offset[b];
+  parallel_for_blocks(executor, values.size(), block_size,
+                      [&](std::size_t block, std::size_t begin, std::size_t end) {
+                        T sum = offset[block];
+                        for (std::size_t i = begin; i < end; ++i)
+                          values[i] = std::exchange(sum, static_cast<T>(sum + values[i]));
+                      });
+  return offset[blocks];
+}
+
+/// One T per thread, each on its own cache lines. `mine()` is the calling thread's.
+template <class T>
+class PerThread {
+ public:
+  explicit PerThread(const Executor& executor)
+      : slots_(static_cast<std::size_t>(executor.threads())) {}
+  T& mine() { return slots_[static_cast<std::size_t>(this_thread())].value; }
+  std::size_t size() const { return slots_.size(); }
+  T& operator[](std::size_t thread) { return slots_[thread].value; }
+  const T& operator[](std::size_t thread) const { return slots_[thread].value; }
+
+ private:
+  struct alignas(128) Slot {
+    T value{};
+  };
+  std::vector<Slot> slots_;
+};
+
+}  // namespace ductile::runtime

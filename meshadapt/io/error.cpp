@@ -1,0 +1,1 @@
+#include "ductile/meshadapt/error.hpp"
