@@ -1,0 +1,174 @@
+/// @file
+/// DeferredUpdate: writes to data that somebody else owns, kept until it is safe to carry them out.
+/// While a loop runs, any thread defers updates, each for the owner of what it changes. After the
+/// loop, commit() runs each owner's updates on exactly one thread, so that they need no locks.
+/// Every thread writes to buffers of its own, one per group of owners ("bucket"); commit() shares
+/// out the buckets. Owners with nearby numbers share a bucket, which keeps their data in cache.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/chunk_list.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/run_sort.hpp"
+
+namespace ductile::runtime {
+
+/// In which order an owner's updates are committed.
+enum class CommitOrder {
+  any,        ///< whatever is fastest
+  by_source,  ///< by (source, order in which that source deferred): the same at any thread count
+};
+
+struct DeferredUpdateOptions {
+  CommitOrder order = CommitOrder::any;
+};
+
+/// T is move-constructible. Between construction and destruction an object serves one loop or
+/// commit() at a time, on the executor it was made with.
+template <class T>
+class DeferredUpdate {
+ public:
+  explicit DeferredUpdate(const Executor& executor, DeferredUpdateOptions options = {})
+      : executor_(executor),
+        options_(options),
+        bucket_count_(
+            std::clamp(std::bit_ceil(8U * static_cast<unsigned>(executor.threads())), 64U, 1024U)),
+        lanes_(executor) {
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      lanes_[t].bucket = std::make_unique<Bucket[]>(bucket_count_);
+  }
+
+  /// Keeps `update` for `owner`. `source` is who defers it, for instance the item being applied;
+  /// under by_source one source defers from one thread only between two commits.
+  /// Thread safety: any thread of a loop of the executor, or the caller outside of loops.
+  void defer(std::uint32_t owner, std::uint64_t source, T update) {
+    Lane& lane = lanes_.mine();
+    const std::uint32_t number = bucket_of(owner);
+    Bucket& bucket = lane.bucket[number];
+    if (bucket.full()) {
+      if (bucket.empty()) lane.touched.push_back(number);
+      bucket.grow();
+    }
+    bucket.append(Entry{source, owner, std::move(update)});
+  }
+
+  /// Calls f(owner, update) for every update kept, each owner's on one thread, and forgets them.
+  /// f must not defer to this object. An exception thrown by f reaches the caller; the updates that
+  /// were not committed by then are dropped. Thread safety: one thread, no loop running.
+  template <class F>
+  void commit(F&& f) {
+    const std::vector<std::uint32_t> buckets = touched_buckets();
+    const auto commit_one = [&](std::size_t b) {
+      const Rewind rewind{*this, buckets[b]};
+      if (options_.order == CommitOrder::by_source) {
+        commit_sorted(buckets[b], f);
+      } else {
+        commit_unsorted(buckets[b], f);
+      }
+    };
+    try {
+      parallel_for(executor_, buckets.size(), commit_one,
+                   {.grain = 1, .serial_below = size() < small ? buckets.size() + 1 : 0});
+    } catch (...) {
+      clear();
+      throw;
+    }
+    forget_touched();
+  }
+
+  /// Updates waiting. Thread safety: one thread, no loop running.
+  std::size_t size() const {
+    std::size_t sum = 0;
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      for (const std::uint32_t number : lanes_[t].touched) sum += lanes_[t].bucket[number].size();
+    return sum;
+  }
+
+  /// Drops all updates and keeps the memory. Thread safety: one thread, no loop running.
+  void clear() {
+    for (const std::uint32_t number : touched_buckets()) rewind_bucket(number);
+    forget_touched();
+  }
+
+  /// Drops all updates and gives all buffers back. Thread safety: one thread, no loop running.
+  void release() {
+    clear();
+    for (std::size_t t = 0; t < lanes_.size(); ++t) {
+      for (std::uint32_t b = 0; b < bucket_count_; ++b) lanes_[t].bucket[b].release();
+      lanes_[t].order = {};
+    }
+  }
+
+ private:
+  struct Entry {
+    std::uint64_t source;
+    std::uint32_t owner;
+    T update;
+  };
+  using Bucket = ChunkList<Entry>;
+  struct Lane {
+    std::unique_ptr<Bucket[]> bucket;
+    std::vector<std::uint32_t> touched;    // buckets with updates, in order of first use
+    RunSort<std::uint64_t, Entry*> order;  // scratch of commit_sorted
+  };
+  struct Rewind {
+    ~Rewind() { self.rewind_bucket(number); }
+    DeferredUpdate& self;
+    std::uint32_t number;
+  };
+
+  static constexpr std::size_t small = 1024;     // updates not worth waking a team for
+  static constexpr unsigned neighbour_bits = 8;  // owners in a row that share a bucket
+
+  std::uint32_t bucket_of(std::uint32_t owner) const {
+    return (owner >> neighbour_bits) & (bucket_count_ - 1);
+  }
+
+  template <class F>
+  void commit_unsorted(std::uint32_t number, F& f) {
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      lanes_[t].bucket[number].for_each([&](Entry& entry) { f(entry.owner, entry.update); });
+  }
+
+  /// Sorting a bucket by source alone is enough: it puts each of its owners' updates in order.
+  template <class F>
+  void commit_sorted(std::uint32_t number, F& f) {
+    auto& order = lanes_.mine().order;
+    order.clear();
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      lanes_[t].bucket[number].for_each([&](Entry& entry) { order.append(entry.source, &entry); });
+    for (const auto& keyed : order.sorted()) f(keyed.value->owner, keyed.value->update);
+  }
+
+  std::vector<std::uint32_t> touched_buckets() const {
+    std::vector<std::uint32_t> all;
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      all.insert(all.end(), lanes_[t].touched.begin(), lanes_[t].touched.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
+
+  void rewind_bucket(std::uint32_t number) {
+    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].bucket[number].rewind();
+  }
+
+  void forget_touched() {
+    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].touched.clear();
+  }
+
+  Executor executor_;
+  DeferredUpdateOptions options_;
+  std::uint32_t bucket_count_;  // a power of two
+  PerThread<Lane> lanes_;
+};
+
+}  // namespace ductile::runtime

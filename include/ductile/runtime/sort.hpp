@@ -1,0 +1,138 @@
+/// @file
+/// parallel_sort: sorts by operator< on all threads of an executor. The result does not depend on
+/// threads or timing as long as items of which neither is less are identical.
+/// Unsigned integers by radix, least significant digit first; other types by sorted blocks merged
+/// pairwise, each merge cut into pieces of equal length ("merge path").
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <vector>
+
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime {
+
+namespace sort_detail {
+
+constexpr std::size_t block_size = 32768;
+constexpr unsigned digit_bits = 11;
+constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
+using DigitCounts = std::array<std::size_t, digit_count>;
+
+/// Stable: sorts `from` by the digit at `shift` into `to`, block by block.
+template <std::unsigned_integral T>
+void scatter_by_digit(const Executor& executor, std::span<const T> from, std::span<T> to,
+                      unsigned shift, std::vector<DigitCounts>& counts, std::size_t block) {
+  const auto digit = [shift](T value) {
+    return static_cast<std::size_t>(value >> shift) & (digit_count - 1);
+  };
+  const LoopOptions loop{.grain = 1};
+  parallel_for_blocks(
+      executor, from.size(), block,
+      [&](std::size_t b, std::size_t begin, std::size_t end) {
+        counts[b].fill(0);
+        for (std::size_t i = begin; i < end; ++i) ++counts[b][digit(from[i])];
+      },
+      loop);
+  std::size_t sum = 0;
+  for (std::size_t d = 0; d < digit_count; ++d)
+    for (DigitCounts& count : counts) sum += std::exchange(count[d], sum);
+  parallel_for_blocks(
+      executor, from.size(), block,
+      [&](std::size_t b, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) to[counts[b][digit(from[i])]++] = from[i];
+      },
+      loop);
+}
+
+template <std::unsigned_integral T>
+void radix_sort(const Executor& executor, std::span<T> values) {
+  const T top = *std::max_element(values.begin(), values.end());
+  const auto bits = static_cast<unsigned>(std::bit_width(top));
+  const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
+  const std::size_t block = std::max(block_size, (values.size() + most_blocks - 1) / most_blocks);
+  std::vector<DigitCounts> counts((values.size() + block - 1) / block);
+  std::vector<T> scratch(values.size());
+  std::span<T> from = values, to = scratch;
+  for (unsigned shift = 0; shift < bits; shift += digit_bits) {
+    scatter_by_digit<T>(executor, from, to, shift, counts, block);
+    std::swap(from, to);
+  }
+  if (from.data() != values.data()) std::copy(from.begin(), from.end(), values.begin());
+}
+
+/// How many of the first `rank` elements of the merge of a and b come from a.
+template <class T>
+std::size_t merge_split(std::span<const T> a, std::span<const T> b, std::size_t rank) {
+  std::size_t low = rank > b.size() ? rank - b.size() : 0;
+  std::size_t high = std::min(rank, a.size());
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (b[rank - middle - 1] < a[middle]) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return low;
+}
+
+/// Merges the sorted parts of length `width` of `from` pairwise into `to`.
+template <class T>
+void merge_round(const Executor& executor, std::span<const T> from, std::span<T> to,
+                 std::size_t width) {
+  const auto merge_piece = [&](std::size_t, std::size_t begin, std::size_t end) {
+    const std::size_t first = begin / (2 * width) * (2 * width);  // widths are whole blocks
+    const std::size_t middle = std::min(first + width, from.size());
+    const std::span a = from.subspan(first, middle - first);
+    const std::span b = from.subspan(middle, std::min(middle + width, from.size()) - middle);
+    const std::size_t a0 = merge_split(a, b, begin - first), a1 = merge_split(a, b, end - first);
+    const std::span a_part = a.subspan(a0, a1 - a0);
+    const std::span b_part = b.subspan(begin - first - a0, (end - begin) - (a1 - a0));
+    std::merge(a_part.begin(), a_part.end(), b_part.begin(), b_part.end(),
+               to.begin() + static_cast<std::ptrdiff_t>(begin));
+  };
+  parallel_for_blocks(executor, from.size(), block_size, merge_piece);
+}
+
+template <class T>
+void merge_sort(const Executor& executor, std::span<T> values) {
+  parallel_for_blocks(executor, values.size(), block_size,
+                      [&](std::size_t, std::size_t begin, std::size_t end) {
+                        const std::span part = values.subspan(begin, end - begin);
+                        std::sort(part.begin(), part.end());
+                      });
+  std::vector<T> scratch(values.begin(), values.end());
+  std::span<T> from = values, to = scratch;
+  for (std::size_t width = block_size; width < values.size(); width *= 2) {
+    merge_round<T>(executor, from, to, width);
+    std::swap(from, to);
+  }
+  if (from.data() != values.data()) std::copy(from.begin(), from.end(), values.begin());
+}
+
+}  // namespace sort_detail
+
+/// Sorts by operator<, a strict weak order. Throws std::bad_alloc. Thread safety: one thread.
+template <class T>
+void parallel_sort(const Executor& executor, std::span<T> values) {
+  if (std::is_sorted(values.begin(), values.end())) return;
+  if (values.size() < 1024) {
+    std::sort(values.begin(), values.end());
+  } else if constexpr (std::unsigned_integral<T>) {
+    sort_detail::radix_sort(executor, values);
+  } else if (executor.threads() == 1 || values.size() <= sort_detail::block_size) {
+    std::sort(values.begin(), values.end());
+  } else {
+    sort_detail::merge_sort(executor, values);
+  }
+}
+
+}  // namespace ductile::runtime

@@ -1,0 +1,141 @@
+#include "ductile/runtime/deferred_update.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/hash.hpp"
+
+namespace ductile::runtime {
+namespace {
+
+using History = std::vector<std::vector<std::uint64_t>>;  // [owner], updates as committed
+
+/// Source s defers s % 5 updates to owners that depend on s.
+template <class Defer>
+void updates_of(std::uint32_t source, std::uint32_t owners, Defer&& defer) {
+  for (std::uint32_t k = 0; k < source % 5; ++k)
+    defer(mix32(source / 3 + 7 * k) % owners, std::uint64_t{source} * 8 + k);
+}
+
+History serial_history(std::uint32_t sources, std::uint32_t owners) {
+  History history(owners);
+  for (std::uint32_t s = 0; s < sources; ++s)
+    updates_of(s, owners, [&](std::uint32_t o, std::uint64_t u) { history[o].push_back(u); });
+  return history;
+}
+
+History deferred_history(DeferredUpdate<std::uint64_t>& deferred, const Executor& executor,
+                         std::uint32_t sources, std::uint32_t owners) {
+  parallel_for(executor, sources, [&](std::size_t i) {
+    updates_of(static_cast<std::uint32_t>(i), owners,
+               [&](std::uint32_t o, std::uint64_t u) { deferred.defer(o, i, u); });
+  });
+  History history(owners);
+  deferred.commit([&](std::uint32_t o, std::uint64_t& u) { history[o].push_back(u); });
+  return history;
+}
+
+TEST(DeferredUpdate, CommitsEachOwnersUpdatesOrderedBySource) {
+  for (std::uint32_t sources : {1U, 10U, 300U, 20000U}) {
+    const std::uint32_t owners = sources / 2 + 1;
+    const History expected = serial_history(sources, owners);
+    for (int threads : {1, 2, 3, 4, 8}) {
+      const Executor executor({.threads = threads});
+      DeferredUpdate<std::uint64_t> deferred(executor, {.order = CommitOrder::by_source});
+      for (int round = 0; round < 3; ++round)
+        EXPECT_EQ(deferred_history(deferred, executor, sources, owners), expected) << threads;
+    }
+  }
+}
+
+TEST(DeferredUpdate, CommitsTheSameUpdatesInAnyOrder) {
+  constexpr std::uint32_t sources = 20000, owners = 3000;
+  History expected = serial_history(sources, owners);
+  for (int threads : {1, 2, 3, 8}) {
+    const Executor executor({.threads = threads});
+    DeferredUpdate<std::uint64_t> deferred(executor);
+    History history = deferred_history(deferred, executor, sources, owners);
+    for (auto& updates : history) std::sort(updates.begin(), updates.end());
+    EXPECT_EQ(history, expected) << threads;
+  }
+}
+
+TEST(DeferredUpdate, SortsSourcesThatCameInNoOrder) {
+  constexpr std::uint32_t sources = 30011;
+  for (int threads : {1, 2, 4}) {
+    const Executor executor({.threads = threads});
+    DeferredUpdate<std::uint32_t> deferred(executor, {.order = CommitOrder::by_source});
+    parallel_for(executor, sources, [&](std::size_t i) {
+      const std::uint32_t s = mix32(static_cast<std::uint32_t>(i));
+      deferred.defer(s % 700, s, 2 * s);
+      deferred.defer(s % 700, s, 2 * s + 1);
+    });
+    std::vector<std::vector<std::uint32_t>> got(700), expected(700);
+    deferred.commit([&](std::uint32_t o, std::uint32_t u) { got[o].push_back(u); });
+    std::map<std::uint32_t, std::uint32_t> ordered;
+    for (std::uint32_t i = 0; i < sources; ++i) ordered[mix32(i)] = mix32(i) % 700;
+    for (const auto& [s, o] : ordered) {
+      expected[o].push_back(2 * s);
+      expected[o].push_back(2 * s + 1);
+    }
+    EXPECT_EQ(got, expected) << threads;
+  }
+}
+
+TEST(DeferredUpdate, CarriesMoveOnlyAndLargeUpdates) {
+  const Executor executor({.threads = 2});
+  DeferredUpdate<std::unique_ptr<int>> owned(executor, {.order = CommitOrder::by_source});
+  DeferredUpdate<std::array<char, 100000>> large(executor);
+  parallel_for(executor, 3000, [&](std::size_t i) {
+    owned.defer(static_cast<std::uint32_t>(i % 50), i, std::make_unique<int>(1));
+    if (i < 20) large.defer(static_cast<std::uint32_t>(i), i, {static_cast<char>(i)});
+  });
+  std::vector<int> sum(50);
+  owned.commit([&](std::uint32_t o, std::unique_ptr<int>& u) { sum[o] += *u; });
+  EXPECT_EQ(sum, std::vector<int>(50, 60));
+  int letters = 0;
+  large.commit([&](std::uint32_t o, std::array<char, 100000>& u) {
+    letters += u[0] == static_cast<char>(o);
+  });
+  EXPECT_EQ(letters, 20);
+  owned.defer(1, 1, std::make_unique<int>(3));  // never committed: must not leak
+}
+
+TEST(DeferredUpdate, CountsDropsAndReleases) {
+  const Executor executor({.threads = 2});
+  DeferredUpdate<int> deferred(executor);
+  EXPECT_EQ(deferred.size(), 0U);
+  parallel_for(executor, 5000,
+               [&](std::size_t i) { deferred.defer(static_cast<std::uint32_t>(i), i, 1); });
+  EXPECT_EQ(deferred.size(), 5000U);
+  deferred.clear();
+  EXPECT_EQ(deferred.size(), 0U);
+  deferred.release();
+  deferred.defer(3, 3, 1);
+  EXPECT_EQ(deferred.size(), 1U);
+}
+
+TEST(DeferredUpdate, PassesOnAnExceptionAndIsEmptyAfterwards) {
+  for (int threads : {1, 2, 8}) {
+    const Executor executor({.threads = threads});
+    DeferredUpdate<std::shared_ptr<int>> deferred(executor);
+    const auto shared = std::make_shared<int>(7);
+    for (std::uint32_t i = 0; i < 5000; ++i) deferred.defer(i, i, shared);
+    EXPECT_THROW(deferred.commit([](std::uint32_t owner, auto&) {
+      if (owner == 1234) throw std::runtime_error("stop");
+    }),
+                 std::runtime_error);
+    EXPECT_EQ(deferred.size(), 0U);
+    EXPECT_EQ(shared.use_count(), 1);
+  }
+}
+
+}  // namespace
+}  // namespace ductile::runtime

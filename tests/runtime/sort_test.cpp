@@ -1,0 +1,53 @@
+#include "ductile/runtime/sort.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/run_sort.hpp"
+
+namespace ductile::runtime {
+namespace {
+
+template <class T>
+class ParallelSort : public testing::Test {};
+using Types =
+    testing::Types<std::uint8_t, std::uint16_t, std::uint32_t, std::uint64_t, std::int64_t>;
+TYPED_TEST_SUITE(ParallelSort, Types);
+
+TYPED_TEST(ParallelSort, AgreesWithTheStandardOne) {
+  for (std::size_t n : {0, 1, 2, 1000, 1024, 32768, 32769, 150000}) {
+    std::vector<TypeParam> values(n);
+    for (std::size_t i = 0; i < n; ++i)
+      values[i] = static_cast<TypeParam>(mix64(i) >> (i % 3 == 0 ? 40U : 0U));
+    std::vector<TypeParam> expected = values;
+    std::sort(expected.begin(), expected.end());
+    for (int threads : {1, 2, 3, 8}) {
+      std::vector<TypeParam> sorted = values;
+      parallel_sort(Executor({.threads = threads}), std::span(sorted));
+      EXPECT_EQ(sorted, expected) << n << " values, " << threads << " threads";
+    }
+  }
+}
+
+TEST(RunSort, IsStable) {
+  RunSort<std::uint32_t, std::uint32_t> order;
+  for (std::uint32_t n : {0U, 1U, 2U, 3U, 1000U, 1001U}) {
+    for (std::uint32_t run : {1U, 7U, 1000U}) {
+      order.clear();
+      for (std::uint32_t i = 0; i < n; ++i) order.append(i % run + mix32(i / run) % 10, i);
+      const auto sorted = order.sorted();
+      ASSERT_EQ(sorted.size(), n);
+      for (std::uint32_t i = 0; i + 1 < n; ++i)
+        EXPECT_LT(std::pair(sorted[i].key, sorted[i].value),
+                  std::pair(sorted[i + 1].key, sorted[i + 1].value));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ductile::runtime
