@@ -1,0 +1,37 @@
+# Installs the libraries and the package that `find_package(Ductile COMPONENTS runtime meshadapt)`
+# finds. Each component has its own export, so that runtime installs without mesh adaptation.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(ductile_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Ductile)
+
+# Installs one library with its headers and its export. `component` is runtime or meshadapt.
+function(ductile_install_component target component)
+  set_target_properties(${target} PROPERTIES
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  install(TARGETS ${target} EXPORT Ductile_${component} COMPONENT ${component}
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_COMPONENT ${component}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT Ductile_${component} NAMESPACE Ductile:: FILE Ductile_${component}.cmake
+    DESTINATION ${ductile_package_dir} COMPONENT ${component})
+endfunction()
+
+ductile_install_component(ductile_runtime runtime)
+if(DUCTILE_BUILD_MESHADAPT)
+  ductile_install_component(ductile_meshadapt meshadapt)
+endif()
+if(TARGET ductile)
+  install(TARGETS ductile RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+endif()
+
+get_target_property(ductile_library_type ductile_runtime TYPE)
+configure_package_config_file(
+  ${PROJECT_SOURCE_DIR}/cmake/DuctileConfig.cmake.in ${PROJECT_BINARY_DIR}/DuctileConfig.cmake
+  INSTALL_DESTINATION ${ductile_package_dir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/DuctileConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/DuctileConfig.cmake ${PROJECT_BINARY_DIR}/DuctileConfigVersion.cmake
+  DESTINATION ${ductile_package_dir} COMPONENT runtime)

@@ -1,0 +1,49 @@
+# Reads the sources and fails, naming file and line, where one breaks the order of the layers:
+#   1. runtime never includes meshadapt, nor mesh adaptation's sources the program's;
+#   2. OpenMP, atomics, locks, threads and signals appear in runtime only.
+#   cmake -D SOURCE_DIR=... -P check_layers.cmake
+cmake_minimum_required(VERSION 3.25)
+
+set(failures "")
+
+# Fails for every line that matches `pattern` in the sources under `folders`.
+function(forbid pattern why)
+  foreach(folder IN LISTS ARGN)
+    file(GLOB_RECURSE sources ${SOURCE_DIR}/${folder}/*.cpp ${SOURCE_DIR}/${folder}/*.hpp
+      ${SOURCE_DIR}/${folder}/*.h)
+    foreach(source IN LISTS sources)
+      file(STRINGS ${source} lines REGEX "${pattern}")
+      foreach(line IN LISTS lines)
+        if(NOT line MATCHES "^ *//")
+          file(RELATIVE_PATH shown ${SOURCE_DIR} ${source})
+          string(APPEND failures "  ${shown}: ${line}\n    ${why}\n")
+        endif()
+      endforeach()
+    endforeach()
+  endforeach()
+  set(failures "${failures}" PARENT_SCOPE)
+endfunction()
+
+set(below_program include/ductile runtime)
+if(EXISTS ${SOURCE_DIR}/meshadapt)
+  file(GLOB parts RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/meshadapt/*)
+  list(REMOVE_ITEM parts meshadapt/cli meshadapt/CMakeLists.txt)
+  list(APPEND below_program ${parts})
+endif()
+
+forbid("#include .*meshadapt" "runtime knows nothing of meshadapt" include/ductile/runtime runtime)
+forbid("#include .*meshadapt" "runtime's tests build without meshadapt" tests/runtime)
+forbid("#include .*cli/" "only the program includes the program" ${below_program})
+
+set(adaptation include/ductile/meshadapt meshadapt)
+forbid("#pragma +omp|<omp\\.h>|omp_[a-z]+_" "OpenMP stays inside runtime" ${adaptation})
+forbid("<(atomic|mutex|shared_mutex|thread|condition_variable|future|semaphore|barrier|latch|stop_token)>"
+  "atomics, locks and threads stay inside runtime" ${adaptation})
+forbid("std::(atomic|mutex|shared_mutex|thread|jthread|async|call_once)|__atomic_|__sync_|pthread_"
+  "atomics, locks and threads stay inside runtime" ${adaptation})
+forbid("<(csignal|signal\\.h)>|sigaction|std::signal" "signals stay inside runtime" ${adaptation})
+
+if(failures)
+  message(FATAL_ERROR "layers broken:\n${failures}")
+endif()
+message(STATUS "layers are in order")
