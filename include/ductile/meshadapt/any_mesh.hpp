@@ -27,9 +27,9 @@ struct Cells {
 };
 
 struct AnyMesh {
-  int dimension = 0;                            ///< 2 or 3
-  std::vector<double> coordinates;              ///< [vertex * dimension + axis]
-  std::vector<std::int32_t> vertex_reference;   ///< [vertex]
+  int dimension = 0;                           ///< 2 or 3
+  std::vector<double> coordinates;             ///< [vertex * dimension + axis]
+  std::vector<std::int32_t> vertex_reference;  ///< [vertex]
   Cells<2> edges;
   Cells<3> triangles;
   Cells<4> tetrahedra;
@@ -46,8 +46,8 @@ struct AnyMesh {
 
 /// Values at the vertices of a mesh, all components of all fields of one vertex together.
 struct AnyField {
-  enum class Type : int { scalar = 1, vector = 2, symmetric = 3 };  ///< numbered as in GMF
-  int dimension = 0;                                                ///< 2 or 3
+  enum class Type : int { scalar = 1, vector = 2, symmetric = 3, matrix = 4 };  ///< as in GMF
+  int dimension = 0;                                                            ///< 2 or 3
   std::size_t vertex_count = 0;
   std::vector<Type> types;     ///< one per field
   std::vector<double> values;  ///< [vertex * stride + component]; symmetric tensors as in GMF:
@@ -55,11 +55,21 @@ struct AnyField {
   std::string name;            ///< where it came from, for messages
 };
 
-/// Components of one field at one vertex: 1, dimension, or dimension (dimension + 1) / 2.
+/// Components of one field at one vertex: 1, dimension, dimension (dimension + 1) / 2 or
+/// dimension^2.
 constexpr int component_count(AnyField::Type type, int dimension) {
-  return type == AnyField::Type::scalar   ? 1
-         : type == AnyField::Type::vector ? dimension
-                                          : dimension * (dimension + 1) / 2;
+  return type == AnyField::Type::scalar      ? 1
+         : type == AnyField::Type::vector    ? dimension
+         : type == AnyField::Type::symmetric ? dimension * (dimension + 1) / 2
+                                             : dimension * dimension;
+}
+
+/// Components of all fields at one vertex: how far apart the values of two vertices lie.
+constexpr std::size_t stride_of(const AnyField& field) {
+  std::size_t stride = 0;
+  for (const AnyField::Type type : field.types)
+    stride += static_cast<std::size_t>(component_count(type, field.dimension));
+  return stride;
 }
 
 }  // namespace ductile::meshadapt

@@ -1,9 +1,12 @@
 /// @file
 /// The errors that Ductile's mesh adaptation throws. Their text is one line that names the file,
-/// line or entity, what was expected, what was found and what to do.
+/// line or entity, what was expected, what was found and what to do; and the warnings of those
+/// functions that go on regardless: the library prints nothing, its callers do.
 #pragma once
 
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace ductile::meshadapt {
 
@@ -18,5 +21,8 @@ class InputError : public Error {
  public:
   using Error::Error;
 };
+
+/// What was met and not taken over, or looks doubtful: one line each, as in an error.
+using Warnings = std::vector<std::string>;
 
 }  // namespace ductile::meshadapt

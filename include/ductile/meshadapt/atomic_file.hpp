@@ -1,0 +1,88 @@
+/// @file
+/// AtomicOutputs: output files that appear whole or not at all. Each one is written to a temporary
+/// beside its place, `NAME.ductile-tmp-PID-N`; commit() renames all of them when every byte of
+/// every one is on its way to disk. Until then, and after an error or an interrupt, the files that
+/// were there before are untouched. What is no regular file (/dev/null, a pipe) is written
+/// directly.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ductile::meshadapt {
+
+/// Where one output goes, buffered. Every write is checked.
+/// Thread safety: one thread.
+class OutputFile {
+ public:
+  /// Use AtomicOutputs::stage. Opens `temporary` for writing; errors name `path`.
+  OutputFile(std::filesystem::path path, std::filesystem::path temporary);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Appends bytes. Throws Error when the system takes no more (disk full, quota, size limit).
+  void write(std::string_view bytes);
+
+  /// Where the next byte goes, with room for `size` bytes (at most `buffer_size`) behind it: put
+  /// them there, then call `advance_to` with their end. Throws Error as write does.
+  char* room(std::size_t size) {
+    if (buffer_size - used_ < size) flush();
+    return buffer_.get() + used_;
+  }
+  void advance_to(const char* end) { used_ = static_cast<std::size_t>(end - buffer_.get()); }
+
+  /// Bytes appended so far.
+  std::size_t size() const { return flushed_ + used_; }
+
+  static constexpr std::size_t buffer_size = std::size_t{1} << 18;
+
+ private:
+  friend class AtomicOutputs;
+  void flush();
+  void close();
+  void discard() noexcept;
+  [[noreturn]] void fail(const char* action) const;
+  bool writes_directly() const { return temporary_ == path_; }
+
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t used_ = 0;
+  std::size_t flushed_ = 0;
+  std::FILE* file_ = nullptr;
+  bool done_ = false;
+};
+
+/// Several outputs that belong together.
+/// Thread safety: one thread.
+class AtomicOutputs {
+ public:
+  AtomicOutputs();
+  /// Removes the temporaries of what was not committed.
+  ~AtomicOutputs();
+  AtomicOutputs(const AtomicOutputs&) = delete;
+  AtomicOutputs& operator=(const AtomicOutputs&) = delete;
+
+  /// Opens a temporary for `path`, valid until commit(). A symbolic link is followed: the file that
+  /// it names is replaced. Throws InputError where check_writable would, or when `path` is staged.
+  OutputFile& stage(const std::filesystem::path& path);
+
+  /// Closes every file, then renames every temporary to its place. Throws Error: if a file cannot
+  /// be closed, nothing was renamed; if a rename fails, the text names what is in place already.
+  void commit();
+
+ private:
+  std::vector<std::unique_ptr<OutputFile>> files_;
+};
+
+/// Whether a file could be written at `path`, to be asked before long work: throws InputError if
+/// the path is empty or a folder, or if its folder is missing or refuses a new file.
+void check_writable(const std::filesystem::path& path);
+
+}  // namespace ductile::meshadapt

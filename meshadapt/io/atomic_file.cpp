@@ -1,0 +1,173 @@
+#include "ductile/meshadapt/atomic_file.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "ductile/meshadapt/error.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason(int code) { return std::generic_category().message(code); }
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// The file that a chain of symbolic links ends in, which need not exist.
+fs::path resolve_links(fs::path path) {
+  std::error_code error;
+  for (int step = 0; step < 40 && fs::is_symlink(path, error); ++step) {
+    const fs::path target = fs::read_symlink(path, error);
+    if (error) break;
+    path = target.is_absolute() ? target : folder_of(path) / target;
+  }
+  return path;
+}
+
+/// Devices and pipes: there is no old content to keep, and nothing may take their name.
+bool is_device(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+void expect_usable_name(const fs::path& path) {
+  if (path.empty()) throw InputError("expected the name of an output file, found an empty one");
+  std::error_code error;
+  const std::string name = path.string();
+  if (!path.has_filename() || fs::is_directory(path, error))
+    throw InputError(name + ": expected a file to write, found a folder; add a file name");
+  if (!fs::is_directory(folder_of(path), error))
+    throw InputError(name + ": cannot write, there is no folder " + folder_of(path).string() +
+                     "; create it first");
+  if (fs::exists(path, error) && ::access(path.c_str(), W_OK) != 0)
+    throw InputError(name + ": cannot write, " + reason(errno) +
+                     "; change its permissions or choose another name");
+}
+
+/// A new file beside `path`, created so that no two writers share one.
+fs::path create_temporary(const fs::path& path) {
+  const std::string stem =
+      path.filename().string().substr(0, 200) + ".ductile-tmp-" + std::to_string(::getpid()) + "-";
+  for (int number = 0;; ++number) {
+    fs::path temporary = folder_of(path) / (stem + std::to_string(number));
+    if (std::FILE* file = std::fopen(temporary.c_str(), "wbx")) {
+      std::fclose(file);
+      return temporary;
+    }
+    if (errno != EEXIST || number > 10000)
+      throw InputError(path.string() + ": cannot create a file in folder " +
+                       folder_of(path).string() + ", " + reason(errno) + "; choose another folder");
+  }
+}
+
+}  // namespace
+
+// ---- One file ----
+
+OutputFile::OutputFile(fs::path path, fs::path temporary)
+    : path_(std::move(path)),
+      temporary_(std::move(temporary)),
+      buffer_(std::make_unique_for_overwrite<char[]>(buffer_size)),
+      file_(std::fopen(temporary_.c_str(), "wb")) {
+  if (!file_) {
+    const std::string why = reason(errno);
+    discard();
+    throw InputError(path_.string() + ": cannot write, " + why + "; choose another folder");
+  }
+  std::setvbuf(file_, nullptr, _IONBF, 0);
+  std::error_code ignored;  // keeping the old file's permissions is a courtesy
+  const fs::file_status old = fs::status(path_, ignored);
+  if (!writes_directly() && fs::exists(old))
+    fs::permissions(temporary_, old.permissions(), ignored);
+}
+
+OutputFile::~OutputFile() { discard(); }
+
+void OutputFile::fail(const char* action) const {
+  throw Error(path_.string() + ": cannot " + action + ", " + reason(errno) + " after " +
+              std::to_string(flushed_) + " bytes; free disk space or choose another folder");
+}
+
+void OutputFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    if (used_ == buffer_size) flush();
+    const std::size_t part = std::min(bytes.size(), buffer_size - used_);
+    std::memcpy(buffer_.get() + used_, bytes.data(), part);
+    used_ += part;
+    bytes.remove_prefix(part);
+  }
+}
+
+void OutputFile::flush() {
+  if (used_ == 0) return;
+  errno = 0;
+  const std::size_t written = std::fwrite(buffer_.get(), 1, used_, file_);
+  flushed_ += written;
+  if (written != std::exchange(used_, 0)) fail("write");
+}
+
+void OutputFile::close() {
+  if (!file_) return;
+  flush();
+  errno = 0;
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("close");
+}
+
+void OutputFile::discard() noexcept {
+  if (file_) std::fclose(std::exchange(file_, nullptr));
+  std::error_code ignored;
+  if (!done_ && !writes_directly()) fs::remove(temporary_, ignored);
+}
+
+// ---- Several files ----
+
+AtomicOutputs::AtomicOutputs() = default;
+AtomicOutputs::~AtomicOutputs() = default;
+
+OutputFile& AtomicOutputs::stage(const fs::path& path) {
+  expect_usable_name(path);
+  const fs::path target = resolve_links(path).lexically_normal();
+  for (const auto& file : files_)
+    if (file->path_ == target)
+      throw InputError(path.string() + ": is the name of two outputs; give each its own");
+  if (is_device(target)) {
+    files_.push_back(std::make_unique<OutputFile>(target, target));
+  } else {
+    const fs::path temporary = create_temporary(target);
+    files_.push_back(std::make_unique<OutputFile>(target, temporary));
+  }
+  return *files_.back();
+}
+
+void AtomicOutputs::commit() {
+  for (const auto& file : files_) file->close();
+  std::string in_place;
+  for (const auto& file : files_) {
+    std::error_code error;
+    if (!file->writes_directly()) fs::rename(file->temporary_, file->path_, error);
+    if (error)
+      throw Error(file->path_.string() + ": cannot put the finished file in place, " +
+                  error.message() + (in_place.empty() ? "" : "; in place already:" + in_place));
+    file->done_ = true;
+    in_place.append(" ").append(file->path_.string());
+  }
+  files_.clear();
+}
+
+void check_writable(const fs::path& path) {
+  expect_usable_name(path);
+  const fs::path target = resolve_links(path);
+  if (is_device(target)) return;
+  std::error_code ignored;
+  fs::remove(create_temporary(target), ignored);
+}
+
+}  // namespace ductile::meshadapt

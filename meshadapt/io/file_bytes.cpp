@@ -1,0 +1,59 @@
+#include "file_bytes.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "ductile/meshadapt/error.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+[[noreturn]] void fail_to_read(const std::string& name, int code) {
+  throw InputError(name + ": cannot read the file, " + std::generic_category().message(code) +
+                   "; check its name and permissions");
+}
+
+/// Enlarges the memory for what is read; the size of a pipe is not known in advance.
+void grow(FileBytes& bytes, std::size_t& capacity) {
+  capacity = std::max<std::size_t>(2 * capacity, 1 << 16);
+  auto larger = std::make_unique_for_overwrite<char[]>(capacity);
+  std::copy_n(bytes.data.get(), bytes.size, larger.get());
+  bytes.data = std::move(larger);
+}
+
+}  // namespace
+
+FileBytes read_bytes(const fs::path& path) {
+  FileBytes bytes{path.string(), nullptr, 0};
+  std::error_code error;
+  if (path.empty()) throw InputError("expected the name of a file to read, found an empty one");
+  if (fs::is_directory(path, error))
+    throw InputError(bytes.name + ": expected a file, found a folder; name a file in it");
+  errno = 0;
+  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  if (!file) fail_to_read(bytes.name, errno);
+  std::setvbuf(file.get(), nullptr, _IONBF, 0);
+  const auto known_size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
+  std::size_t capacity = error ? 0 : static_cast<std::size_t>(known_size) + 1;
+  bytes.data = std::make_unique_for_overwrite<char[]>(capacity);
+  while (!std::feof(file.get())) {
+    if (bytes.size == capacity) grow(bytes, capacity);
+    bytes.size += std::fread(bytes.data.get() + bytes.size, 1, capacity - bytes.size, file.get());
+    if (std::ferror(file.get())) fail_to_read(bytes.name, errno);
+  }
+  if (bytes.size == 0)
+    throw InputError(bytes.name +
+                     ": expected a mesh or a field, found an empty file; write it again");
+  return bytes;
+}
+
+}  // namespace ductile::meshadapt

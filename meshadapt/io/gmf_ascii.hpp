@@ -1,0 +1,114 @@
+/// @file
+/// AsciiCursor: goes through the text of a GMF file number by number. Numbers and keywords are
+/// separated by white space, '#' starts a comment. The functions in the inner loops are inline;
+/// what builds a message is not. Lines are counted only for a message.
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "file_bytes.hpp"
+#include "gmf_place.hpp"
+
+namespace ductile::meshadapt::gmf {
+
+/// Thread safety: one thread; several cursors may go through the same bytes.
+class AsciiCursor {
+ public:
+  /// `bytes` must outlive the cursor.
+  explicit AsciiCursor(const FileBytes& bytes);
+
+  // ---- Numbers ----
+  /// The next number; throws InputError if there is none, or one that does not fit.
+  std::int64_t integer();
+  double real();
+  std::int64_t small_integer() { return integer(); }
+  std::int64_t count() { return integer(); }
+
+  // ---- Words ----
+  /// The next keyword or number as it stands; empty at the end of the file.
+  std::string_view word();
+  /// The next word without taking it.
+  std::string_view peek();
+  /// Whether text ends in the middle of a line, as where a file was cut.
+  bool ends_within_a_line() const { return end_ != begin_ && end_[-1] != '\n' && end_[-1] != '\r'; }
+
+  // ---- Sections ----
+  /// What is read next, for messages.
+  void enter(Keyword keyword, std::uint64_t count) { section_ = {keyword, count, 0, {}}; }
+  /// From here on records of the section are read. Throws InputError unless the bytes left can hold
+  /// them all; ask before making room for them.
+  Place enter_records(Shape shape);
+  void record(std::size_t number) { record_ = number; }
+  /// To be called after the last record.
+  void leave() {}
+
+  // ---- Messages ----
+  [[noreturn]] void fail(const std::string& text) const { fail_at(last_, text); }
+  /// About the number taken last.
+  [[noreturn]] void fail_number(const std::string& expected, const std::string& found) const;
+  /// About a word that should be a keyword; `similar` may be empty.
+  [[noreturn]] void fail_keyword(std::string_view found, std::string_view similar) const;
+  /// About one number of a section that was read before.
+  [[noreturn]] void fail_in(const Place& place, std::size_t record, int field,
+                            const std::string& text) const;
+  std::string where() const { return where(last_); }
+
+ private:
+  void skip_space();
+  bool at_word_end(const char* at) const { return at == end_ || is_space(*at) || *at == '#'; }
+  static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+  std::string where(const char* at) const;
+  [[noreturn]] void fail_at(const char* at, const std::string& text) const;
+  [[noreturn]] void fail_word(const char* expected);
+  double unusual_real();
+
+  const char* begin_;
+  const char* end_;
+  const char* at_;
+  const char* last_;  ///< start of the number or word taken last
+  std::size_t record_ = 0;
+  Place section_;
+  std::string_view name_;
+};
+
+inline void AsciiCursor::skip_space() {
+  while (at_ != end_) {
+    if (is_space(*at_)) {
+      ++at_;
+    } else if (*at_ == '#') {
+      while (at_ != end_ && *at_ != '\n') ++at_;
+    } else {
+      return;
+    }
+  }
+}
+
+inline std::int64_t AsciiCursor::integer() {
+  skip_space();
+  last_ = at_;
+  if (at_ != end_ && *at_ == '+') ++at_;
+  std::int64_t value = 0;
+  const auto [after, error] = std::from_chars(at_, end_, value);
+  if (error != std::errc{} || !at_word_end(after)) [[unlikely]]
+    fail_word("an integer");
+  at_ = after;
+  return value;
+}
+
+inline double AsciiCursor::real() {
+  skip_space();
+  last_ = at_;
+  if (at_ != end_ && *at_ == '+') ++at_;
+  double value = 0;
+  const auto [after, error] = std::from_chars(at_, end_, value);
+  if (error != std::errc{} || !at_word_end(after) || value - value != 0) [[unlikely]]
+    return unusual_real();
+  at_ = after;
+  return value;
+}
+
+}  // namespace ductile::meshadapt::gmf
