@@ -6,12 +6,14 @@
 
 namespace ductile::runtime {
 
+namespace detail {
+constinit thread_local int current_thread = 0;
+}
+using detail::current_thread;
+
 namespace {
-thread_local int current_thread = 0;
 thread_local bool inside_loop = false;
 }  // namespace
-
-int this_thread() noexcept { return current_thread; }
 
 void run_loop(const Executor& executor, std::size_t n, RangeBody body, void* context,
               const LoopOptions& options) {

@@ -22,8 +22,12 @@ struct LoopOptions {
   std::size_t serial_below = 0;              ///< fewer iterations than this run on the caller alone
 };
 
+namespace detail {
+extern constinit thread_local int current_thread;  // see this_thread()
+}
+
 /// Index of the calling thread in the running loop, in [0, executor.threads()); 0 outside of one.
-int this_thread() noexcept;
+inline int this_thread() noexcept { return detail::current_thread; }
 
 /// A loop body without its type: called with disjoint ranges that together cover [0, n).
 using RangeBody = void (*)(void* context, std::size_t begin, std::size_t end);

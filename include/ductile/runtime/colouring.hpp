@@ -1,0 +1,150 @@
+/// @file
+/// Colouring: gives the vertices of a graph colours so that neighbours differ. Vertices of one
+/// colour are independent, so whatever concerns a vertex and its neighbours may be done for all of
+/// them at once. All methods are first-fit: a vertex takes the least colour no neighbour has.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "ductile/runtime/detail/blocked_colouring.hpp"
+#include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/speculative_colouring.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/graph.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime {
+
+enum class ColouringMethod {
+  automatic,     ///< the fastest that keeps the executor's promise about determinism
+  serial,        ///< first-fit in vertex order on the calling thread
+  blocked,       ///< strided blocks side by side, clashes repaired by priority; deterministic
+  detect_again,  ///< speculate; detect and recolour at once, one barrier a round
+                 ///< (Rokos, Gorman, Kelly, Euro-Par 2015)
+  two_phase,     ///< speculate; colour, then detect, a barrier after each
+                 ///< (Catalyurek et al., Parallel Computing 38, 2012)
+};
+
+struct Colouring {
+  static constexpr std::uint32_t none = ~std::uint32_t{0};  ///< instead of a colour
+
+  std::vector<std::uint32_t> colour_of;  ///< [vertex]
+  std::uint32_t count = 0;               ///< colours are less than this
+};
+
+namespace detail {
+
+constexpr std::size_t few_vertices = 4096;  // coloured on the caller, in order
+
+/// Runs a method with colours of one byte or, if there are too many, of four.
+template <class Method, Graph G>
+void colour_all(const Executor& executor, const G& graph, std::vector<std::uint32_t>& colour_of) {
+  const std::size_t n = colour_of.size();
+  try {
+    std::vector<std::uint8_t> bytes(n, Colours<std::uint8_t>::none);
+    Method::run(executor, graph, VertexSet{n}, Colours(std::span(bytes)));
+    const auto widen = [&](std::size_t begin, std::size_t end) {
+      std::copy(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+                bytes.begin() + static_cast<std::ptrdiff_t>(end),
+                colour_of.begin() + static_cast<std::ptrdiff_t>(begin));
+    };
+    parallel_for_ranges(executor, n, widen, {.grain = 8192, .serial_below = 32768});
+  } catch (const TooManyColours&) {
+    std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
+    Method::run(executor, graph, VertexSet{n}, Colours(std::span(colour_of)));
+  }
+}
+
+/// One more than the greatest colour.
+std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
+
+}  // namespace detail
+
+/// Colours all vertices. `serial` and `blocked` give the same colours at any thread count, the
+/// others do not. Throws std::bad_alloc and what the graph throws. Thread safety: any thread.
+template <Graph G>
+Colouring colour(const Executor& executor, const G& graph,
+                 ColouringMethod method = ColouringMethod::automatic) {
+  Colouring colouring;
+  auto& colour_of = colouring.colour_of;
+  colour_of.resize(graph.vertex_count());
+  if (colour_of.size() < detail::few_vertices) method = ColouringMethod::serial;
+  switch (method) {
+    case ColouringMethod::serial:
+      detail::colour_all<detail::Serial>(executor, graph, colour_of);
+      break;
+    case ColouringMethod::automatic:  // blocked is deterministic and no slower than the others
+    case ColouringMethod::blocked:
+      detail::colour_all<detail::Blocked>(executor, graph, colour_of);
+      break;
+    case ColouringMethod::detect_again:
+      detail::colour_all<detail::DetectAgain>(executor, graph, colour_of);
+      break;
+    case ColouringMethod::two_phase:
+      detail::colour_all<detail::TwoPhase>(executor, graph, colour_of);
+      break;
+  }
+  colouring.count = detail::colour_count(executor, colour_of);
+  return colouring;
+}
+
+/// Colours `vertices` (ascending, each once) anew and leaves the others as they are: those with a
+/// colour are avoided, those with Colouring::none ignored. Serves recolouring after a change, and
+/// colouring of a part. colour_of has the graph's vertex count. The result is deterministic.
+/// Throws std::bad_alloc and what the graph throws. Thread safety: any thread.
+template <Graph G>
+void recolour(const Executor& executor, const G& graph, std::span<const std::uint32_t> vertices,
+              Colouring& colouring) {
+  const LoopOptions loop{.grain = 1024, .serial_below = detail::few_vertices};
+  auto& colour_of = colouring.colour_of;
+  parallel_for(
+      executor, vertices.size(), [&](std::size_t i) { colour_of[vertices[i]] = Colouring::none; },
+      loop);
+  const detail::VertexSet set{vertices.size(), vertices.data()};
+  const detail::Colours colours{std::span(colour_of)};
+  if (vertices.size() < detail::few_vertices) {
+    detail::Serial::run(executor, graph, set, colours);
+  } else {
+    detail::Blocked::run(executor, graph, set, colours);
+  }
+  const auto next = [&](std::size_t i) { return colour_of[vertices[i]] + 1; };
+  const auto greater = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); };
+  colouring.count = parallel_reduce(executor, vertices.size(), colouring.count, next, greater);
+}
+
+/// Vertices grouped by colour.
+struct ColourClasses {
+  std::vector<std::uint32_t> vertices;  ///< by (colour, vertex)
+  std::vector<std::size_t> begin;       ///< [colour], and the end
+
+  std::size_t count() const { return begin.size() - 1; }
+  std::span<const std::uint32_t> members(std::size_t colour) const {
+    return std::span(vertices).subspan(begin[colour], begin[colour + 1] - begin[colour]);
+  }
+};
+
+/// The vertices of each colour, ascending; those with Colouring::none are left out.
+/// Throws std::bad_alloc. Thread safety: any thread.
+ColourClasses colour_classes(const Executor& executor, const Colouring& colouring);
+
+/// Every vertex has a colour below count, and no two neighbours have the same.
+template <Graph G>
+bool is_proper(const Executor& executor, const G& graph, const Colouring& colouring) {
+  if (colouring.colour_of.size() != graph.vertex_count()) return false;
+  const auto bad = [&](std::size_t i) {
+    const auto v = static_cast<std::uint32_t>(i);
+    bool clash = colouring.colour_of[v] >= colouring.count;
+    graph.for_each_neighbour(v, [&](std::uint32_t u) {
+      clash = clash || (u != v && colouring.colour_of[u] == colouring.colour_of[v]);
+    });
+    return clash ? 1 : 0;
+  };
+  return parallel_reduce(executor, graph.vertex_count(), 0, bad, std::plus<>()) == 0;
+}
+
+}  // namespace ductile::runtime

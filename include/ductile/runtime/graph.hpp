@@ -1,0 +1,84 @@
+/// @file
+/// Graphs as the runtime sees them: anything that can name its vertex count and visit the
+/// neighbours of a vertex. Here are the concept, views of arrays and callbacks, and the square of
+/// a graph; boost_graph.hpp adapts Boost.Graph.
+/// Edges are symmetric: where u is a neighbour of v, v is one of u. Repeated neighbours and
+/// loops are allowed. Views do not own what they show; visiting is thread-safe, as it only reads.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace ductile::runtime {
+
+/// vertex_count() is less than 2^32; for_each_neighbour(v, visit) calls visit(u) for every
+/// neighbour u of vertex v. Thread safety: called by many threads.
+template <class G>
+concept Graph = requires(const G& graph, std::uint32_t v) {
+  { graph.vertex_count() } -> std::convertible_to<std::size_t>;
+  graph.for_each_neighbour(v, [](std::uint32_t) {});
+};
+
+/// Compressed rows: the neighbours of v are neighbour[offset[v]] to neighbour[offset[v + 1] - 1].
+template <std::unsigned_integral Offset = std::uint32_t>
+struct CsrGraph {
+  std::span<const Offset> offset;            ///< [vertex_count + 1]
+  std::span<const std::uint32_t> neighbour;  ///< [offset.back()]
+
+  std::size_t vertex_count() const { return offset.empty() ? 0 : offset.size() - 1; }
+  template <class Visit>
+  void for_each_neighbour(std::uint32_t v, Visit&& visit) const {
+    const Offset end = offset[std::size_t{v} + 1];
+    for (Offset i = offset[v]; i < end; ++i) visit(neighbour[i]);
+  }
+};
+
+/// A graph known through a function neighbours_of(v, visit).
+template <class Neighbours>
+class CallbackGraph {
+ public:
+  CallbackGraph(std::size_t vertex_count, Neighbours neighbours_of)
+      : vertex_count_(vertex_count), neighbours_of_(std::move(neighbours_of)) {}
+
+  std::size_t vertex_count() const { return vertex_count_; }
+  template <class Visit>
+  void for_each_neighbour(std::uint32_t v, Visit&& visit) const {
+    neighbours_of_(v, visit);
+  }
+
+ private:
+  std::size_t vertex_count_;
+  Neighbours neighbours_of_;
+};
+
+template <class Neighbours>
+CallbackGraph<Neighbours> callback_graph(std::size_t vertex_count, Neighbours neighbours_of) {
+  return {vertex_count, std::move(neighbours_of)};
+}
+
+/// The square of a graph: vertices two edges apart are neighbours too, so that its colourings are
+/// distance-2 colourings of the graph.
+template <Graph G>
+class SquareGraph {
+ public:
+  explicit SquareGraph(const G& graph) : graph_(&graph) {}
+
+  std::size_t vertex_count() const { return graph_->vertex_count(); }
+  template <class Visit>
+  void for_each_neighbour(std::uint32_t v, Visit&& visit) const {
+    graph_->for_each_neighbour(v, [&](std::uint32_t u) {
+      visit(u);
+      graph_->for_each_neighbour(u, [&](std::uint32_t w) {
+        if (w != v) visit(w);
+      });
+    });
+  }
+
+ private:
+  const G* graph_;
+};
+
+}  // namespace ductile::runtime
