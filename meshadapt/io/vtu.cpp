@@ -1,0 +1,163 @@
+#include "ductile/meshadapt/vtu.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <pugixml.hpp>
+#include <span>
+#include <string_view>
+
+#include "ductile/meshadapt/error.hpp"
+#include "vtk_array.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using Type = AnyField::Type;
+
+class OutputWriter : public pugi::xml_writer {
+ public:
+  explicit OutputWriter(OutputFile& out) : out_(out) {}
+  void write(const void* data, std::size_t size) override {
+    out_.write({static_cast<const char*>(data), size});
+  }
+
+ private:
+  OutputFile& out_;
+};
+
+const char* type_name(double) { return "Float64"; }
+const char* type_name(std::int64_t) { return "Int64"; }
+const char* type_name(std::int32_t) { return "Int32"; }
+const char* type_name(std::uint8_t) { return "UInt8"; }
+
+template <class Number>
+void add_array(pugi::xml_node parent, const std::string& name, int components,
+               const std::vector<Number>& values) {
+  pugi::xml_node node = parent.append_child("DataArray");
+  node.append_attribute("type") = type_name(Number{});
+  node.append_attribute("Name") = name.c_str();
+  node.append_attribute("NumberOfComponents") = components;
+  node.append_attribute("format") = "binary";
+  const std::string text = vtk_encoded(std::as_bytes(std::span(values)));
+  node.append_child(pugi::node_pcdata).set_value(text.c_str());
+}
+
+/// Where component (row, column) of a field stands among those of a vertex; -1: nowhere.
+int component_at(Type type, int dimension, int row, int column) {
+  if (row >= dimension || column >= dimension) return -1;
+  if (type == Type::matrix) return row * dimension + column;
+  if (type == Type::vector) return column;
+  return std::max(row, column) * (std::max(row, column) + 1) / 2 + std::min(row, column);
+}
+
+void add_field(pugi::xml_node parent, const VtuField& field, const AnyMesh& mesh) {
+  const auto stride = static_cast<std::size_t>(component_count(field.type, mesh.dimension));
+  if (field.values.size() != stride * mesh.vertex_count())
+    throw Error("field " + field.name + ": expected " +
+                std::to_string(stride * mesh.vertex_count()) + " values, found " +
+                std::to_string(field.values.size()));
+  if (field.type == Type::scalar) return add_array(parent, field.name, 1, field.values);
+  const int rows = field.type == Type::vector ? 1 : 3;
+  std::vector<double> wide;
+  wide.reserve(mesh.vertex_count() * static_cast<std::size_t>(3 * rows));
+  for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < 3; ++column) {
+        const int from = component_at(field.type, mesh.dimension, row, column);
+        wide.push_back(from < 0 ? 0.0
+                                : field.values[vertex * stride + static_cast<std::size_t>(from)]);
+      }
+  add_array(parent, field.name, 3 * rows, wide);
+}
+
+void add_points(pugi::xml_node piece, const AnyMesh& mesh) {
+  const VtuField points{"Points", Type::vector, mesh.coordinates};
+  add_field(piece.append_child("Points"), points, mesh);
+}
+
+template <class Visit>
+void for_each_cells(const AnyMesh& mesh, const Visit& visit) {
+  constexpr std::uint8_t vtk_line = 3, vtk_triangle = 5, vtk_tetrahedron = 10;
+  visit(mesh.tetrahedra, vtk_tetrahedron);
+  visit(mesh.triangles, vtk_triangle);
+  visit(mesh.edges, vtk_line);
+}
+
+void add_cells(pugi::xml_node piece, const AnyMesh& mesh) {
+  std::vector<std::int64_t> connectivity, offsets;
+  std::vector<std::uint8_t> types;
+  std::vector<std::int32_t> references;
+  for_each_cells(mesh, [&](const auto& cells, std::uint8_t type) {
+    for (const auto& vertices : cells.vertices) {
+      connectivity.insert(connectivity.end(), vertices.begin(), vertices.end());
+      offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+    }
+    types.insert(types.end(), cells.size(), type);
+    references.insert(references.end(), cells.reference.begin(), cells.reference.end());
+  });
+  pugi::xml_node cells = piece.append_child("Cells");
+  add_array(cells, "connectivity", 1, connectivity);
+  add_array(cells, "offsets", 1, offsets);
+  add_array(cells, "types", 1, types);
+  add_array(piece.append_child("CellData"), "reference", 1, references);
+}
+
+void add_piece(pugi::xml_node grid, const AnyMesh& mesh, const std::vector<VtuField>& fields) {
+  pugi::xml_node piece = grid.append_child("Piece");
+  piece.append_attribute("NumberOfPoints") = static_cast<unsigned long long>(mesh.vertex_count());
+  piece.append_attribute("NumberOfCells") = static_cast<unsigned long long>(
+      mesh.tetrahedra.size() + mesh.triangles.size() + mesh.edges.size());
+  add_points(piece, mesh);
+  add_cells(piece, mesh);
+  pugi::xml_node point_data = piece.append_child("PointData");
+  add_array(point_data, "reference", 1, mesh.vertex_reference);
+  for (const VtuField& field : fields) add_field(point_data, field, mesh);
+}
+
+}  // namespace
+
+std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name) {
+  std::vector<VtuField> fields;
+  const std::size_t stride = stride_of(field);
+  std::size_t first = 0;
+  for (const Type type : field.types) {
+    const auto count = static_cast<std::size_t>(component_count(type, field.dimension));
+    VtuField& part = fields.emplace_back();
+    part.name = field.types.size() == 1 ? name : name + "_" + std::to_string(fields.size());
+    part.type = type;
+    part.values.reserve(field.vertex_count * count);
+    for (std::size_t vertex = 0; vertex < field.vertex_count; ++vertex)
+      for (std::size_t i = 0; i < count; ++i)
+        part.values.push_back(field.values[vertex * stride + first + i]);
+    first += count;
+  }
+  return fields;
+}
+
+void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const std::vector<VtuField>& fields) {
+  OutputFile& out = outputs.stage(path);
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  declaration.append_attribute("version") = "1.0";
+  pugi::xml_node file = document.append_child("VTKFile");
+  file.append_attribute("type") = "UnstructuredGrid";
+  file.append_attribute("version") = "1.0";
+  file.append_attribute("byte_order") =
+      std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
+  file.append_attribute("header_type") = "UInt64";
+  file.append_attribute("compressor") = "vtkZLibDataCompressor";
+  add_piece(file.append_child("UnstructuredGrid"), mesh, fields);
+  OutputWriter writer(out);
+  document.save(writer, " ");
+}
+
+void write_vtu(const std::filesystem::path& path, const AnyMesh& mesh,
+               const std::vector<VtuField>& fields) {
+  AtomicOutputs outputs;
+  write_vtu(outputs, path, mesh, fields);
+  outputs.commit();
+}
+
+}  // namespace ductile::meshadapt
