@@ -36,6 +36,11 @@ bool is_tiny(std::string_view number) {
   return point - first < -power;
 }
 
+/// The wrong dimension shows as a wrong count of vertices.
+std::string dimension_hint(Keyword keyword) {
+  return keyword == Keyword::vertices ? " or the Dimension" : "";
+}
+
 }  // namespace
 
 AsciiCursor::AsciiCursor(const FileBytes& bytes)
@@ -92,7 +97,7 @@ void AsciiCursor::fail_word(const char* expected) {
                       ", found the end of the file; the file is cut short, write or copy it again");
   if (keyword_named(found) != Keyword::none && section_.shape.numbers() != 0)
     fail("expected " + what + ", found the keyword " + std::string(found) +
-         "; correct the count of " + name);
+         "; correct the count of " + name + dimension_hint(section_.keyword));
   fail("expected " + what + ", found " + quoted(found) + "; correct it");
 }
 
@@ -126,7 +131,8 @@ void AsciiCursor::fail_keyword(std::string_view found, std::string_view similar)
   const std::string name(name_of(section_.keyword));
   const bool is_number = found.find_first_not_of("+-.0123456789eE") == found.npos;
   fail("expected a keyword after " + name + ", found " + quoted(found) +
-       (is_number         ? "; the section has more lines than its count says, correct that"
+       (is_number ? "; the section has more lines than its count says, correct that" +
+                        dimension_hint(section_.keyword)
         : similar.empty() ? "; correct it, or remove the section"
                           : "; did you mean " + std::string(similar) + "?"));
 }

@@ -1,0 +1,169 @@
+#include "ductile/meshadapt/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+
+#include "ductile/meshadapt/gmf.hpp"
+#include "io_support.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(AtomicOutputs, AppearTogether) {
+  const test::TemporaryFolder folder;
+  test::put_bytes(folder / "a", "old");
+  AtomicOutputs outputs;
+  outputs.stage(folder / "a").write("new");
+  const std::string large(3 * OutputFile::buffer_size + 7, 'x');
+  outputs.stage(folder / "b").write(large);
+  EXPECT_EQ(test::get_bytes(folder / "a"), "old");
+  EXPECT_FALSE(fs::exists(folder / "b"));
+  outputs.commit();
+  EXPECT_EQ(test::get_bytes(folder / "a"), "new");
+  EXPECT_EQ(test::get_bytes(folder / "b"), large);
+  EXPECT_EQ(folder.file_count(), 2U);
+}
+
+TEST(AtomicOutputs, LeaveNothingWithoutCommit) {
+  const test::TemporaryFolder folder;
+  test::put_bytes(folder / "a", "old");
+  {
+    AtomicOutputs outputs;
+    outputs.stage(folder / "a").write("new");
+    outputs.stage(folder / "b").write("new");
+    EXPECT_EQ(folder.file_count(), 3U);
+  }
+  EXPECT_EQ(test::get_bytes(folder / "a"), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicOutputs, KeepLinksAndPermissions) {
+  const test::TemporaryFolder folder;
+  test::put_bytes(folder / "a", "old");
+  fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("a", folder / "link");
+  AtomicOutputs outputs;
+  outputs.stage(folder / "link").write("new");
+  outputs.commit();
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(test::get_bytes(folder / "a"), "new");
+  EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(AtomicOutputs, TakeAnyLengthOfName) {
+  const test::TemporaryFolder folder;
+  const std::string name(255, 'n');
+  AtomicOutputs outputs;
+  outputs.stage(folder / name).write("x");
+  outputs.commit();
+  EXPECT_EQ(test::get_bytes(folder / name), "x");
+}
+
+TEST(AtomicOutputs, RefusePlacesThatCannotBeWritten) {
+  const test::TemporaryFolder folder;
+  const auto complaint = [](const fs::path& path) {
+    const std::string at_stage = test::complaint([&] { AtomicOutputs().stage(path); });
+    EXPECT_EQ(test::complaint([&] { check_writable(path); }), at_stage);
+    return at_stage;
+  };
+  EXPECT_NE(complaint(folder / "none" / "a").find("there is no folder"), std::string::npos);
+  EXPECT_NE(complaint(folder / "").find("found a folder"), std::string::npos);
+  EXPECT_NE(complaint("").find("empty"), std::string::npos);
+  EXPECT_NE(complaint("/proc/a.mesh").find("/proc/a.mesh: cannot create"), std::string::npos);
+  AtomicOutputs outputs;
+  outputs.stage(folder / "a");
+  EXPECT_NE(test::complaint([&] { outputs.stage(folder / "a"); }).find("two outputs"),
+            std::string::npos);
+}
+
+TEST(AtomicOutputs, RefuseAFolderWithoutPermission) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "shut");
+  fs::permissions(folder / "shut", fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THROW(check_writable(folder / "shut" / "a"), InputError);
+}
+
+TEST(AtomicOutputs, CheckingLeavesNoTrace) {
+  const test::TemporaryFolder folder;
+  test::put_bytes(folder / "a", "old");
+  check_writable(folder / "a");
+  check_writable(folder / "b");
+  EXPECT_EQ(test::get_bytes(folder / "a"), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicOutputs, ReportAFullDisk) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const AnyMesh mesh = test::random_mesh(2, 100, 1);
+  try {
+    write_mesh("/dev/full", mesh, {.form = GmfOptions::Form::ascii});
+    FAIL() << "nothing thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("/dev/full: cannot write, No space left"),
+              std::string::npos)
+        << error.what();
+  }
+  write_mesh("/dev/null", mesh, {.form = GmfOptions::Form::ascii});
+  EXPECT_FALSE(fs::is_regular_file("/dev/null"));
+}
+
+/// Files cannot grow beyond `bytes` while it lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    previous_handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &previous_);
+    const rlimit limit{bytes, previous_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &previous_);
+    std::signal(SIGXFSZ, previous_handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit previous_{};
+  void (*previous_handler_)(int) = nullptr;
+};
+
+TEST(AtomicOutputs, KeepTheOldFileWhenTheDiskFillsUp) {
+  const test::TemporaryFolder folder;
+  test::put_bytes(folder / "a.meshb", "old");
+  const AnyMesh mesh = test::random_mesh(3, 50000, 1);
+  for (const rlim_t limit : {0, 1, 300000, 1000000}) {
+    const FileSizeLimit full(limit);
+    EXPECT_THROW(write_mesh(folder / "a.meshb", mesh), Error);
+    EXPECT_THROW(write_mesh(folder / "b.mesh", mesh), Error);
+  }
+  EXPECT_EQ(test::get_bytes(folder / "a.meshb"), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicOutputs, SurviveAnInterrupt) {
+  const test::TemporaryFolder folder;
+  test::put_bytes(folder / "a", "old");
+  const auto interrupted = [&] {
+    AtomicOutputs outputs;
+    outputs.stage(folder / "a").write(std::string(OutputFile::buffer_size + 1, 'x'));
+    std::raise(SIGTERM);
+  };
+  EXPECT_EXIT(interrupted(), testing::KilledBySignal(SIGTERM), "");
+  EXPECT_EQ(test::get_bytes(folder / "a"), "old");
+  ASSERT_EQ(folder.file_count(), 2U);
+  for (const auto& entry : fs::directory_iterator(folder / "")) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_TRUE(name == "a" || name.starts_with("a.ductile-tmp-")) << name;
+  }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
