@@ -2,7 +2,7 @@
 /// A parallel colouring that does not depend on threads or timing.
 /// The ids are cut into blocks; every `stride`-th block is coloured in the same step, each by
 /// first-fit in order, seeing the colours of earlier steps and its own. A neighbour in another
-/// block of the step is not looked at, but noted: after the last step the pairs that turn out to
+/// block of the step does not count, but is noted: after the last step the pairs that turn out to
 /// have one colour are repaired. Blocks of a step are far apart, so where ids follow the graph
 /// there are hardly any such pairs, and else they are few because a step is a small part of all.
 /// Repair is greedy by hashed priority: a vertex waits for its waiting neighbours of higher
@@ -26,22 +26,36 @@
 
 namespace ductile::runtime::detail {
 
-/// How ids are cut: vertex v is in block v >> block_bits, block b in step b mod 2^step_bits.
+/// How ids are cut: vertex v is in block v >> block_bits; 2^step_bits blocks in a row are coloured
+/// in different steps, each row starting one step later than the one before: where the bits of ids
+/// have a meaning, equal low bits would gather related blocks in one step.
 struct BlockLayout {
   unsigned block_bits, step_bits;
 
-  /// Many vertices: more steps, longer blocks, and more blocks side by side.
+  /// About 32 blocks side by side, slowly more of them from a million vertices up. More steps make
+  /// fewer clashes, each step costs a launch.
   static BlockLayout of(std::size_t vertex_count) {
-    const auto bits = static_cast<unsigned>(std::bit_width(vertex_count));
-    return bits <= 16 ? BlockLayout{6, 3} : BlockLayout{6 + (bits - 16) * 2 / 3, 5};
+    const int bits = std::bit_width(vertex_count);
+    const int step_bits = std::clamp(bits - 13, 3, 6);
+    const int width_bits = 5 + std::max(0, bits - 20) / 2;
+    const int block_bits = std::max(0, bits - step_bits - width_bits);
+    return {static_cast<unsigned>(block_bits), static_cast<unsigned>(step_bits)};
   }
-  std::size_t block_count(std::size_t vertex_count) const {
-    return (vertex_count + (std::size_t{1} << block_bits) - 1) >> block_bits;
+  std::uint32_t step_count() const { return 1U << step_bits; }
+  std::uint32_t step_of(std::uint32_t block) const {
+    return (block + (block >> step_bits)) & (step_count() - 1);
+  }
+  /// The block of this row that has its turn in this step.
+  std::size_t block_of(std::size_t row, std::size_t step) const {
+    return (row << step_bits) + ((step - row) & (step_count() - 1));
+  }
+  std::size_t row_count(std::size_t vertex_count) const {
+    return (vertex_count >> (block_bits + step_bits)) + 1;
   }
   /// In different blocks of one step, which are coloured at the same time.
   bool apart(std::uint32_t u, std::uint32_t v) const {
-    const std::uint32_t difference = (u ^ v) >> block_bits;
-    return difference != 0 && (difference & ((1U << step_bits) - 1)) == 0;
+    const std::uint32_t block_u = u >> block_bits, block_v = v >> block_bits;
+    return block_u != block_v && step_of(block_u) == step_of(block_v);
   }
 };
 
@@ -54,16 +68,15 @@ class BlockedRun {
         vertices_(vertices),
         colours_(colours),
         layout_(BlockLayout::of(colours.vertex_count())),
-        unseen_(executor),
+        blind_(executor),
         losers_(executor, {.unique = true}) {}
 
   void run() {
-    const std::size_t blocks = layout_.block_count(colours_.vertex_count());
-    const std::size_t stride = std::size_t{1} << layout_.step_bits;
-    for (std::size_t step = 0; step < stride && step < blocks; ++step) {
-      parallel_for(executor_, (blocks - step + stride - 1) / stride,
-                   [&](std::size_t i) { colour_block(step + i * stride); }, {.grain = 1});
-    }
+    const std::size_t rows = layout_.row_count(colours_.vertex_count());
+    for (std::size_t step = 0; step < layout_.step_count(); ++step)
+      parallel_for(executor_, rows,
+                   [&](std::size_t row) { colour_block(layout_.block_of(row, step)); },
+                   {.grain = 1});
     find_losers();
     losers_.collect();
     repair(losers_.take());
@@ -74,23 +87,30 @@ class BlockedRun {
 
   void colour_block(std::size_t block) {
     const auto [begin, end] = vertices_in(block);
-    std::vector<Pair>& unseen = unseen_.mine();
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t v = vertices_[i];
-      const auto seen = [&](std::uint32_t u) {
-        if (!layout_.apart(u, v) || !contains(u)) return true;
-        if (u < v) unseen.emplace_back(u, v);  // one of the two notes it
-        return false;
+      const auto counts = [&](std::uint32_t u) {
+        if (layout_.apart(u, v)) [[unlikely]]
+          return !note_if_blind(u, v);
+        return true;
       };
-      colours_.set(v, least_free(graph_, v, colours_, seen));
+      colours_.set(v, least_free(graph_, v, colours_, counts));
     }
+  }
+
+  /// Whether u and v, which are apart, get their colours at the same time, and not only v.
+  /// Not inlined, so as to keep the caller's loop tight.
+  [[gnu::noinline, gnu::cold]] bool note_if_blind(std::uint32_t u, std::uint32_t v) {
+    if (vertices_.list != nullptr && !contains(u)) return false;
+    if (u < v) blind_.mine().emplace_back(u, v);  // one of the two notes it
+    return true;
   }
 
   /// The positions in vertices_ of a block's.
   std::pair<std::size_t, std::size_t> vertices_in(std::size_t block) const {
-    const std::size_t begin = block << layout_.block_bits;
-    const std::size_t end =
-        std::min(begin + (std::size_t{1} << layout_.block_bits), colours_.vertex_count());
+    const std::size_t n = colours_.vertex_count();
+    const std::size_t begin = std::min(block << layout_.block_bits, n);
+    const std::size_t end = std::min((block + 1) << layout_.block_bits, n);
     if (vertices_.list == nullptr) return {begin, end};
     const std::span list(vertices_.list, vertices_.count);
     const auto position = [&](std::size_t id) {
@@ -101,16 +121,15 @@ class BlockedRun {
   }
 
   bool contains(std::uint32_t v) const {
-    return vertices_.list == nullptr ||
-           std::binary_search(vertices_.list, vertices_.list + vertices_.count, v);
+    return std::binary_search(vertices_.list, vertices_.list + vertices_.count, v);
   }
 
   static bool outranks(std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); }
 
   void find_losers() {
-    parallel_for(executor_, unseen_.size(),
+    parallel_for(executor_, blind_.size(),
                  [&](std::size_t t) {
-                   for (const auto& [u, v] : unseen_[t])
+                   for (const auto& [u, v] : blind_[t])
                      if (colours_[u] == colours_[v]) losers_.append(outranks(u, v) ? v : u);
                  },
                  {.grain = 1});
@@ -149,7 +168,7 @@ class BlockedRun {
   VertexSet vertices_;
   Colours<Word> colours_;
   BlockLayout layout_;
-  PerThread<std::vector<Pair>> unseen_;  // edges between blocks of one step
+  PerThread<std::vector<Pair>> blind_;  // neighbours coloured at the same time
   Worklist<std::uint32_t> losers_;
 };
 

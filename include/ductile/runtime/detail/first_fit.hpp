@@ -51,10 +51,10 @@ class Colours {
   std::span<Word> words_;
 };
 
-/// The least colour that none of v's neighbours u with counts(u) has. Colours are looked at 64 at a
-/// time, as the bits of one word. Throws TooManyColours.
+/// least_free() for a vertex whose neighbours have many colours: 64 of them at a time.
 template <class Word, Graph G, class Counts>
-Word least_free(const G& graph, std::uint32_t v, const Colours<Word>& colours, Counts&& counts) {
+[[gnu::noinline]] Word least_free_of_many(const G& graph, std::uint32_t v,
+                                          const Colours<Word>& colours, Counts& counts) {
   for (std::uint32_t base = 0;; base += 64) {
     std::uint64_t taken = 0;
     graph.for_each_neighbour(v, [&](std::uint32_t u) {
@@ -67,6 +67,26 @@ Word least_free(const G& graph, std::uint32_t v, const Colours<Word>& colours, C
     if (free >= Colours<Word>::waiting) throw TooManyColours{};
     return static_cast<Word>(free);
   }
+}
+
+/// The least colour that none of v's neighbours u with counts(u) has; counts may be asked about a
+/// neighbour again. Throws TooManyColours.
+template <class Word, Graph G, class Counts>
+Word least_free(const G& graph, std::uint32_t v, const Colours<Word>& colours, Counts counts) {
+  // Colours below 62 are bits of `taken`; `waiting` and `none` fall on the bits above them. Any
+  // other colour shows in the bits of `high` from 64 up.
+  std::uint64_t taken = 0;
+  Word high = 0;
+  graph.for_each_neighbour(v, [&](std::uint32_t u) {
+    if (!counts(u)) return;
+    const Word colour = colours[u];
+    taken |= std::uint64_t{1} << (colour & 63U);
+    high |= static_cast<Word>(colour + 2);
+  });
+  const auto free = static_cast<std::uint32_t>(std::countr_one(taken));
+  if (free < 62 && high < 64) [[likely]]
+    return static_cast<Word>(free);
+  return least_free_of_many(graph, v, colours, counts);
 }
 
 template <class Word, Graph G>

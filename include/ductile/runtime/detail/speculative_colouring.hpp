@@ -24,8 +24,7 @@ template <class Word, Graph G>
 bool clashes(const G& graph, std::uint32_t v, const Colours<Word>& colours) {
   const Word own = colours[v];
   bool clash = false;
-  graph.for_each_neighbour(v,
-                           [&](std::uint32_t u) { clash = clash || (u < v && colours[u] == own); });
+  graph.for_each_neighbour(v, [&](std::uint32_t u) { clash |= (u < v) & (colours[u] == own); });
   return clash;
 }
 
