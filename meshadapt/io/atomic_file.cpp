@@ -111,11 +111,13 @@ void OutputFile::flush() {
   errno = 0;
   const std::size_t written = std::fwrite(buffer_.get(), 1, used_, file_);
   flushed_ += written;
-  if (written != std::exchange(used_, 0)) fail("write");
+  broken_ = broken_ || written != std::exchange(used_, 0);
+  if (broken_) fail("write");
 }
 
 void OutputFile::close() {
   if (!file_) return;
+  if (broken_) fail("finish");
   flush();
   errno = 0;
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("close");

@@ -129,7 +129,7 @@ void AsciiCursor::fail_number(const std::string& expected, const std::string& fo
 
 void AsciiCursor::fail_keyword(std::string_view found, std::string_view similar) const {
   const std::string name(name_of(section_.keyword));
-  const bool is_number = found.find_first_not_of("+-.0123456789eE") == found.npos;
+  const bool is_number = found.find_first_not_of("+-.0123456789eE") == std::string_view::npos;
   fail("expected a keyword after " + name + ", found " + quoted(found) +
        (is_number ? "; the section has more lines than its count says, correct that" +
                         dimension_hint(section_.keyword)

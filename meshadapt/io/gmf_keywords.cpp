@@ -87,7 +87,7 @@ constexpr auto name_table = [] {
 /// Simple cells of every order ("Prisms", "TrianglesP2", "Hexahedra12") and general ones, but not
 /// data about them ("TrianglesP2Ordering").
 bool names_other_cells(std::string_view name) {
-  if (name.starts_with("Poly") || name.find("Polygon") != name.npos)
+  if (name.starts_with("Poly") || name.find("Polygon") != std::string_view::npos)
     return !name.starts_with("Sol");
   constexpr std::array shapes = {"Edges",    "Triangles", "Quadrilaterals", "Tetrahedra",
                                  "Pyramids", "Prisms",    "Hexahedra"};
@@ -95,7 +95,7 @@ bool names_other_cells(std::string_view name) {
     if (!name.starts_with(shape)) continue;
     std::string_view order = name.substr(shape.size());
     if (order.starts_with('P') || order.starts_with('Q')) order.remove_prefix(1);
-    if (order.find_first_not_of("0123456789") == order.npos) return true;
+    if (order.find_first_not_of("0123456789") == std::string_view::npos) return true;
   }
   return false;
 }

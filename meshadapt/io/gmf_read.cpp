@@ -44,8 +44,8 @@ void read_version(AsciiCursor& in) {
 void skip_section(AsciiCursor& in, Keyword keyword) {
   for (;;) {
     const std::string_view next = in.peek();
-    const bool is_number = next.find_first_of("0123456789") != next.npos &&
-                           next.find_first_not_of("+-.0123456789eEdD") == next.npos;
+    const bool is_number = next.find_first_of("0123456789") != std::string_view::npos &&
+                           next.find_first_not_of("+-.0123456789eEdD") == std::string_view::npos;
     const bool goes_on =
         gmf::has_text(keyword) ? gmf::keyword_named(next) == Keyword::none : is_number;
     if (next.empty() || !goes_on) return;

@@ -105,9 +105,9 @@ void add_cells(pugi::xml_node piece, const AnyMesh& mesh) {
 
 void add_piece(pugi::xml_node grid, const AnyMesh& mesh, const std::vector<VtuField>& fields) {
   pugi::xml_node piece = grid.append_child("Piece");
-  piece.append_attribute("NumberOfPoints") = static_cast<unsigned long long>(mesh.vertex_count());
-  piece.append_attribute("NumberOfCells") = static_cast<unsigned long long>(
-      mesh.tetrahedra.size() + mesh.triangles.size() + mesh.edges.size());
+  const std::size_t cells = mesh.tetrahedra.size() + mesh.triangles.size() + mesh.edges.size();
+  piece.append_attribute("NumberOfPoints").set_value(mesh.vertex_count());
+  piece.append_attribute("NumberOfCells").set_value(cells);
   add_points(piece, mesh);
   add_cells(piece, mesh);
   pugi::xml_node point_data = piece.append_child("PointData");
@@ -137,7 +137,6 @@ std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name)
 
 void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const std::vector<VtuField>& fields) {
-  OutputFile& out = outputs.stage(path);
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   declaration.append_attribute("version") = "1.0";
@@ -149,7 +148,7 @@ void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const 
   file.append_attribute("header_type") = "UInt64";
   file.append_attribute("compressor") = "vtkZLibDataCompressor";
   add_piece(file.append_child("UnstructuredGrid"), mesh, fields);
-  OutputWriter writer(out);
+  OutputWriter writer(outputs.stage(path));
   document.save(writer, " ");
 }
 

@@ -68,7 +68,7 @@ TEST(AtomicOutputs, TakeAnyLengthOfName) {
 TEST(AtomicOutputs, RefusePlacesThatCannotBeWritten) {
   const test::TemporaryFolder folder;
   const auto complaint = [](const fs::path& path) {
-    const std::string at_stage = test::complaint([&] { AtomicOutputs().stage(path); });
+    std::string at_stage = test::complaint([&] { AtomicOutputs().stage(path); });
     EXPECT_EQ(test::complaint([&] { check_writable(path); }), at_stage);
     return at_stage;
   };
@@ -146,6 +146,18 @@ TEST(AtomicOutputs, KeepTheOldFileWhenTheDiskFillsUp) {
   }
   EXPECT_EQ(test::get_bytes(folder / "a.meshb"), "old");
   EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicOutputs, NeverCommitAFileWithAGap) {
+  const test::TemporaryFolder folder;
+  AtomicOutputs outputs;
+  OutputFile& file = outputs.stage(folder / "a");
+  {
+    const FileSizeLimit full(1);
+    EXPECT_THROW(file.write(std::string(2 * OutputFile::buffer_size, 'x')), Error);
+  }
+  EXPECT_THROW(outputs.commit(), Error);
+  EXPECT_FALSE(fs::exists(folder / "a"));
 }
 
 TEST(AtomicOutputs, SurviveAnInterrupt) {

@@ -32,7 +32,7 @@ const std::string good_text =
 
 std::string replaced(std::string text, const std::string& part, const std::string& by) {
   const std::size_t at = text.find(part);
-  if (at == text.npos) ADD_FAILURE() << "no '" << part << "'";
+  if (at == std::string::npos) ADD_FAILURE() << "no '" << part << "'";
   return text.replace(at, part.size(), by);
 }
 
@@ -65,8 +65,8 @@ class GmfErrors : public testing::Test {
 /// The complaint begins with the place and contains the fault.
 void expect_says(const std::string& complaint, const std::string& place, const std::string& fault) {
   EXPECT_TRUE(complaint.starts_with(place)) << complaint;
-  EXPECT_NE(complaint.find(fault), complaint.npos) << complaint;
-  EXPECT_EQ(complaint.find('\n'), complaint.npos) << complaint;
+  EXPECT_NE(complaint.find(fault), std::string::npos) << complaint;
+  EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
 }
 
 // ---- Files as such ----

@@ -56,6 +56,7 @@ class OutputFile {
   std::size_t used_ = 0;
   std::size_t flushed_ = 0;
   std::FILE* file_ = nullptr;
+  bool broken_ = false;  ///< a write failed, so what follows has a gap
   bool done_ = false;
 };
 
@@ -73,8 +74,9 @@ class AtomicOutputs {
   /// it names is replaced. Throws InputError where check_writable would, or when `path` is staged.
   OutputFile& stage(const std::filesystem::path& path);
 
-  /// Closes every file, then renames every temporary to its place. Throws Error: if a file cannot
-  /// be closed, nothing was renamed; if a rename fails, the text names what is in place already.
+  /// Closes every file, then renames every temporary to its place. Throws Error: if a file could
+  /// not be written to its end, nothing was renamed; if a rename fails, the text names what is in
+  /// place already.
   void commit();
 
  private:
