@@ -38,6 +38,8 @@ FileBytes read_bytes(const fs::path& path) {
   if (path.empty()) throw InputError("expected the name of a file to read, found an empty one");
   if (fs::is_directory(path, error))
     throw InputError(bytes.name + ": expected a file, found a folder; name a file in it");
+  if (fs::is_character_file(path, error) || fs::is_block_file(path, error))
+    throw InputError(bytes.name + ": expected a file or a pipe, found a device; name a file");
   errno = 0;
   const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
   if (!file) fail_to_read(bytes.name, errno);

@@ -18,8 +18,8 @@ struct FileBytes {
   const char* end() const { return data.get() + size; }
 };
 
-/// Reads a file, or a pipe to its end. Throws InputError if there is none, if it is a folder, is
-/// empty or cannot be read. Thread safety: any thread.
+/// Reads a file, or a pipe to its end. Throws InputError if there is none, if it is a folder or a
+/// device, is empty or cannot be read. Thread safety: any thread.
 FileBytes read_bytes(const std::filesystem::path& path);
 
 }  // namespace ductile::meshadapt

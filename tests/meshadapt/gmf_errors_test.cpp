@@ -79,6 +79,7 @@ TEST_F(GmfErrors, NameWhatCannotBeRead) {
   EXPECT_NE(test::complaint([&] { read_mesh(folder_ / ""); }).find("found a folder"),
             std::string::npos);
   expect_says(test::complaint([] { read_mesh(""); }), "expected the name", "empty");
+  expect_says(test::complaint([] { read_mesh("/dev/zero"); }), "/dev/zero: ", "found a device");
   expect_says(mesh_complaint(""), "bad.mesh: ", "found an empty file");
   expect_says(mesh_complaint("$MeshFormat\n4.1 0 8\n"), "bad.mesh:1: ", "MeshVersionFormatted");
   expect_says(mesh_complaint(" \n\n# nothing\n"), "bad.mesh:4: ", "MeshVersionFormatted");
