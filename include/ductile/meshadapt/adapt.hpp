@@ -1,0 +1,66 @@
+/// @file
+/// adapt: makes every edge of a mesh about one unit long in a metric, by rounds of coarsening,
+/// swapping, refining and smoothing. AnyMesh in, AnyMesh out; the dimension is found there.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/rules.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::meshadapt {
+
+/// What was done last and how the mesh stands; passed to AdaptOptions::progress.
+struct AdaptProgress {
+  const char* step = "";  ///< "coarsen", "refine", "swap", "smooth", ...
+  int iteration = 0;
+  std::size_t changes = 0;
+};
+
+struct AdaptOptions {
+  int iterations = 12;         ///< at most this many rounds of the four kernels
+  double smallest_size = 0;    ///< no edge length below this is asked for; 0: no bound
+  double largest_size = 0;     ///< no edge length above this is asked for; 0: no bound
+  double gradation = 0;        ///< sizes may grow by this factor per unit length; 0: as given
+  bool move = true;            ///< smooth vertices
+  bool swap = true;            ///< swap edges and faces
+  bool insert = true;          ///< split and collapse edges
+  Rules rules;
+  MakeMeshOptions make;
+  std::function<void(const AdaptProgress&)> progress;  ///< called on the calling thread
+};
+
+/// Seconds and work of one kernel over the whole run.
+struct KernelReport {
+  double seconds = 0;
+  std::size_t considered = 0, applied = 0, rounds = 0;
+};
+
+struct AdaptReport {
+  int iterations = 0;
+  bool converged = false;
+  KernelReport coarsen, refine, swap, smooth;
+  double setup_seconds = 0, renumber_seconds = 0, total_seconds = 0;
+  std::vector<std::string> warnings;
+};
+
+/// A mesh and the metric at its vertices.
+struct AdaptedMesh {
+  AnyMesh mesh;
+  AnyField metric;  ///< one symmetric field
+  AdaptReport report;
+};
+
+/// Adapts `mesh` to `metric`, which has one symmetric positive definite tensor per vertex (see
+/// metric_field.hpp to get one from a file). With a deterministic executor the result depends on
+/// nothing but the input. Throws InputError for input that is not a valid mesh, Error if
+/// memory runs out. Thread safety: any thread; the work runs on the executor.
+AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
+                  const AdaptOptions& options = {});
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,57 @@
+/// @file
+/// Background<Dim>: the input mesh with its metric, kept while the mesh is adapted. Whatever vertex
+/// the adaptation makes or moves gets its metric from here, so repeated passes do not blur it.
+/// Points are located by walking from an element nearby.
+#pragma once
+
+#include <vector>
+
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/meshadapt/metric.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+class Background {
+ public:
+  /// Takes over the neighbours that make_mesh found and the logarithms of metric_of[vertex].
+  Background(const runtime::Executor& executor, const Mesh<Dim>& mesh, Neighbours<Dim> neighbours,
+             const std::vector<Metric<Dim>>& metric_of);
+
+  /// Where a point lies, and the metric there: log-Euclidean interpolation (Arsigny, Fillard, Pennec
+  /// & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007) of the element's vertices.
+  struct Sample {
+    ElementId host;
+    Metric<Dim> metric;
+  };
+
+  /// The metric at a point, found by walking from the element `near`. A point that is outside by
+  /// rounding is taken to lie in the closest element found. Thread safety: any thread.
+  Sample sample(const Vector<Dim>& point, ElementId near) const;
+
+  std::size_t element_count() const { return corners_of_.size(); }
+  std::size_t bytes() const;
+
+ private:
+  using Weights = std::array<double, Dim + 1>;
+  struct Walk {
+    ElementId element;
+    Weights weight;  // barycentric, of the element's corners
+    bool inside;
+  };
+
+  Weights weights(ElementId element, const Vector<Dim>& point) const;
+  Walk walk(const Vector<Dim>& point, ElementId near) const;
+  Walk search(const Vector<Dim>& point) const;
+
+  std::vector<Corners<Dim>> corners_of_;           // [element]
+  Neighbours<Dim> neighbours_;                     // [element][facet]
+  std::vector<Vector<Dim>> position_of_;           // [vertex]
+  std::vector<Metric<Dim>> log_metric_of_;         // [vertex]
+};
+
+extern template class Background<2>;
+extern template class Background<3>;
+
+}  // namespace ductile::meshadapt

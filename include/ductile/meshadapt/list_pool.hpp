@@ -1,0 +1,83 @@
+/// @file
+/// ListPool: one short sorted list per index (the elements around each vertex), all in one arena.
+/// A sorted list does not depend on the order of its changes, so commits need no order either.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ductile/runtime/arena.hpp"
+
+namespace ductile::meshadapt {
+
+template <class T>
+class ListPool {
+ public:
+  std::size_t size() const { return slot_of_.size(); }
+
+  /// Forgets all lists and makes n empty ones. Thread safety: one thread.
+  void reset(std::size_t n) {
+    slot_of_.assign(n, {});
+    arena_->clear();
+  }
+
+  /// Appends empty lists until there are n. Thread safety: one thread.
+  void grow(std::size_t n) { slot_of_.resize(n); }
+
+  std::span<const T> of(std::uint32_t index) const {
+    const Slot& slot = slot_of_[index];
+    return slot.count == 0 ? std::span<const T>{}
+                           : std::span<const T>{arena_->at(slot.begin), slot.count};
+  }
+
+  // What follows changes one list. Thread safety: the owner of that list.
+
+  void insert(std::uint32_t index, const T& value) {
+    Slot& slot = slot_of_[index];
+    if (slot.count == slot.capacity) reserve(index, slot.count + slot.count / 2 + 4);
+    T* const begin = arena_->at(slot.begin);
+    T* at = begin + slot.count;
+    for (; at != begin && value < at[-1]; --at) *at = at[-1];
+    *at = value;
+    ++slot.count;
+  }
+
+  /// The value must be in the list.
+  void erase(std::uint32_t index, const T& value) {
+    Slot& slot = slot_of_[index];
+    T* const begin = arena_->at(slot.begin);
+    T* const end = begin + slot.count;
+    T* const at = std::find(begin, end, value);
+    if (at == end) return;
+    std::copy(at + 1, end, at);
+    --slot.count;
+  }
+
+  void clear(std::uint32_t index) { slot_of_[index].count = 0; }
+
+  void reserve(std::uint32_t index, std::uint32_t capacity) {
+    Slot& slot = slot_of_[index];
+    if (capacity <= slot.capacity) return;
+    const std::uint32_t begin = arena_->allocate(capacity);
+    if (slot.count != 0) std::copy_n(arena_->at(slot.begin), slot.count, arena_->at(begin));
+    slot = {begin, slot.count, capacity};
+  }
+
+  /// Raw access for the parallel construction: count and storage of one list.
+  std::uint32_t& count_of(std::uint32_t index) { return slot_of_[index].count; }
+  T* data(std::uint32_t index) { return arena_->at(slot_of_[index].begin); }
+
+  std::size_t bytes() const { return arena_->bytes() + slot_of_.capacity() * sizeof(Slot); }
+
+ private:
+  struct Slot {
+    std::uint32_t begin = 0, count = 0, capacity = 0;
+  };
+  std::vector<Slot> slot_of_;
+  std::unique_ptr<runtime::Arena<T>> arena_ = std::make_unique<runtime::Arena<T>>();
+};
+
+}  // namespace ductile::meshadapt

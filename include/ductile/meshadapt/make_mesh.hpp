@@ -1,0 +1,43 @@
+/// @file
+/// From a mesh as it stands in a file to a Mesh<Dim> that can be adapted, and back. Making one
+/// checks that the file's mesh is one: every index in range, every element with a volume, all
+/// turned the same way, every facet shared by at most two elements, the boundary listed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::meshadapt {
+
+struct MakeMeshOptions {
+  bool complete_boundary = false;  ///< give unlisted boundary facets reference 0, do not refuse them
+  bool lock_boundary = false;      ///< treat every boundary and interface facet as required
+};
+
+/// The element across each facet, or none: [element][facet].
+template <int Dim>
+using Neighbours = std::vector<std::array<ElementId, Dim + 1>>;
+
+/// Classifies vertices and finds patches and curves; metrics are left unset, hosts are the element
+/// numbers themselves. Vertices and elements keep their numbers. `neighbours` receives the element
+/// neighbours. Warnings (reoriented, unused vertices) are appended. Throws InputError naming the
+/// entity, numbered from 1 as in the file. Thread safety: one caller; runs on the executor.
+template <int Dim>
+Mesh<Dim> make_mesh(const runtime::Executor& executor, const AnyMesh& any,
+                    const MakeMeshOptions& options, Neighbours<Dim>& neighbours,
+                    std::vector<std::string>& warnings);
+
+/// The mesh as a file holds it: boundary and interface facets, curves, corners and required
+/// entities with their references. The mesh must be compact (see renumber).
+template <int Dim>
+AnyMesh to_any_mesh(const Mesh<Dim>& mesh);
+
+/// The metric at the vertices, as a field to write beside to_any_mesh.
+template <int Dim>
+AnyField to_any_field(const Mesh<Dim>& mesh);
+
+}  // namespace ductile::meshadapt

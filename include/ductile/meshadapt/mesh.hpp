@@ -1,0 +1,159 @@
+/// @file
+/// Mesh<Dim>: a mesh while it is being adapted. Elements know their corners, vertices know their
+/// elements, and element neighbours are found by intersecting two such lists. Boundary facets and
+/// internal interfaces are not stored apart: an element's facet carries the number of the flat
+/// patch it lies on, so every change of a cavity carries its boundary along.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/list_pool.hpp"
+#include "ductile/meshadapt/quality.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::meshadapt {
+
+/// Number of a flat patch of facets or of a straight curve of edges; 0 is none.
+using PatchId = std::uint32_t;
+using CurveId = std::uint32_t;
+
+/// A maximal flat set of facets that share everything below: part of the boundary or of an
+/// interface between regions. In 2D, a straight chain of edges.
+template <int Dim>
+struct Patch {
+  Vector<Dim> normal;           ///< unit length
+  std::int32_t reference = 0;
+  bool listed = true;           ///< was in the file, and is written
+  bool required = false;        ///< its facets may not change
+  bool ridge = false;           ///< 2D: its edges were listed as ridges
+};
+
+/// A maximal straight chain of edges in 3D: between patches, or listed in the file.
+struct Curve {
+  Vector<3> direction;          ///< unit length
+  std::int32_t reference = 0;
+  bool listed = false;
+  bool required = false;
+  bool ridge = false;
+};
+
+/// One neighbour of a vertex along a curve.
+struct CurveLink {
+  VertexId to = none;
+  CurveId curve = 0;
+  friend auto operator<=>(const CurveLink&, const CurveLink&) = default;
+};
+
+/// What a vertex may do. `freedom` is the dimension of the space it may move in: 0 never moves and
+/// is never removed (corner or required), 1 moves along a straight line, 2 in a flat patch or, in
+/// 2D, anywhere, 3 anywhere.
+struct VertexKind {
+  std::uint8_t freedom = 0;
+  bool corner = false;    ///< listed as a corner
+  bool required = false;  ///< listed as required
+};
+
+/// An element reference, and whether elements that carry it may not change.
+struct Region {
+  std::int32_t reference = 0;
+  bool required = false;
+};
+
+template <int Dim>
+struct Mesh {
+  // ---- Elements; one is gone when its first corner is none ----
+  std::vector<Corners<Dim>> corners_of;                   // [element], positively oriented
+  std::vector<std::array<PatchId, Dim + 1>> patches_of;   // [element][facet], 0 inside
+  std::vector<std::uint32_t> region_of;                   // [element], index into regions
+  std::vector<float> shape_of;                            // [element], see shape()
+
+  // ---- Vertices; one is gone when it has no elements ----
+  std::vector<Site<Dim>> site_of;                         // [vertex]
+  std::vector<VertexKind> kind_of;                        // [vertex]
+  std::vector<std::uint32_t> entity_of;                   // [vertex], its patch or curve, or 0
+  std::vector<std::int32_t> reference_of;                 // [vertex]
+  std::vector<ElementId> host_of;                         // [vertex], background element it lies in
+  ListPool<ElementId> elements_of;                        // [vertex], sorted
+  ListPool<CurveLink> links_of;                           // [vertex], 3D only
+
+  // ---- Geometry; entry 0 stands for none ----
+  std::vector<Patch<Dim>> patches;
+  std::vector<Curve> curves;
+  std::vector<Region> regions;
+
+  std::size_t element_slots() const { return corners_of.size(); }
+  std::size_t vertex_slots() const { return site_of.size(); }
+  bool alive(ElementId element) const { return corners_of[element][0] != none; }
+  bool vertex_alive(VertexId vertex) const { return !elements_of.of(vertex).empty(); }
+
+  /// Pointers to the sites of an element's corners, as the quality functions want them.
+  std::array<const Site<Dim>*, Dim + 1> sites(const Corners<Dim>& corners) const {
+    std::array<const Site<Dim>*, Dim + 1> result;
+    for (std::size_t i = 0; i < corners.size(); ++i) result[i] = &site_of[corners[i]];
+    return result;
+  }
+  double length(VertexId a, VertexId b) const { return edge_length(site_of[a], site_of[b]); }
+  double shape_at(const Corners<Dim>& corners) const { return shape<Dim>(sites(corners)); }
+
+  bool required_element(ElementId element) const { return regions[region_of[element]].required; }
+
+  /// The curve that the edge a-b belongs to, or 0. 3D only.
+  CurveId curve_of(VertexId a, VertexId b) const {
+    if (kind_of[a].freedom > 1 || kind_of[b].freedom > 1) return 0;
+    for (const CurveLink& link : links_of.of(a))
+      if (link.to == b) return link.curve;
+    return 0;
+  }
+
+  /// A vertex with more elements than this is left where it is; its edges can still be split.
+  static constexpr std::size_t largest_ball = 512;
+
+  /// Makes room for this many vertices and elements; new ones are gone until they are set.
+  /// Thread safety: one thread.
+  void grow(std::size_t vertices, std::size_t elements);
+};
+
+/// Rebuilds elements_of from corners_of. Thread safety: one caller; runs on the executor.
+template <int Dim>
+void rebuild_elements_of(const runtime::Executor& executor, Mesh<Dim>& mesh);
+
+/// Recomputes shape_of. Thread safety: as above.
+template <int Dim>
+void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
+
+/// Removes what is gone and renumbers what is left along a space-filling curve, so that what is near
+/// in space is near in memory. The result does not depend on the number of threads.
+template <int Dim>
+void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh);
+
+/// The elements around the edge a-b, in the order of a's list. Buffer is any vector-like type.
+template <int Dim, class Buffer>
+void shell_of(const Mesh<Dim>& mesh, VertexId a, VertexId b, Buffer& shell) {
+  shell.clear();
+  for (const ElementId element : mesh.elements_of.of(a))
+    if (contains(mesh.corners_of[element], b)) shell.push_back(element);
+}
+
+/// The element on the other side of an element's facet, or none on the boundary.
+template <int Dim>
+ElementId neighbour(const Mesh<Dim>& mesh, ElementId element, int facet) {
+  const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[element], facet);
+  for (const ElementId other : mesh.elements_of.of(corners[0])) {
+    if (other == element) continue;
+    bool all = true;
+    for (std::size_t i = 1; i < corners.size(); ++i)
+      all = all && contains(mesh.corners_of[other], corners[i]);
+    if (all) return other;
+  }
+  return none;
+}
+
+extern template struct Mesh<2>;
+extern template struct Mesh<3>;
+
+}  // namespace ductile::meshadapt

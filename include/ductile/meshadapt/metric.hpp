@@ -1,0 +1,111 @@
+/// @file
+/// Metric<Dim>: a symmetric positive definite tensor that says which lengths count as one. A
+/// displacement d has the metric length sqrt(d' M d); an edge is of the right size when that is 1.
+/// Components are kept as in GMF files: m11 m12 m22 in 2D, m11 m12 m22 m13 m23 m33 in 3D.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "ductile/meshadapt/vector.hpp"
+
+namespace ductile::meshadapt {
+
+/// A symmetric tensor; a metric when it is also positive definite. Its logarithm is one too.
+template <int Dim>
+struct Metric {
+  static constexpr int size = Dim * (Dim + 1) / 2;
+  std::array<double, size> m{};
+
+  /// Component (row, column), in either order.
+  double operator()(int row, int column) const {
+    if (row > column) return (*this)(column, row);
+    return m[static_cast<std::size_t>(column * (column + 1) / 2 + row)];
+  }
+  friend bool operator==(const Metric&, const Metric&) = default;
+
+  Metric& operator+=(const Metric& b) {
+    for (std::size_t i = 0; i < m.size(); ++i) m[i] += b.m[i];
+    return *this;
+  }
+  Metric& operator*=(double s) {
+    for (double& component : m) component *= s;
+    return *this;
+  }
+  friend Metric operator*(double s, Metric a) { return a *= s; }
+};
+
+/// d' M d.
+inline double squared_length(const Metric<2>& a, const Vector<2>& d) {
+  return a.m[0] * d[0] * d[0] + 2 * a.m[1] * d[0] * d[1] + a.m[2] * d[1] * d[1];
+}
+inline double squared_length(const Metric<3>& a, const Vector<3>& d) {
+  return a.m[0] * d[0] * d[0] + a.m[2] * d[1] * d[1] + a.m[5] * d[2] * d[2] +
+         2 * (a.m[1] * d[0] * d[1] + a.m[3] * d[0] * d[2] + a.m[4] * d[1] * d[2]);
+}
+
+/// M d.
+template <int Dim>
+Vector<Dim> product(const Metric<Dim>& a, const Vector<Dim>& d) {
+  Vector<Dim> result;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) result[i] += a(i, j) * d[j];
+  return result;
+}
+
+inline double determinant(const Metric<2>& a) { return a.m[0] * a.m[2] - a.m[1] * a.m[1]; }
+inline double determinant(const Metric<3>& a) {
+  return a.m[0] * (a.m[2] * a.m[5] - a.m[4] * a.m[4]) -
+         a.m[1] * (a.m[1] * a.m[5] - a.m[4] * a.m[3]) +
+         a.m[3] * (a.m[1] * a.m[4] - a.m[2] * a.m[3]);
+}
+
+/// Length of an edge whose end metrics measure it as `at_one_end` and `at_other`: the size is taken
+/// to vary geometrically along it, which gives their logarithmic mean (Alauzet, Finite Elem. Anal.
+/// Des. 46, 2010).
+inline double mean_length(double at_one_end, double at_other) {
+  const double difference = at_one_end - at_other;
+  const double sum = at_one_end + at_other;
+  const double t = difference / sum;
+  if (std::abs(t) < 0.02) return 0.5 * sum * (1 - t * t * (1.0 / 3 + t * t * (4.0 / 45)));
+  return difference / std::log(at_one_end / at_other);
+}
+
+/// Eigenvalues and unit eigenvectors (vector[i] belongs to value[i]) by cyclic Jacobi rotations,
+/// which keep small eigenvalues accurate beside large ones (Demmel & Veselic, 1992).
+template <int Dim>
+struct Eigen {
+  std::array<double, Dim> value;
+  std::array<Vector<Dim>, Dim> vector;
+};
+template <int Dim>
+Eigen<Dim> eigen(const Metric<Dim>& a);
+
+/// Sum of value[i] vector[i] vector[i]'.
+template <int Dim>
+Metric<Dim> compose(const Eigen<Dim>& e);
+
+/// Matrix logarithm of a positive definite tensor, and the exponential that undoes it.
+template <int Dim>
+Metric<Dim> logarithm(const Metric<Dim>& a);
+template <int Dim>
+Metric<Dim> exponential(const Metric<Dim>& a);
+
+/// The isotropic metric that asks for edges of this length.
+template <int Dim>
+Metric<Dim> isotropic(double size) {
+  Metric<Dim> a;
+  for (int i = 0; i < Dim; ++i) a.m[static_cast<std::size_t>(i * (i + 3) / 2)] = 1 / (size * size);
+  return a;
+}
+
+extern template Eigen<2> eigen(const Metric<2>&);
+extern template Eigen<3> eigen(const Metric<3>&);
+extern template Metric<2> compose(const Eigen<2>&);
+extern template Metric<3> compose(const Eigen<3>&);
+extern template Metric<2> logarithm(const Metric<2>&);
+extern template Metric<3> logarithm(const Metric<3>&);
+extern template Metric<2> exponential(const Metric<2>&);
+extern template Metric<3> exponential(const Metric<3>&);
+
+}  // namespace ductile::meshadapt

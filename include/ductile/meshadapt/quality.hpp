@@ -1,0 +1,88 @@
+/// @file
+/// How good elements and edges are in the metric: 1 is ideal, towards 0 degenerate.
+/// The kernels compare shape(), which needs no cubic root; mean_ratio() is what reports show.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+
+namespace ductile::meshadapt {
+
+/// What a kernel needs to know of a vertex to judge the elements around it.
+template <int Dim>
+struct Site {
+  Vector<Dim> position;
+  Metric<Dim> metric;
+  double density = 0;  ///< sqrt(det metric), metric volume of a unit volume
+};
+
+template <int Dim>
+Site<Dim> make_site(const Vector<Dim>& position, const Metric<Dim>& metric) {
+  return {position, metric, std::sqrt(determinant(metric))};
+}
+
+/// Metric length of the edge between two sites.
+template <int Dim>
+double edge_length(const Site<Dim>& a, const Site<Dim>& b) {
+  const Vector<Dim> d = b.position - a.position;
+  return mean_length(std::sqrt(squared_length(a.metric, d)), std::sqrt(squared_length(b.metric, d)));
+}
+
+/// The corner with the densest metric: the metric an element is judged by, as the unstructured grid
+/// adaptation working group does (Ibanez et al., Procedia Eng. 203, 2017).
+template <int Dim>
+const Site<Dim>& densest(const std::array<const Site<Dim>*, Dim + 1>& corner) {
+  const Site<Dim>* best = corner[0];
+  for (std::size_t i = 1; i < corner.size(); ++i)
+    if (corner[i]->density > best->density) best = corner[i];
+  return *best;
+}
+
+/// Sum of the squared metric lengths of all edges, by the identity
+/// sum_{i<j} |p_i - p_j|^2 = n sum |p_i|^2 - |sum p_i|^2 with p_0 as the origin.
+template <int Dim>
+double sum_of_squared_lengths(const Metric<Dim>& metric,
+                              const std::array<const Site<Dim>*, Dim + 1>& corner) {
+  double squares = 0;
+  Vector<Dim> sum;
+  for (std::size_t i = 1; i < corner.size(); ++i) {
+    const Vector<Dim> d = corner[i]->position - corner[0]->position;
+    squares += squared_length(metric, d);
+    sum += d;
+  }
+  return (Dim + 1) * squares - squared_length(metric, sum);
+}
+
+/// Shape of an element in the metric of its densest corner: 4 sqrt(3) A / (sum of squared lengths)
+/// in 2D; the volume-length ratio 72 sqrt(3) V / (sum of squared lengths)^(3/2) in 3D
+/// (Parthasarathy, Graichen & Hathaway, Finite Elem. Anal. Des. 15, 1994). 1 for a regular element,
+/// 0 or less for one that is not certain to have a positive volume.
+template <int Dim>
+double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
+  std::array<Vector<Dim>, Dim + 1> p;
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
+  const double determinant = certain_determinant<Dim>(p);
+  if (!(determinant > 0)) return determinant;
+  const Site<Dim>& judge = densest<Dim>(corner);
+  const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
+  if constexpr (Dim == 2) return 2 * std::sqrt(3.0) * judge.density * determinant / squares;
+  else return 12 * std::sqrt(3.0) * judge.density * determinant / (squares * std::sqrt(squares));
+}
+
+/// Mean ratio from shape: 12 (3V)^(2/3) / (sum of the six squared lengths) in 3D (Liu & Joe, BIT 34,
+/// 1994), shape itself in 2D.
+template <int Dim>
+double mean_ratio(double shape) {
+  return Dim == 2 || shape <= 0 ? shape : std::cbrt(shape * shape);
+}
+
+/// The shape whose mean ratio is this.
+template <int Dim>
+double shape_of_mean_ratio(double ratio) {
+  return Dim == 2 ? ratio : ratio * std::sqrt(ratio);
+}
+
+}  // namespace ductile::meshadapt

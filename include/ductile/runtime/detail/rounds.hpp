@@ -1,0 +1,283 @@
+/// @file
+/// Rounds: the machinery behind run_rounds. A batch is a list of items that may run together; both
+/// strategies only differ in how they cut a round's work into batches. Plans are kept by position
+/// in the batch, and numbers of new things are handed out by a prefix sum over those positions,
+/// so nothing depends on which thread did what.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/atomic_count.hpp"
+#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/operator.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace ductile::runtime {
+
+/// Adds the time from its construction to its destruction to a counter.
+class PhaseTimer {
+ public:
+  explicit PhaseTimer(double& seconds) : seconds_(seconds) {}
+  PhaseTimer(const PhaseTimer&) = delete;
+  PhaseTimer& operator=(const PhaseTimer&) = delete;
+  ~PhaseTimer() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+template <class Op>
+class Rounds {
+ public:
+  using Item = typename Op::Item;
+  using Plan = typename Op::Plan;
+
+  Rounds(const Executor& executor, Op& op, const RoundsOptions& options)
+      : executor_(executor),
+        op_(op),
+        options_(options),
+        deferred_(executor, {.order = executor.deterministic() ? options.order : CommitOrder::any}),
+        woken_(executor, {.order = WorkOrder::by_item, .unique = true}) {}
+
+  RoundsReport run(std::vector<Item> work) {
+    for (int round = 1; !work.empty() && round <= options_.most_rounds; ++round) {
+      round_ = static_cast<std::uint32_t>(round);
+      ++report_.rounds;
+      if constexpr (ColouredOperator<Op>) {
+        work = coloured_round(std::move(work));
+      } else {
+        work = reserved_round(std::move(work));
+      }
+    }
+    report_.left = work.size();
+    return report_;
+  }
+
+ private:
+  static constexpr std::size_t kinds = detail::Kinds<Op>::count;
+  static constexpr std::size_t block = 128;
+  static constexpr LoopOptions by_block{.grain = 1, .serial_below = 3};
+
+  // ---- Colouring: cut the round into classes of items that do not conflict ----
+
+  std::vector<Item> coloured_round(std::vector<Item> work)
+    requires ColouredOperator<Op>
+  {
+    std::vector<std::vector<Item>> classes;
+    {
+      const PhaseTimer timer(report_.conflict_seconds);
+      woken_at_.resize(op_.item_count(), 0);
+      classes = independent_classes(work);
+    }
+    for (std::vector<Item>& members : classes) {
+      drop_woken(members);
+      execute(members);
+    }
+    return take_woken();
+  }
+
+  std::vector<std::vector<Item>> independent_classes(const std::vector<Item>& work) {
+    position_of_.resize(op_.item_count(), absent);
+    parallel_for(executor_, work.size(), [&](std::size_t i) {
+      position_of_[work[i]] = static_cast<std::uint32_t>(i);
+    });
+    const CallbackGraph graph(work.size(), [&](std::uint32_t i, auto&& visit) {
+      op_.conflicts(work[i], [&](Item other) {
+        if (position_of_[other] != absent) visit(position_of_[other]);
+      });
+    });
+    const Colouring colouring = colour(executor_, graph);
+    const ColourClasses by_colour = colour_classes(executor_, colouring);
+    std::vector<std::vector<Item>> classes(by_colour.count());
+    for (std::uint32_t c = 0; c < by_colour.count(); ++c) {
+      const auto members = by_colour.members(c);
+      classes[c].resize(members.size());
+      parallel_for(executor_, members.size(),
+                   [&](std::size_t i) { classes[c][i] = work[members[i]]; });
+    }
+    parallel_for(executor_, work.size(), [&](std::size_t i) { position_of_[work[i]] = absent; });
+    return classes;
+  }
+
+  /// A colouring is stale where something changed: who was woken comes back in the next round.
+  void drop_woken(std::vector<Item>& members) {
+    if constexpr (requires { Op::keeps_conflicts; }) return;
+    std::erase_if(members, [&](Item item) { return woken_at_[item] == round_; });
+  }
+
+  // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
+
+  std::vector<Item> reserved_round(std::vector<Item> work)
+    requires ReservingOperator<Op>
+  {
+    std::vector<std::uint8_t> outcome(work.size());
+    {
+      const PhaseTimer timer(report_.conflict_seconds);
+      reserved_.resize(op_.resource_count(), ~std::uint64_t{0});
+      if (!executor_.deterministic()) ticket_of_.resize(work.size());
+      parallel_for_blocks(executor_, work.size(), block, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) outcome[i] = reserve(work[i], i);
+      }, by_block);
+      parallel_for_blocks(executor_, work.size(), block, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          if (outcome[i] == waits && holds_all(work[i], i)) outcome[i] = runs;
+      }, by_block);
+    }
+    std::vector<Item> winners = select(work, outcome, runs);
+    std::vector<Item> rest = select(work, outcome, waits);
+    report_.lost += rest.size();
+    execute(winners);
+    const std::vector<Item> woken = take_woken();
+    rest.insert(rest.end(), woken.begin(), woken.end());
+    return rest;
+  }
+
+  /// A later round always has the lower key, so reservations never have to be cleared.
+  std::uint64_t key_of(const Item& item, std::size_t position) {
+    std::uint64_t rank = 0;
+    if constexpr (RankedOperator<Op>) rank = op_.priority(item);
+    const auto place = static_cast<std::uint32_t>(position);
+    const std::uint32_t tie =
+        executor_.deterministic() ? mix32(place ^ (round_ * 0x9e3779b9U)) : ticket_of_[position];
+    return (std::uint64_t{~round_ & 0xffffffU} << 40U) | (rank << 32U) | tie;
+  }
+
+  std::uint8_t reserve(const Item& item, std::size_t position) {
+    if (!executor_.deterministic()) ticket_of_[position] = atomic_count(ticket_);
+    const std::uint64_t key = key_of(item, position);
+    bool any = false;
+    op_.footprint(item, [&](std::uint32_t resource) {
+      atomic_min(reserved_[resource], key);
+      any = true;
+    });
+    return any ? waits : gone;
+  }
+
+  bool holds_all(const Item& item, std::size_t position) {
+    const std::uint64_t key = key_of(item, position);
+    bool all = true;
+    op_.footprint(item, [&](std::uint32_t resource) { all = all && reserved_[resource] == key; });
+    return all;
+  }
+
+  /// The items with this outcome, in order.
+  std::vector<Item> select(const std::vector<Item>& work, const std::vector<std::uint8_t>& outcome,
+                           std::uint8_t wanted) {
+    std::vector<std::uint32_t> offset((work.size() + block - 1) / block);
+    parallel_for_blocks(executor_, work.size(), block, [&](std::size_t b, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) offset[b] += outcome[i] == wanted;
+    }, by_block);
+    std::vector<Item> selected(exclusive_scan<std::uint32_t>(executor_, offset));
+    parallel_for_blocks(executor_, work.size(), block, [&](std::size_t b, std::size_t begin, std::size_t end) {
+      std::uint32_t at = offset[b];
+      for (std::size_t i = begin; i < end; ++i)
+        if (outcome[i] == wanted) selected[at++] = work[i];
+    }, by_block);
+    return selected;
+  }
+
+  // ---- One batch: plan, apply, commit ----
+
+  void execute(const std::vector<Item>& batch) {
+    if (batch.empty()) return;
+    report_.planned += batch.size();
+    plans_.clear();
+    plans_.resize(batch.size());
+    {
+      const PhaseTimer timer(report_.plan_seconds);
+      parallel_for_blocks(executor_, batch.size(), block, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) plans_[i] = op_.plan(batch[i]);
+      }, by_block);
+    }
+    {
+      const PhaseTimer timer(report_.apply_seconds);
+      apply_plans();
+    }
+    const PhaseTimer timer(report_.commit_seconds);
+    deferred_.commit([&](std::uint32_t owner, const typename Op::Update& update) {
+      op_.commit(owner, update);
+    });
+  }
+
+  void apply_plans() {
+    const std::size_t blocks = (plans_.size() + block - 1) / block;
+    first_of_.assign(blocks, {});
+    applied_of_.assign(blocks, 0);
+    if constexpr (kinds > 0) number_new_things();
+    parallel_for_blocks(executor_, plans_.size(), block, [&](std::size_t b, std::size_t begin, std::size_t end) {
+      Commit<Op> commit = new_commit();
+      commit.next_ = first_of_[b];
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!plans_[i]) continue;
+        commit.source_ = i;
+        op_.apply(*plans_[i], commit);
+        ++applied_of_[b];
+      }
+    }, by_block);
+    for (const std::uint32_t applied : applied_of_) report_.applied += applied;
+  }
+
+  /// Sets first_of_ to the first new number of each kind for each block of the batch.
+  void number_new_things() {
+    parallel_for_blocks(executor_, plans_.size(), block, [&](std::size_t b, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!plans_[i]) continue;
+        const auto demand = op_.demand(*plans_[i]);
+        for (std::size_t k = 0; k < kinds; ++k) first_of_[b][k] += demand[k];
+      }
+    }, by_block);
+    std::array<std::uint32_t, kinds> total{};
+    for (auto& first : first_of_)
+      for (std::size_t k = 0; k < kinds; ++k) total[k] += std::exchange(first[k], total[k]);
+    const std::array<std::uint32_t, kinds> base = op_.grow(total);
+    for (auto& first : first_of_)
+      for (std::size_t k = 0; k < kinds; ++k) first[k] += base[k];
+  }
+
+  Commit<Op> new_commit() {
+    Commit<Op> commit;
+    commit.deferred_ = &deferred_;
+    commit.woken_ = &woken_;
+    if constexpr (ColouredOperator<Op>) commit.woken_at_ = &woken_at_;
+    commit.round_ = round_;
+    return commit;
+  }
+
+  std::vector<Item> take_woken() {
+    woken_.collect();
+    return woken_.take();
+  }
+
+  static constexpr std::uint32_t absent = 0xffffffffU;
+  static constexpr std::uint8_t gone = 0, waits = 1, runs = 2;
+
+  const Executor& executor_;
+  Op& op_;
+  RoundsOptions options_;
+  RoundsReport report_;
+  DeferredUpdate<typename Op::Update> deferred_;
+  Worklist<Item> woken_;
+  std::uint32_t round_ = 0;
+  std::vector<std::uint32_t> woken_at_;                // [item], colouring only
+  std::vector<std::uint32_t> position_of_;             // [item], its place in the work, or absent
+  std::vector<std::uint64_t> reserved_;                // [resource], the lowest key that asked
+  std::vector<std::uint32_t> ticket_of_;               // [position], racing mode: order of arrival
+  std::uint32_t ticket_ = 0;
+  std::vector<std::optional<Plan>> plans_;             // [position in the batch]
+  std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block of the batch][kind]
+  std::vector<std::uint32_t> applied_of_;              // [block of the batch]
+};
+
+}  // namespace ductile::runtime

@@ -1,0 +1,116 @@
+/// @file
+/// Operator: what an algorithm tells run_rounds about its items, and nothing about threads: how to
+/// plan, what must not run beside it, how to apply a plan and how to commit a deferred write.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/worklist.hpp"
+
+namespace ductile::runtime {
+
+template <class Op>
+class Commit;
+
+/// What any operator provides. `plan` and the conflict members only read; `apply` writes what the
+/// item owns and defers every other write; `commit` carries one deferred write out, on behalf of
+/// the owner of what it changes. All are called by many threads.
+template <class Op>
+concept Operator = requires(Op& op, const Op& reader, const typename Op::Item item,
+                            const typename Op::Plan plan, const typename Op::Update update,
+                            Commit<Op>& later, std::uint32_t owner) {
+  { reader.plan(item) } -> std::same_as<std::optional<typename Op::Plan>>;
+  op.apply(plan, later);
+  op.commit(owner, update);
+};
+
+/// Items are numbers below item_count(); conflicts(item, visit) visits those it may not run beside
+/// (symmetric; repetition is allowed). If applying never changes what conflicts, the operator says
+/// so by a member `keeps_conflicts`; items that were woken then need not leave the round.
+template <class Op>
+concept ColouredOperator = Operator<Op> && std::same_as<typename Op::Item, std::uint32_t> &&
+    requires(const Op& op, std::uint32_t item) {
+      op.conflicts(item, [](std::uint32_t) {});
+      { op.item_count() } -> std::convertible_to<std::size_t>;
+    };
+
+/// footprint(item, visit) visits the numbers, below resource_count(), of all that the item's plan
+/// reads and its application writes or invalidates; it visits nothing if the item is void.
+template <class Op>
+concept ReservingOperator = Operator<Op> && requires(const Op& op, const typename Op::Item item) {
+  op.footprint(item, [](std::uint32_t) {});
+  { op.resource_count() } -> std::convertible_to<std::size_t>;
+};
+
+/// An operator that makes numbered things (vertices, elements): demand(plan) says how many of each
+/// kind, grow(totals) makes room for a round's and returns the first new number of each kind.
+template <class Op>
+concept GrowingOperator = requires(Op& op, const Op& reader, const typename Op::Plan plan) {
+  op.grow(reader.demand(plan));
+};
+
+/// An operator whose items have a rank; where reservations meet, the lower priority(item) wins.
+template <class Op>
+concept RankedOperator = requires(const Op& op, const typename Op::Item item) {
+  { op.priority(item) } -> std::convertible_to<std::uint8_t>;
+};
+
+namespace detail {
+
+template <class Op>
+struct Kinds {
+  static constexpr std::size_t count = 0;
+};
+template <GrowingOperator Op>
+struct Kinds<Op> {
+  static constexpr std::size_t count =
+      std::tuple_size_v<decltype(std::declval<const Op&>().demand(std::declval<typename Op::Plan>()))>;
+};
+
+}  // namespace detail
+
+/// What an operator may do beside its own writes, handed to apply().
+template <class Op>
+class Commit {
+ public:
+  using Item = typename Op::Item;
+  using Update = typename Op::Update;
+
+  /// Commits `update` on behalf of `owner` when all of the round has been applied.
+  void defer(std::uint32_t owner, Update update) {
+    deferred_->defer(owner, source_, std::move(update));
+  }
+
+  /// Considers an item again: its plan or its conflicts may have changed. If it is in this round
+  /// and not yet applied, it leaves the round and comes back in the next one.
+  void wake(Item item) {
+    // Relaxed: read after the barrier that ends the phase.
+    if constexpr (ColouredOperator<Op>)
+      std::atomic_ref((*woken_at_)[item]).store(round_, std::memory_order_relaxed);
+    woken_->append(item);
+  }
+
+  /// The next of the numbers of this kind that demand() asked for.
+  std::uint32_t fresh(std::size_t kind = 0) { return next_[kind]++; }
+
+ private:
+  template <class>
+  friend class Rounds;
+  DeferredUpdate<Update>* deferred_ = nullptr;
+  Worklist<Item>* woken_ = nullptr;
+  std::vector<std::uint32_t>* woken_at_ = nullptr;  // [item], the round it was last woken in
+  std::uint64_t source_ = 0;
+  std::uint32_t round_ = 0;
+  std::array<std::uint32_t, detail::Kinds<Op>::count> next_{};
+};
+
+}  // namespace ductile::runtime

@@ -1,0 +1,30 @@
+/// @file
+/// run_rounds: applies an operator to a set of items until none is left. In each round it finds
+/// items that may run together, lets each of them plan, then apply its plan, then commits what was
+/// deferred; phases never overlap. Two strategies find items that may run together: colouring of
+/// their conflict graph, class by class (for when most items act), and reservation of what they
+/// touch by priority (for when few do). Which one an operator uses follows from its members.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/detail/rounds.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace ductile::runtime {
+
+/// Applies `op` to `work` and to whatever it wakes, until nothing is left. With a deterministic
+/// executor the result does not depend on threads or timing, provided that the operator keeps its
+/// contract. Throws what the operator throws; the operator's data are then not to be used.
+/// Thread safety: one caller; runs on the executor.
+template <class Op>
+  requires ColouredOperator<Op> || ReservingOperator<Op>
+RoundsReport run_rounds(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
+                        const RoundsOptions& options = {}) {
+  return Rounds<Op>(executor, op, options).run(std::move(work));
+}
+
+}  // namespace ductile::runtime

@@ -1,0 +1,299 @@
+#include "geometry/classify.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// Flat and straight mean: within this fraction of the mesh's extent of one plane or line.
+constexpr double flatness = 1e-10;
+
+/// Key of what two facets of a patch share: a vertex in 2D, an edge in 3D.
+using Key = std::uint64_t;
+Key edge_key(VertexId a, VertexId b) { return Key{std::min(a, b)} << 32U | std::max(a, b); }
+
+template <int Dim, class Visit>
+void each_side(const Facet<Dim>& facet, Visit visit) {
+  if constexpr (Dim == 2) {
+    visit(Key{facet[0]});
+    visit(Key{facet[1]});
+  } else {
+    for (std::size_t i = 0; i < 3; ++i) visit(edge_key(facet[i], facet[(i + 1) % 3]));
+  }
+}
+
+/// Normal of a facet, as long as the facet is large.
+template <int Dim>
+Vector<Dim> facet_normal(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
+  const auto at = [&](std::size_t i) { return mesh.site_of[facet[i]].position; };
+  if constexpr (Dim == 2) {
+    const Vector<2> d = at(1) - at(0);
+    return {{d[1], -d[0]}};
+  } else {
+    return cross(at(1) - at(0), at(2) - at(0));
+  }
+}
+
+template <int Dim>
+double extent(const Mesh<Dim>& mesh) {
+  double largest = 0;
+  for (const auto& site : mesh.site_of)
+    largest = std::max(largest, norm(site.position - mesh.site_of[0].position));
+  return largest;
+}
+
+template <int Dim>
+class Classifier {
+ public:
+  Classifier(Mesh<Dim>& mesh, std::vector<TaggedFacet<Dim>> facets,
+             const std::vector<ListedEdge>& edges)
+      : mesh_(mesh), facets_(std::move(facets)), tolerance_(flatness * extent(mesh)) {
+    for (std::uint32_t f = 0; f < facets_.size(); ++f)
+      each_side<Dim>(facets_[f].corners, [&](Key key) { at_side_[key].push_back(f); });
+    if constexpr (Dim == 3)
+      for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
+  }
+
+  void run() {
+    find_patches();
+    if constexpr (Dim == 3) find_curves();
+    store_patches();
+    classify_vertices();
+  }
+
+ private:
+  // ---- Patches: grow each from its largest facet over flat neighbours that agree with it ----
+
+  void find_patches() {
+    mesh_.patches.assign(1, {});
+    std::vector<std::uint32_t> order(facets_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::vector<double> size(facets_.size());
+    for (std::size_t f = 0; f < size.size(); ++f)
+      size[f] = norm(facet_normal<Dim>(mesh_, facets_[f].corners));
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return size[a] > size[b]; });
+    for (const std::uint32_t seed : order)
+      if (facets_[seed].patch == 0) grow_patch(seed);
+  }
+
+  void grow_patch(std::uint32_t seed) {
+    const auto id = static_cast<PatchId>(mesh_.patches.size());
+    Patch<Dim> patch = facets_[seed].data;
+    patch.normal = facet_normal<Dim>(mesh_, facets_[seed].corners);
+    patch.normal *= 1 / norm(patch.normal);
+    const Vector<Dim> origin = mesh_.site_of[facets_[seed].corners[0]].position;
+    facets_[seed].patch = id;
+    std::vector<std::uint32_t> front{seed};
+    while (!front.empty()) {
+      const std::uint32_t f = front.back();
+      front.pop_back();
+      each_side<Dim>(facets_[f].corners, [&](Key key) {
+        const std::uint32_t next = across(f, key);
+        if (next == none || facets_[next].patch != 0 || !agree(f, next)) return;
+        if (!in_plane(facets_[next].corners, origin, patch.normal)) return;
+        facets_[next].patch = id;
+        front.push_back(next);
+      });
+    }
+    mesh_.patches.push_back(patch);
+  }
+
+  /// The one other facet at this side, if the side does not separate patches by itself.
+  std::uint32_t across(std::uint32_t facet, Key key) const {
+    const auto& both = at_side_.at(key);
+    if (both.size() != 2) return none;
+    if constexpr (Dim == 2) {
+      const VertexKind& kind = mesh_.kind_of[static_cast<VertexId>(key)];
+      if (kind.corner || kind.required) return none;
+    } else if (listed_.contains(key)) {
+      return none;
+    }
+    return both[0] == facet ? both[1] : both[0];
+  }
+
+  bool agree(std::uint32_t f, std::uint32_t g) const {
+    const auto traits = [&](const TaggedFacet<Dim>& t) {
+      const auto region = [&](ElementId e) { return e == none ? none : mesh_.region_of[e]; };
+      const std::uint32_t a = region(t.element), b = region(t.other);
+      return std::tuple(t.data.reference, t.data.listed, t.data.required, t.data.ridge,
+                        std::min(a, b), std::max(a, b));
+    };
+    return traits(facets_[f]) == traits(facets_[g]);
+  }
+
+  bool in_plane(const Facet<Dim>& facet, const Vector<Dim>& origin,
+                const Vector<Dim>& normal) const {
+    for (const VertexId v : facet)
+      if (std::abs(dot(mesh_.site_of[v].position - origin, normal)) > tolerance_) return false;
+    const Vector<Dim> own = facet_normal<Dim>(mesh_, facet);
+    return std::abs(dot(own, normal)) > 0.9 * norm(own);
+  }
+
+  void store_patches() {
+    for (const TaggedFacet<Dim>& f : facets_) {
+      mesh_.patches_of[f.element][static_cast<std::size_t>(f.facet)] = f.patch;
+      if (f.other != none)
+        mesh_.patches_of[f.other][static_cast<std::size_t>(f.other_facet)] = f.patch;
+    }
+  }
+
+  // ---- Curves: edges where patches meet or that the file lists, chained where straight ----
+
+  struct CurveEdge {
+    VertexId a, b;
+    Curve data;
+    std::vector<PatchId> patches;  // sorted
+    CurveId curve = 0;
+    bool agrees_with(const CurveEdge& o) const {
+      return std::tie(data.reference, data.listed, data.required, data.ridge, patches) ==
+             std::tie(o.data.reference, o.data.listed, o.data.required, o.data.ridge, o.patches);
+    }
+  };
+
+  std::vector<PatchId> patches_at(Key key) const {
+    std::vector<PatchId> patches;
+    if (const auto found = at_side_.find(key); found != at_side_.end())
+      for (const std::uint32_t f : found->second) patches.push_back(facets_[f].patch);
+    std::sort(patches.begin(), patches.end());
+    return patches;
+  }
+
+  void find_curves() {
+    mesh_.curves.assign(1, {});
+    std::vector<Key> keys;
+    for (const auto& [key, facets] : at_side_)
+      if (facets.size() != 2 || facets_[facets[0]].patch != facets_[facets[1]].patch)
+        keys.push_back(key);
+    for (const auto& [key, edge] : listed_) keys.push_back(key);
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    for (const Key key : keys) add_curve_edge(key);
+    for (std::uint32_t e = 0; e < curve_edges_.size(); ++e)
+      if (curve_edges_[e].curve == 0) grow_curve(e);
+    for (const CurveEdge& e : curve_edges_) {
+      mesh_.links_of.insert(e.a, {e.b, e.curve});
+      mesh_.links_of.insert(e.b, {e.a, e.curve});
+    }
+  }
+
+  void add_curve_edge(Key key) {
+    CurveEdge edge{static_cast<VertexId>(key >> 32U), static_cast<VertexId>(key), {}, patches_at(key)};
+    if (const auto found = listed_.find(key); found != listed_.end()) {
+      const ListedEdge& listed = found->second;
+      edge.data = {{}, listed.reference, true, listed.required, listed.ridge};
+    }
+    for (const VertexId v : {edge.a, edge.b})
+      edges_at_[v].push_back(static_cast<std::uint32_t>(curve_edges_.size()));
+    curve_edges_.push_back(std::move(edge));
+  }
+
+  void grow_curve(std::uint32_t seed) {
+    const auto id = static_cast<CurveId>(mesh_.curves.size());
+    Curve curve = curve_edges_[seed].data;
+    const Vector<Dim> origin = mesh_.site_of[curve_edges_[seed].a].position;
+    Vector<Dim> direction = mesh_.site_of[curve_edges_[seed].b].position - origin;
+    direction *= 1 / norm(direction);
+    curve_edges_[seed].curve = id;
+    for (const VertexId start : {curve_edges_[seed].a, curve_edges_[seed].b}) {
+      VertexId v = start;
+      for (std::uint32_t e = next_edge(seed, v); e != none; e = next_edge(e, v)) {
+        CurveEdge& edge = curve_edges_[e];
+        const VertexId end = edge.a == v ? edge.b : edge.a;
+        const Vector<Dim> d = mesh_.site_of[end].position - origin;
+        if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed]) ||
+            norm(d - dot(d, direction) * direction) > tolerance_)
+          break;
+        edge.curve = id;
+        v = end;
+      }
+    }
+    if constexpr (Dim == 3) curve.direction = direction;
+    mesh_.curves.push_back(curve);
+  }
+
+  /// The other curve edge at a vertex where exactly two meet and nothing stops the curve.
+  std::uint32_t next_edge(std::uint32_t edge, VertexId v) const {
+    const auto& edges = edges_at_.at(v);
+    if (edges.size() != 2 || mesh_.kind_of[v].corner || mesh_.kind_of[v].required) return none;
+    return edges[0] == edge ? edges[1] : edges[0];
+  }
+
+  // ---- Vertices ----
+
+  void classify_vertices() {
+    std::vector<std::vector<PatchId>> patches_at_vertex(mesh_.vertex_slots());
+    for (const TaggedFacet<Dim>& f : facets_)
+      for (const VertexId v : f.corners) patches_at_vertex[v].push_back(f.patch);
+    for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v) {
+      auto& patches = patches_at_vertex[v];
+      const std::size_t facet_count = patches.size();
+      std::sort(patches.begin(), patches.end());
+      patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+      classify_vertex(static_cast<VertexId>(v), patches, facet_count);
+    }
+  }
+
+  void classify_vertex(VertexId v, const std::vector<PatchId>& patches, std::size_t facet_count) {
+    VertexKind& kind = mesh_.kind_of[v];
+    kind.freedom = 0;
+    mesh_.entity_of[v] = 0;
+    if (kind.corner || kind.required || touches_required(v, patches)) return;
+    std::uint32_t links = 0;
+    if constexpr (Dim == 3) links = static_cast<std::uint32_t>(mesh_.links_of.of(v).size());
+    if (patches.empty() && links == 0) {
+      kind.freedom = Dim;
+    } else if (patches.size() == 1 && links == 0 && (Dim == 3 || facet_count == 2)) {
+      kind.freedom = Dim - 1;
+      mesh_.entity_of[v] = patches[0];
+    } else if constexpr (Dim == 3) {
+      if (!on_one_curve(v, patches)) return;
+      kind.freedom = 1;
+      mesh_.entity_of[v] = mesh_.links_of.of(v)[0].curve;
+    }
+  }
+
+  bool on_one_curve(VertexId v, const std::vector<PatchId>& patches) const {
+    const auto links = mesh_.links_of.of(v);
+    if (links.size() != 2 || links[0].curve != links[1].curve) return false;
+    auto along = patches_at(edge_key(v, links[0].to));
+    along.erase(std::unique(along.begin(), along.end()), along.end());
+    return along == patches;
+  }
+
+  bool touches_required(VertexId v, const std::vector<PatchId>& patches) const {
+    for (const PatchId p : patches)
+      if (mesh_.patches[p].required) return true;
+    if constexpr (Dim == 3)
+      for (const CurveLink& link : mesh_.links_of.of(v))
+        if (mesh_.curves[link.curve].required) return true;
+    for (const ElementId e : mesh_.elements_of.of(v))
+      if (mesh_.required_element(e)) return true;
+    return false;
+  }
+
+  Mesh<Dim>& mesh_;
+  std::vector<TaggedFacet<Dim>> facets_;
+  double tolerance_;
+  std::unordered_map<Key, std::vector<std::uint32_t>> at_side_;  // side -> facets
+  std::unordered_map<Key, ListedEdge> listed_;                   // 3D
+  std::vector<CurveEdge> curve_edges_;
+  std::unordered_map<VertexId, std::vector<std::uint32_t>> edges_at_;
+};
+
+}  // namespace
+
+template <int Dim>
+void classify(Mesh<Dim>& mesh, std::vector<TaggedFacet<Dim>> facets,
+              const std::vector<ListedEdge>& edges) {
+  Classifier<Dim>(mesh, std::move(facets), edges).run();
+}
+
+template void classify(Mesh<2>&, std::vector<TaggedFacet<2>>, const std::vector<ListedEdge>&);
+template void classify(Mesh<3>&, std::vector<TaggedFacet<3>>, const std::vector<ListedEdge>&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,35 @@
+/// @file
+/// Classification of a new mesh's boundary: which facets form one flat patch, which edges one
+/// straight curve, and what every vertex may therefore do.
+#pragma once
+
+#include <vector>
+
+#include "ductile/meshadapt/mesh.hpp"
+
+namespace ductile::meshadapt {
+
+/// A boundary or interface facet before it belongs to a patch.
+template <int Dim>
+struct TaggedFacet {
+  Facet<Dim> corners{};
+  Patch<Dim> data;                       ///< normal not yet set
+  ElementId element = none, other = none;  ///< on its sides; other is none on the boundary
+  int facet = 0, other_facet = 0;        ///< its number in them
+  PatchId patch = 0;
+};
+
+/// An edge listed in a 3D file.
+struct ListedEdge {
+  VertexId a = none, b = none;
+  std::int32_t reference = 0;
+  bool required = false, ridge = false;
+};
+
+/// Sets mesh.patches, curves, links_of, patches_of, kind_of.freedom and entity_of from the facets
+/// (and, in 3D, the listed edges). kind_of.corner and .required and the regions are already set.
+template <int Dim>
+void classify(Mesh<Dim>& mesh, std::vector<TaggedFacet<Dim>> facets,
+              const std::vector<ListedEdge>& edges);
+
+}  // namespace ductile::meshadapt

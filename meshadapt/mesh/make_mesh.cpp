@@ -1,0 +1,387 @@
+#include "ductile/meshadapt/make_mesh.hpp"
+
+#include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <map>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "geometry/classify.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_for;
+
+namespace {
+
+constexpr std::size_t no_index = static_cast<std::size_t>(-1);
+
+template <int Dim>
+const Cells<Dim + 1>& element_cells(const AnyMesh& any) {
+  if constexpr (Dim == 2) return any.triangles;
+  else return any.tetrahedra;
+}
+template <int Dim>
+const Cells<Dim>& facet_cells(const AnyMesh& any) {
+  if constexpr (Dim == 2) return any.edges;
+  else return any.triangles;
+}
+template <int Dim>
+const char* element_name() { return Dim == 2 ? "triangle" : "tetrahedron"; }
+template <int Dim>
+const char* facet_name() { return Dim == 2 ? "edge" : "triangle"; }
+
+/// The first index below n for which bad(index) holds, or no_index.
+template <class Bad>
+std::size_t first_bad(const Executor& executor, std::size_t n, Bad&& bad) {
+  return runtime::parallel_reduce(
+      executor, n, no_index, [&](std::size_t i) { return bad(i) ? i : no_index; },
+      [](std::size_t a, std::size_t b) { return std::min(a, b); });
+}
+
+/// Exact sign of the signed volume, for elements too flat for floating-point certainty.
+template <int Dim>
+int exact_orientation(const std::array<Vector<Dim>, Dim + 1>& p) {
+  using Exact = boost::multiprecision::cpp_rational;
+  Exact d[Dim][Dim];
+  for (int i = 0; i < Dim; ++i)
+    for (int k = 0; k < Dim; ++k)
+      d[i][k] = Exact(p[static_cast<std::size_t>(i + 1)][k]) - Exact(p[0][k]);
+  const auto minor = [&](int r, int s, int a, int b) -> Exact {
+    return d[r][a] * d[s][b] - d[r][b] * d[s][a];
+  };
+  Exact determinant;
+  if constexpr (Dim == 2) determinant = minor(0, 1, 0, 1);
+  else
+    determinant = d[0][0] * minor(1, 2, 1, 2) - d[0][1] * minor(1, 2, 0, 2) +
+                  d[0][2] * minor(1, 2, 0, 1);
+  return determinant.sign();
+}
+
+template <int Dim>
+class MeshMaker {
+ public:
+  MeshMaker(const Executor& executor, const AnyMesh& any, const MakeMeshOptions& options,
+            Neighbours<Dim>& neighbours, std::vector<std::string>& warnings)
+      : executor_(executor),
+        any_(any),
+        options_(options),
+        neighbours_(neighbours),
+        warnings_(warnings) {}
+
+  Mesh<Dim> make() {
+    check_indices();
+    fill();
+    orient();
+    rebuild_elements_of(executor_, mesh_);
+    report_unused_vertices();
+    find_neighbours();
+    auto facets = listed_facets();
+    add_unlisted_facets(facets);
+    classify(mesh_, std::move(facets), listed_edges());
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(any_.name + ": " + what); }
+
+  std::string entity(const char* kind, std::size_t index) const {
+    return std::string(kind) + " " + std::to_string(index + 1);
+  }
+
+  void check_indices() const {
+    const auto& cells = element_cells<Dim>(any_);
+    if (any_.dimension != Dim) fail("the mesh has the wrong dimension");
+    if (cells.size() == 0)
+      fail(std::string("no ") + element_name<Dim>() + " in the mesh; there is nothing to adapt");
+    if (Dim == 2 && any_.tetrahedra.size() != 0) fail("tetrahedra in a mesh of dimension 2");
+    if (any_.vertex_count() >= none || cells.size() >= none / 4) fail("too many entities for 32-bit numbers");
+    const std::size_t bad_vertex = first_bad(executor_, any_.coordinates.size(), [&](std::size_t i) {
+      return !std::isfinite(any_.coordinates[i]);
+    });
+    if (bad_vertex != no_index)
+      fail(entity("vertex", bad_vertex / Dim) + " has a coordinate that is not a finite number");
+    check_cells(cells, element_name<Dim>());
+    check_cells(facet_cells<Dim>(any_), facet_name<Dim>());
+    if constexpr (Dim == 3) check_cells(any_.edges, "edge");
+  }
+
+  template <int N>
+  void check_cells(const Cells<N>& cells, const char* kind) const {
+    const std::size_t bad = first_bad(executor_, cells.size(), [&](std::size_t i) {
+      const auto& corners = cells.vertices[i];
+      for (std::size_t a = 0; a < corners.size(); ++a) {
+        if (corners[a] >= any_.vertex_count()) return true;
+        for (std::size_t b = 0; b < a; ++b)
+          if (corners[a] == corners[b]) return true;
+      }
+      return false;
+    });
+    if (bad == no_index) return;
+    for (const std::uint32_t v : cells.vertices[bad])
+      if (v >= any_.vertex_count())
+        fail(entity(kind, bad) + " names vertex " + std::to_string(std::uint64_t{v} + 1) +
+             ", but there are only " + std::to_string(any_.vertex_count()));
+    fail(entity(kind, bad) + " names the same vertex twice; remove it");
+  }
+
+  void fill() {
+    const auto& cells = element_cells<Dim>(any_);
+    mesh_.elements_of.reset(0);
+    mesh_.grow(any_.vertex_count(), cells.size());
+    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
+      for (int i = 0; i < Dim; ++i)
+        mesh_.site_of[v].position[i] = any_.coordinates[v * Dim + static_cast<std::size_t>(i)];
+      mesh_.reference_of[v] = any_.vertex_reference[v];
+    });
+    for (const std::uint32_t v : any_.corners) mesh_.kind_of[checked_vertex(v, "corner")].corner = true;
+    for (const std::uint32_t v : any_.required_vertices)
+      mesh_.kind_of[checked_vertex(v, "required vertex")].required = true;
+    mesh_.corners_of = cells.vertices;
+    const auto& required = Dim == 2 ? any_.required_triangles : any_.required_tetrahedra;
+    const auto locked = marked(cells.size(), required, element_name<Dim>());
+    std::map<std::pair<std::int32_t, bool>, std::uint32_t> number;
+    for (std::size_t e = 0; e < cells.size(); ++e) {
+      const std::pair key{cells.reference[e], locked[e]};
+      const auto [at, fresh] = number.try_emplace(key, static_cast<std::uint32_t>(number.size()));
+      if (fresh) mesh_.regions.push_back({key.first, key.second});
+      mesh_.region_of[e] = at->second;
+    }
+  }
+
+  std::uint32_t checked_vertex(std::uint32_t v, const char* what) const {
+    if (v >= any_.vertex_count())
+      fail(std::string("a ") + what + " names vertex " + std::to_string(std::uint64_t{v} + 1) +
+           ", but there are only " + std::to_string(any_.vertex_count()));
+    return v;
+  }
+
+  /// One flag per entity: is it in this list of indices?
+  std::vector<bool> marked(std::size_t count, const std::vector<std::uint32_t>& list,
+                           const char* kind) const {
+    std::vector<bool> flags(count, false);
+    for (const std::uint32_t i : list) {
+      if (i >= count)
+        fail(std::string("a required or ridge ") + kind + " has number " +
+             std::to_string(std::uint64_t{i} + 1) + ", but there are only " + std::to_string(count));
+      flags[i] = true;
+    }
+    return flags;
+  }
+
+  int orientation(std::size_t e) const {
+    std::array<Vector<Dim>, Dim + 1> p;
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] = mesh_.site_of[mesh_.corners_of[e][i]].position;
+    const double determinant = certain_determinant<Dim>(p);
+    return determinant > 0 ? 1 : determinant < 0 ? -1 : exact_orientation<Dim>(p);
+  }
+
+  /// Turns all elements over if the first points the wrong way; all must then agree.
+  void orient() {
+    const int sign = orientation(0);
+    const std::size_t bad = first_bad(executor_, mesh_.element_slots(), [&](std::size_t e) {
+      const int own = orientation(e);
+      return own == 0 || own != sign;
+    });
+    if (bad != no_index && orientation(bad) == 0)
+      fail(entity(element_name<Dim>(), bad) + " has no volume; remove or repair it");
+    if (bad != no_index)
+      fail(entity(element_name<Dim>(), bad) + " is inverted with respect to " +
+           element_name<Dim>() + " 1; repair the mesh or swap two of its vertices");
+    if (sign > 0) return;
+    warnings_.push_back(any_.name + ": all elements were inverted; they have been reoriented");
+    parallel_for(executor_, mesh_.element_slots(),
+                 [&](std::size_t e) { std::swap(mesh_.corners_of[e][0], mesh_.corners_of[e][1]); });
+  }
+
+  void report_unused_vertices() {
+    const auto unused = runtime::parallel_reduce(
+        executor_, mesh_.vertex_slots(), std::size_t{0},
+        [&](std::size_t v) {
+          return std::size_t{!mesh_.vertex_alive(static_cast<VertexId>(v))};
+        },
+        [](std::size_t a, std::size_t b) { return a + b; });
+    if (unused != 0)
+      warnings_.push_back(any_.name + ": " + std::to_string(unused) + " of " +
+                          std::to_string(mesh_.vertex_slots()) +
+                          " vertices belong to no element and are left out");
+  }
+
+  // ---- Neighbours ----
+
+  static constexpr ElementId crowded = none - 1;  // more than one element across a facet
+
+  void find_neighbours() {
+    neighbours_.resize(mesh_.element_slots());
+    parallel_for(executor_, mesh_.element_slots(), [&](std::size_t e) {
+      for (int i = 0; i <= Dim; ++i)
+        neighbours_[e][static_cast<std::size_t>(i)] = across(static_cast<ElementId>(e), i);
+    });
+    const std::size_t bad = first_bad(executor_, mesh_.element_slots(), [&](std::size_t e) {
+      return contains(neighbours_[e], crowded);
+    });
+    if (bad != no_index) fail_crowded(static_cast<ElementId>(bad));
+  }
+
+  /// The element across a facet: one that has the facet's corners in the opposite order.
+  ElementId across(ElementId element, int facet) const {
+    const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
+    ElementId found = none;
+    for (const ElementId other : mesh_.elements_of.of(corners[0])) {
+      if (other == element || !has_all(other, corners)) continue;
+      if (found != none || same_side(other, corners)) return crowded;
+      found = other;
+    }
+    return found;
+  }
+
+  bool has_all(ElementId element, const Facet<Dim>& corners) const {
+    for (std::size_t i = 1; i < corners.size(); ++i)
+      if (!contains(mesh_.corners_of[element], corners[i])) return false;
+    return true;
+  }
+
+  /// Is the other element on the side of the facet that already has one? Its facet is then listed
+  /// in the same turn.
+  bool same_side(ElementId other, const Facet<Dim>& corners) const {
+    const Facet<Dim> own = facet_of<Dim>(mesh_.corners_of[other], facet_number(other, corners));
+    const auto at = static_cast<std::size_t>(corner_of(own, corners[0]));
+    return own[(at + 1) % Dim] == corners[1] && (Dim == 3 || at == 0);
+  }
+
+  int facet_number(ElementId element, const Facet<Dim>& corners) const {
+    for (int i = 0; i <= Dim; ++i)
+      if (!contains(corners, mesh_.corners_of[element][static_cast<std::size_t>(i)])) return i;
+    return -1;
+  }
+
+  [[noreturn]] void fail_crowded(ElementId element) const {
+    const auto facet = corner_of(neighbours_[element], crowded);
+    const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
+    ElementId other = none;
+    for (const ElementId e : mesh_.elements_of.of(corners[0]))
+      if (e != element && has_all(e, corners)) other = e;
+    auto a = mesh_.corners_of[element], b = mesh_.corners_of[other];
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    const std::string both = entity(element_name<Dim>(), element) + " and " + std::to_string(other + 1);
+    if (a == b) fail(both + " are the same element; remove one");
+    fail(both + " overlap or share a " + facet_name<Dim>() +
+         " with a third; a facet may belong to two elements at most, one on each side");
+  }
+
+  // ---- Facets and edges ----
+
+  std::vector<TaggedFacet<Dim>> listed_facets() {
+    const auto& cells = facet_cells<Dim>(any_);
+    const auto& required_list = Dim == 2 ? any_.required_edges : any_.required_triangles;
+    const auto required = marked(cells.size(), required_list, facet_name<Dim>());
+    const auto ridge = marked(cells.size(), Dim == 2 ? any_.ridges : std::vector<std::uint32_t>{}, "edge");
+    std::vector<TaggedFacet<Dim>> facets(cells.size());
+    parallel_for(executor_, cells.size(), [&](std::size_t f) {
+      facets[f].corners = cells.vertices[f];
+      facets[f].data = {{}, cells.reference[f], true, required[f] || options_.lock_boundary, ridge[f]};
+      attach(facets[f]);
+    });
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      if (facets[f].element == none)
+        fail(entity(facet_name<Dim>(), f) + " is not a facet of any " + element_name<Dim>() +
+             "; remove it or repair the mesh");
+      PatchId& mark = mesh_.patches_of[facets[f].element][static_cast<std::size_t>(facets[f].facet)];
+      if (mark != 0)
+        fail(entity(facet_name<Dim>(), f) + " is the same as " + facet_name<Dim>() + " " +
+             std::to_string(mark) + "; remove one");
+      mark = static_cast<PatchId>(f + 1);
+      if (facets[f].other != none)
+        mesh_.patches_of[facets[f].other][static_cast<std::size_t>(facets[f].other_facet)] = mark;
+    }
+    return facets;
+  }
+
+  /// Finds the elements on both sides of a facet.
+  void attach(TaggedFacet<Dim>& facet) const {
+    for (const ElementId e : mesh_.elements_of.of(facet.corners[0]))
+      if (facet.element == none && has_all(e, facet.corners)) {
+        facet.element = e;
+        facet.facet = facet_number(e, facet.corners);
+      }
+    if (facet.element == none) return;
+    facet.other = neighbours_[facet.element][static_cast<std::size_t>(facet.facet)];
+    if (facet.other != none) facet.other_facet = facet_number(facet.other, facet.corners);
+  }
+
+  /// Boundary facets the file does not list are refused or completed; interfaces between regions
+  /// need no listing, but are kept all the same.
+  void add_unlisted_facets(std::vector<TaggedFacet<Dim>>& facets) {
+    const std::size_t listed = facets.size();
+    std::size_t unlisted_boundary = 0;
+    for (ElementId e = 0; e < mesh_.element_slots(); ++e)
+      for (std::size_t i = 0; i <= Dim; ++i) {
+        const ElementId other = neighbours_[e][i];
+        const bool boundary = other == none;
+        const bool interface = !boundary && other > e && mesh_.region_of[e] != mesh_.region_of[other];
+        if ((!boundary && !interface) || mesh_.patches_of[e][i] != 0) continue;
+        if (boundary && !options_.complete_boundary) fail_unlisted(e, static_cast<int>(i));
+        unlisted_boundary += boundary;
+        TaggedFacet<Dim> facet;
+        facet.corners = facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i));
+        facet.data = {{}, 0, boundary, options_.lock_boundary, false};
+        attach(facet);
+        facets.push_back(facet);
+      }
+    if (unlisted_boundary != 0)
+      warnings_.push_back(any_.name + ": " + std::to_string(unlisted_boundary) + " boundary " +
+                          facet_name<Dim>() + "s were not listed (" + std::to_string(listed) +
+                          " were); they get reference 0");
+  }
+
+  [[noreturn]] void fail_unlisted(ElementId element, int facet) const {
+    std::string corners;
+    for (const VertexId v : facet_of<Dim>(mesh_.corners_of[element], facet))
+      corners += " " + std::to_string(std::uint64_t{v} + 1);
+    fail("the boundary " + std::string(facet_name<Dim>()) + " with vertices" + corners + " (of " +
+         entity(element_name<Dim>(), element) + ") is not listed in the file; list it, or pass " +
+         "--complete-boundary to give unlisted ones reference 0");
+  }
+
+  std::vector<ListedEdge> listed_edges() const {
+    std::vector<ListedEdge> edges;
+    if constexpr (Dim == 3) {
+      const auto required = marked(any_.edges.size(), any_.required_edges, "edge");
+      const auto ridge = marked(any_.edges.size(), any_.ridges, "edge");
+      for (std::size_t i = 0; i < any_.edges.size(); ++i) {
+        const auto [a, b] = any_.edges.vertices[i];
+        edges.push_back({a, b, any_.edges.reference[i], required[i], ridge[i]});
+        std::vector<ElementId> shell;
+        shell_of(mesh_, a, b, shell);
+        if (shell.empty())
+          fail(entity("edge", i) + " is not an edge of any tetrahedron; remove it or repair the mesh");
+      }
+    }
+    return edges;
+  }
+
+  const Executor& executor_;
+  const AnyMesh& any_;
+  const MakeMeshOptions& options_;
+  Neighbours<Dim>& neighbours_;
+  std::vector<std::string>& warnings_;
+  Mesh<Dim> mesh_;
+};
+
+}  // namespace
+
+template <int Dim>
+Mesh<Dim> make_mesh(const Executor& executor, const AnyMesh& any, const MakeMeshOptions& options,
+                    Neighbours<Dim>& neighbours, std::vector<std::string>& warnings) {
+  return MeshMaker<Dim>(executor, any, options, neighbours, warnings).make();
+}
+
+template Mesh<2> make_mesh(const Executor&, const AnyMesh&, const MakeMeshOptions&, Neighbours<2>&,
+                           std::vector<std::string>&);
+template Mesh<3> make_mesh(const Executor&, const AnyMesh&, const MakeMeshOptions&, Neighbours<3>&,
+                           std::vector<std::string>&);
+
+}  // namespace ductile::meshadapt

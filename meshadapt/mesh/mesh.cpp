@@ -1,0 +1,69 @@
+#include "ductile/meshadapt/mesh.hpp"
+
+#include "ductile/runtime/atomic_count.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_for;
+
+template <int Dim>
+void Mesh<Dim>::grow(std::size_t vertices, std::size_t elements) {
+  Corners<Dim> gone;
+  gone.fill(none);
+  corners_of.resize(elements, gone);
+  patches_of.resize(elements);
+  region_of.resize(elements);
+  shape_of.resize(elements);
+  site_of.resize(vertices);
+  kind_of.resize(vertices);
+  entity_of.resize(vertices);
+  reference_of.resize(vertices);
+  host_of.resize(vertices);
+  elements_of.grow(vertices);
+  if constexpr (Dim == 3) links_of.grow(vertices);
+}
+
+template <int Dim>
+void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
+  auto& lists = mesh.elements_of;
+  lists.reset(mesh.vertex_slots());
+  std::vector<std::uint32_t> count(mesh.vertex_slots());
+  const auto each_corner = [&](auto&& visit) {
+    parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+      const auto element = static_cast<ElementId>(e);
+      if (!mesh.alive(element)) return;
+      for (const VertexId v : mesh.corners_of[element]) visit(v, element);
+    });
+  };
+  each_corner([&](VertexId v, ElementId) { runtime::atomic_count(count[v]); });
+  constexpr std::uint32_t slack = Dim == 2 ? 3 : 10;
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
+    if (count[v] != 0) lists.reserve(static_cast<VertexId>(v), count[v] + slack);
+  });
+  each_corner([&](VertexId v, ElementId element) {
+    lists.data(v)[runtime::atomic_count(lists.count_of(v))] = element;
+  });
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
+    const auto vertex = static_cast<VertexId>(v);
+    if (count[v] != 0) std::sort(lists.data(vertex), lists.data(vertex) + count[v]);
+  });
+}
+
+template <int Dim>
+void update_shapes(const Executor& executor, Mesh<Dim>& mesh) {
+  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    if (mesh.alive(static_cast<ElementId>(e)))
+      mesh.shape_of[e] = static_cast<float>(mesh.shape_at(mesh.corners_of[e]));
+  });
+}
+
+template struct Mesh<2>;
+template struct Mesh<3>;
+template void rebuild_elements_of(const Executor&, Mesh<2>&);
+template void rebuild_elements_of(const Executor&, Mesh<3>&);
+template void update_shapes(const Executor&, Mesh<2>&);
+template void update_shapes(const Executor&, Mesh<3>&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,99 @@
+#include "ductile/meshadapt/metric.hpp"
+
+#include <utility>
+
+namespace ductile::meshadapt {
+
+namespace {
+
+template <int Dim>
+using Matrix = std::array<std::array<double, Dim>, Dim>;
+
+/// Zeroes a[p][q] by a rotation and applies it to the columns of v.
+template <int Dim>
+void rotate(Matrix<Dim>& a, Matrix<Dim>& v, std::size_t p, std::size_t q) {
+  const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+  const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+  const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+  a[p][p] -= t * a[p][q];
+  a[q][q] += t * a[p][q];
+  a[p][q] = a[q][p] = 0;
+  for (std::size_t k = 0; k < Dim; ++k) {
+    if (k != p && k != q) {
+      const double kp = a[k][p], kq = a[k][q];
+      a[k][p] = a[p][k] = c * kp - s * kq;
+      a[k][q] = a[q][k] = s * kp + c * kq;
+    }
+    const double vp = v[k][p], vq = v[k][q];
+    v[k][p] = c * vp - s * vq;
+    v[k][q] = s * vp + c * vq;
+  }
+}
+
+template <int Dim>
+bool negligible(const Matrix<Dim>& a, std::size_t p, std::size_t q) {
+  const double off = std::abs(a[p][q]);
+  return off <= 1e-300 || off <= 1e-17 * std::sqrt(std::abs(a[p][p] * a[q][q]));
+}
+
+}  // namespace
+
+template <int Dim>
+Eigen<Dim> eigen(const Metric<Dim>& metric) {
+  Matrix<Dim> a{}, v{};
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j)
+      a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = metric(i, j);
+  for (std::size_t i = 0; i < Dim; ++i) v[i][i] = 1;
+  bool done = false;
+  for (int sweep = 0; sweep < 40 && !done; ++sweep) {
+    done = true;
+    for (std::size_t p = 0; p + 1 < Dim; ++p)
+      for (std::size_t q = p + 1; q < Dim; ++q)
+        if (!negligible<Dim>(a, p, q)) {
+          rotate<Dim>(a, v, p, q);
+          done = false;
+        }
+  }
+  Eigen<Dim> result;
+  for (std::size_t i = 0; i < Dim; ++i) {
+    result.value[i] = a[i][i];
+    for (std::size_t k = 0; k < Dim; ++k) result.vector[i].x[k] = v[k][i];
+  }
+  return result;
+}
+
+template <int Dim>
+Metric<Dim> compose(const Eigen<Dim>& e) {
+  Metric<Dim> result;
+  for (std::size_t i = 0; i < Dim; ++i)
+    for (std::size_t column = 0, at = 0; column < Dim; ++column)
+      for (std::size_t row = 0; row <= column; ++row, ++at)
+        result.m[at] += e.value[i] * e.vector[i].x[row] * e.vector[i].x[column];
+  return result;
+}
+
+template <int Dim>
+Metric<Dim> logarithm(const Metric<Dim>& a) {
+  Eigen<Dim> e = eigen(a);
+  for (double& value : e.value) value = std::log(value);
+  return compose(e);
+}
+
+template <int Dim>
+Metric<Dim> exponential(const Metric<Dim>& a) {
+  Eigen<Dim> e = eigen(a);
+  for (double& value : e.value) value = std::exp(value);
+  return compose(e);
+}
+
+template Eigen<2> eigen(const Metric<2>&);
+template Eigen<3> eigen(const Metric<3>&);
+template Metric<2> compose(const Eigen<2>&);
+template Metric<3> compose(const Eigen<3>&);
+template Metric<2> logarithm(const Metric<2>&);
+template Metric<3> logarithm(const Metric<3>&);
+template Metric<2> exponential(const Metric<2>&);
+template Metric<3> exponential(const Metric<3>&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,64 @@
+#include "ductile/meshadapt/adapt.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "operators/adapter.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+template <int Dim>
+std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const AnyField& field,
+                                    const AdaptOptions& options) {
+  std::vector<Metric<Dim>> metric_of(field.vertex_count);
+  const double low = options.largest_size > 0 ? 1 / (options.largest_size * options.largest_size) : 0;
+  const double high = options.smallest_size > 0 ? 1 / (options.smallest_size * options.smallest_size)
+                                                : std::numeric_limits<double>::infinity();
+  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
+    std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric_of[v].m.begin());
+    if (options.largest_size <= 0 && options.smallest_size <= 0) return;
+    auto axes = eigen(metric_of[v]);
+    for (double& value : axes.value) value = std::clamp(value, low, high);
+    metric_of[v] = compose(axes);
+  });
+  return metric_of;
+}
+
+template <int Dim>
+AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
+                     const AdaptOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
+  Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
+                       metrics_of<Dim>(executor, metric, options));
+  adapter.report().setup_seconds = seconds();
+  adapter.run();
+  AdaptedMesh result{to_any_mesh(adapter.mesh()), to_any_field(adapter.mesh()), adapter.report()};
+  result.report.warnings = std::move(warnings);
+  result.report.total_seconds = seconds();
+  return result;
+}
+
+}  // namespace
+
+AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
+                  const AdaptOptions& options) {
+  if (metric.types != std::vector{AnyField::Type::symmetric} ||
+      metric.dimension != mesh.dimension || metric.vertex_count != mesh.vertex_count())
+    throw InputError(metric.name + ": expected one symmetric tensor for each of the " +
+                     std::to_string(mesh.vertex_count()) + " vertices of " + mesh.name);
+  if (mesh.dimension == 2) return adapt_in<2>(executor, mesh, metric, options);
+  if (mesh.dimension == 3) return adapt_in<3>(executor, mesh, metric, options);
+  throw InputError(mesh.name + ": expected dimension 2 or 3, found " + std::to_string(mesh.dimension));
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,163 @@
+#include "operators/adapter.hpp"
+
+#include <chrono>
+
+#include "ductile/runtime/parallel_for.hpp"
+#include "operators/coarsen.hpp"
+#include "operators/refine.hpp"
+#include "operators/smooth.hpp"
+#include "operators/swap.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::parallel_for;
+using runtime::RoundsReport;
+
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+template <int Dim>
+Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& options,
+                      Mesh<Dim> mesh, Neighbours<Dim> neighbours,
+                      const std::vector<Metric<Dim>>& metric_of)
+    : executor_(executor),
+      options_(options),
+      mesh_(std::move(mesh)),
+      background_(executor, mesh_, std::move(neighbours), metric_of) {
+  parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t v) {
+    const auto elements = mesh_.elements_of.of(static_cast<VertexId>(v));
+    mesh_.site_of[v] = make_site(mesh_.site_of[v].position, metric_of[v]);
+    mesh_.host_of[v] = elements.empty() ? 0 : elements.front();
+  });
+  update_shapes(executor_, mesh_);
+  renumber(executor_, mesh_);
+}
+
+template <int Dim>
+void Adapter<Dim>::run() {
+  for (int i = 1; i <= options_.iterations && !report_.converged; ++i) {
+    report_.iterations = i;
+    const std::size_t changes = iterate();
+    report_.converged = static_cast<double>(changes) < 0.01 * static_cast<double>(element_count());
+  }
+  polish();
+  renumber_mesh();
+}
+
+/// One round of the kernels that change the number of vertices.
+template <int Dim>
+std::size_t Adapter<Dim>::iterate() {
+  std::size_t changes = 0;
+  if (options_.insert) changes += coarsen();
+  if (options_.swap) changes += swap(0.9);
+  if (options_.insert) changes += refine();
+  renumber_mesh();
+  if (options_.swap) changes += swap(0.9);
+  if (options_.move) smooth(1, 0.3, true);
+  return changes;
+}
+
+/// Raises quality without aiming at lengths any more.
+template <int Dim>
+void Adapter<Dim>::polish() {
+  for (int pass = 0; pass < 3; ++pass) {
+    if (options_.move) smooth(3, 0.5, true);
+    if (options_.swap) swap(0.95);
+  }
+  if (options_.move) smooth(2, 0.6, false);
+}
+
+template <int Dim>
+std::size_t Adapter<Dim>::coarsen() {
+  const Stopwatch watch;
+  auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, options_.rules.short_edge);
+  Coarsen<Dim> op(mesh_, options_.rules);
+  const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
+  add(report_.coarsen, rounds, watch.seconds());
+  tell("coarsen", rounds.applied);
+  return rounds.applied;
+}
+
+template <int Dim>
+std::size_t Adapter<Dim>::refine() {
+  const Stopwatch watch;
+  auto work = Refine<Dim>::long_edges(executor_, mesh_, options_.rules.long_edge);
+  Refine<Dim> op(mesh_, background_, options_.rules);
+  const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
+  add(report_.refine, rounds, watch.seconds());
+  tell("refine", rounds.applied);
+  return rounds.applied;
+}
+
+template <int Dim>
+std::size_t Adapter<Dim>::swap(double below) {
+  const Stopwatch watch;
+  std::size_t changes = 0;
+  for (int sweep = 0; sweep < 4; ++sweep) {
+    auto work = Swap<Dim>::improvements(executor_, mesh_, below);
+    if (work.empty()) break;
+    Swap<Dim> op(mesh_);
+    const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
+    add(report_.swap, rounds, 0);
+    changes += rounds.applied;
+    if (rounds.applied < element_count() / 500) break;
+  }
+  report_.swap.seconds += watch.seconds();
+  tell("swap", changes);
+  return changes;
+}
+
+template <int Dim>
+std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplacian) {
+  const Stopwatch watch;
+  Smooth<Dim> op(mesh_, background_, {.laplacian = laplacian, .optimise_below = optimise_below});
+  const RoundsReport rounds = run_rounds(
+      executor_, op, Smooth<Dim>::movable_vertices(executor_, mesh_), {.most_rounds = sweeps});
+  add(report_.smooth, rounds, watch.seconds());
+  tell("smooth", rounds.applied);
+  return rounds.applied;
+}
+
+template <int Dim>
+void Adapter<Dim>::renumber_mesh() {
+  const Stopwatch watch;
+  renumber(executor_, mesh_);
+  report_.renumber_seconds += watch.seconds();
+}
+
+template <int Dim>
+std::size_t Adapter<Dim>::element_count() const {
+  return runtime::parallel_reduce(
+      executor_, mesh_.element_slots(), std::size_t{0},
+      [&](std::size_t e) { return std::size_t{mesh_.alive(static_cast<ElementId>(e))}; },
+      [](std::size_t a, std::size_t b) { return a + b; });
+}
+
+template <int Dim>
+void Adapter<Dim>::tell(const char* step, std::size_t changes) const {
+  if (options_.progress) options_.progress({step, report_.iterations, changes});
+}
+
+template <int Dim>
+void Adapter<Dim>::add(KernelReport& kernel, const RoundsReport& rounds, double seconds) {
+  kernel.seconds += seconds;
+  kernel.considered += rounds.planned;
+  kernel.applied += rounds.applied;
+  kernel.rounds += rounds.rounds;
+}
+
+template class Adapter<2>;
+template class Adapter<3>;
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,45 @@
+/// @file
+/// Adapter: the driver. It owns the mesh while it is adapted and decides which kernel runs when.
+#pragma once
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/background.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+class Adapter {
+ public:
+  Adapter(const runtime::Executor& executor, const AdaptOptions& options, Mesh<Dim> mesh,
+          Neighbours<Dim> neighbours, const std::vector<Metric<Dim>>& metric_of);
+
+  /// Adapts the mesh; may be called once.
+  void run();
+
+  const Mesh<Dim>& mesh() const { return mesh_; }
+  AdaptReport& report() { return report_; }
+
+ private:
+  // ---- Kernels: each returns how many changes it made ----
+  std::size_t coarsen();
+  std::size_t refine();
+  std::size_t swap(double below);
+  std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
+
+  std::size_t iterate();
+  void polish();
+  void renumber_mesh();
+  std::size_t element_count() const;
+  void tell(const char* step, std::size_t changes) const;
+  void add(KernelReport& kernel, const runtime::RoundsReport& rounds, double seconds);
+
+  const runtime::Executor& executor_;
+  const AdaptOptions& options_;
+  Mesh<Dim> mesh_;
+  Background<Dim> background_;
+  AdaptReport report_;
+};
+
+}  // namespace ductile::meshadapt

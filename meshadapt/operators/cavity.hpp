@@ -1,0 +1,129 @@
+/// @file
+/// What the operators share: small buffers, the deferred changes to a vertex's lists, walks over a
+/// vertex's neighbourhood, and the replacement of one set of elements by another.
+#pragma once
+
+#include <boost/container/small_vector.hpp>
+#include <boost/container/static_vector.hpp>
+
+#include "ductile/meshadapt/mesh.hpp"
+
+namespace ductile::meshadapt {
+
+template <class T, std::size_t N>
+using Buffer = boost::container::small_vector<T, N>;
+
+/// The elements around one edge; the usual ones fit without the heap.
+using Shell = Buffer<ElementId, 16>;
+using VertexBuffer = Buffer<VertexId, 64>;
+
+/// One change to the lists of a vertex, carried out by whoever owns that vertex in the commit.
+struct ListChange {
+  enum class Kind : std::uint32_t { add_element, remove_element, add_link, remove_link };
+  Kind kind;
+  std::uint32_t element;  ///< or, for links, the vertex linked to
+  CurveId curve = 0;
+};
+
+template <int Dim>
+void change_list(Mesh<Dim>& mesh, VertexId owner, const ListChange& change) {
+  switch (change.kind) {
+    case ListChange::Kind::add_element: mesh.elements_of.insert(owner, change.element); break;
+    case ListChange::Kind::remove_element: mesh.elements_of.erase(owner, change.element); break;
+    case ListChange::Kind::add_link: mesh.links_of.insert(owner, {change.element, change.curve}); break;
+    case ListChange::Kind::remove_link: mesh.links_of.erase(owner, {change.element, change.curve}); break;
+  }
+}
+
+template <class Commit>
+void defer_add(Commit& commit, VertexId owner, ElementId element) {
+  commit.defer(owner, {ListChange::Kind::add_element, element});
+}
+template <class Commit>
+void defer_remove(Commit& commit, VertexId owner, ElementId element) {
+  commit.defer(owner, {ListChange::Kind::remove_element, element});
+}
+
+/// The vertices that share an element with `vertex`, each once, in order of first appearance.
+template <int Dim, class Vertices>
+void neighbours_of(const Mesh<Dim>& mesh, VertexId vertex, Vertices& neighbours) {
+  neighbours.clear();
+  for (const ElementId element : mesh.elements_of.of(vertex))
+    for (const VertexId other : mesh.corners_of[element])
+      if (other != vertex &&
+          std::find(neighbours.begin(), neighbours.end(), other) == neighbours.end())
+        neighbours.push_back(other);
+}
+
+/// The patch on which the edge a-b of this element lies, judging by the element's own facets.
+template <int Dim>
+PatchId patch_of_edge(const Mesh<Dim>& mesh, ElementId element, VertexId a, VertexId b) {
+  const Corners<Dim>& corners = mesh.corners_of[element];
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (corners[i] != a && corners[i] != b && mesh.patches_of[element][i] != 0)
+      return mesh.patches_of[element][i];
+  return 0;
+}
+
+/// Elements to go and elements to come, of the same region, filling the same space. Old numbers are
+/// used again first; `fresh` ones only when there are more new elements than old.
+template <int Dim>
+struct Replacement {
+  static constexpr std::size_t most_old = Dim == 2 ? 2 : 7;
+  static constexpr std::size_t most_new = Dim == 2 ? 2 : 10;
+  boost::container::static_vector<ElementId, most_old> old_elements;
+  boost::container::static_vector<Corners<Dim>, most_new> new_elements;
+  boost::container::static_vector<Facet<Dim>, 2> new_facets;  ///< new boundary facets ...
+  PatchId new_patch = 0;                                      ///< ... and the patch they lie on
+};
+
+template <std::size_t N>
+std::array<VertexId, N> sorted(std::array<VertexId, N> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+template <int Dim>
+struct FacetOnPatch {
+  Facet<Dim> corners;  // sorted
+  PatchId patch;
+};
+
+/// The facets that lie on patches before or after a replacement.
+template <int Dim>
+Buffer<FacetOnPatch<Dim>, 16> tagged_facets(const Mesh<Dim>& mesh, const Replacement<Dim>& plan) {
+  Buffer<FacetOnPatch<Dim>, 16> tagged;
+  for (const ElementId e : plan.old_elements)
+    for (std::size_t i = 0; i <= Dim; ++i)
+      if (mesh.patches_of[e][i] != 0)
+        tagged.push_back({sorted(facet_of<Dim>(mesh.corners_of[e], static_cast<int>(i))),
+                          mesh.patches_of[e][i]});
+  for (const Facet<Dim>& facet : plan.new_facets) tagged.push_back({sorted(facet), plan.new_patch});
+  return tagged;
+}
+
+/// Carries out a replacement: outer facets keep their patches; all changes of lists are deferred.
+template <int Dim, class Commit>
+void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, Commit& commit) {
+  const auto tagged = tagged_facets(mesh, plan);
+  const std::uint32_t region = mesh.region_of[plan.old_elements[0]];
+  for (const ElementId e : plan.old_elements)
+    for (const VertexId v : mesh.corners_of[e]) defer_remove(commit, v, e);
+  for (std::size_t n = 0; n < plan.new_elements.size(); ++n) {
+    const ElementId e = n < plan.old_elements.size() ? plan.old_elements[n] : commit.fresh();
+    mesh.corners_of[e] = plan.new_elements[n];
+    mesh.region_of[e] = region;
+    mesh.shape_of[e] = static_cast<float>(mesh.shape_at(plan.new_elements[n]));
+    mesh.patches_of[e].fill(0);
+    for (std::size_t i = 0; i <= Dim && !tagged.empty(); ++i) {
+      const Facet<Dim> facet = sorted(facet_of<Dim>(mesh.corners_of[e], static_cast<int>(i)));
+      for (const FacetOnPatch<Dim>& t : tagged)
+        if (t.corners == facet) mesh.patches_of[e][i] = t.patch;
+    }
+    for (const VertexId v : plan.new_elements[n]) defer_add(commit, v, e);
+  }
+  for (std::size_t n = plan.new_elements.size(); n < plan.old_elements.size(); ++n)
+    mesh.corners_of[plan.old_elements[n]].fill(none);
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,156 @@
+#include "operators/coarsen.hpp"
+
+#include <algorithm>
+
+#include "ductile/runtime/collect.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+std::vector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& executor,
+                                                     const Mesh<Dim>& mesh, double short_edge) {
+  return runtime::parallel_collect<VertexId>(
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        const auto vertex = static_cast<VertexId>(v);
+        if (mesh.kind_of[v].freedom == 0) return;
+        for (const ElementId element : mesh.elements_of.of(vertex))
+          for (const VertexId other : mesh.corners_of[element])
+            if (other != vertex && mesh.length(vertex, other) < short_edge) return append(vertex);
+      });
+}
+
+template <int Dim>
+auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
+  const auto ball = mesh_.elements_of.of(gone);
+  if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].freedom == 0) return {};
+  VertexBuffer ring;
+  neighbours_of(mesh_, gone, ring);
+  const auto choices = candidates(gone, ring);
+  if (choices.empty()) return {};
+  double worst = 1;
+  for (const ElementId e : ball) {
+    if (mesh_.required_element(e)) return {};
+    worst = std::min<double>(worst, mesh_.shape_of[e]);
+  }
+  for (const Candidate& choice : choices) {
+    const Plan plan{gone, choice.kept};
+    if (keeps_edges_short(plan, ring) && keeps_shapes(plan, worst)) return plan;
+  }
+  return {};
+}
+
+/// The neighbours it is short of, and may move to, the closest first.
+template <int Dim>
+auto Coarsen<Dim>::candidates(VertexId gone, const VertexBuffer& ring) const
+    -> Buffer<Candidate, 32> {
+  Buffer<Candidate, 32> found;
+  for (const VertexId kept : ring) {
+    const double length = mesh_.length(gone, kept);
+    if (length < rules_.short_edge && keeps_geometry({gone, kept})) found.push_back({length, kept});
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// A vertex leaves a curve only along the curve, and a patch only within the patch.
+template <int Dim>
+bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
+  const int freedom = mesh_.kind_of[plan.gone].freedom;
+  if (freedom == Dim) return true;
+  if (Dim == 3 && freedom == 1) return mesh_.curve_of(plan.gone, plan.kept) != 0;
+  for (const ElementId e : mesh_.elements_of.of(plan.gone))
+    if (contains(mesh_.corners_of[e], plan.kept) &&
+        patch_of_edge(mesh_, e, plan.gone, plan.kept) == mesh_.entity_of[plan.gone])
+      return true;
+  return false;
+}
+
+template <int Dim>
+bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const VertexBuffer& ring) const {
+  const Site<Dim>& kept = mesh_.site_of[plan.kept];
+  for (const VertexId v : ring)
+    if (v != plan.kept && edge_length(mesh_.site_of[v], kept) > rules_.long_edge) return false;
+  return true;
+}
+
+template <int Dim>
+bool Coarsen<Dim>::keeps_shapes(const Plan& plan, double worst_before) const {
+  const double least = std::min(worst_before, rules_.accepted_shape);
+  const Site<Dim>& kept = mesh_.site_of[plan.kept];
+  for (const ElementId e : mesh_.elements_of.of(plan.gone)) {
+    const Corners<Dim>& corners = mesh_.corners_of[e];
+    if (contains(corners, plan.kept)) continue;
+    auto sites = mesh_.sites(corners);
+    sites[static_cast<std::size_t>(corner_of(corners, plan.gone))] = &kept;
+    const double after = shape<Dim>(sites);
+    if (!(after > 0) || after < least) return false;
+  }
+  return true;
+}
+
+template <int Dim>
+void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
+  VertexBuffer ring;
+  neighbours_of(mesh_, plan.gone, ring);
+  const auto ball = mesh_.elements_of.of(plan.gone);
+  for (const ElementId e : ball)
+    if (contains(mesh_.corners_of[e], plan.kept)) pass_patch_on(e, plan);
+  for (const ElementId e : ball) {
+    Corners<Dim>& corners = mesh_.corners_of[e];
+    if (contains(corners, plan.kept)) {
+      remove_element(e, plan, commit);
+    } else {
+      corners[static_cast<std::size_t>(corner_of(corners, plan.gone))] = plan.kept;
+      mesh_.shape_of[e] = static_cast<float>(mesh_.shape_at(corners));
+      defer_add(commit, plan.kept, e);
+    }
+  }
+  if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan, commit);
+  mesh_.elements_of.clear(plan.gone);
+  for (const VertexId v : ring) commit.wake(v);
+}
+
+/// An element on the collapsing edge folds flat: what lies on the patch of its facet at `kept` is
+/// afterwards the stretched element across its facet at `gone`.
+template <int Dim>
+void Coarsen<Dim>::pass_patch_on(ElementId element, const Plan& plan) {
+  const Corners<Dim>& corners = mesh_.corners_of[element];
+  const auto at_gone = static_cast<std::size_t>(corner_of(corners, plan.gone));
+  const PatchId patch = mesh_.patches_of[element][at_gone];  // of the facet at `kept`
+  if (patch == 0) return;
+  const int at_kept = corner_of(corners, plan.kept);
+  for (const ElementId other : mesh_.elements_of.of(plan.gone)) {
+    if (other == element || contains(mesh_.corners_of[other], plan.kept)) continue;
+    int shared = 0;
+    for (const VertexId v : facet_of<Dim>(corners, at_kept)) shared += contains(mesh_.corners_of[other], v);
+    if (shared < Dim) continue;
+    for (std::size_t i = 0; i <= Dim; ++i)
+      if (!contains(corners, mesh_.corners_of[other][i])) mesh_.patches_of[other][i] = patch;
+  }
+}
+
+template <int Dim>
+void Coarsen<Dim>::remove_element(ElementId element, const Plan& plan,
+                                  runtime::Commit<Coarsen>& commit) {
+  for (const VertexId v : mesh_.corners_of[element])
+    if (v != plan.gone) defer_remove(commit, v, element);
+  mesh_.corners_of[element].fill(none);
+}
+
+/// The curve now goes from `kept` straight to the vertex on the other side of `gone`.
+template <int Dim>
+void Coarsen<Dim>::join_links(const Plan& plan, runtime::Commit<Coarsen>& commit) {
+  using Kind = ListChange::Kind;
+  for (const CurveLink& link : mesh_.links_of.of(plan.gone)) {
+    commit.defer(link.to, {Kind::remove_link, plan.gone, link.curve});
+    if (link.to == plan.kept) continue;
+    commit.defer(link.to, {Kind::add_link, plan.kept, link.curve});
+    commit.defer(plan.kept, {Kind::add_link, link.to, link.curve});
+  }
+  mesh_.links_of.clear(plan.gone);
+}
+
+template class Coarsen<2>;
+template class Coarsen<3>;
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,70 @@
+/// @file
+/// Coarsen: collapses edges that are too short. A vertex is moved onto a neighbour and disappears,
+/// with the elements on the edge between them; those left around it are stretched to the neighbour.
+#pragma once
+
+#include <optional>
+
+#include "ductile/meshadapt/rules.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+#include "operators/cavity.hpp"
+
+namespace ductile::meshadapt {
+
+struct EdgeCollapse {
+  VertexId gone, kept;
+};
+
+template <int Dim>
+class Coarsen {
+ public:
+  // ---- What it works on ----
+  using Item = VertexId;
+  using Plan = EdgeCollapse;
+  using Update = ListChange;
+
+  Coarsen(Mesh<Dim>& mesh, const Rules& rules) : mesh_(mesh), rules_(rules) {}
+
+  /// The vertices with an edge shorter than `short_edge` that could go.
+  static std::vector<VertexId> crowded_vertices(const runtime::Executor& executor,
+                                                const Mesh<Dim>& mesh, double short_edge);
+
+  // ---- Plan: the shortest edge that no rule refuses. Reads only. ----
+  std::optional<Plan> plan(VertexId gone) const;
+
+  // ---- Conflict rule: adjacent vertices share elements, so only one of them may go ----
+  void conflicts(VertexId vertex, auto&& visit) const {
+    for (const ElementId element : mesh_.elements_of.of(vertex))
+      for (const VertexId other : mesh_.corners_of[element])
+        if (other != vertex) visit(other);
+  }
+  std::size_t item_count() const { return mesh_.vertex_slots(); }
+
+  // ---- Apply: stretch or remove own elements, defer their vertices' lists, wake the whole ball ----
+  void apply(const Plan& plan, runtime::Commit<Coarsen>& commit);
+
+  // ---- Commit: one owner's list ----
+  void commit(std::uint32_t owner, const Update& update) { change_list(mesh_, owner, update); }
+
+ private:
+  struct Candidate {
+    double length;
+    VertexId kept;
+    friend auto operator<=>(const Candidate&, const Candidate&) = default;
+  };
+  Buffer<Candidate, 32> candidates(VertexId gone, const VertexBuffer& ring) const;
+
+  // ---- Rules: each one reason to refuse a collapse, named for what it protects ----
+  bool keeps_geometry(const Plan& plan) const;
+  bool keeps_edges_short(const Plan& plan, const VertexBuffer& ring) const;
+  bool keeps_shapes(const Plan& plan, double worst_before) const;
+
+  void remove_element(ElementId element, const Plan& plan, runtime::Commit<Coarsen>& commit);
+  void pass_patch_on(ElementId element, const Plan& plan);
+  void join_links(const Plan& plan, runtime::Commit<Coarsen>& commit);
+
+  Mesh<Dim>& mesh_;
+  Rules rules_;
+};
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,183 @@
+#include "operators/refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ductile/runtime/collect.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// Where along a-b its two halves have the same metric length, the size varying geometrically.
+template <int Dim>
+double metric_middle(const Site<Dim>& a, const Site<Dim>& b) {
+  const Vector<Dim> d = b.position - a.position;
+  const double ratio = std::sqrt(squared_length(b.metric, d) / squared_length(a.metric, d));
+  if (std::abs(ratio - 1) < 1e-3) return 0.5;
+  return std::clamp(std::log(0.5 * (1 + ratio)) / std::log(ratio), 0.2, 0.8);
+}
+
+}  // namespace
+
+template <int Dim>
+std::vector<LongEdge> Refine<Dim>::long_edges(const runtime::Executor& executor,
+                                              const Mesh<Dim>& mesh, double long_edge) {
+  return runtime::parallel_collect<LongEdge>(
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        const auto a = static_cast<VertexId>(v);
+        VertexBuffer seen;
+        for (const ElementId element : mesh.elements_of.of(a))
+          for (const VertexId b : mesh.corners_of[element]) {
+            if (b <= a || std::find(seen.begin(), seen.end(), b) != seen.end()) continue;
+            seen.push_back(b);
+            const double length = mesh.length(a, b);
+            if (length > long_edge) append(LongEdge{a, b, static_cast<float>(length)});
+          }
+      });
+}
+
+template <int Dim>
+std::uint8_t Refine<Dim>::priority(const Item& edge) const {
+  const double doublings = std::log2(std::max(1.0F, edge.length));
+  return static_cast<std::uint8_t>(255 - std::min(255, static_cast<int>(24 * doublings)));
+}
+
+template <int Dim>
+auto Refine<Dim>::plan(const Item& edge) const -> std::optional<Plan> {
+  Shell shell;
+  shell_of(mesh_, edge.a, edge.b, shell);
+  if (shell.empty() || !may_split(shell, edge.a, edge.b)) return {};
+  Plan plan{edge.a, edge.b, {}, 0, {}, 0, 0, static_cast<std::uint32_t>(shell.size())};
+  locate(shell, plan);
+  if (!makes_no_short_edge(shell, plan) || !keeps_shapes(shell, plan)) return {};
+  return plan;
+}
+
+/// Required elements, facets and edges stay as they are.
+template <int Dim>
+bool Refine<Dim>::may_split(const Shell& shell, VertexId a, VertexId b) const {
+  for (const ElementId e : shell) {
+    if (mesh_.required_element(e)) return false;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      const VertexId opposite = mesh_.corners_of[e][i];
+      if (opposite != a && opposite != b && mesh_.patches[mesh_.patches_of[e][i]].required)
+        return false;
+    }
+  }
+  if constexpr (Dim == 3) {
+    const CurveId curve = mesh_.curve_of(a, b);
+    if (curve != 0 && mesh_.curves[curve].required) return false;
+  }
+  return true;
+}
+
+/// Position, metric and classification of the new vertex.
+template <int Dim>
+void Refine<Dim>::locate(const Shell& shell, Plan& plan) const {
+  const Site<Dim>& a = mesh_.site_of[plan.a];
+  const Site<Dim>& b = mesh_.site_of[plan.b];
+  const double t = metric_middle(a, b);
+  const Vector<Dim> position = (1 - t) * a.position + t * b.position;
+  const auto sample = background_.sample(position, mesh_.host_of[t < 0.5 ? plan.a : plan.b]);
+  plan.site = make_site(position, sample.metric);
+  plan.host = sample.host;
+  plan.kind.freedom = Dim;
+  for (const ElementId e : shell)
+    if (const PatchId patch = patch_of_edge(mesh_, e, plan.a, plan.b)) {
+      plan.entity = patch;
+      plan.kind.freedom = Dim - 1;
+    }
+  if constexpr (Dim == 3)
+    if (const CurveId curve = mesh_.curve_of(plan.a, plan.b)) {
+      plan.entity = curve;
+      plan.kind.freedom = 1;
+    }
+  const std::int32_t reference = mesh_.reference_of[plan.a];
+  plan.reference = reference == mesh_.reference_of[plan.b] ? reference : 0;
+}
+
+template <int Dim>
+bool Refine<Dim>::makes_no_short_edge(const Shell& shell, const Plan& plan) const {
+  for (const ElementId e : shell)
+    for (const VertexId v : mesh_.corners_of[e])
+      if (edge_length(mesh_.site_of[v], plan.site) < rules_.shortest_split) return false;
+  return true;
+}
+
+template <int Dim>
+bool Refine<Dim>::keeps_shapes(const Shell& shell, const Plan& plan) const {
+  double before = 1;
+  for (const ElementId e : shell) before = std::min<double>(before, mesh_.shape_of[e]);
+  const double least = std::min(rules_.split_keeps * before, rules_.accepted_shape);
+  for (const ElementId e : shell)
+    for (const VertexId end : {plan.a, plan.b}) {
+      auto sites = mesh_.sites(mesh_.corners_of[e]);
+      sites[static_cast<std::size_t>(corner_of(mesh_.corners_of[e], end))] = &plan.site;
+      const double after = shape<Dim>(sites);
+      if (!(after > 0) || after < least) return false;
+    }
+  return true;
+}
+
+template <int Dim>
+std::array<std::uint32_t, 2> Refine<Dim>::grow(const std::array<std::uint32_t, 2>& total) {
+  const auto vertices = static_cast<std::uint32_t>(mesh_.vertex_slots());
+  const auto elements = static_cast<std::uint32_t>(mesh_.element_slots());
+  mesh_.grow(vertices + total[0], elements + total[1]);
+  return {vertices, elements};
+}
+
+template <int Dim>
+void Refine<Dim>::apply(const Plan& plan, runtime::Commit<Refine>& commit) {
+  Shell shell;
+  shell_of(mesh_, plan.a, plan.b, shell);
+  const VertexId middle = commit.fresh(0);
+  mesh_.site_of[middle] = plan.site;
+  mesh_.kind_of[middle] = plan.kind;
+  mesh_.entity_of[middle] = plan.entity;
+  mesh_.reference_of[middle] = plan.reference;
+  mesh_.host_of[middle] = plan.host;
+  mesh_.elements_of.reserve(middle, 2 * plan.shell_size + (Dim == 2 ? 4 : 16));
+  for (const ElementId element : shell) mesh_.elements_of.insert(middle, element);
+  for (const ElementId element : shell) {
+    const ElementId fresh = commit.fresh(1);
+    split_element(element, fresh, middle, plan);
+    mesh_.elements_of.insert(middle, fresh);
+    defer_remove(commit, plan.b, element);
+    for (const VertexId v : mesh_.corners_of[fresh])
+      if (v != middle) defer_add(commit, v, fresh);
+  }
+  if constexpr (Dim == 3) {
+    if (plan.kind.freedom != 1) return;
+    using Kind = ListChange::Kind;
+    commit.defer(plan.a, {Kind::remove_link, plan.b, plan.entity});
+    commit.defer(plan.a, {Kind::add_link, middle, plan.entity});
+    commit.defer(plan.b, {Kind::remove_link, plan.a, plan.entity});
+    commit.defer(plan.b, {Kind::add_link, middle, plan.entity});
+    mesh_.links_of.insert(middle, {plan.a, plan.entity});
+    mesh_.links_of.insert(middle, {plan.b, plan.entity});
+  }
+}
+
+/// The element keeps its half at a, `fresh` is the half at b; the facet between them is new.
+template <int Dim>
+void Refine<Dim>::split_element(ElementId element, ElementId fresh, VertexId middle,
+                                const Plan& plan) {
+  const auto at_a = static_cast<std::size_t>(corner_of(mesh_.corners_of[element], plan.a));
+  const auto at_b = static_cast<std::size_t>(corner_of(mesh_.corners_of[element], plan.b));
+  mesh_.corners_of[fresh] = mesh_.corners_of[element];
+  mesh_.patches_of[fresh] = mesh_.patches_of[element];
+  mesh_.region_of[fresh] = mesh_.region_of[element];
+  mesh_.corners_of[fresh][at_a] = middle;
+  mesh_.patches_of[fresh][at_b] = 0;
+  mesh_.corners_of[element][at_b] = middle;
+  mesh_.patches_of[element][at_a] = 0;
+  mesh_.shape_of[element] = static_cast<float>(mesh_.shape_at(mesh_.corners_of[element]));
+  mesh_.shape_of[fresh] = static_cast<float>(mesh_.shape_at(mesh_.corners_of[fresh]));
+}
+
+template class Refine<2>;
+template class Refine<3>;
+
+}  // namespace ductile::meshadapt

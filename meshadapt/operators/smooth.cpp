@@ -1,0 +1,237 @@
+#include "operators/smooth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/runtime/collect.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// The shortest vector in the convex hull of the gradients: along it none of their functions falls
+/// to first order (Gilbert's algorithm, SIAM J. Control 4, 1966).
+template <int Dim, class Vectors>
+Vector<Dim> shortest_in_hull(const Vectors& gradients) {
+  Vector<Dim> x = gradients[0];
+  for (int step = 0; step < 12; ++step) {
+    const Vector<Dim>* low = &gradients[0];
+    for (const Vector<Dim>& g : gradients)
+      if (dot(g, x) < dot(*low, x)) low = &g;
+    const Vector<Dim> towards = *low - x;
+    const double length2 = dot(towards, towards);
+    const double t = length2 > 0 ? std::clamp(-dot(x, towards) / length2, 0.0, 1.0) : 0.0;
+    if (t < 1e-3) break;
+    x += t * towards;
+  }
+  return x;
+}
+
+}  // namespace
+
+template <int Dim>
+std::vector<VertexId> Smooth<Dim>::movable_vertices(const runtime::Executor& executor,
+                                                    const Mesh<Dim>& mesh) {
+  return runtime::parallel_collect<VertexId>(
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        const auto vertex = static_cast<VertexId>(v);
+        if (mesh.kind_of[v].freedom != 0 && mesh.vertex_alive(vertex)) append(vertex);
+      });
+}
+
+template <int Dim>
+auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
+  const auto ball = mesh_.elements_of.of(vertex);
+  if (ball.empty() || ball.size() > mesh_.largest_ball) return {};
+  Score before{1, 0};
+  for (const ElementId e : ball) {
+    before.worst = std::min<double>(before.worst, mesh_.shape_of[e]);
+    before.sum += mesh_.shape_of[e];
+  }
+  Place best{mesh_.site_of[vertex], mesh_.host_of[vertex], before};
+  bool moved = options_.laplacian && relax(vertex, best);
+  if (best.score.worst < shape_of_mean_ratio<Dim>(options_.optimise_below))
+    moved = optimise(vertex, best) || moved;
+  if (!moved) return {};
+  const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
+  const bool far = squared_length(best.site.metric, step) > 0.02 * 0.02;
+  return Plan{vertex, best.host, best.site, far};
+}
+
+/// Worst and summed shape of the elements around the vertex if it were at this site; stops at the
+/// first element below a bound.
+template <int Dim>
+auto Smooth<Dim>::score(VertexId vertex, const Site<Dim>& site, double give_up_below) const
+    -> Score {
+  Score result{1, 0};
+  for (const ElementId e : mesh_.elements_of.of(vertex)) {
+    const Corners<Dim>& corners = mesh_.corners_of[e];
+    auto sites = mesh_.sites(corners);
+    sites[static_cast<std::size_t>(corner_of(corners, vertex))] = &site;
+    const double value = shape<Dim>(sites);
+    if (!(value > 0) || value < give_up_below) return {-1, 0};
+    result.worst = std::min(result.worst, value);
+    result.sum += value;
+  }
+  return result;
+}
+
+template <int Dim>
+auto Smooth<Dim>::place(VertexId vertex, const Vector<Dim>& position, ElementId near,
+                        double give_up_below) const -> std::optional<Place> {
+  const auto sample = background_.sample(position, near);
+  Place result{make_site(position, sample.metric), sample.host, {}};
+  result.score = score(vertex, result.site, give_up_below);
+  if (result.score.worst <= 0) return {};
+  return result;
+}
+
+/// The part of a displacement that keeps the vertex on its patch or curve.
+template <int Dim>
+Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) const {
+  const int freedom = mesh_.kind_of[vertex].freedom;
+  if (freedom == Dim) return displacement;
+  if constexpr (Dim == 3)
+    if (freedom == 1) {
+      const Vector<3>& along = mesh_.curves[mesh_.entity_of[vertex]].direction;
+      return dot(displacement, along) * along;
+    }
+  const Vector<Dim>& normal = mesh_.patches[mesh_.entity_of[vertex]].normal;
+  return displacement - dot(displacement, normal) * normal;
+}
+
+/// Every neighbour pulls the vertex to unit distance along their edge; this is the mean pull.
+template <int Dim>
+Vector<Dim> Smooth<Dim>::unit_length_displacement(VertexId vertex) const {
+  VertexBuffer ring;
+  neighbours_of(mesh_, vertex, ring);
+  const Site<Dim>& here = mesh_.site_of[vertex];
+  Vector<Dim> sum;
+  double count = 0;
+  const int freedom = mesh_.kind_of[vertex].freedom;
+  for (const VertexId v : ring) {
+    if (freedom < Dim && mesh_.kind_of[v].freedom > freedom) continue;
+    const double length = edge_length(here, mesh_.site_of[v]);
+    sum += (1 - 1 / length) * (mesh_.site_of[v].position - here.position);
+    count += 1;
+  }
+  return count > 0 ? allowed(vertex, (1 / count) * sum) : Vector<Dim>{};
+}
+
+/// Goes towards the unit-length place as far as shapes get better.
+template <int Dim>
+bool Smooth<Dim>::relax(VertexId vertex, Place& best) const {
+  const Vector<Dim> step = unit_length_displacement(vertex);
+  if (squared_length(best.site.metric, step) < 1e-4) return false;
+  const Vector<Dim> start = best.site.position;
+  const double bound = std::min(best.score.worst, shape_of_mean_ratio<Dim>(0.7));
+  for (const double fraction : {1.0, 0.5, 0.25}) {
+    const auto trial = place(vertex, start + fraction * step, best.host, bound);
+    if (!trial || trial->score.sum <= best.score.sum * (1 + 1e-4)) continue;
+    best = *trial;
+    return true;
+  }
+  return false;
+}
+
+/// Gradient of an element's shape by the position of one corner, in the metric that judges it now.
+template <int Dim>
+Vector<Dim> Smooth<Dim>::shape_gradient(ElementId element, VertexId vertex, const Site<Dim>& site,
+                                        double& shape_here) const {
+  const Corners<Dim>& corners = mesh_.corners_of[element];
+  const int at = corner_of(corners, vertex);
+  auto sites = mesh_.sites(corners);
+  sites[static_cast<std::size_t>(at)] = &site;
+  shape_here = shape<Dim>(sites);
+  const Metric<Dim>& metric = densest<Dim>(sites).metric;
+  const auto corner = [&](int k) {
+    const auto facet = Simplex<Dim>::facet[static_cast<std::size_t>(at)];
+    return sites[static_cast<std::size_t>(facet[static_cast<std::size_t>(k)])]->position;
+  };
+  Vector<Dim> volume_gradient;
+  if constexpr (Dim == 2) {
+    const Vector<2> side = corner(1) - corner(0);
+    volume_gradient = {{-side[1], side[0]}};
+  } else {
+    volume_gradient = -1.0 * cross(corner(1) - corner(0), corner(2) - corner(0));
+  }
+  const double volume = dot(site.position - corner(0), volume_gradient);
+  Vector<Dim> spread = Dim * site.position;
+  for (int k = 0; k < Dim; ++k) spread -= corner(k);
+  const double squares = sum_of_squared_lengths<Dim>(metric, sites);
+  constexpr double power = Dim == 2 ? 1.0 : 1.5;
+  return shape_here *
+         ((1 / volume) * volume_gradient - (2 * power / squares) * product(metric, spread));
+}
+
+/// A direction in which all of the worst elements get better, or nearly 0 if there is none. It is
+/// sought in the space where the metric is the identity, lest the thin direction hide the others.
+template <int Dim>
+Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Place& at) const {
+  const Eigen<Dim> axes = eigen(at.site.metric);
+  Buffer<Vector<Dim>, 16> gradients;
+  for (const ElementId e : mesh_.elements_of.of(vertex)) {
+    double value = 0;
+    const Vector<Dim> gradient = shape_gradient(e, vertex, at.site, value);
+    if (value > at.score.worst * 1.15 + 0.01) continue;
+    const Vector<Dim> free = allowed(vertex, gradient);
+    Vector<Dim> unit;
+    for (int i = 0; i < Dim; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      unit[i] = dot(free, axes.vector[k]) / std::sqrt(axes.value[k]);
+    }
+    gradients.push_back(unit);
+  }
+  if (gradients.empty()) return {};
+  const Vector<Dim> unit = shortest_in_hull<Dim>(gradients);
+  Vector<Dim> direction;
+  for (int i = 0; i < Dim; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    direction += (unit[i] / std::sqrt(axes.value[k])) * axes.vector[k];
+  }
+  return allowed(vertex, direction);
+}
+
+/// Climbs the worst shape around the vertex by line searches.
+template <int Dim>
+bool Smooth<Dim>::optimise(VertexId vertex, Place& best) const {
+  constexpr int climbs = 4, halvings = 5;
+  bool moved = false;
+  double reach = 0.3;  // metric length of the first trial step
+  for (int climb = 0; climb < climbs; ++climb) {
+    const Vector<Dim> direction = ascent(vertex, best);
+    const double length = std::sqrt(squared_length(best.site.metric, direction));
+    if (!(length > 0) || !std::isfinite(length)) break;
+    bool better = false;
+    for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
+      const Vector<Dim> position = best.site.position + (reach / length) * direction;
+      const auto trial = place(vertex, position, best.host, best.score.worst * 1.001);
+      if (!trial) continue;
+      best = *trial;
+      better = moved = true;
+    }
+    if (!better) break;
+    reach *= 2;
+  }
+  return moved;
+}
+
+template <int Dim>
+void Smooth<Dim>::apply(const Plan& plan, runtime::Commit<Smooth>& commit) {
+  mesh_.site_of[plan.vertex] = plan.site;
+  mesh_.host_of[plan.vertex] = plan.host;
+  for (const ElementId e : mesh_.elements_of.of(plan.vertex))
+    mesh_.shape_of[e] = static_cast<float>(mesh_.shape_at(mesh_.corners_of[e]));
+  if (!plan.far) return;
+  VertexBuffer ring;
+  neighbours_of(mesh_, plan.vertex, ring);
+  commit.wake(plan.vertex);
+  for (const VertexId v : ring)
+    if (mesh_.kind_of[v].freedom != 0) commit.wake(v);
+}
+
+template class Smooth<2>;
+template class Smooth<3>;
+
+}  // namespace ductile::meshadapt

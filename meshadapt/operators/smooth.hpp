@@ -1,0 +1,88 @@
+/// @file
+/// Smooth: moves vertices to where their elements are better. Each vertex first tries the place
+/// that gives its edges unit length on average (a Laplacian in metric space, constrained by
+/// quality); where elements stay bad, it climbs towards the place where the worst of them is best.
+/// Neighbours never move together, so a sweep is a Gauss-Seidel iteration by colours.
+#pragma once
+
+#include <optional>
+
+#include "ductile/meshadapt/background.hpp"
+#include "ductile/meshadapt/rules.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+#include "operators/cavity.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+struct VertexMove {
+  VertexId vertex;
+  ElementId host;
+  Site<Dim> site;
+  bool far;  // far enough for the neighbours to be worth another look
+};
+
+struct SmoothOptions {
+  bool laplacian = true;
+  double optimise_below = 0.4;  ///< optimise where the worst mean ratio around is below this
+};
+
+template <int Dim>
+class Smooth {
+ public:
+  // ---- What it works on ----
+  using Item = VertexId;
+  using Plan = VertexMove<Dim>;
+  struct Update {};                          // every write is the item's own
+  static constexpr bool keeps_conflicts = true;  // moving changes no adjacency
+
+  Smooth(Mesh<Dim>& mesh, const Background<Dim>& background, const SmoothOptions& options)
+      : mesh_(mesh), background_(background), options_(options) {}
+
+  /// All vertices that may move.
+  static std::vector<VertexId> movable_vertices(const runtime::Executor& executor,
+                                                const Mesh<Dim>& mesh);
+
+  // ---- Plan: a better place, if there is one. Reads only. ----
+  std::optional<Plan> plan(VertexId vertex) const;
+
+  // ---- Conflict rule: a vertex stands still while its neighbours move ----
+  void conflicts(VertexId vertex, auto&& visit) const {
+    for (const ElementId element : mesh_.elements_of.of(vertex))
+      for (const VertexId other : mesh_.corners_of[element])
+        if (other != vertex) visit(other);
+  }
+  std::size_t item_count() const { return mesh_.vertex_slots(); }
+
+  // ---- Apply: move it, renew the shapes around it, wake whom it concerns ----
+  void apply(const Plan& plan, runtime::Commit<Smooth>& commit);
+
+  // ---- Commit: nothing is deferred ----
+  void commit(std::uint32_t, const Update&) {}
+
+ private:
+  struct Score {
+    double worst = 0, sum = 0;
+  };
+  struct Place {
+    Site<Dim> site;
+    ElementId host;
+    Score score;
+  };
+  Score score(VertexId vertex, const Site<Dim>& site, double give_up_below) const;
+  std::optional<Place> place(VertexId vertex, const Vector<Dim>& position, ElementId near,
+                             double give_up_below) const;
+  Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
+  Vector<Dim> unit_length_displacement(VertexId vertex) const;
+  bool relax(VertexId vertex, Place& best) const;
+  bool optimise(VertexId vertex, Place& best) const;
+  Vector<Dim> ascent(VertexId vertex, const Place& at) const;
+  Vector<Dim> shape_gradient(ElementId element, VertexId vertex, const Site<Dim>& site,
+                             double& shape_here) const;
+
+  Mesh<Dim>& mesh_;
+  const Background<Dim>& background_;
+  SmoothOptions options_;
+};
+
+}  // namespace ductile::meshadapt

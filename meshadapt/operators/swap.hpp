@@ -1,0 +1,76 @@
+/// @file
+/// Swap: reconnects vertices where that raises the worst shape of the elements concerned. In 2D it
+/// flips the edge between two triangles. In 3D it removes an edge, with the best triangulation of
+/// the ring around it (3-2, 4-4 and so on up to seven elements, also on flat boundary), or replaces
+/// the face between two tetrahedra by an edge (2-3).
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "ductile/meshadapt/rules.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+#include "operators/cavity.hpp"
+
+namespace ductile::meshadapt {
+
+/// An edge a-b to remove, or in 3D a face a-b-c to pierce; c is none for an edge.
+struct Swappable {
+  VertexId a, b, c = none;
+  float worst = 0;  ///< worst shape around it when it was found; the worst goes first
+  friend auto operator<=>(const Swappable&, const Swappable&) = default;
+};
+
+template <int Dim>
+class Swap {
+ public:
+  // ---- What it works on ----
+  using Item = Swappable;
+  using Plan = Replacement<Dim>;
+  using Update = ListChange;
+
+  explicit Swap(Mesh<Dim>& mesh) : mesh_(mesh) {}
+
+  /// All edges and faces whose swap would be an improvement now, around elements whose mean ratio is
+  /// below a bound.
+  static std::vector<Swappable> improvements(const runtime::Executor& executor, Mesh<Dim>& mesh,
+                                             double below);
+
+  // ---- Plan: the elements to come, if they are better than those to go. Reads only. ----
+  std::optional<Plan> plan(const Item& item) const;
+
+  // ---- Conflict rule: nobody else touches the elements to go; the worst go first ----
+  void footprint(const Item& item, auto&& visit) const {
+    for (const ElementId e : mesh_.elements_of.of(item.a)) {
+      const Corners<Dim>& corners = mesh_.corners_of[e];
+      if (contains(corners, item.b) && (item.c == none || contains(corners, item.c))) visit(e);
+    }
+  }
+  std::size_t resource_count() const { return mesh_.element_slots(); }
+  std::uint8_t priority(const Item& item) const {
+    return static_cast<std::uint8_t>(255 * std::min(1.0F, std::max(0.0F, item.worst)));
+  }
+
+  // ---- Apply: replace the elements, defer their vertices' lists, wake what is new ----
+  std::array<std::uint32_t, 1> demand(const Plan& plan) const {
+    const std::size_t gone = plan.old_elements.size(), come = plan.new_elements.size();
+    return {static_cast<std::uint32_t>(come > gone ? come - gone : 0)};
+  }
+  std::array<std::uint32_t, 1> grow(const std::array<std::uint32_t, 1>& total) {
+    const auto elements = static_cast<std::uint32_t>(mesh_.element_slots());
+    mesh_.grow(mesh_.vertex_slots(), elements + total[0]);
+    return {elements};
+  }
+  void apply(const Plan& plan, runtime::Commit<Swap>& commit);
+
+  // ---- Commit: one owner's list ----
+  void commit(std::uint32_t owner, const Update& update) { change_list(mesh_, owner, update); }
+
+ private:
+  /// New elements are worth it if the worst of them is better than this.
+  static double bar(double worst_before) { return worst_before * 1.02 + 1e-4; }
+
+  Mesh<Dim>& mesh_;
+};
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,238 @@
+#include <algorithm>
+
+#include "ductile/runtime/collect.hpp"
+#include "operators/swap.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+constexpr std::size_t largest_ring = 7;
+
+/// The vertices around an edge a-b in order, counter-clockwise seen from b. `open` if the edge is
+/// on the boundary; the ring then starts and ends there.
+struct Ring {
+  boost::container::static_vector<VertexId, largest_ring> vertices;
+  bool open = false;
+};
+
+/// The two other corners p, q of an element on a-b, such that (a, b, p, q) is positive.
+std::array<VertexId, 2> others(const Corners<3>& corners, VertexId a, VertexId b) {
+  // Even permutations of the four corners, by the positions of a and b.
+  static constexpr int rest[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1, 2}},
+                                        {{3, 2}, {0, 0}, {0, 3}, {2, 0}},
+                                        {{1, 3}, {3, 0}, {0, 0}, {0, 1}},
+                                        {{2, 1}, {0, 2}, {1, 0}, {0, 0}}};
+  const auto& r = rest[corner_of(corners, a)][corner_of(corners, b)];
+  return {corners[static_cast<std::size_t>(r[0])], corners[static_cast<std::size_t>(r[1])]};
+}
+
+std::optional<Ring> ring_around(const Mesh<3>& mesh, const Shell& shell, VertexId a, VertexId b) {
+  if (shell.size() > largest_ring) return {};
+  boost::container::static_vector<std::array<VertexId, 2>, largest_ring> sides;
+  for (const ElementId e : shell) sides.push_back(others(mesh.corners_of[e], a, b));
+  Ring ring;
+  VertexId start = sides[0][0];
+  for (const auto& side : sides)
+    if (std::none_of(sides.begin(), sides.end(), [&](const auto& s) { return s[1] == side[0]; })) {
+      start = side[0];
+      ring.open = true;
+    }
+  if (ring.open && shell.size() + 1 > largest_ring) return {};
+  VertexId at = start;
+  ring.vertices.push_back(at);
+  for (std::size_t step = 0; step < sides.size(); ++step) {
+    const auto next = std::find_if(sides.begin(), sides.end(), [&](const auto& s) { return s[0] == at; });
+    if (next == sides.end()) return {};
+    at = (*next)[1];
+    if (at != start) ring.vertices.push_back(at);
+    if (ring.vertices.size() > sides.size() + 1) return {};
+  }
+  const std::size_t expected = shell.size() + (ring.open ? 1 : 0);
+  if (ring.vertices.size() != expected || expected < 3) return {};
+  return ring;
+}
+
+/// May this edge go? Not if it is on a curve, on an interface or between different regions; on a
+/// boundary patch it may, if the patch is flat and free. Returns false or sets `patch`.
+bool removable(const Mesh<3>& mesh, const Shell& shell, VertexId a, VertexId b, PatchId& patch) {
+  if (mesh.curve_of(a, b) != 0) return false;
+  patch = 0;
+  int tagged = 0;
+  for (const ElementId e : shell) {
+    if (mesh.region_of[e] != mesh.region_of[shell[0]] || mesh.required_element(e)) return false;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const VertexId v = mesh.corners_of[e][i];
+      const PatchId p = mesh.patches_of[e][i];
+      if (v == a || v == b || p == 0) continue;
+      if (mesh.patches[p].required || (patch != 0 && p != patch)) return false;
+      patch = p;
+      ++tagged;
+    }
+  }
+  return tagged == 0 || tagged == 2;
+}
+
+/// The triangulation of a ring whose worst element, with both ends of the edge, is best: dynamic
+/// programming over sub-polygons (Shewchuk, "Two discrete optimization algorithms for the
+/// topological improvement of tetrahedral meshes", 2002).
+class RingTriangulation {
+ public:
+  RingTriangulation(const Mesh<3>& mesh, const Ring& ring, VertexId a, VertexId b, double bar)
+      : mesh_(mesh), ring_(ring), a_(a), b_(b), bar_(bar) {}
+
+  /// Fills `elements`; false if no triangulation beats the bar.
+  bool find(Replacement<3>& plan) {
+    const std::size_t n = ring_.vertices.size();
+    for (std::size_t length = 2; length < n; ++length)
+      for (std::size_t i = 0; i + length < n; ++i) best_between(i, i + length);
+    if (!(worst_[0][n - 1] > bar_)) return false;
+    collect(0, n - 1, plan);
+    return true;
+  }
+
+ private:
+  void best_between(std::size_t i, std::size_t j) {
+    double best = -1;
+    for (std::size_t k = i + 1; k < j; ++k) {
+      const double sides = std::min(j - k > 1 ? worst_[k][j] : 1.0, k - i > 1 ? worst_[i][k] : 1.0);
+      if (!(sides > std::max(best, bar_))) continue;
+      const double here = std::min(sides, triangle(i, k, j, std::max(best, bar_)));
+      if (here > best) {
+        best = here;
+        apex_[i][j] = static_cast<std::uint8_t>(k);
+      }
+    }
+    worst_[i][j] = best;
+  }
+
+  Corners<3> upper(std::size_t i, std::size_t k, std::size_t j) const {
+    return {ring_.vertices[i], ring_.vertices[k], ring_.vertices[j], b_};
+  }
+  Corners<3> lower(std::size_t i, std::size_t k, std::size_t j) const {
+    return {ring_.vertices[i], ring_.vertices[j], ring_.vertices[k], a_};
+  }
+
+  /// The worse of a ring triangle's two elements; the second is not looked at if the first is bad.
+  double triangle(std::size_t i, std::size_t k, std::size_t j, double give_up_below) const {
+    const double up = mesh_.shape_at(upper(i, k, j));
+    if (!(up > give_up_below)) return -1;
+    return std::min(up, mesh_.shape_at(lower(i, k, j)));
+  }
+
+  void collect(std::size_t i, std::size_t j, Replacement<3>& plan) const {
+    if (j - i < 2) return;
+    const std::size_t k = apex_[i][j];
+    plan.new_elements.push_back(upper(i, k, j));
+    plan.new_elements.push_back(lower(i, k, j));
+    collect(i, k, plan);
+    collect(k, j, plan);
+  }
+
+  const Mesh<3>& mesh_;
+  const Ring& ring_;
+  VertexId a_, b_;
+  double bar_;
+  double worst_[largest_ring][largest_ring] = {};
+  std::uint8_t apex_[largest_ring][largest_ring] = {};
+};
+
+std::optional<Replacement<3>> plan_edge_removal(const Mesh<3>& mesh, const Swappable& edge, auto bar) {
+  Shell shell;
+  shell_of(mesh, edge.a, edge.b, shell);
+  PatchId patch = 0;
+  if (shell.empty() || shell.size() > largest_ring || !removable(mesh, shell, edge.a, edge.b, patch))
+    return {};
+  const auto ring = ring_around(mesh, shell, edge.a, edge.b);
+  // A patch on a closed ring is an interface or a sheet inside a region: its edges stay.
+  if (!ring || ring->open != (patch != 0)) return {};
+  double worst = 1;
+  for (const ElementId e : shell) worst = std::min<double>(worst, mesh.shape_of[e]);
+  Replacement<3> result;
+  if (!RingTriangulation(mesh, *ring, edge.a, edge.b, bar(worst)).find(result)) return {};
+  result.old_elements.assign(shell.begin(), shell.end());
+  if (ring->open) {
+    const VertexId first = ring->vertices.front(), last = ring->vertices.back();
+    result.new_facets = {{edge.a, first, last}, {edge.b, first, last}};
+    result.new_patch = patch;
+  }
+  return result;
+}
+
+std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappable& face, auto bar) {
+  Replacement<3> result;
+  for (const ElementId e : mesh.elements_of.of(face.a))
+    if (contains(mesh.corners_of[e], face.b) && contains(mesh.corners_of[e], face.c)) {
+      if (result.old_elements.size() == 2) return {};
+      result.old_elements.push_back(e);
+    }
+  if (result.old_elements.size() != 2) return {};
+  const ElementId e = result.old_elements[0], f = result.old_elements[1];
+  if (mesh.region_of[e] != mesh.region_of[f] || mesh.required_element(e)) return {};
+  const auto apex = [&](ElementId element) {
+    for (int i = 0; i < 4; ++i) {
+      const VertexId v = mesh.corners_of[element][static_cast<std::size_t>(i)];
+      if (v != face.a && v != face.b && v != face.c) return i;
+    }
+    return 0;
+  };
+  const int i = apex(e);
+  if (mesh.patches_of[e][static_cast<std::size_t>(i)] != 0) return {};
+  const VertexId low = mesh.corners_of[e][static_cast<std::size_t>(i)];
+  const VertexId high = mesh.corners_of[f][static_cast<std::size_t>(apex(f))];
+  const Facet<3> around = facet_of<3>(mesh.corners_of[e], i);  // counter-clockwise from `high`
+  const double least = bar(std::min(mesh.shape_of[e], mesh.shape_of[f]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Corners<3> corners{low, high, around[k], around[(k + 1) % 3]};
+    if (!(mesh.shape_at(corners) > least)) return {};
+    result.new_elements.push_back(corners);
+  }
+  return result;
+}
+
+}  // namespace
+
+template <>
+std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
+  return item.c == none ? plan_edge_removal(mesh_, item, bar) : plan_face_swap(mesh_, item, bar);
+}
+
+template <>
+void Swap<3>::apply(const Replacement<3>& plan, runtime::Commit<Swap>& commit) {
+  replace(mesh_, plan, commit);
+}
+
+template <>
+std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, Mesh<3>& mesh,
+                                             double below) {
+  const Swap swap(mesh);
+  const double bound = shape_of_mean_ratio<3>(below);
+  const auto comes_first = [&](ElementId e, ElementId other) {
+    return std::pair(mesh.shape_of[e], e) < std::pair(mesh.shape_of[other], other);
+  };
+  return runtime::parallel_collect<Swappable>(
+      executor, mesh.element_slots(), [&](std::size_t at, auto&& append) {
+        const auto e = static_cast<ElementId>(at);
+        if (!mesh.alive(e) || mesh.shape_of[e] > bound) return;
+        const Corners<3>& corners = mesh.corners_of[e];
+        for (const auto& [i, j] : Simplex<3>::edge) {
+          const VertexId a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>(j)];
+          bool first = true;
+          swap.footprint({a, b}, [&](ElementId other) { first = first && !comes_first(other, e); });
+          const Swappable item{std::min(a, b), std::max(a, b), none, mesh.shape_of[e]};
+          if (first && swap.plan(item)) append(item);
+        }
+        for (int i = 0; i < 4; ++i) {
+          const ElementId other = neighbour(mesh, e, i);
+          if (other == none || comes_first(other, e)) continue;
+          Facet<3> f = facet_of<3>(corners, i);
+          std::sort(f.begin(), f.end());
+          const Swappable item{f[0], f[1], f[2], mesh.shape_of[e]};
+          if (swap.plan(item)) append(item);
+        }
+      });
+}
+
+template class Swap<3>;
+
+}  // namespace ductile::meshadapt

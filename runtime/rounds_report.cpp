@@ -1,0 +1,18 @@
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace ductile::runtime {
+
+RoundsReport& RoundsReport::operator+=(const RoundsReport& other) {
+  rounds += other.rounds;
+  planned += other.planned;
+  applied += other.applied;
+  lost += other.lost;
+  left += other.left;
+  conflict_seconds += other.conflict_seconds;
+  plan_seconds += other.plan_seconds;
+  apply_seconds += other.apply_seconds;
+  commit_seconds += other.commit_seconds;
+  return *this;
+}
+
+}  // namespace ductile::runtime
