@@ -1,48 +1,77 @@
 #include "ductile/runtime/parallel_for.hpp"
 
-#include <omp.h>
+#include <algorithm>
+#include <utility>
 
-#include <exception>
+#include "loop.hpp"
 
 namespace ductile::runtime {
 
 namespace detail {
 constinit thread_local int current_thread = 0;
 }
-using detail::current_thread;
 
 namespace {
+
 thread_local bool inside_loop = false;
+
+/// Long enough to hide the cost of taking a chunk, short enough to balance the load to a percent.
+std::size_t chosen_grain(std::size_t n, int threads) {
+  return std::clamp<std::size_t>(n / (128 * static_cast<std::size_t>(threads)), 1, 256);
+}
+
+/// A loop inside another one, or too short to share. It keeps the number of the thread, so that
+/// per-thread data of the outer loop stay this thread's, unless its executor has no such thread.
+void run_alone(const Executor& executor, std::size_t n, RangeBody body, void* context) {
+  struct Restore {
+    int thread = detail::current_thread;
+    ~Restore() { detail::current_thread = thread; }
+  } const restore;
+  if (detail::current_thread >= executor.threads()) detail::current_thread = 0;
+  body(context, 0, n);
+}
+
 }  // namespace
+
+TeamMember::TeamMember(int thread) noexcept
+    : thread_before_(std::exchange(detail::current_thread, thread)),
+      inside_before_(std::exchange(inside_loop, true)) {}
+
+TeamMember::~TeamMember() {
+  detail::current_thread = thread_before_;
+  inside_loop = inside_before_;
+}
 
 void run_loop(const Executor& executor, std::size_t n, RangeBody body, void* context,
               const LoopOptions& options) {
   if (n == 0) return;
-  if (executor.threads() == 1 || n < 2 || n < options.serial_below || inside_loop) {
-    body(context, 0, n);
+  const std::size_t grain = options.grain ? options.grain : chosen_grain(n, executor.threads());
+  if (executor.threads() == 1 || n <= grain || n < options.serial_below || inside_loop) {
+    run_alone(executor, n, body, context);
     return;
   }
-  const std::size_t grain = options.grain ? options.grain : 64;
-  const long long chunks = static_cast<long long>((n + grain - 1) / grain);
-  std::exception_ptr error;
-#pragma omp parallel num_threads(executor.threads())
-  {
-    current_thread = omp_get_thread_num();
-    inside_loop = true;
-#pragma omp for schedule(dynamic, 1)
-    for (long long c = 0; c < chunks; ++c) {
-      try {
-        const std::size_t begin = static_cast<std::size_t>(c) * grain;
-        body(context, begin, std::min(n, begin + grain));
-      } catch (...) {
-#pragma omp critical(ductile_error)
-        if (!error) error = std::current_exception();
-      }
-    }
-    inside_loop = false;
-    current_thread = 0;
+  Loop loop{body, context, n, grain};
+  const Schedule schedule =
+      options.schedule == Schedule::automatic ? executor.schedule() : options.schedule;
+  switch (schedule) {
+    case Schedule::omp_static:
+      run_omp_static(executor, loop);
+      break;
+    case Schedule::omp_dynamic:
+      run_omp_dynamic(executor, loop);
+      break;
+    case Schedule::omp_guided:
+      run_omp_guided(executor, loop);
+      break;
+    case Schedule::steal_by_signal:
+      run_steal_by_signal(executor, loop);
+      break;
+    case Schedule::automatic:  // the one that measures best in every shape of loop
+    case Schedule::steal_by_atomics:
+      run_steal_by_atomics(executor, loop);
+      break;
   }
-  if (error) std::rethrow_exception(error);
+  loop.error.rethrow();
 }
 
 }  // namespace ductile::runtime

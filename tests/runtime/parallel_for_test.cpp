@@ -2,16 +2,228 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "ductile/runtime/hash.hpp"
+
 namespace ductile::runtime {
 namespace {
 
-TEST(ParallelFor, VisitsEachIterationOnce) {
-  for (int threads : {1, 2, 8}) {
-    const Executor executor({.threads = threads});
-    std::vector<int> visits(10007, 0);
-    parallel_for(executor, visits.size(), [&](std::size_t i) { ++visits[i]; });
-    EXPECT_EQ(visits, std::vector<int>(10007, 1));
+constexpr Schedule schedules[] = {Schedule::automatic,       Schedule::omp_static,
+                                  Schedule::omp_dynamic,     Schedule::omp_guided,
+                                  Schedule::steal_by_signal, Schedule::steal_by_atomics};
+constexpr int thread_counts[] = {1, 2, 3, 4, 8};
+
+std::string described(Schedule schedule, int threads) {
+  return "schedule " + std::to_string(static_cast<int>(schedule)) + ", threads " +
+         std::to_string(threads);
+}
+
+void spin(std::chrono::nanoseconds time) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (std::chrono::steady_clock::now() < end) {
   }
+}
+
+class ParallelFor : public testing::TestWithParam<Schedule> {};
+INSTANTIATE_TEST_SUITE_P(Schedules, ParallelFor, testing::ValuesIn(schedules));
+
+TEST_P(ParallelFor, VisitsEachIterationOnce) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads, .schedule = GetParam()});
+    for (std::size_t n : {0, 1, 2, 7, 100, 10007})
+      for (std::size_t grain : {0, 1, 3, 1000}) {
+        std::vector<int> visits(n, 0);
+        parallel_for(executor, n, [&](std::size_t i) { ++visits[i]; }, {.grain = grain});
+        EXPECT_EQ(visits, std::vector<int>(n, 1)) << described(GetParam(), threads);
+      }
+  }
+}
+
+TEST_P(ParallelFor, VisitsEachIterationOnceWhenLoadIsUneven) {
+  for (int threads : {2, 4}) {
+    const Executor executor({.threads = threads, .schedule = GetParam()});
+    for (int round = 0; round < 10; ++round) {
+      std::vector<int> visits(2000, 0);
+      parallel_for(executor, visits.size(),
+                   [&](std::size_t i) {
+                     ++visits[i];
+                     if (i < 100) spin(std::chrono::microseconds(20));
+                   },
+                   {.grain = 1});
+      EXPECT_EQ(visits, std::vector<int>(2000, 1)) << described(GetParam(), threads);
+    }
+  }
+}
+
+TEST_P(ParallelFor, NumbersItsThreads) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads, .schedule = GetParam()});
+    PerThread<std::size_t> count(executor);
+    EXPECT_EQ(count.size(), static_cast<std::size_t>(threads));
+    parallel_for(executor, 5000, [&](std::size_t) { ++count.mine(); }, {.grain = 5});
+    std::size_t sum = 0;
+    for (std::size_t t = 0; t < count.size(); ++t) sum += count[t];
+    EXPECT_EQ(sum, 5000U);
+    EXPECT_EQ(this_thread(), 0);
+  }
+}
+
+TEST_P(ParallelFor, PassesOnAnExceptionAndStopsSoon) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads, .schedule = GetParam()});
+    for (std::size_t bad : {0U, 4999U, 9999U}) {
+      EXPECT_THROW(parallel_for(executor, 10000,
+                                [&](std::size_t i) {
+                                  if (i == bad) throw std::runtime_error("bad");
+                                }),
+                   std::runtime_error)
+          << described(GetParam(), threads);
+    }
+    std::atomic<int> ran{0};
+    EXPECT_THROW(parallel_for(executor, 1000000,
+                              [&](std::size_t) {
+                                ++ran;
+                                spin(std::chrono::microseconds(1));
+                                throw std::runtime_error("all bad");
+                              },
+                              {.grain = 1}),
+                 std::runtime_error);
+    EXPECT_LE(ran, threads) << described(GetParam(), threads);
+    EXPECT_EQ(this_thread(), 0);
+  }
+}
+
+TEST_P(ParallelFor, RunsLoopsInsideOnTheCallingThread) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads, .schedule = GetParam()});
+    const Executor single({.threads = 1});
+    std::atomic<std::size_t> sum{0};
+    parallel_for(executor, 200,
+                 [&](std::size_t) {
+                   const int outer = this_thread();
+                   const auto self = std::this_thread::get_id();
+                   std::size_t count = 0;  // no race, as only this thread touches it
+                   parallel_for(executor, 1000, [&](std::size_t) {
+                     ++count;
+                     EXPECT_EQ(this_thread(), outer);
+                     EXPECT_EQ(std::this_thread::get_id(), self);
+                   });
+                   PerThread<int> one(single);
+                   parallel_for(single, 3, [&](std::size_t) { ++one.mine(); });
+                   EXPECT_EQ(one[0], 3);
+                   EXPECT_EQ(this_thread(), outer);
+                   sum += count;
+                 },
+                 {.grain = 1});
+    EXPECT_EQ(sum, 200U * 1000U);
+  }
+}
+
+TEST_P(ParallelFor, ServesSeveralCallersAtOnce) {
+  std::vector<std::thread> callers;
+  std::atomic<int> good{0};
+  for (int caller = 0; caller < 4; ++caller)
+    callers.emplace_back([&, caller] {
+      const Executor executor({.threads = 2 + caller % 2, .schedule = GetParam()});
+      for (int round = 0; round < 10; ++round) {
+        std::vector<std::uint32_t> values(3000);
+        parallel_for(executor, values.size(),
+                     [&](std::size_t i) { values[i] = mix32(static_cast<std::uint32_t>(i)); });
+        bool right = true;
+        for (std::uint32_t i = 0; i < values.size(); ++i) right = right && values[i] == mix32(i);
+        good += right;
+      }
+    });
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(good, 40);
+}
+
+TEST(StealBySignal, GivesItsSignalBackAndLeavesHandlersOfOthersAlone) {
+  static std::atomic<int> heard{0};
+  std::vector<struct sigaction> before;
+  for (int number = SIGRTMIN; number <= SIGRTMAX; ++number) {
+    struct sigaction mine = {}, old = {};
+    mine.sa_handler = [](int) { ++heard; };
+    sigaction(number, &mine, &old);
+    before.push_back(old);
+  }
+  // All numbers are taken, so one is shared while the loop runs.
+  const Executor executor({.threads = 2, .schedule = Schedule::steal_by_signal});
+  std::atomic<int> sum{0};
+  const int sender = SIGRTMAX;
+  parallel_for(executor, 200,
+               [&](std::size_t i) {
+                 ++sum;
+                 if (i % 50 == 0) raise(sender);
+                 spin(std::chrono::microseconds(i < 100 ? 50 : 1));
+               },
+               {.grain = 1});
+  EXPECT_EQ(sum, 200);
+  EXPECT_EQ(heard, 4);
+  raise(sender);
+  EXPECT_EQ(heard, 5);
+  for (int number = SIGRTMIN; number <= SIGRTMAX; ++number)
+    sigaction(number, &before[static_cast<std::size_t>(number - SIGRTMIN)], nullptr);
+}
+
+TEST(StealBySignal, WorksWhereTheCallerBlocksAllSignals) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::atomic<int> sum{0};
+  parallel_for(Executor({.threads = 2}), 400,
+               [&](std::size_t i) {
+                 ++sum;
+                 spin(std::chrono::microseconds(i < 200 ? 20 : 1));
+               },
+               {.grain = 1, .schedule = Schedule::steal_by_signal});
+  EXPECT_EQ(sum, 400);
+  sigset_t after;
+  pthread_sigmask(SIG_SETMASK, &before, &after);
+  EXPECT_EQ(sigismember(&after, SIGRTMAX), 1);
+}
+
+TEST(ParallelForBlocks, CutsTheSameBlocksAtAnyThreadCount) {
+  for (int threads : thread_counts) {
+    std::vector<std::pair<std::size_t, std::size_t>> bounds(11);
+    parallel_for_blocks(Executor({.threads = threads}), 1003, 100,
+                        [&](std::size_t b, std::size_t begin, std::size_t end) {
+                          bounds[b] = {begin, end};
+                        });
+    for (std::size_t b = 0; b < 11; ++b)
+      EXPECT_EQ(bounds[b], std::pair(b * 100, std::min<std::size_t>(1003, b * 100 + 100)));
+  }
+}
+
+TEST(ParallelReduce, GivesTheSameBitsAtAnyThreadCount) {
+  const auto value = [](std::size_t i) { return std::sin(static_cast<double>(i)) * 1e-3; };
+  const auto sum = [&](int threads) {
+    return parallel_reduce(Executor({.threads = threads}), 100003, 0.0, value, std::plus<>());
+  };
+  const double first = sum(1);
+  for (int threads : thread_counts) EXPECT_EQ(sum(threads), first);
+  EXPECT_EQ(parallel_reduce(Executor({.threads = 2}), 0, 5, value, std::plus<>()), 5);
+}
+
+TEST(ExclusiveScan, AddsWhatComesBefore) {
+  for (int threads : thread_counts)
+    for (std::size_t n : {0, 1, 4096, 50001}) {
+      std::vector<std::uint64_t> values(n), expected(n);
+      for (std::size_t i = 0; i < n; ++i) values[i] = mix64(i) >> 32U;
+      std::exclusive_scan(values.begin(), values.end(), expected.begin(), std::uint64_t{0});
+      const std::uint64_t total = std::accumulate(values.begin(), values.end(), std::uint64_t{0});
+      EXPECT_EQ(exclusive_scan(Executor({.threads = threads}), std::span(values)), total);
+      EXPECT_EQ(values, expected);
+    }
 }
 
 }  // namespace

@@ -4,9 +4,13 @@
 /// has no global state besides it.
 #pragma once
 
-#include <cstdint>
+#include <memory>
 
 namespace ductile::runtime {
+
+namespace detail {
+class Places;
+}
 
 /// How the iterations of a loop are shared among threads.
 enum class Schedule {
@@ -14,15 +18,19 @@ enum class Schedule {
   omp_static,        ///< OpenMP's static: equal contiguous parts
   omp_dynamic,       ///< OpenMP's dynamic with the loop's grain
   omp_guided,        ///< OpenMP's guided with the loop's grain
-  steal_by_signal,   ///< an idle thread interrupts the one with most work left, which gives half away
+  steal_by_signal,   ///< an idle thread interrupts the one with most work left, which gives half
+                     ///< away
   steal_by_atomics,  ///< an idle thread takes half of a victim's range by compare-and-swap
 };
 
-/// Where threads are placed on the machine.
+/// Where threads are placed on the machine. Each thread is bound to a processing unit while it
+/// works on a loop, and has the affinity it had before when the loop is over: nothing is left
+/// behind on the caller's thread or on OpenMP's, whatever becomes of the Executor. Units are those
+/// the process may use; with more threads than units they are used again.
 enum class Placement {
-  none,     ///< wherever the operating system likes
+  none,     ///< wherever the operating system likes; affinities are not touched
   compact,  ///< near each other, physical cores before their second hyperthreads
-  scatter,  ///< far from each other, for memory bandwidth
+  scatter,  ///< packages in turn, for memory bandwidth; physical cores first as well
 };
 
 struct ExecutorOptions {
@@ -32,9 +40,12 @@ struct ExecutorOptions {
   bool deterministic = true;  ///< results do not depend on thread count or timing
 };
 
+/// Cheap to copy. Thread safety: any thread; several threads may run loops on one Executor at once.
 class Executor {
  public:
-  /// Throws std::invalid_argument if options.threads is negative or above 4096.
+  /// With a placement, reads the machine's topology, which takes some milliseconds; where that is
+  /// hidden or binding is refused, threads are not bound. Throws std::invalid_argument if
+  /// options.threads is negative or above 4096.
   explicit Executor(const ExecutorOptions& options = {});
 
   int threads() const { return options_.threads; }
@@ -42,11 +53,16 @@ class Executor {
   Schedule schedule() const { return options_.schedule; }
   bool deterministic() const { return options_.deterministic; }
 
+  /// For the runtime's own use; null if threads are not bound.
+  const detail::Places* places() const { return places_.get(); }
+
  private:
   ExecutorOptions options_;
+  std::shared_ptr<const detail::Places> places_;
 };
 
-/// The cores this process may use (affinity mask and cgroup quota respected), at least 1.
+/// The cores this process may use, at least 1: the affinity mask's, or fewer if the time that
+/// cgroups allow is less than that many cores'.
 int available_cores();
 
 }  // namespace ductile::runtime

@@ -1,0 +1,41 @@
+/// @file
+/// Where the threads of an executor sit (private to the runtime). Binding lasts for a loop: a
+/// thread is bound when it enters a team and gets back the mask it had when it leaves, so nothing
+/// leaks to the caller, to OpenMP's pool of threads, or past the life of an Executor.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::runtime::detail {
+
+/// The processing units for threads 0, 1, 2, ... or null if threads are not to be bound, or the
+/// topology is hidden. With more threads than units, units are used again. Never throws but
+/// std::bad_alloc.
+std::shared_ptr<const Places> make_places(Placement placement);
+
+/// Binds the calling thread until destruction; does nothing if the system refuses.
+class ScopedBinding {
+ public:
+  ScopedBinding(const Places* places, int thread) noexcept {
+    if (places != nullptr) [[unlikely]]
+      bind(*places, thread);
+  }
+  ~ScopedBinding() {
+    if (before_ != nullptr) [[unlikely]]
+      restore();
+  }
+  ScopedBinding(const ScopedBinding&) = delete;
+  ScopedBinding& operator=(const ScopedBinding&) = delete;
+
+ private:
+  void bind(const Places& places, int thread) noexcept;
+  void restore() noexcept;
+
+  const Places* places_ = nullptr;
+  void* before_ = nullptr;  // the mask to go back to, null if not bound
+};
+
+}  // namespace ductile::runtime::detail

@@ -1,0 +1,95 @@
+/// @file
+/// What the schedulers share (private to the runtime): the loop being run, the team of threads that
+/// runs it, and the first exception thrown in it.
+#pragma once
+
+#include <omp.h>
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+
+#include "binding.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime {
+
+/// The first exception of a loop. Thread safety: any thread, rethrow() after the join.
+class FirstError {
+ public:
+  void keep_current() noexcept {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = std::current_exception();
+    // Relaxed: says only that work may stop; the join orders error_.
+    thrown_.store(true, std::memory_order_relaxed);
+  }
+  bool thrown() const noexcept { return thrown_.load(std::memory_order_relaxed); }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  std::atomic<bool> thrown_{false};
+  std::mutex mutex_;
+  std::exception_ptr error_;
+};
+
+/// One call of run_loop: n iterations handed out in chunks of `grain`.
+struct Loop {
+  RangeBody body;
+  void* context;
+  std::size_t n;
+  std::size_t grain;
+  FirstError error = {};
+
+  std::size_t chunk_count() const { return n / grain + (n % grain != 0); }
+
+  /// Runs the body over [begin, end); false if the loop is to stop. Thread safety: any thread.
+  bool run(std::size_t begin, std::size_t end) noexcept {
+    if (error.thrown()) return false;
+    try {
+      body(context, begin, end);
+    } catch (...) {
+      error.keep_current();
+    }
+    return true;
+  }
+};
+
+/// Makes the calling thread number `thread` of a loop until destruction: for this_thread(), and so
+/// that loops inside run on it alone.
+class TeamMember {
+ public:
+  explicit TeamMember(int thread) noexcept;
+  ~TeamMember();
+  TeamMember(const TeamMember&) = delete;
+  TeamMember& operator=(const TeamMember&) = delete;
+
+ private:
+  int thread_before_;
+  bool inside_before_;
+};
+
+/// Calls work(thread) on each thread of a team of OpenMP's, of executor.threads() threads or fewer.
+/// The size does not follow the loop's: OpenMP runtimes end and create threads when it changes.
+template <class Work>
+void run_team(const Executor& executor, Work&& work) {
+#pragma omp parallel num_threads(executor.threads())
+  {
+    const int thread = omp_get_thread_num();
+    const TeamMember member(thread);
+    const detail::ScopedBinding binding(executor.places(), thread);
+    work(thread);
+  }
+}
+
+void run_omp_static(const Executor& executor, Loop& loop);
+void run_omp_dynamic(const Executor& executor, Loop& loop);
+void run_omp_guided(const Executor& executor, Loop& loop);
+void run_steal_by_atomics(const Executor& executor, Loop& loop);
+/// Steals by atomics instead where no signal can be had.
+void run_steal_by_signal(const Executor& executor, Loop& loop);
+
+}  // namespace ductile::runtime

@@ -1,0 +1,105 @@
+/// @file
+/// Work stealing by compare-and-swap. Every thread starts with an equal part of the chunks, kept as
+/// one packed word, and takes chunks from its front. A thread without work looks for the longest
+/// part and takes the back half of it. A thread leaves when it finds nothing to take: what others
+/// still run cannot be shared any more, so nobody waits here but for the join.
+/// The words carry numbers of chunks only, so all orders are relaxed: what bodies read was written
+/// before the loop began, what they write is read after the join.
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "loop.hpp"
+
+namespace ductile::runtime {
+
+namespace {
+
+/// Chunks [begin, end), in one word.
+struct Part {
+  std::uint32_t begin, end;
+
+  static Part of(std::uint64_t word) {
+    return {static_cast<std::uint32_t>(word >> 32U), static_cast<std::uint32_t>(word)};
+  }
+  std::uint64_t word() const { return std::uint64_t{begin} << 32U | end; }
+  std::uint32_t size() const { return end - begin; }
+};
+
+struct alignas(128) PartOfThread {
+  std::atomic<std::uint64_t> word{0};
+
+  /// Takes the first chunk of the part; false if there is none.
+  bool take_front(std::uint32_t& chunk) {
+    std::uint64_t seen = word.load(std::memory_order_relaxed);
+    for (;;) {
+      const Part part = Part::of(seen);
+      if (part.size() == 0) return false;
+      chunk = part.begin;
+      if (word.compare_exchange_weak(seen, Part{part.begin + 1, part.end}.word(),
+                                     std::memory_order_relaxed))
+        return true;
+    }
+  }
+};
+
+using Parts = std::span<PartOfThread>;
+
+/// Moves the back half of the longest part to `mine`, which is empty; false if all are empty.
+/// No word is seen twice with different chunks left to run behind it, so that a compare-and-swap
+/// which succeeds is right even if the word changed and came back in between.
+bool steal(Parts parts, PartOfThread& mine) {
+  for (;;) {
+    PartOfThread* victim = nullptr;
+    Part longest{0, 0};
+    for (PartOfThread& part : parts) {
+      const Part now = Part::of(part.word.load(std::memory_order_relaxed));
+      if (now.size() > longest.size()) victim = &part, longest = now;
+    }
+    if (victim == nullptr) return false;
+    const std::uint32_t middle = longest.begin + longest.size() / 2;
+    std::uint64_t expected = longest.word();
+    if (victim->word.compare_exchange_strong(expected, Part{longest.begin, middle}.word(),
+                                             std::memory_order_relaxed)) {
+      mine.word.store(Part{middle, longest.end}.word(), std::memory_order_relaxed);
+      return true;
+    }
+  }
+}
+
+void work_and_steal(Loop& loop, Parts parts, PartOfThread& mine) {
+  do {
+    std::uint32_t chunk = 0;
+    while (mine.take_front(chunk)) {
+      const std::size_t begin = chunk * loop.grain;
+      if (!loop.run(begin, std::min(loop.n, begin + loop.grain))) return;
+    }
+  } while (steal(parts, mine));
+}
+
+}  // namespace
+
+void run_steal_by_atomics(const Executor& executor, Loop& loop) {
+  // Kept from loop to loop. Loops inside a body do not get here, so one per thread is enough.
+  static thread_local std::vector<PartOfThread> kept;
+  const auto threads = static_cast<std::size_t>(executor.threads());
+  if (kept.size() < threads) kept = std::vector<PartOfThread>(threads);
+  const Parts parts(kept.data(), threads);
+  while (loop.chunk_count() > UINT32_MAX) loop.grain *= 2;
+  const std::size_t chunks = loop.chunk_count();
+  for (std::size_t t = 0; t < threads; ++t) {
+    const auto bound = [&](std::size_t i) {
+      return static_cast<std::uint32_t>(chunks * i / threads);
+    };
+    parts[t].word.store(Part{bound(t), bound(t + 1)}.word(), std::memory_order_relaxed);
+  }
+  // Should the team be smaller than it was to be, the parts without a thread are stolen.
+  run_team(executor, [&](int thread) {
+    work_and_steal(loop, parts, parts[static_cast<std::size_t>(thread)]);
+  });
+}
+
+}  // namespace ductile::runtime
