@@ -1,0 +1,196 @@
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "adapt_report.hpp"
+#include "command.hpp"
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/vtu.hpp"
+#include "files.hpp"
+#include "system.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using meshadapt::AdaptedMesh;
+using meshadapt::AdaptOptions;
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using runtime::Executor;
+
+constexpr std::array<Option, 19> options{{
+    {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)"},
+    {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
+    {"-hsiz", "X", "asks for edges of length X everywhere"},
+    {"-hmin", "X", "asks for no edge shorter than X"},
+    {"-hmax", "X", "asks for no edge longer than X"},
+    {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length (default: no limit)"},
+    {"-nomove", "", "moves no vertex"},
+    {"-noswap", "", "swaps no edge or face"},
+    {"-noinsert", "", "splits and collapses no edge"},
+    {"-nosurf", "", "leaves the boundary and interfaces as they are"},
+    {"-v", "N", "0 says nothing, 1 (default) sums up, 2 says more", "--verbose"},
+    {"-m", "MB", "takes at most this much memory, in megabytes", "--memory"},
+    {"--threads", "N", "threads to use (default: the cores this process may use)"},
+    {"--iterations", "N", "at most this many rounds of all kernels"},
+    {"--racing", "", "works in order of arrival: valid too, but runs may differ"},
+    {"--json", "FILE", "writes counts, times, quality and memory there"},
+    {"--vtu", "FILE", "writes the adapted mesh for ParaView, too"},
+    {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},
+    {"--no-metric", "", "writes no metric beside the adapted mesh"},
+}};
+
+/// All that the command line says, checked before any file is read.
+struct Job {
+  fs::path input, output;
+  std::optional<fs::path> metric_in, metric_out, json, vtu;
+  std::optional<double> size;
+  AdaptOptions adapt;
+  int verbosity = 1;
+  int threads = 0;
+  bool racing = false;
+};
+
+bool is_mesh_name(const fs::path& path) {
+  return path.extension() == ".mesh" || path.extension() == ".meshb";
+}
+
+void set_files(Job& job, const Arguments& arguments) {
+  if (arguments.operands().size() != 1)
+    throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
+  job.input = arguments.operands()[0];
+  job.output = default_output(job.input);
+  if (const auto out = arguments.text("-o")) job.output = *out;
+  if (!is_mesh_name(job.output))
+    throw UsageError(job.output.string() + ": expected a name ending in .mesh or .meshb");
+  if (!arguments.has("--no-metric")) job.metric_out = field_beside(job.output);
+  job.json = arguments.text("--json");
+  job.vtu = arguments.text("--vtu");
+  if (job.vtu && job.vtu->extension() != ".vtu")
+    throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
+  job.size = arguments.positive("-hsiz");
+  job.metric_in = arguments.text("-sol");
+  if (job.size && job.metric_in)
+    throw UsageError("options -hsiz and -sol: expected one of them, found both");
+  if (!job.size && !job.metric_in) job.metric_in = metric_beside(job.input);
+}
+
+void set_options(AdaptOptions& adapt, const Arguments& arguments) {
+  adapt.smallest_size = arguments.positive("-hmin").value_or(0);
+  adapt.largest_size = arguments.positive("-hmax").value_or(0);
+  if (adapt.largest_size > 0 && adapt.smallest_size > adapt.largest_size)
+    throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
+  const double gradation = arguments.number("-hgrad").value_or(0);  // as in Mmg, 0 or less: none
+  if (gradation > 0 && gradation < 1)
+    throw UsageError("option -hgrad: expected a factor of 1 or more, or -1 for none, found '" +
+                     *arguments.text("-hgrad") + "'");
+  adapt.gradation = gradation > 0 ? gradation : 0;
+  adapt.move = !arguments.has("-nomove");
+  adapt.swap = !arguments.has("-noswap");
+  adapt.insert = !arguments.has("-noinsert");
+  adapt.make.lock_boundary = arguments.has("-nosurf");
+  adapt.make.complete_boundary = arguments.has("--complete-boundary");
+  if (const auto n = arguments.integer("--iterations", 1, 1000)) adapt.iterations = *n;
+}
+
+Job read_job(const Arguments& arguments) {
+  Job job;
+  set_files(job, arguments);
+  set_options(job.adapt, arguments);
+  job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
+  job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
+  job.racing = arguments.has("--racing");
+  if (const auto megabytes = arguments.integer("-m", 1, 1 << 30))
+    limit_memory(static_cast<std::size_t>(*megabytes) << 20U);
+  meshadapt::check_writable(job.output);
+  for (const auto& path : {job.metric_out, job.json, job.vtu})
+    if (path) meshadapt::check_writable(*path);
+  return job;
+}
+
+AnyField choose_metric(const Job& job, const AnyMesh& mesh, meshadapt::Warnings& warnings) {
+  if (job.size) return meshadapt::constant_metric(mesh, *job.size);
+  if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings);
+  warnings.push_back(mesh.name + ": no metric given (-sol) or found beside it; adapting to the sizes"
+                                 " that the mesh has");
+  return meshadapt::implied_metric(mesh);
+}
+
+/// One line on standard error, rewritten in place; gone when the work is done.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool shown) : shown_(shown) {}
+  ~ProgressLine() {
+    if (shown_) std::fprintf(stderr, "\r\033[K");
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(const meshadapt::AdaptProgress& progress) const {
+    if (!shown_) return;
+    std::fprintf(stderr, "\r\033[Kiteration %d: %s, %s changes", progress.iteration, progress.step,
+                 with_commas(progress.changes).c_str());
+    std::fflush(stderr);
+  }
+
+ private:
+  bool shown_;
+};
+
+AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const AnyMesh& mesh,
+                                const AnyField& metric) {
+  const ProgressLine line(job.verbosity > 0 && stderr_is_terminal());
+  AdaptOptions adapt = job.adapt;
+  adapt.progress = [&line](const meshadapt::AdaptProgress& progress) { line.show(progress); };
+  return meshadapt::adapt(executor, mesh, metric, adapt);
+}
+
+void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::string& json) {
+  meshadapt::AtomicOutputs outputs;
+  meshadapt::write_mesh(outputs, job.output, adapted.mesh);
+  if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
+  if (job.vtu)
+    meshadapt::write_vtu(outputs, *job.vtu, adapted.mesh,
+                         meshadapt::vtu_fields(adapted.metric, "metric"));
+  if (job.json) outputs.stage(*job.json).write(json);
+  outputs.commit();
+}
+
+int run(const Arguments& arguments) {
+  const Job job = read_job(arguments);
+  const Executor executor({.threads = job.threads, .deterministic = !job.racing});
+  meshadapt::Warnings warnings;
+  const AnyMesh mesh = meshadapt::read_mesh(job.input, &warnings);
+  const AnyField metric = choose_metric(job, mesh, warnings);
+
+  AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);
+  adapted.mesh.name = job.output.string();
+  warnings.insert(warnings.end(), adapted.report.warnings.begin(), adapted.report.warnings.end());
+  print_warnings(warnings, job.verbosity);
+  const AdaptSummary summary = summarise(executor, mesh, metric, adapted,
+                                         {.before = job.json || job.verbosity > 1,
+                                          .after = job.json || job.verbosity > 0});
+  write_outputs(job, adapted, job.json ? to_json(summary) : std::string());
+  if (job.verbosity > 0) {
+    std::printf("%s", to_text(summary, job.verbosity > 1).c_str());
+    std::printf("written: %s%s%s\n", job.output.c_str(), job.metric_out ? ", " : "",
+                job.metric_out ? job.metric_out->c_str() : "");
+  }
+  return done;
+}
+
+}  // namespace
+
+const Command adapt_command{
+    "adapt", "MESH [-sol METRIC] [-o OUT]", "adapts a mesh to a metric",
+    "The metric is a size or a tensor at each vertex; edges get a length of about one in it.\n"
+    "Without any, the sizes that the mesh has are kept. The metric at the new vertices is written\n"
+    "beside the adapted mesh. Old output files stay as they are until the new ones are complete.",
+    options, run};
+
+}  // namespace ductile::cli

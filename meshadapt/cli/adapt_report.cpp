@@ -1,0 +1,129 @@
+#include "adapt_report.hpp"
+
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "files.hpp"
+#include "report.hpp"
+#include "system.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+using meshadapt::AdaptReport;
+using meshadapt::AnyMesh;
+using meshadapt::KernelReport;
+
+MeshSummary summarise_mesh(const AnyMesh& mesh) {
+  return {mesh.name,          mesh.dimension,        mesh.vertex_count(),
+          mesh.edges.size(),  mesh.triangles.size(), mesh.tetrahedra.size(),
+          std::nullopt};
+}
+
+using NamedKernel = std::pair<const char*, const KernelReport*>;
+
+std::array<NamedKernel, 4> kernels(const AdaptReport& report) {
+  return {{{"coarsen", &report.coarsen},
+           {"refine", &report.refine},
+           {"swap", &report.swap},
+           {"smooth", &report.smooth}}};
+}
+
+std::string counts(const MeshSummary& mesh) {
+  std::string text = mesh.name + ": " + with_commas(mesh.vertices) + " vertices, " +
+                     with_commas(mesh.triangles) + " triangles";
+  if (mesh.dimension == 3) text += ", " + with_commas(mesh.tetrahedra) + " tetrahedra";
+  return text + "\n";
+}
+
+std::string seconds(double s) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.2f s", s);
+  return text.data();
+}
+
+/// The two lines of figures that sum up a mesh.
+std::string short_figures(const meshadapt::MeshStatistics& s) {
+  std::array<char, 256> text;
+  std::snprintf(text.data(), text.size(),
+                "  %.2f %% of %s edges in [0.71, 1.41], shortest %.3g, longest %.3g\n"
+                "  quality: mean %.3f, 1 %% below %.3f, worst %.3g\n",
+                100 * s.share_in_range(), with_commas(s.edge_length.count).c_str(),
+                s.edge_length.min, s.edge_length.max, s.quality.mean, s.quality.low, s.quality.min);
+  return text.data();
+}
+
+std::string figures(const MeshSummary& mesh, bool with_histograms) {
+  if (!mesh.statistics) return {};
+  return with_histograms ? to_text(*mesh.statistics) : short_figures(*mesh.statistics);
+}
+
+std::string json_of(const MeshSummary& mesh) {
+  return "{\"file\": " + json_string(mesh.name) +
+         ", \"dimension\": " + std::to_string(mesh.dimension) +
+         ", \"vertices\": " + std::to_string(mesh.vertices) +
+         ", \"edges\": " + std::to_string(mesh.edges) +
+         ", \"triangles\": " + std::to_string(mesh.triangles) +
+         ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra) +
+         ", \"statistics\": " + (mesh.statistics ? to_json(*mesh.statistics) : "null") + "}";
+}
+
+std::string json_of(const KernelReport& kernel) {
+  return "{\"seconds\": " + json_number(kernel.seconds) +
+         ", \"considered\": " + std::to_string(kernel.considered) +
+         ", \"applied\": " + std::to_string(kernel.applied) +
+         ", \"rounds\": " + std::to_string(kernel.rounds) + "}";
+}
+
+}  // namespace
+
+AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
+                       const meshadapt::AnyField& metric, const meshadapt::AdaptedMesh& after,
+                       const SummaryOptions& options) {
+  AdaptSummary summary{.before = summarise_mesh(before),
+                       .after = summarise_mesh(after.mesh),
+                       .report = after.report,
+                       .threads = executor.threads(),
+                       .deterministic = executor.deterministic()};
+  summary.peak_memory = peak_memory();
+  if (options.before) summary.before.statistics = measure(executor, before, &metric);
+  if (options.after) summary.after.statistics = measure(executor, after.mesh, &after.metric);
+  return summary;
+}
+
+std::string to_text(const AdaptSummary& summary, bool with_histograms) {
+  const AdaptReport& report = summary.report;
+  std::string text = counts(summary.before) + figures(summary.before, with_histograms);
+  text += "adapted in " + seconds(report.total_seconds) + " on " + std::to_string(summary.threads) +
+          (summary.threads == 1 ? " thread, " : " threads, ") + std::to_string(report.iterations) +
+          " iterations" + (report.converged ? "" : " (stopped before nothing changed any more)") +
+          ", peak memory " + with_commas(summary.peak_memory >> 20U) + " MB\n ";
+  for (const auto& [name, kernel] : kernels(report))
+    text += " " + std::string(name) + " " + seconds(kernel->seconds) + ",";
+  text += " set-up " + seconds(report.setup_seconds) + ", renumbering " +
+          seconds(report.renumber_seconds) + "\n";
+  return text + counts(summary.after) + figures(summary.after, with_histograms);
+}
+
+std::string to_json(const AdaptSummary& summary) {
+  const AdaptReport& report = summary.report;
+  std::string kernel_list, warnings;
+  for (const auto& [name, kernel] : kernels(report))
+    kernel_list += (kernel_list.empty() ? "" : ", ") + json_string(name) + ": " + json_of(*kernel);
+  for (const std::string& warning : report.warnings)
+    warnings += (warnings.empty() ? "" : ", ") + json_string(warning);
+  return "{\"before\": " + json_of(summary.before) + ",\n \"after\": " + json_of(summary.after) +
+         ",\n \"threads\": " + std::to_string(summary.threads) +
+         ", \"deterministic\": " + (summary.deterministic ? "true" : "false") +
+         ", \"iterations\": " + std::to_string(report.iterations) +
+         ", \"converged\": " + (report.converged ? "true" : "false") +
+         ",\n \"kernels\": {" + kernel_list + "},\n \"seconds\": {\"total\": " +
+         json_number(report.total_seconds) + ", \"setup\": " + json_number(report.setup_seconds) +
+         ", \"renumber\": " + json_number(report.renumber_seconds) +
+         "},\n \"peak_memory_bytes\": " + std::to_string(summary.peak_memory) +
+         ",\n \"warnings\": [" + warnings + "]}\n";
+}
+
+}  // namespace ductile::cli

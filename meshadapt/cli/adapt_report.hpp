@@ -1,0 +1,41 @@
+/// @file
+/// What `ductile adapt` tells about a run: in a few lines for people, as JSON for programs.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::cli {
+
+struct MeshSummary {
+  std::string name;
+  int dimension = 0;
+  std::size_t vertices = 0, edges = 0, triangles = 0, tetrahedra = 0;
+  std::optional<meshadapt::MeshStatistics> statistics;
+};
+
+struct AdaptSummary {
+  MeshSummary before, after;
+  meshadapt::AdaptReport report;
+  int threads = 0;
+  bool deterministic = true;
+  std::size_t peak_memory = 0;
+};
+
+/// Which meshes to measure.
+struct SummaryOptions {
+  bool before = true, after = true;
+};
+
+AdaptSummary summarise(const runtime::Executor& executor, const meshadapt::AnyMesh& before,
+                       const meshadapt::AnyField& metric, const meshadapt::AdaptedMesh& after,
+                       const SummaryOptions& options);
+
+std::string to_text(const AdaptSummary& summary, bool with_histograms);
+std::string to_json(const AdaptSummary& summary);
+
+}  // namespace ductile::cli

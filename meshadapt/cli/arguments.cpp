@@ -1,0 +1,148 @@
+#include "arguments.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace ductile::cli {
+
+namespace {
+
+/// "--hmin" and "-hmin" are "hmin".
+std::string_view without_dashes(std::string_view word) {
+  word.remove_prefix(std::min(word.find_first_not_of('-'), word.size()));
+  return word;
+}
+
+/// Whether a word asks for an option: "-" is a file and "-1" a number.
+bool looks_like_option(std::string_view word) {
+  return word.size() > 1 && word[0] == '-' && !(word[1] >= '0' && word[1] <= '9') && word[1] != '.';
+}
+
+const Option* find(std::span<const Option> options, std::string_view word) {
+  for (const Option& option : options)
+    if (without_dashes(word) == without_dashes(option.name) ||
+        (!option.alias.empty() && without_dashes(word) == without_dashes(option.alias)))
+      return &option;
+  return nullptr;
+}
+
+[[noreturn]] void refuse_unknown(std::span<const Option> options, std::string_view word) {
+  std::string_view nearest;
+  std::size_t least = 3;
+  for (const Option& option : options) {
+    for (const std::string_view name : {option.name, option.alias}) {
+      const std::size_t distance = edit_distance(without_dashes(word), without_dashes(name));
+      if (name.empty() || distance >= std::min(least, without_dashes(name).size())) continue;
+      least = distance;
+      nearest = name;
+    }
+  }
+  std::string message = "unknown option " + std::string(word);
+  if (!nearest.empty()) message += "; did you mean " + std::string(nearest) + "?";
+  throw UsageError(message);
+}
+
+template <class Number>
+std::optional<Number> parse(std::string_view text) {
+  Number value{};
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+[[noreturn]] void refuse_value(std::string_view name, const std::string& expected,
+                               const std::string& found) {
+  throw UsageError("option " + std::string(name) + ": expected " + expected + ", found '" + found +
+                   "'");
+}
+
+}  // namespace
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+Arguments::Arguments(std::span<const Option> options, std::span<const std::string> words) {
+  for (std::size_t at = 0; at < words.size(); ++at) {
+    if (words[at] == "--") {
+      operands_.insert(operands_.end(), words.begin() + static_cast<std::ptrdiff_t>(at) + 1,
+                       words.end());
+      return;
+    }
+    if (looks_like_option(words[at])) take(options, words, at);
+    else operands_.push_back(words[at]);
+  }
+}
+
+void Arguments::take(std::span<const Option> options, std::span<const std::string> words,
+                     std::size_t& at) {
+  const std::string& word = words[at];
+  const std::size_t equals = word.find('=');
+  const std::string name = word.substr(0, equals);
+  const Option* option = find(options, name);
+  if (!option) refuse_unknown(options, name);
+  std::string value;
+  if (option->value.empty()) {
+    if (equals != std::string::npos) throw UsageError("option " + name + " takes no value");
+  } else if (equals != std::string::npos) {
+    value = word.substr(equals + 1);
+  } else if (at + 1 < words.size() &&
+             !(looks_like_option(words[at + 1]) && find(options, words[at + 1]))) {
+    value = words[++at];
+  }
+  if (!option->value.empty() && value.empty())
+    throw UsageError("option " + name + ": expected " + std::string(option->value) +
+                     " after it, found nothing");
+  value_of_[std::string(option->name)] = value;
+}
+
+bool Arguments::has(std::string_view name) const { return value_of_.contains(name); }
+
+std::optional<std::string> Arguments::text(std::string_view name) const {
+  const auto found = value_of_.find(name);
+  if (found == value_of_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<double> Arguments::number(std::string_view name) const {
+  const std::optional<std::string> value = text(name);
+  if (!value) return std::nullopt;
+  const std::optional<double> parsed = parse<double>(*value);
+  if (!parsed || !std::isfinite(*parsed)) refuse_value(name, "a number", *value);
+  return parsed;
+}
+
+std::optional<double> Arguments::positive(std::string_view name) const {
+  const std::optional<std::string> value = text(name);
+  if (!value) return std::nullopt;
+  const std::optional<double> parsed = parse<double>(*value);
+  if (!parsed || !std::isfinite(*parsed) || *parsed <= 0)
+    refuse_value(name, "a number above 0", *value);
+  return parsed;
+}
+
+std::optional<int> Arguments::integer(std::string_view name, int least, int most) const {
+  const std::optional<std::string> value = text(name);
+  if (!value) return std::nullopt;
+  const std::optional<int> parsed = parse<int>(*value);
+  if (!parsed || *parsed < least || *parsed > most)
+    refuse_value(name,
+                 "a whole number from " + std::to_string(least) + " to " + std::to_string(most),
+                 *value);
+  return parsed;
+}
+
+}  // namespace ductile::cli

@@ -1,0 +1,32 @@
+/// @file
+/// The commands of the program `ductile`: one table that main() and help read.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "arguments.hpp"
+
+namespace ductile::cli {
+
+/// Exit statuses of the program.
+inline constexpr int done = 0, failed = 1, misused = 2;
+
+struct Command {
+  std::string_view name;
+  std::string_view operands;  ///< as in "MESH [-o OUT]"
+  std::string_view summary;   ///< one line, a sentence without its full stop
+  std::string_view details;   ///< further lines
+  std::span<const Option> options;
+  int (*run)(const Arguments& arguments);  ///< returns the exit status; throws Error
+};
+
+extern const Command adapt_command, info_command, view_command, convert_command;
+
+/// All commands, in the order of help.
+std::span<const Command* const> commands();
+
+/// Runs the program on the words after its name: prints errors, returns the exit status.
+int run_program(std::span<const std::string> words);
+
+}  // namespace ductile::cli

@@ -1,0 +1,64 @@
+#include <array>
+#include <filesystem>
+#include <string>
+
+#include "command.hpp"
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/vtu.hpp"
+#include "files.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<Option, 2> options{{
+    {"-sol", "FIELD", "for .vtu: the field at the vertices to take along"},
+    {"--version-of-file", "N", "GMF version to write, 1 to 4 (default: 2, more if the size needs it)"},
+}};
+
+bool holds_field(const fs::path& path) {
+  return path.extension() == ".sol" || path.extension() == ".solb";
+}
+bool holds_mesh(const fs::path& path) {
+  return path.extension() == ".mesh" || path.extension() == ".meshb";
+}
+
+void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arguments,
+                  const meshadapt::GmfOptions& form, meshadapt::Warnings& warnings) {
+  const meshadapt::AnyMesh mesh = meshadapt::read_mesh(from, &warnings);
+  if (holds_mesh(to)) return meshadapt::write_mesh(to, mesh, form);
+  std::vector<meshadapt::VtuField> fields;
+  if (const auto path = arguments.text("-sol"))
+    fields = meshadapt::vtu_fields(meshadapt::read_field(*path, &warnings),
+                                   fs::path(*path).stem().string());
+  meshadapt::write_vtu(to, mesh, fields);
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.operands().size() != 2)
+    throw UsageError("expected an input and an output, found " +
+                     std::to_string(arguments.operands().size()) + " files");
+  const fs::path from = arguments.operands()[0], to = arguments.operands()[1];
+  const bool field = holds_field(from);
+  if (field ? !holds_field(to) : !holds_mesh(to) && to.extension() != ".vtu")
+    throw UsageError(to.string() + ": expected a name ending in " +
+                     (field ? ".sol or .solb, as the input is a field"
+                            : ".mesh, .meshb or .vtu, as the input is a mesh"));
+  const meshadapt::GmfOptions form{.version =
+                                       arguments.integer("--version-of-file", 1, 4).value_or(0)};
+  meshadapt::Warnings warnings;
+  if (field) meshadapt::write_field(to, meshadapt::read_field(from, &warnings), form);
+  else convert_mesh(from, to, arguments, form, warnings);
+  print_warnings(warnings);
+  return done;
+}
+
+}  // namespace
+
+const Command convert_command{
+    "convert", "IN OUT [-sol FIELD]", "writes a mesh or a field in another format",
+    "Meshes: .mesh, .meshb (read and written), .vtu (written). Fields: .sol, .solb.", options, run};
+
+}  // namespace ductile::cli

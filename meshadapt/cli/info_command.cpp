@@ -1,0 +1,127 @@
+#include <array>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "command.hpp"
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "files.hpp"
+#include "report.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using runtime::Executor;
+
+constexpr std::array<Option, 3> options{{
+    {"-sol", "METRIC", "measures lengths and quality in this metric (.sol, .solb)"},
+    {"--json", "FILE", "writes the statistics there too"},
+    {"--threads", "N", "threads to use (default: the cores this process may use)"},
+}};
+
+struct Validity {
+  std::string reason;  ///< why the mesh cannot be adapted; empty if it can
+  meshadapt::Warnings warnings;
+};
+
+template <int Dim>
+Validity check_in(const Executor& executor, const AnyMesh& mesh) {
+  Validity validity;
+  try {
+    meshadapt::Neighbours<Dim> neighbours;
+    meshadapt::make_mesh<Dim>(executor, mesh, {}, neighbours, validity.warnings);
+  } catch (const meshadapt::InputError& error) {
+    validity.reason = error.what();
+  }
+  return validity;
+}
+
+Validity check(const Executor& executor, const AnyMesh& mesh) {
+  return mesh.dimension == 2 ? check_in<2>(executor, mesh) : check_in<3>(executor, mesh);
+}
+
+template <class References>
+void print_kind(const char* kind, const References& reference, std::size_t required) {
+  if (reference.empty()) return;
+  std::map<std::int32_t, std::size_t> count_of;
+  for (const std::int32_t r : reference) ++count_of[r];
+  std::printf("  %-12s %12s  ", kind, with_commas(reference.size()).c_str());
+  if (required > 0) std::printf("%s required; ", with_commas(required).c_str());
+  constexpr std::size_t shown_at_most = 12;
+  std::size_t shown = 0;
+  std::printf("%s", count_of.size() == 1 ? "reference" : "references");
+  for (const auto& [r, count] : count_of) {
+    if (shown++ == shown_at_most) {
+      std::printf(", ... (%zu in all)", count_of.size());
+      break;
+    }
+    std::printf("%s %d: %s", shown == 1 ? "" : ",", r, with_commas(count).c_str());
+  }
+  std::printf("\n");
+}
+
+void print_counts(const AnyMesh& mesh) {
+  std::printf("%s: dimension %d\n", mesh.name.c_str(), mesh.dimension);
+  print_kind("vertices", mesh.vertex_reference, mesh.required_vertices.size());
+  print_kind("edges", mesh.edges.reference, mesh.required_edges.size());
+  print_kind("triangles", mesh.triangles.reference, mesh.required_triangles.size());
+  print_kind("tetrahedra", mesh.tetrahedra.reference, mesh.required_tetrahedra.size());
+  if (!mesh.corners.empty())
+    std::printf("  %-12s %12s\n", "corners", with_commas(mesh.corners.size()).c_str());
+  if (!mesh.ridges.empty())
+    std::printf("  %-12s %12s\n", "ridges", with_commas(mesh.ridges.size()).c_str());
+}
+
+void write_json(const std::string& path, const AnyMesh& mesh, const Validity& validity,
+                const std::string& statistics) {
+  meshadapt::AtomicOutputs outputs;
+  outputs.stage(path).write(
+      "{\"mesh\": " + json_string(mesh.name) + ", \"dimension\": " +
+      std::to_string(mesh.dimension) + ", \"valid\": " + (validity.reason.empty() ? "true" : "false") +
+      ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
+      ", \"edges\": " + std::to_string(mesh.edges.size()) +
+      ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
+      ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
+      ", \"statistics\": " + statistics + "}\n");
+  outputs.commit();
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.operands().size() != 1)
+    throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
+  const Executor executor({.threads = arguments.integer("--threads", 1, 4096).value_or(0)});
+  meshadapt::Warnings warnings;
+  const AnyMesh mesh = meshadapt::read_mesh(arguments.operands()[0], &warnings);
+  std::optional<AnyField> metric;
+  if (const auto path = arguments.text("-sol")) metric = read_metric(*path, mesh, warnings);
+  const bool has_elements = !(mesh.dimension == 2 ? mesh.triangles.reference.empty()
+                                                  : mesh.tetrahedra.reference.empty());
+  print_counts(mesh);
+  const Validity validity = check(executor, mesh);
+  warnings.insert(warnings.end(), validity.warnings.begin(), validity.warnings.end());
+  std::printf("  %s\n", validity.reason.empty() ? "valid: it can be adapted"
+                                                : ("not valid: " + validity.reason).c_str());
+  std::string statistics = "null";
+  if (has_elements) {
+    const auto measured = meshadapt::measure(executor, mesh, metric ? &*metric : nullptr);
+    std::printf("%s", to_text(measured).c_str());
+    statistics = to_json(measured);
+  }
+  print_warnings(warnings);
+  if (const auto path = arguments.text("--json")) write_json(*path, mesh, validity, statistics);
+  return done;
+}
+
+}  // namespace
+
+const Command info_command{
+    "info", "MESH [-sol METRIC]",
+    "counts, references, validity, edge lengths and quality of a mesh",
+    "Without a metric, lengths and quality are those of plain Euclidean geometry.", options, run};
+
+}  // namespace ductile::cli

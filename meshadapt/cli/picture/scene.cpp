@@ -1,0 +1,132 @@
+#include "scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../files.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+
+Position position(const AnyMesh& mesh, std::uint32_t vertex) {
+  const double* x = &mesh.coordinates[std::size_t{vertex} * static_cast<std::size_t>(mesh.dimension)];
+  return {{x[0], x[1], mesh.dimension == 3 ? x[2] : 0}};
+}
+
+/// Edge of the regular element with the same area or volume.
+double size_of(const AnyMesh& mesh, std::size_t element) {
+  if (mesh.dimension == 2) {
+    const auto& v = mesh.triangles.vertices[element];
+    const Position a = position(mesh, v[0]);
+    const double area = norm(cross(position(mesh, v[1]) - a, position(mesh, v[2]) - a)) / 2;
+    return std::sqrt(area * 4 / std::sqrt(3.0));
+  }
+  const auto& v = mesh.tetrahedra.vertices[element];
+  const Position a = position(mesh, v[0]);
+  const Position normal = cross(position(mesh, v[1]) - a, position(mesh, v[2]) - a);
+  return std::cbrt(std::abs(dot(normal, position(mesh, v[3]) - a)) * std::sqrt(2.0));
+}
+
+Tinting tint_by_size(const AnyMesh& mesh, std::size_t elements) {
+  std::vector<double> size(elements);
+  for (std::size_t e = 0; e < elements; ++e) size[e] = size_of(mesh, e);
+  std::vector<double> sorted = size;
+  std::sort(sorted.begin(), sorted.end());
+  const auto at = [&](double share) {
+    return std::max(sorted[static_cast<std::size_t>(share * static_cast<double>(elements - 1))], 1e-300);
+  };
+  Tinting result{.legend = {.title = "size of the elements (edge of the regular one of the same " +
+                                     std::string(mesh.dimension == 2 ? "area)" : "volume)"),
+                            .tint = Tint::size,
+                            .from = at(0.005),
+                            .to = at(0.995)}};
+  if (result.legend.to < 1.02 * result.legend.from) {
+    result.legend.from /= 1.1;
+    result.legend.to *= 1.1;
+  }
+  const double range = std::log(result.legend.to / result.legend.from);
+  for (const double s : size)
+    result.colour_of.push_back(
+        size_colour(std::log(std::max(s, 1e-300) / result.legend.from) / range));
+  return result;
+}
+
+std::string caption_of(const AnyMesh& mesh) {
+  const std::size_t slash = mesh.name.find_last_of('/');
+  std::string caption = mesh.name.substr(slash == std::string::npos ? 0 : slash + 1) + ": " +
+                        with_commas(mesh.vertex_count()) + " vertices, " +
+                        with_commas(mesh.triangles.size()) + " triangles";
+  if (mesh.tetrahedra.size() > 0)
+    caption += ", " + with_commas(mesh.tetrahedra.size()) + " tetrahedra";
+  return caption;
+}
+
+void add_solid(Scene& scene, const AnyMesh& mesh, const Tinting& tinting, int axis) {
+  const Camera camera = camera_along(axis);
+  scene.panels.push_back(surface_panel(mesh, camera));
+  const std::vector<std::int32_t> references = distinct(mesh.triangles.reference);
+  if (references.size() > 1)
+    scene.legends.push_back({.title = "surface", .tint = Tint::reference, .references = references});
+  if (mesh.tetrahedra.size() == 0) return;
+  scene.panels.push_back(cut_panel(mesh, tinting.colour_of, camera, axis));
+  scene.legends.push_back(tinting.legend);
+}
+
+}  // namespace
+
+std::size_t Scene::face_count() const {
+  std::size_t count = 0;
+  for (const Panel& panel : panels) count += panel.faces.size();
+  return count;
+}
+
+std::vector<std::int32_t> distinct(std::vector<std::int32_t> references) {
+  std::sort(references.begin(), references.end());
+  references.erase(std::unique(references.begin(), references.end()), references.end());
+  return references;
+}
+
+Tinting tint_elements(const runtime::Executor& executor, const AnyMesh& mesh,
+                      const AnyField* metric, Tint tint) {
+  const auto& references =
+      mesh.dimension == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference;
+  if (tint == Tint::size && !references.empty()) return tint_by_size(mesh, references.size());
+  Tinting result;
+  result.legend.tint = tint;
+  if (tint == Tint::reference) {
+    result.legend.title = "elements";
+    result.legend.references = distinct(references);
+    for (const std::int32_t reference : references)
+      result.colour_of.push_back(reference_colour(reference));
+  } else {
+    result.legend.title = metric ? "quality in the metric (1 is ideal)" : "quality (1 is ideal)";
+    for (const double quality : element_qualities(executor, mesh, metric))
+      result.colour_of.push_back(quality_colour(quality));
+  }
+  return result;
+}
+
+Scene make_scene(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
+                 const SceneOptions& options) {
+  if (mesh.triangles.size() == 0 && mesh.tetrahedra.size() == 0)
+    throw meshadapt::InputError(mesh.name +
+                                ": expected triangles or tetrahedra to draw, found neither");
+  Scene scene;
+  scene.caption = caption_of(mesh);
+  const Tinting tinting = tint_elements(executor, mesh, metric, options.tint);
+  if (mesh.dimension == 2) {
+    scene.panels.push_back(panel_2d(mesh, tinting.colour_of));
+    scene.legends.push_back(tinting.legend);
+  } else {
+    add_solid(scene, mesh, tinting, options.cut_axis < 0 ? thinnest_axis(mesh) : options.cut_axis);
+  }
+  return scene;
+}
+
+}  // namespace ductile::cli

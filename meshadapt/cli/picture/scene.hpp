@@ -1,0 +1,92 @@
+/// @file
+/// Scene: a mesh turned into coloured polygons in the plane, in the order in which they are to be
+/// painted, with the words around them. Nothing here knows what paints it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "camera.hpp"
+#include "colours.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::cli {
+
+/// A convex polygon of three or four corners.
+struct Face {
+  std::array<Point, 4> corner;
+  int corners = 3;
+  Colour colour;
+};
+
+struct Line {
+  Point a, b;
+};
+
+/// One drawing: faces from back to front, then lines on top.
+struct Panel {
+  std::string title{};
+  std::vector<Face> faces{};
+  std::vector<Line> lines{};
+};
+
+/// What elements are coloured by.
+enum class Tint { quality, size, reference };
+
+/// What the colours mean: a scale (quality from 0 to 1, size from `from` to `to`, logarithmic) or,
+/// for references, a list.
+struct Legend {
+  std::string title{};
+  Tint tint = Tint::quality;
+  double from = 0, to = 1;
+  std::vector<std::int32_t> references{};
+};
+
+struct Scene {
+  std::string caption;
+  std::vector<Panel> panels;
+  std::vector<Legend> legends;
+
+  std::size_t face_count() const;
+};
+
+struct SceneOptions {
+  Tint tint = Tint::quality;
+  int cut_axis = -1;  ///< normal of the cut through the middle: 0, 1, 2; -1: chosen by the shape
+};
+
+/// `metric` as in measure(): it says what quality means; null for Euclidean.
+/// Throws InputError if there is nothing to draw.
+Scene make_scene(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
+                 const meshadapt::AnyField* metric, const SceneOptions& options);
+
+// ---- For the two kinds of scenes ----
+
+/// What each element is painted in, [element], and the legend that explains it.
+struct Tinting {
+  std::vector<Colour> colour_of{};
+  Legend legend{};
+};
+Tinting tint_elements(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
+                      const meshadapt::AnyField* metric, Tint tint);
+
+Panel panel_2d(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour_of);
+
+/// The surface in the colours of its references, seen from outside.
+Panel surface_panel(const meshadapt::AnyMesh& mesh, const Camera& camera);
+
+/// What is left behind a plane through the middle, and the elements that it cuts.
+Panel cut_panel(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour_of,
+                const Camera& camera, int axis);
+
+/// The axis along which a solid is thinnest; front to back if it is about as thick everywhere.
+int thinnest_axis(const meshadapt::AnyMesh& mesh);
+
+/// Each value once, in order.
+std::vector<std::int32_t> distinct(std::vector<std::int32_t> references);
+
+}  // namespace ductile::cli

@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/meshadapt/simplex.hpp"
+#include "scene.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+using meshadapt::AnyMesh;
+using Triangle = std::array<std::uint32_t, 3>;
+
+Position position(const AnyMesh& mesh, std::uint32_t vertex) {
+  const double* x = &mesh.coordinates[std::size_t{vertex} * 3];
+  return {{x[0], x[1], x[2]}};
+}
+
+Triangle sorted(Triangle t) {
+  std::sort(t.begin(), t.end());
+  return t;
+}
+
+/// A facet of the surface, counter-clockwise seen from outside.
+struct Skin {
+  Triangle key;  ///< its corners, sorted
+  Triangle corners;
+  std::int32_t reference = 0;
+};
+
+/// Facets that belong to one tetrahedron only.
+std::vector<Skin> facets_of_one(const AnyMesh& mesh) {
+  std::vector<Skin> facets;
+  facets.reserve(4 * mesh.tetrahedra.size());
+  for (const auto& element : mesh.tetrahedra.vertices) {
+    for (int i = 0; i < 4; ++i) {
+      const Triangle corners = meshadapt::facet_of<3>(element, i);
+      facets.push_back({sorted(corners), corners});
+    }
+  }
+  std::sort(facets.begin(), facets.end(), [](const Skin& a, const Skin& b) { return a.key < b.key; });
+  std::vector<Skin> skin;
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    if (i + 1 < facets.size() && facets[i].key == facets[i + 1].key) ++i;
+    else skin.push_back(facets[i]);
+  }
+  return skin;
+}
+
+/// The surface with the references of the triangles listed in the mesh; these are all there is to
+/// draw where there are no tetrahedra.
+std::vector<Skin> make_skin(const AnyMesh& mesh) {
+  std::vector<Skin> listed;
+  listed.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& corners = mesh.triangles.vertices[t];
+    listed.push_back({sorted(corners), corners, mesh.triangles.reference[t]});
+  }
+  if (mesh.tetrahedra.size() == 0) return listed;
+  const auto by_key = [](const Skin& a, const Skin& b) { return a.key < b.key; };
+  std::sort(listed.begin(), listed.end(), by_key);
+  std::vector<Skin> skin = facets_of_one(mesh);
+  for (Skin& facet : skin) {
+    const auto found = std::lower_bound(listed.begin(), listed.end(), facet, by_key);
+    if (found != listed.end() && found->key == facet.key) facet.reference = found->reference;
+  }
+  return skin;
+}
+
+/// A face with how near it is.
+struct DeepFace {
+  double depth = 0;
+  Face face;
+};
+
+std::vector<Face> back_to_front(std::vector<DeepFace> deep) {
+  std::sort(deep.begin(), deep.end(),
+            [](const DeepFace& a, const DeepFace& b) { return a.depth < b.depth; });
+  std::vector<Face> faces;
+  faces.reserve(deep.size());
+  for (const DeepFace& d : deep) faces.push_back(d.face);
+  return faces;
+}
+
+/// How light a surface of this normal is: lit from above the viewer's left shoulder.
+double lightness(const Position& normal, const Camera& camera) {
+  const Position light = camera.towards + 0.7 * camera.up + (-0.5) * camera.right;
+  const double cosine = std::abs(dot(normal, light)) / (norm(normal) * norm(light));
+  return 0.5 + 0.5 * cosine;
+}
+
+/// The part of a convex polygon where side(corner) <= 0.
+std::vector<Position> clip(const std::vector<Position>& polygon, auto&& side) {
+  std::vector<Position> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Position &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double at_a = side(a), at_b = side(b);
+    if (at_a <= 0) kept.push_back(a);
+    if ((at_a < 0 && at_b > 0) || (at_a > 0 && at_b < 0))
+      kept.push_back(a + (at_a / (at_a - at_b)) * (b - a));
+  }
+  return kept;
+}
+
+DeepFace project(const std::vector<Position>& polygon, const Colour& colour, const Camera& camera) {
+  DeepFace deep;
+  deep.face.corners = static_cast<int>(std::min<std::size_t>(4, polygon.size()));
+  deep.face.colour = colour;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(deep.face.corners); ++i) {
+    deep.face.corner[i] = camera.project(polygon[i]);
+    deep.depth += camera.depth(polygon[i]) / deep.face.corners;
+  }
+  return deep;
+}
+
+/// The facets that are seen, each passed through `shape`, which may clip it, in `colour`.
+std::vector<Face> visible_faces(const AnyMesh& mesh, const Camera& camera, auto&& colour,
+                                auto&& shape) {
+  const bool closed = mesh.tetrahedra.size() > 0;
+  std::vector<DeepFace> deep;
+  for (const Skin& facet : make_skin(mesh)) {
+    const Position a = position(mesh, facet.corners[0]), b = position(mesh, facet.corners[1]),
+                   c = position(mesh, facet.corners[2]);
+    const Position normal = cross(b - a, c - a);
+    if (norm(normal) == 0 || (closed && dot(normal, camera.towards) <= 0)) continue;
+    const std::vector<Position> polygon = shape(std::vector<Position>{a, b, c});
+    if (polygon.size() >= 3)
+      deep.push_back(project(polygon, lightness(normal, camera) * colour(facet), camera));
+  }
+  return back_to_front(std::move(deep));
+}
+
+/// Where the plane cuts a tetrahedron: nothing, a triangle or a quadrangle.
+std::vector<Position> section(const std::array<Position, 4>& corner, auto&& side) {
+  std::vector<Position> behind, before;
+  for (const Position& p : corner) (side(p) < 0 ? behind : before).push_back(p);
+  if (behind.empty() || before.empty()) return {};
+  const auto between = [&](const Position& a, const Position& b) {
+    return a + (side(a) / (side(a) - side(b))) * (b - a);
+  };
+  if (behind.size() == 2)
+    return {between(behind[0], before[0]), between(behind[0], before[1]),
+            between(behind[1], before[1]), between(behind[1], before[0])};
+  const Position& apex = behind.size() == 1 ? behind[0] : before[0];
+  std::vector<Position> triangle;
+  for (const Position& p : behind.size() == 1 ? before : behind) triangle.push_back(between(p, apex));
+  return triangle;
+}
+
+struct Range {
+  double from = std::numeric_limits<double>::infinity(), to = -from;
+};
+
+Range range_along(const AnyMesh& mesh, int axis) {
+  Range range;
+  for (std::size_t i = static_cast<std::size_t>(axis); i < mesh.coordinates.size(); i += 3) {
+    range.from = std::min(range.from, mesh.coordinates[i]);
+    range.to = std::max(range.to, mesh.coordinates[i]);
+  }
+  return range;
+}
+
+}  // namespace
+
+int thinnest_axis(const AnyMesh& mesh) {
+  int thinnest = 1;
+  const auto width = [&](int axis) {
+    const Range range = range_along(mesh, axis);
+    return range.to - range.from;
+  };
+  for (const int axis : {0, 2})
+    if (width(axis) < 0.8 * width(thinnest)) thinnest = axis;
+  return thinnest;
+}
+
+Panel surface_panel(const AnyMesh& mesh, const Camera& camera) {
+  Panel panel{.title = "surface"};
+  panel.faces = visible_faces(
+      mesh, camera, [](const Skin& facet) { return reference_colour(facet.reference); },
+      [](std::vector<Position> polygon) { return polygon; });
+  return panel;
+}
+
+Panel cut_panel(const AnyMesh& mesh, const std::vector<Colour>& colour_of, const Camera& camera,
+                int axis) {
+  const Range range = range_along(mesh, axis);
+  const double middle = 0.5 * (range.from + range.to);
+  const double outwards = camera.towards[axis] > 0 ? 1 : -1;
+  const auto side = [&](const Position& p) { return outwards * (p[axis] - middle); };
+
+  Panel panel{.title = std::string("cut at ") + "xyz"[axis] + " = " + std::to_string(middle)};
+  panel.title.erase(panel.title.find_last_not_of('0') + 1);
+  if (panel.title.ends_with('.')) panel.title.pop_back();
+  panel.faces = visible_faces(
+      mesh, camera, [](const Skin&) { return Colour{0.86, 0.86, 0.86}; },
+      [&](const std::vector<Position>& polygon) { return clip(polygon, side); });
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    std::array<Position, 4> corner;
+    for (std::size_t i = 0; i < 4; ++i)
+      corner[i] = position(mesh, mesh.tetrahedra.vertices[e][i]);
+    const std::vector<Position> polygon = section(corner, side);
+    if (polygon.size() >= 3) panel.faces.push_back(project(polygon, colour_of[e], camera).face);
+  }
+  return panel;
+}
+
+}  // namespace ductile::cli

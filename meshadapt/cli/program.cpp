@@ -1,0 +1,122 @@
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "command.hpp"
+#include "version.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+constexpr std::array<const Command*, 4> all_commands{&adapt_command, &info_command, &view_command,
+                                                     &convert_command};
+
+const Command* find_command(std::string_view name) {
+  for (const Command* command : all_commands)
+    if (command->name == name) return command;
+  return nullptr;
+}
+
+void print_overview(std::FILE* to) {
+  std::fprintf(to, "ductile %s: adapts triangle and tetrahedral meshes to a metric.\n\nCommands:\n",
+               version);
+  for (const Command* command : all_commands)
+    std::fprintf(to, "  ductile %-8s %s\n", std::string(command->name).c_str(),
+                 std::string(command->summary).c_str());
+  std::fprintf(to,
+               "  ductile help COMMAND  shows its options\n\n"
+               "Exit status: 0 the output is valid and written; 1 it could not be done;\n"
+               "2 the command line or the input is wrong.\n");
+}
+
+void print_help(const Command& command) {
+  std::printf("ductile %s %s\n%s.\n", std::string(command.name).c_str(),
+              std::string(command.operands).c_str(), std::string(command.summary).c_str());
+  if (!command.details.empty()) std::printf("%s\n", std::string(command.details).c_str());
+  std::printf("\nOptions (one or two dashes mean the same):\n");
+  for (const Option& option : command.options) {
+    std::string left(option.name);
+    if (!option.alias.empty()) left += ", " + std::string(option.alias);
+    if (!option.value.empty()) left += " " + std::string(option.value);
+    std::printf("  %-22s %s\n", left.c_str(), std::string(option.help).c_str());
+  }
+  std::printf("  %-22s %s\n", "-h, --help", "shows this");
+}
+
+[[noreturn]] void refuse_command(const std::string& name) {
+  std::string message = "unknown command '" + name + "'";
+  for (const Command* command : all_commands)
+    if (edit_distance(name, command->name) <= 2)
+      message += "; did you mean '" + std::string(command->name) + "'?";
+  throw UsageError(message + " (ductile help lists the commands)");
+}
+
+bool asks_for_help(std::span<const std::string> words) {
+  for (const std::string& word : words) {
+    if (word == "--") return false;
+    if (word == "-h" || word == "--help" || word == "-help") return true;
+  }
+  return false;
+}
+
+int run_help(std::span<const std::string> words) {
+  if (words.empty()) {
+    print_overview(stdout);
+  } else {
+    const Command* command = find_command(words[0]);
+    if (!command) refuse_command(words[0]);
+    print_help(*command);
+  }
+  return done;
+}
+
+int dispatch(std::span<const std::string> words) {
+  if (words.empty()) {
+    print_overview(stderr);
+    return misused;
+  }
+  const std::string& name = words[0];
+  if (name == "--version" || name == "-version") {
+    std::printf("ductile %s\n", version);
+    return done;
+  }
+  if (name == "help" || name == "--help" || name == "-h") return run_help(words.subspan(1));
+  const Command* command = find_command(name);
+  if (!command) refuse_command(name);
+  if (asks_for_help(words.subspan(1))) return run_help(words.first(1));
+  return command->run(Arguments(command->options, words.subspan(1)));
+}
+
+int tell(const std::string& message, int status) {
+  std::fprintf(stderr, "ductile: %s\n", message.c_str());
+  return status;
+}
+
+}  // namespace
+
+std::span<const Command* const> commands() { return all_commands; }
+
+int run_program(std::span<const std::string> words) {
+  try {
+    const int status = dispatch(words);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return tell("standard output took no more: is the disk full?", failed);
+    return status;
+  } catch (const UsageError& error) {
+    const bool known = !words.empty() && find_command(words[0]);
+    return tell((known ? words[0] + ": " : std::string()) + error.what() +
+                    (known ? " (ductile help " + words[0] + " lists the options)" : ""),
+                misused);
+  } catch (const meshadapt::InputError& error) {
+    return tell(error.what(), misused);
+  } catch (const std::bad_alloc&) {
+    return tell("out of memory; allow more (-m) or take a smaller mesh", failed);
+  } catch (const std::exception& error) {
+    return tell(error.what(), failed);
+  }
+}
+
+}  // namespace ductile::cli

@@ -1,0 +1,18 @@
+/// @file
+/// What the program asks of the operating system.
+#pragma once
+
+#include <cstddef>
+
+namespace ductile::cli {
+
+/// Most memory that this process has held so far, in bytes.
+std::size_t peak_memory();
+
+/// From here on, taking more memory than this fails, with std::bad_alloc.
+void limit_memory(std::size_t bytes);
+
+/// Whether a person is likely to watch standard error.
+bool stderr_is_terminal();
+
+}  // namespace ductile::cli

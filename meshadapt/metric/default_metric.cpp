@@ -1,0 +1,80 @@
+#include "ductile/meshadapt/default_metric.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace ductile::meshadapt {
+
+namespace {
+
+AnyField isotropic_field(const AnyMesh& mesh, const std::vector<double>& size_of) {
+  AnyField field;
+  field.dimension = mesh.dimension;
+  field.vertex_count = mesh.vertex_count();
+  field.types = {AnyField::Type::symmetric};
+  field.name = mesh.name;
+  const auto stride =
+      static_cast<std::size_t>(component_count(AnyField::Type::symmetric, mesh.dimension));
+  field.values.assign(stride * field.vertex_count, 0.0);
+  for (std::size_t v = 0; v < field.vertex_count; ++v)
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(mesh.dimension); ++axis)
+      field.values[v * stride + axis * (axis + 3) / 2] = 1 / (size_of[v] * size_of[v]);
+  return field;
+}
+
+double distance(const AnyMesh& mesh, std::size_t a, std::size_t b) {
+  const auto dimension = static_cast<std::size_t>(mesh.dimension);
+  double squares = 0;
+  for (std::size_t axis = 0; axis < dimension; ++axis) {
+    const double d = mesh.coordinates[a * dimension + axis] - mesh.coordinates[b * dimension + axis];
+    squares += d * d;
+  }
+  return std::sqrt(squares);
+}
+
+/// The logarithms of the edge lengths at each vertex, added up over the elements around it.
+struct LogLengths {
+  explicit LogLengths(std::size_t vertices) : sum(vertices), count(vertices) {}
+  std::vector<double> sum;
+  std::vector<std::uint32_t> count;
+};
+
+template <int Corners>
+void add_cells(LogLengths& logs, const AnyMesh& mesh, const Cells<Corners>& cells) {
+  for (const auto& corner : cells.vertices) {
+    for (std::size_t i = 0; i < corner.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const double length = distance(mesh, corner[i], corner[j]);
+        if (!(length > 0)) continue;
+        for (const std::uint32_t v : {corner[i], corner[j]}) {
+          logs.sum[v] += std::log(length);
+          ++logs.count[v];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+AnyField constant_metric(const AnyMesh& mesh, double size) {
+  return isotropic_field(mesh, std::vector<double>(mesh.vertex_count(), size));
+}
+
+AnyField implied_metric(const AnyMesh& mesh) {
+  LogLengths logs(mesh.vertex_count());
+  if (mesh.dimension == 2) add_cells(logs, mesh, mesh.triangles);
+  else add_cells(logs, mesh, mesh.tetrahedra);
+  double sum = 0, count = 0;
+  for (std::size_t v = 0; v < logs.sum.size(); ++v) {
+    sum += logs.sum[v];
+    count += logs.count[v];
+  }
+  const double overall = count > 0 ? std::exp(sum / count) : 1;
+  std::vector<double> size_of(mesh.vertex_count(), overall);
+  for (std::size_t v = 0; v < size_of.size(); ++v)
+    if (logs.count[v] > 0) size_of[v] = std::exp(logs.sum[v] / logs.count[v]);
+  return isotropic_field(mesh, size_of);
+}
+
+}  // namespace ductile::meshadapt
