@@ -116,6 +116,7 @@ void register_graph(const std::string& name, Rows made) {
   const std::pair<const char*, ColouringMethod> methods[] = {
       {"serial", ColouringMethod::serial},
       {"blocked", ColouringMethod::blocked},
+      {"by_priority", ColouringMethod::by_priority},
       {"detect_again", ColouringMethod::detect_again},
       {"two_phase", ColouringMethod::two_phase}};
   for (const auto& [label, method] : methods)

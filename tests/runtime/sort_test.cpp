@@ -34,6 +34,21 @@ TYPED_TEST(ParallelSort, AgreesWithTheStandardOne) {
   }
 }
 
+TEST(ParallelUnique, AgreesWithTheStandardOne) {
+  for (std::size_t n : {0, 1, 1000, 32768, 32769, 200000})
+    for (std::uint32_t repeat : {1U, 3U, 100000U}) {
+      std::vector<std::uint32_t> values(n);
+      for (std::uint32_t i = 0; i < n; ++i) values[i] = i / repeat;
+      std::vector<std::uint32_t> expected = values;
+      expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+      for (int threads : {1, 2, 8}) {
+        std::vector<std::uint32_t> unique = values;
+        unique.resize(parallel_unique(Executor({.threads = threads}), std::span(unique)));
+        EXPECT_EQ(unique, expected) << n << " values, " << threads << " threads";
+      }
+    }
+}
+
 TEST(RunSort, IsStable) {
   RunSort<std::uint32_t, std::uint32_t> order;
   for (std::uint32_t n : {0U, 1U, 2U, 3U, 1000U, 1001U}) {

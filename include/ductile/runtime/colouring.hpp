@@ -13,6 +13,7 @@
 
 #include "ductile/runtime/detail/blocked_colouring.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/priority_colouring.hpp"
 #include "ductile/runtime/detail/speculative_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
@@ -24,6 +25,8 @@ enum class ColouringMethod {
   automatic,     ///< the fastest that keeps the executor's promise about determinism
   serial,        ///< first-fit in vertex order on the calling thread
   blocked,       ///< strided blocks side by side, clashes repaired by priority; deterministic
+  by_priority,   ///< hashed priority decides who waits for whom; deterministic, a yardstick
+                 ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
   detect_again,  ///< speculate; detect and recolour at once, one barrier a round
                  ///< (Rokos, Gorman, Kelly, Euro-Par 2015)
   two_phase,     ///< speculate; colour, then detect, a barrier after each
@@ -65,8 +68,9 @@ std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32
 
 }  // namespace detail
 
-/// Colours all vertices. `serial` and `blocked` give the same colours at any thread count, the
-/// others do not. Throws std::bad_alloc and what the graph throws. Thread safety: any thread.
+/// Colours all vertices. `serial`, `blocked` and `by_priority` give the same colours at any thread
+/// count, the others do not. Throws std::bad_alloc and what the graph throws. Thread safety: any
+/// thread.
 template <Graph G>
 Colouring colour(const Executor& executor, const G& graph,
                  ColouringMethod method = ColouringMethod::automatic) {
@@ -81,6 +85,9 @@ Colouring colour(const Executor& executor, const G& graph,
     case ColouringMethod::automatic:  // blocked is deterministic and no slower than the others
     case ColouringMethod::blocked:
       detail::colour_all<detail::Blocked>(executor, graph, colour_of);
+      break;
+    case ColouringMethod::by_priority:
+      detail::colour_all<detail::ByPriority>(executor, graph, colour_of);
       break;
     case ColouringMethod::detect_again:
       detail::colour_all<detail::DetectAgain>(executor, graph, colour_of);

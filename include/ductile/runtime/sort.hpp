@@ -1,6 +1,7 @@
 /// @file
-/// parallel_sort: sorts by operator< on all threads of an executor. The result does not depend on
-/// threads or timing as long as items of which neither is less are identical.
+/// parallel_sort, parallel_unique: sort by operator<, and drop repetitions, on all threads of an
+/// executor. The result does not depend on threads or timing as long as items of which neither is
+/// less are identical.
 /// Unsigned integers by radix, least significant digit first; other types by sorted blocks merged
 /// pairwise, each merge cut into pieces of equal length ("merge path").
 #pragma once
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <iterator>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/executor.hpp"
@@ -25,6 +27,15 @@ constexpr std::size_t block_size = 32768;
 constexpr unsigned digit_bits = 11;
 constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
 using DigitCounts = std::array<std::size_t, digit_count>;
+
+template <class T>
+void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
+  parallel_for_blocks(executor, from.size(), block_size,
+                      [&](std::size_t, std::size_t begin, std::size_t end) {
+                        const std::span part = from.subspan(begin, end - begin);
+                        std::copy(part.begin(), part.end(), to.data() + begin);
+                      });
+}
 
 /// Stable: sorts `from` by the digit at `shift` into `to`, block by block.
 template <std::unsigned_integral T>
@@ -54,7 +65,9 @@ void scatter_by_digit(const Executor& executor, std::span<const T> from, std::sp
 
 template <std::unsigned_integral T>
 void radix_sort(const Executor& executor, std::span<T> values) {
-  const T top = *std::max_element(values.begin(), values.end());
+  const T top = parallel_reduce(
+      executor, values.size(), T{0}, [&](std::size_t i) { return values[i]; },
+      [](T a, T b) { return std::max(a, b); });
   const auto bits = static_cast<unsigned>(std::bit_width(top));
   const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
   const std::size_t block = std::max(block_size, (values.size() + most_blocks - 1) / most_blocks);
@@ -65,7 +78,7 @@ void radix_sort(const Executor& executor, std::span<T> values) {
     scatter_by_digit<T>(executor, from, to, shift, counts, block);
     std::swap(from, to);
   }
-  if (from.data() != values.data()) std::copy(from.begin(), from.end(), values.begin());
+  if (from.data() != values.data()) copy<T>(executor, from, values);
 }
 
 /// How many of the first `rank` elements of the merge of a and b come from a.
@@ -115,7 +128,7 @@ void merge_sort(const Executor& executor, std::span<T> values) {
     merge_round<T>(executor, from, to, width);
     std::swap(from, to);
   }
-  if (from.data() != values.data()) std::copy(from.begin(), from.end(), values.begin());
+  if (from.data() != values.data()) copy<T>(executor, from, values);
 }
 
 }  // namespace sort_detail
@@ -133,6 +146,27 @@ void parallel_sort(const Executor& executor, std::span<T> values) {
   } else {
     sort_detail::merge_sort(executor, values);
   }
+}
+
+/// Moves the first of each run of equal items (neither is less) of a sorted range to the front, in
+/// order, and returns how many there are. Throws std::bad_alloc. Thread safety: one thread.
+template <class T>
+std::size_t parallel_unique(const Executor& executor, std::span<T> sorted) {
+  const std::size_t block_size = sort_detail::block_size;
+  const auto same = [](const T& a, const T& b) { return !(a < b) && !(b < a); };
+  std::vector<T> before;  // [block], the item before it
+  for (std::size_t i = 0; i < sorted.size(); i += block_size) before.push_back(sorted[i - (i > 0)]);
+  std::vector<std::span<const T>> kept(before.size());
+  parallel_for_blocks(executor, sorted.size(), block_size,
+                      [&](std::size_t block, std::size_t begin, std::size_t end) {
+                        const std::span part = sorted.subspan(begin, end - begin);
+                        const auto last = std::unique(part.begin(), part.end(), same);
+                        const bool repeats = block > 0 && same(before[block], part.front());
+                        kept[block] = {part.begin() + (repeats ? 1 : 0), last};
+                      });
+  T* end = sorted.data();
+  for (const std::span<const T> part : kept) end = std::copy(part.begin(), part.end(), end);
+  return static_cast<std::size_t>(end - sorted.data());
 }
 
 }  // namespace ductile::runtime

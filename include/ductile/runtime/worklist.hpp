@@ -69,7 +69,10 @@ class Worklist {
     if (size_ > segment_end(0)) gather();
     const bool sorted = options_.unique || options_.order == WorkOrder::by_item;
     if (sorted) parallel_sort(executor_, mutable_items());
-    if (options_.unique) drop_duplicates();
+    if (options_.unique) {
+      size_ = parallel_unique(executor_, mutable_items());
+      length_.store(size_, std::memory_order_relaxed);
+    }
   }
 
   /// The items as of the last collect(). Thread safety: any thread while nobody changes the list.
@@ -166,13 +169,6 @@ class Worklist {
     for (unsigned k = 0; k < segment_count; ++k) free_segment(k);
     first_bits_ = bits;
     segments_[0].store(whole, std::memory_order_relaxed);
-  }
-
-  void drop_duplicates() {
-    const std::span<T> all = mutable_items();
-    const auto same = [](const T& a, const T& b) { return !(a < b) && !(b < a); };
-    size_ = static_cast<std::size_t>(std::unique(all.begin(), all.end(), same) - all.begin());
-    length_.store(size_, std::memory_order_relaxed);
   }
 
   Executor executor_;

@@ -5,8 +5,7 @@
 /// block of the step does not count, but is noted: after the last step the pairs that turn out to
 /// have one colour are repaired. Blocks of a step are far apart, so where ids follow the graph
 /// there are hardly any such pairs, and else they are few because a step is a small part of all.
-/// Repair is greedy by hashed priority: a vertex waits for its waiting neighbours of higher
-/// priority, so its new colour is the same whenever it is found.
+/// Repair is by hashed priority, see priority_colouring.hpp.
 #pragma once
 
 #include <algorithm>
@@ -18,9 +17,9 @@
 #include <vector>
 
 #include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/priority_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
-#include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
 
@@ -79,7 +78,7 @@ class BlockedRun {
                    {.grain = 1});
     find_losers();
     losers_.collect();
-    repair(losers_.take());
+    colour_by_priority(executor_, graph_, losers_.take(), colours_);
   }
 
  private:
@@ -124,8 +123,6 @@ class BlockedRun {
     return std::binary_search(vertices_.list, vertices_.list + vertices_.count, v);
   }
 
-  static bool outranks(std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); }
-
   void find_losers() {
     parallel_for(executor_, blind_.size(),
                  [&](std::size_t t) {
@@ -133,34 +130,6 @@ class BlockedRun {
                      if (colours_[u] == colours_[v]) losers_.append(outranks(u, v) ? v : u);
                  },
                  {.grain = 1});
-  }
-
-  void repair(std::vector<std::uint32_t> vertices) {
-    const LoopOptions loop{.grain = 64, .serial_below = 1024};
-    parallel_for(
-        executor_, vertices.size(),
-        [&](std::size_t i) { colours_.set(vertices[i], Colours<Word>::waiting); }, loop);
-    Worklist<std::uint32_t> later(executor_, {.order = WorkOrder::arrival});
-    while (!vertices.empty()) {
-      parallel_for(
-          executor_, vertices.size(),
-          [&](std::size_t i) {
-            if (!recoloured(vertices[i])) later.append(vertices[i]);
-          },
-          loop);
-      later.collect();
-      vertices = later.take();
-    }
-  }
-
-  /// False if v has to wait for a neighbour.
-  bool recoloured(std::uint32_t v) {
-    bool waits = false;
-    graph_.for_each_neighbour(v, [&](std::uint32_t u) {
-      waits = waits || (colours_[u] == Colours<Word>::waiting && outranks(u, v));
-    });
-    if (!waits) colours_.set(v, least_free(graph_, v, colours_));
-    return !waits;
   }
 
   const Executor& executor_;
