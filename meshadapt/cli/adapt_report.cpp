@@ -98,7 +98,7 @@ std::string to_text(const AdaptSummary& summary, bool with_histograms) {
   std::string text = counts(summary.before) + figures(summary.before, with_histograms);
   text += "adapted in " + seconds(report.total_seconds) + " on " + std::to_string(summary.threads) +
           (summary.threads == 1 ? " thread, " : " threads, ") + std::to_string(report.iterations) +
-          " iterations" + (report.converged ? "" : " (stopped before nothing changed any more)") +
+          " iterations" + (report.converged ? "" : " (the most allowed; more may help: --iterations)") +
           ", peak memory " + with_commas(summary.peak_memory >> 20U) + " MB\n ";
   for (const auto& [name, kernel] : kernels(report))
     text += " " + std::string(name) + " " + seconds(kernel->seconds) + ",";

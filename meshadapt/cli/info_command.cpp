@@ -114,7 +114,7 @@ int run(const Arguments& arguments) {
   }
   print_warnings(warnings);
   if (const auto path = arguments.text("--json")) write_json(*path, mesh, validity, statistics);
-  return done;
+  return validity.reason.empty() ? done : misused;
 }
 
 }  // namespace

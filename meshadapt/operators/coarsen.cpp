@@ -65,12 +65,17 @@ bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
   return false;
 }
 
+/// No new edge is too long; where edges are too long already, none gets longer than they are.
 template <int Dim>
 bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const VertexBuffer& ring) const {
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
+  double longest_after = 0;
   for (const VertexId v : ring)
-    if (v != plan.kept && edge_length(mesh_.site_of[v], kept) > rules_.long_edge) return false;
-  return true;
+    if (v != plan.kept) longest_after = std::max(longest_after, edge_length(mesh_.site_of[v], kept));
+  if (longest_after <= rules_.long_edge) return true;
+  double longest_before = 0;
+  for (const VertexId v : ring) longest_before = std::max(longest_before, mesh_.length(v, plan.gone));
+  return longest_after <= 1.02 * longest_before;
 }
 
 template <int Dim>

@@ -77,9 +77,24 @@ auto Smooth<Dim>::score(VertexId vertex, const Site<Dim>& site, double give_up_b
   return result;
 }
 
+/// Looked at first: it needs no metric, and a place that passes lies inside the domain.
+template <int Dim>
+bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) const {
+  for (const ElementId e : mesh_.elements_of.of(vertex)) {
+    std::array<Vector<Dim>, Dim + 1> p;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const VertexId v = mesh_.corners_of[e][i];
+      p[i] = v == vertex ? position : mesh_.site_of[v].position;
+    }
+    if (!(certain_determinant<Dim>(p) > 0)) return false;
+  }
+  return true;
+}
+
 template <int Dim>
 auto Smooth<Dim>::place(VertexId vertex, const Vector<Dim>& position, ElementId near,
                         double give_up_below) const -> std::optional<Place> {
+  if (!keeps_volumes(vertex, position)) return {};
   const auto sample = background_.sample(position, near);
   Place result{make_site(position, sample.metric), sample.host, {}};
   result.score = score(vertex, result.site, give_up_below);

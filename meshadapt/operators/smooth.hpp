@@ -70,6 +70,7 @@ class Smooth {
     Score score;
   };
   Score score(VertexId vertex, const Site<Dim>& site, double give_up_below) const;
+  bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
   std::optional<Place> place(VertexId vertex, const Vector<Dim>& position, ElementId near,
                              double give_up_below) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;

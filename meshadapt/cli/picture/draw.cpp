@@ -159,7 +159,7 @@ std::string tick_label(const Legend& legend, double t) {
   const double value = legend.tint == Tint::size ? legend.from * std::pow(legend.to / legend.from, t)
                                                  : legend.from + t * (legend.to - legend.from);
   char text[32];
-  std::snprintf(text, sizeof text, legend.tint == Tint::size ? "%.2g" : "%.1f", value);
+  std::snprintf(text, sizeof text, legend.tint == Tint::size ? "%.3g" : "%.1f", value);
   return text;
 }
 

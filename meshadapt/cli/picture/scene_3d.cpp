@@ -85,9 +85,9 @@ std::vector<Face> back_to_front(std::vector<DeepFace> deep) {
 
 /// How light a surface of this normal is: lit from above the viewer's left shoulder.
 double lightness(const Position& normal, const Camera& camera) {
-  const Position light = camera.towards + 0.7 * camera.up + (-0.5) * camera.right;
+  const Position light = camera.towards + 0.6 * camera.up + (-0.35) * camera.right;
   const double cosine = std::abs(dot(normal, light)) / (norm(normal) * norm(light));
-  return 0.5 + 0.5 * cosine;
+  return 0.62 + 0.38 * cosine;
 }
 
 /// The part of a convex polygon where side(corner) <= 0.
