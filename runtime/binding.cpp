@@ -83,6 +83,7 @@ std::shared_ptr<const Places> make_places(Placement placement) {
   std::vector<Unit> units = usable_units(topology);
   order_units(units, placement);
   std::vector<hwloc_cpuset_t> sets;
+  sets.reserve(units.size());
   for (const Unit& unit : units) sets.push_back(unit.set);
   auto places = std::make_shared<Places>(topology, std::move(sets));
   return places->count() == 0 ? nullptr : places;

@@ -53,7 +53,8 @@ std::vector<std::uint32_t> costs(const Shape& shape, std::size_t n, double mean_
         shape.cost(static_cast<double>(i) / static_cast<double>(n), static_cast<std::uint32_t>(i));
   std::vector<std::uint32_t> units(n);
   for (std::size_t i = 0; i < n; ++i)
-    units[i] = static_cast<std::uint32_t>(raw[i] / sum * static_cast<double>(n) * mean_units + 0.5);
+    units[i] =
+        static_cast<std::uint32_t>(std::lround(raw[i] / sum * static_cast<double>(n) * mean_units));
   return units;
 }
 

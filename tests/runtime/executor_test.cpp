@@ -42,9 +42,8 @@ TEST(Executor, BindsThreadsForTheLoopAndNoLonger) {
       std::vector<cpu_set_t> during(static_cast<std::size_t>(threads), before);
       {
         const Executor executor({.threads = threads, .placement = placement});
-        const Executor copy = executor;
         parallel_for(
-            copy, 1000,
+            executor, 1000,
             [&](std::size_t) { during[static_cast<std::size_t>(this_thread())] = affinity(); },
             {.grain = 1});
         EXPECT_TRUE(same(affinity(), before));

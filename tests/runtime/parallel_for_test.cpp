@@ -130,6 +130,7 @@ TEST_P(ParallelFor, RunsLoopsInsideOnTheCallingThread) {
 
 TEST_P(ParallelFor, ServesSeveralCallersAtOnce) {
   std::vector<std::thread> callers;
+  callers.reserve(4);
   std::atomic<int> good{0};
   for (int caller = 0; caller < 4; ++caller)
     callers.emplace_back([&, caller] {

@@ -37,30 +37,32 @@ void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
                       });
 }
 
-/// Stable: sorts `from` by the digit at `shift` into `to`, block by block.
+/// One pass over the digit at `shift`, in blocks of `block` values.
+struct DigitPass {
+  std::size_t block;
+  std::vector<DigitCounts> counts;  // [block], of each digit; then where its values go
+  unsigned shift = 0;
+};
+
+/// Stable: sorts `from` by the pass's digit into `to`.
 template <std::unsigned_integral T>
 void scatter_by_digit(const Executor& executor, std::span<const T> from, std::span<T> to,
-                      unsigned shift, std::vector<DigitCounts>& counts, std::size_t block) {
-  const auto digit = [shift](T value) {
+                      DigitPass& pass) {
+  const auto digit = [shift = pass.shift](T value) {
     return static_cast<std::size_t>(value >> shift) & (digit_count - 1);
   };
-  const LoopOptions loop{.grain = 1};
-  parallel_for_blocks(
-      executor, from.size(), block,
-      [&](std::size_t b, std::size_t begin, std::size_t end) {
-        counts[b].fill(0);
-        for (std::size_t i = begin; i < end; ++i) ++counts[b][digit(from[i])];
-      },
-      loop);
+  const auto count = [&](std::size_t b, std::size_t begin, std::size_t end) {
+    pass.counts[b].fill(0);
+    for (std::size_t i = begin; i < end; ++i) ++pass.counts[b][digit(from[i])];
+  };
+  const auto scatter = [&](std::size_t b, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) to[pass.counts[b][digit(from[i])]++] = from[i];
+  };
+  parallel_for_blocks(executor, from.size(), pass.block, count);
   std::size_t sum = 0;
   for (std::size_t d = 0; d < digit_count; ++d)
-    for (DigitCounts& count : counts) sum += std::exchange(count[d], sum);
-  parallel_for_blocks(
-      executor, from.size(), block,
-      [&](std::size_t b, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) to[counts[b][digit(from[i])]++] = from[i];
-      },
-      loop);
+    for (DigitCounts& counts : pass.counts) sum += std::exchange(counts[d], sum);
+  parallel_for_blocks(executor, from.size(), pass.block, scatter);
 }
 
 template <std::unsigned_integral T>
@@ -71,11 +73,11 @@ void radix_sort(const Executor& executor, std::span<T> values) {
   const auto bits = static_cast<unsigned>(std::bit_width(top));
   const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
   const std::size_t block = std::max(block_size, (values.size() + most_blocks - 1) / most_blocks);
-  std::vector<DigitCounts> counts((values.size() + block - 1) / block);
+  DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block)};
   std::vector<T> scratch(values.size());
   std::span<T> from = values, to = scratch;
-  for (unsigned shift = 0; shift < bits; shift += digit_bits) {
-    scatter_by_digit<T>(executor, from, to, shift, counts, block);
+  for (; pass.shift < bits; pass.shift += digit_bits) {
+    scatter_by_digit<T>(executor, from, to, pass);
     std::swap(from, to);
   }
   if (from.data() != values.data()) copy<T>(executor, from, values);
@@ -137,15 +139,13 @@ void merge_sort(const Executor& executor, std::span<T> values) {
 template <class T>
 void parallel_sort(const Executor& executor, std::span<T> values) {
   if (std::is_sorted(values.begin(), values.end())) return;
-  if (values.size() < 1024) {
-    std::sort(values.begin(), values.end());
-  } else if constexpr (std::unsigned_integral<T>) {
-    sort_detail::radix_sort(executor, values);
-  } else if (executor.threads() == 1 || values.size() <= sort_detail::block_size) {
-    std::sort(values.begin(), values.end());
+  if constexpr (std::unsigned_integral<T>) {
+    if (values.size() >= 1024) return sort_detail::radix_sort(executor, values);
   } else {
-    sort_detail::merge_sort(executor, values);
+    if (executor.threads() > 1 && values.size() > sort_detail::block_size)
+      return sort_detail::merge_sort(executor, values);
   }
+  std::sort(values.begin(), values.end());
 }
 
 /// Moves the first of each run of equal items (neither is less) of a sorted range to the front, in
