@@ -116,8 +116,9 @@ Job read_job(const Arguments& arguments) {
 AnyField choose_metric(const Job& job, const AnyMesh& mesh, meshadapt::Warnings& warnings) {
   if (job.size) return meshadapt::constant_metric(mesh, *job.size);
   if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings);
-  warnings.push_back(mesh.name + ": no metric given (-sol) or found beside it; adapting to the sizes"
-                                 " that the mesh has");
+  warnings.push_back(mesh.name +
+                     ": no metric given (-sol) or found beside it; adapting to the sizes"
+                     " that the mesh has");
   return meshadapt::implied_metric(mesh);
 }
 
@@ -172,9 +173,9 @@ int run(const Arguments& arguments) {
   adapted.mesh.name = job.output.string();
   warnings.insert(warnings.end(), adapted.report.warnings.begin(), adapted.report.warnings.end());
   print_warnings(warnings, job.verbosity);
-  const AdaptSummary summary = summarise(executor, mesh, metric, adapted,
-                                         {.before = job.json || job.verbosity > 1,
-                                          .after = job.json || job.verbosity > 0});
+  const AdaptSummary summary =
+      summarise(executor, mesh, metric, adapted,
+                {.before = job.json || job.verbosity > 1, .after = job.json || job.verbosity > 0});
   write_outputs(job, adapted, job.json ? to_json(summary) : std::string());
   if (job.verbosity > 0) {
     std::printf("%s", to_text(summary, job.verbosity > 1).c_str());
@@ -187,10 +188,13 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 const Command adapt_command{
-    "adapt", "MESH [-sol METRIC] [-o OUT]", "adapts a mesh to a metric",
+    "adapt",
+    "MESH [-sol METRIC] [-o OUT]",
+    "adapts a mesh to a metric",
     "The metric is a size or a tensor at each vertex; edges get a length of about one in it.\n"
     "Without any, the sizes that the mesh has are kept. The metric at the new vertices is written\n"
     "beside the adapted mesh. Old output files stay as they are until the new ones are complete.",
-    options, run};
+    options,
+    run};
 
 }  // namespace ductile::cli

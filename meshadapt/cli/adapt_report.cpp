@@ -17,8 +17,8 @@ using meshadapt::AnyMesh;
 using meshadapt::KernelReport;
 
 MeshSummary summarise_mesh(const AnyMesh& mesh) {
-  return {mesh.name,          mesh.dimension,        mesh.vertex_count(),
-          mesh.edges.size(),  mesh.triangles.size(), mesh.tetrahedra.size(),
+  return {mesh.name,         mesh.dimension,        mesh.vertex_count(),
+          mesh.edges.size(), mesh.triangles.size(), mesh.tetrahedra.size(),
           std::nullopt};
 }
 
@@ -98,7 +98,8 @@ std::string to_text(const AdaptSummary& summary, bool with_histograms) {
   std::string text = counts(summary.before) + figures(summary.before, with_histograms);
   text += "adapted in " + seconds(report.total_seconds) + " on " + std::to_string(summary.threads) +
           (summary.threads == 1 ? " thread, " : " threads, ") + std::to_string(report.iterations) +
-          " iterations" + (report.converged ? "" : " (the most allowed; more may help: --iterations)") +
+          " iterations" +
+          (report.converged ? "" : " (the most allowed; more may help: --iterations)") +
           ", peak memory " + with_commas(summary.peak_memory >> 20U) + " MB\n ";
   for (const auto& [name, kernel] : kernels(report))
     text += " " + std::string(name) + " " + seconds(kernel->seconds) + ",";
@@ -118,9 +119,9 @@ std::string to_json(const AdaptSummary& summary) {
          ",\n \"threads\": " + std::to_string(summary.threads) +
          ", \"deterministic\": " + (summary.deterministic ? "true" : "false") +
          ", \"iterations\": " + std::to_string(report.iterations) +
-         ", \"converged\": " + (report.converged ? "true" : "false") +
-         ",\n \"kernels\": {" + kernel_list + "},\n \"seconds\": {\"total\": " +
-         json_number(report.total_seconds) + ", \"setup\": " + json_number(report.setup_seconds) +
+         ", \"converged\": " + (report.converged ? "true" : "false") + ",\n \"kernels\": {" +
+         kernel_list + "},\n \"seconds\": {\"total\": " + json_number(report.total_seconds) +
+         ", \"setup\": " + json_number(report.setup_seconds) +
          ", \"renumber\": " + json_number(report.renumber_seconds) +
          "},\n \"peak_memory_bytes\": " + std::to_string(summary.peak_memory) +
          ",\n \"warnings\": [" + warnings + "]}\n";

@@ -82,8 +82,10 @@ Arguments::Arguments(std::span<const Option> options, std::span<const std::strin
                        words.end());
       return;
     }
-    if (looks_like_option(words[at])) take(options, words, at);
-    else operands_.push_back(words[at]);
+    if (looks_like_option(words[at]))
+      take(options, words, at);
+    else
+      operands_.push_back(words[at]);
   }
 }
 

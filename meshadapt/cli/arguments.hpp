@@ -1,7 +1,8 @@
 /// @file
 /// Arguments: a command line taken apart by a table of options. One or two dashes mean the same, so
 /// what Mmg's users type (-hmin 0.1) and GNU's long form (--hmin=0.1) both work. Whatever is wrong
-/// is told by a UsageError that says what was expected and, for an unknown option, which is nearest.
+/// is told by a UsageError that says what was expected and, for an unknown option, which is
+/// nearest.
 #pragma once
 
 #include <map>
@@ -22,10 +23,10 @@ class UsageError : public meshadapt::InputError {
 };
 
 struct Option {
-  std::string_view name;      ///< with its dashes, as help shows it
-  std::string_view value;     ///< what follows it, e.g. FILE; empty for a flag
-  std::string_view help;      ///< one line
-  std::string_view alias{};   ///< another name, with its dashes
+  std::string_view name;     ///< with its dashes, as help shows it
+  std::string_view value;    ///< what follows it, e.g. FILE; empty for a flag
+  std::string_view help;     ///< one line
+  std::string_view alias{};  ///< another name, with its dashes
 };
 
 class Arguments {

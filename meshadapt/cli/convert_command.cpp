@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<Option, 2> options{{
     {"-sol", "FIELD", "for .vtu: the field at the vertices to take along"},
-    {"--version-of-file", "N", "GMF version to write, 1 to 4 (default: 2, more if the size needs it)"},
+    {"--version-of-file", "N",
+     "GMF version to write, 1 to 4 (default: 2, more if the size needs it)"},
 }};
 
 bool holds_field(const fs::path& path) {
@@ -49,8 +50,10 @@ int run(const Arguments& arguments) {
   const meshadapt::GmfOptions form{.version =
                                        arguments.integer("--version-of-file", 1, 4).value_or(0)};
   meshadapt::Warnings warnings;
-  if (field) meshadapt::write_field(to, meshadapt::read_field(from, &warnings), form);
-  else convert_mesh(from, to, arguments, form, warnings);
+  if (field)
+    meshadapt::write_field(to, meshadapt::read_field(from, &warnings), form);
+  else
+    convert_mesh(from, to, arguments, form, warnings);
   print_warnings(warnings);
   return done;
 }
@@ -58,7 +61,11 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 const Command convert_command{
-    "convert", "IN OUT [-sol FIELD]", "writes a mesh or a field in another format",
-    "Meshes: .mesh, .meshb (read and written), .vtu (written). Fields: .sol, .solb.", options, run};
+    "convert",
+    "IN OUT [-sol FIELD]",
+    "writes a mesh or a field in another format",
+    "Meshes: .mesh, .meshb (read and written), .vtu (written). Fields: .sol, .solb.",
+    options,
+    run};
 
 }  // namespace ductile::cli

@@ -80,14 +80,14 @@ void print_counts(const AnyMesh& mesh) {
 void write_json(const std::string& path, const AnyMesh& mesh, const Validity& validity,
                 const std::string& statistics) {
   meshadapt::AtomicOutputs outputs;
-  outputs.stage(path).write(
-      "{\"mesh\": " + json_string(mesh.name) + ", \"dimension\": " +
-      std::to_string(mesh.dimension) + ", \"valid\": " + (validity.reason.empty() ? "true" : "false") +
-      ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
-      ", \"edges\": " + std::to_string(mesh.edges.size()) +
-      ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
-      ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
-      ", \"statistics\": " + statistics + "}\n");
+  outputs.stage(path).write("{\"mesh\": " + json_string(mesh.name) +
+                            ", \"dimension\": " + std::to_string(mesh.dimension) +
+                            ", \"valid\": " + (validity.reason.empty() ? "true" : "false") +
+                            ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
+                            ", \"edges\": " + std::to_string(mesh.edges.size()) +
+                            ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
+                            ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
+                            ", \"statistics\": " + statistics + "}\n");
   outputs.commit();
 }
 
@@ -99,8 +99,8 @@ int run(const Arguments& arguments) {
   const AnyMesh mesh = meshadapt::read_mesh(arguments.operands()[0], &warnings);
   std::optional<AnyField> metric;
   if (const auto path = arguments.text("-sol")) metric = read_metric(*path, mesh, warnings);
-  const bool has_elements = !(mesh.dimension == 2 ? mesh.triangles.reference.empty()
-                                                  : mesh.tetrahedra.reference.empty());
+  const bool has_elements =
+      !(mesh.dimension == 2 ? mesh.triangles.reference.empty() : mesh.tetrahedra.reference.empty());
   print_counts(mesh);
   const Validity validity = check(executor, mesh);
   warnings.insert(warnings.end(), validity.warnings.begin(), validity.warnings.end());
@@ -120,8 +120,11 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 const Command info_command{
-    "info", "MESH [-sol METRIC]",
+    "info",
+    "MESH [-sol METRIC]",
     "counts, references, validity, edge lengths and quality of a mesh",
-    "Without a metric, lengths and quality are those of plain Euclidean geometry.", options, run};
+    "Without a metric, lengths and quality are those of plain Euclidean geometry.",
+    options,
+    run};
 
 }  // namespace ductile::cli

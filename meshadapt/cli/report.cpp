@@ -23,13 +23,14 @@ std::string format(const char* pattern, Values... values) {
 }
 
 std::string figures(const char* name, const Distribution& d) {
-  return format("  %-12s min %.4g, 1 %% below %.4g, median %.4g, mean %.4g, max %.4g\n", name, d.min,
-                d.low, d.median, d.mean, d.max);
+  return format("  %-12s min %.4g, 1 %% below %.4g, median %.4g, mean %.4g, max %.4g\n", name,
+                d.min, d.low, d.median, d.mean, d.max);
 }
 
 std::string bar(std::size_t count, std::size_t most) {
   constexpr double width = 40;
-  const double length = most == 0 ? 0 : width * static_cast<double>(count) / static_cast<double>(most);
+  const double length =
+      most == 0 ? 0 : width * static_cast<double>(count) / static_cast<double>(most);
   return std::string(static_cast<std::size_t>(std::ceil(length)), '#');
 }
 
@@ -44,14 +45,15 @@ std::string histogram(const Distribution& d) {
   if (d.count == 0) return {};
   std::size_t most = std::max(d.below, d.above);
   for (const std::size_t count : d.histogram) most = std::max(most, count);
-  const double width = (d.histogram_to - d.histogram_from) / static_cast<double>(d.histogram.size());
+  const double width =
+      (d.histogram_to - d.histogram_from) / static_cast<double>(d.histogram.size());
   std::string text;
   if (d.below > 0)
     text += histogram_line(format("below %.3g", d.histogram_from), d.below, most, d.count);
   for (std::size_t bin = 0; bin < d.histogram.size(); ++bin) {
     const double from = d.histogram_from + width * static_cast<double>(bin);
-    text += histogram_line(format("%.3g to %.3g", from, from + width), d.histogram[bin], most,
-                           d.count);
+    text +=
+        histogram_line(format("%.3g to %.3g", from, from + width), d.histogram[bin], most, d.count);
   }
   if (d.above > 0)
     text += histogram_line(format("above %.3g", d.histogram_to), d.above, most, d.count);
@@ -67,7 +69,8 @@ std::string json_of(const Distribution& d) {
          ", \"mean\": " + json_number(d.mean) + ", \"max\": " + json_number(d.max) +
          ", \"histogram_from\": " + json_number(d.histogram_from) +
          ", \"histogram_to\": " + json_number(d.histogram_to) + ", \"histogram\": [" + bins +
-         "], \"below\": " + std::to_string(d.below) + ", \"above\": " + std::to_string(d.above) + "}";
+         "], \"below\": " + std::to_string(d.below) + ", \"above\": " + std::to_string(d.above) +
+         "}";
 }
 
 }  // namespace
@@ -104,9 +107,12 @@ std::string to_json(const MeshStatistics& s) {
 std::string json_string(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += std::string("\\") + c;
-    else if (static_cast<unsigned char>(c) < 0x20) quoted += format("\\u%04x", c);
-    else quoted += c;
+    if (c == '"' || c == '\\')
+      quoted += std::string("\\") + c;
+    else if (static_cast<unsigned char>(c) < 0x20)
+      quoted += format("\\u%04x", c);
+    else
+      quoted += c;
   }
   return quoted + "\"";
 }

@@ -57,7 +57,8 @@ int run(const Arguments& arguments) {
   const int size = arguments.integer("--size", 50, 8000).value_or(1000);
   meshadapt::check_writable(picture);
 
-  const runtime::Executor executor({.threads = arguments.integer("--threads", 1, 4096).value_or(0)});
+  const runtime::Executor executor(
+      {.threads = arguments.integer("--threads", 1, 4096).value_or(0)});
   meshadapt::Warnings warnings;
   const meshadapt::AnyMesh mesh = meshadapt::read_mesh(input, &warnings);
   std::optional<meshadapt::AnyField> metric;
@@ -74,7 +75,11 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 const Command view_command{
-    "view", "MESH [-o PICTURE.png|.svg]", "draws a mesh",
-    "2D: the triangles. 3D: the surface by reference, and a cut through the middle.", options, run};
+    "view",
+    "MESH [-o PICTURE.png|.svg]",
+    "draws a mesh",
+    "2D: the triangles. 3D: the surface by reference, and a cut through the middle.",
+    options,
+    run};
 
 }  // namespace ductile::cli

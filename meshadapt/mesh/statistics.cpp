@@ -18,8 +18,10 @@ using runtime::Executor;
 
 template <int Dim>
 const std::vector<Corners<Dim>>& elements_of(const AnyMesh& mesh) {
-  if constexpr (Dim == 2) return mesh.triangles.vertices;
-  else return mesh.tetrahedra.vertices;
+  if constexpr (Dim == 2)
+    return mesh.triangles.vertices;
+  else
+    return mesh.tetrahedra.vertices;
 }
 
 /// Vertices with their metric; the identity where there is none.
@@ -43,8 +45,10 @@ template <int Dim>
 double signed_measure(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   const Vector<Dim> u = corner[1]->position - corner[0]->position;
   const Vector<Dim> v = corner[2]->position - corner[0]->position;
-  if constexpr (Dim == 2) return (u[0] * v[1] - u[1] * v[0]) / 2;
-  else return dot(cross(u, v), corner[3]->position - corner[0]->position) / 6;
+  if constexpr (Dim == 2)
+    return (u[0] * v[1] - u[1] * v[0]) / 2;
+  else
+    return dot(cross(u, v), corner[3]->position - corner[0]->position) / 6;
 }
 
 template <int Dim>
@@ -148,8 +152,7 @@ MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const A
     result.complexity = complexity_of<Dim>(executor, site_of, elements);
     result.edges_short = count_if_below(executor, lengths, std::sqrt(0.5));
     const double past_long = std::nextafter(std::numbers::sqrt2, 2.0);
-    result.edges_in_range =
-        count_if_below(executor, lengths, past_long) - result.edges_short;
+    result.edges_in_range = count_if_below(executor, lengths, past_long) - result.edges_short;
     result.edges_long = lengths.size() - result.edges_short - result.edges_in_range;
     result.edge_length = distribution(executor, std::move(lengths), 0, 3);
   } else {

@@ -26,7 +26,8 @@ double distance(const AnyMesh& mesh, std::size_t a, std::size_t b) {
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
   double squares = 0;
   for (std::size_t axis = 0; axis < dimension; ++axis) {
-    const double d = mesh.coordinates[a * dimension + axis] - mesh.coordinates[b * dimension + axis];
+    const double d =
+        mesh.coordinates[a * dimension + axis] - mesh.coordinates[b * dimension + axis];
     squares += d * d;
   }
   return std::sqrt(squares);
@@ -63,8 +64,10 @@ AnyField constant_metric(const AnyMesh& mesh, double size) {
 
 AnyField implied_metric(const AnyMesh& mesh) {
   LogLengths logs(mesh.vertex_count());
-  if (mesh.dimension == 2) add_cells(logs, mesh, mesh.triangles);
-  else add_cells(logs, mesh, mesh.tetrahedra);
+  if (mesh.dimension == 2)
+    add_cells(logs, mesh, mesh.triangles);
+  else
+    add_cells(logs, mesh, mesh.tetrahedra);
   double sum = 0, count = 0;
   for (std::size_t v = 0; v < logs.sum.size(); ++v) {
     sum += logs.sum[v];

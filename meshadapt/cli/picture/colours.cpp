@@ -11,8 +11,8 @@ namespace ductile::cli {
 namespace {
 
 constexpr Colour hex(std::uint32_t rgb) {
-  return {static_cast<double>(rgb >> 16U & 0xffU) / 255, static_cast<double>(rgb >> 8U & 0xffU) / 255,
-          static_cast<double>(rgb & 0xffU) / 255};
+  return {static_cast<double>(rgb >> 16U & 0xffU) / 255,
+          static_cast<double>(rgb >> 8U & 0xffU) / 255, static_cast<double>(rgb & 0xffU) / 255};
 }
 
 Colour interpolate(std::span<const Colour> stops, double t) {

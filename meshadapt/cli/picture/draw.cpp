@@ -42,8 +42,8 @@ Bounds bounds_of(const Panel& panel) {
 struct Layout {
   double size = 0;  ///< larger side of a panel
   double margin = 0, text = 0;
-  double scale = 1;                 ///< pixels per unit of the scene, the same in all panels
-  std::vector<Bounds> bounds{};     ///< [panel]
+  double scale = 1;              ///< pixels per unit of the scene, the same in all panels
+  std::vector<Bounds> bounds{};  ///< [panel]
   double panel_width = 0, panel_height = 0;
   double width = 0, height = 0;
 };
@@ -91,8 +91,10 @@ struct ToPixels {
 void trace(cairo_t* pen, const Face& face, const ToPixels& to_pixels) {
   for (int i = 0; i < face.corners; ++i) {
     const Point p = to_pixels(face.corner[static_cast<std::size_t>(i)]);
-    if (i == 0) cairo_move_to(pen, p.x, p.y);
-    else cairo_line_to(pen, p.x, p.y);
+    if (i == 0)
+      cairo_move_to(pen, p.x, p.y);
+    else
+      cairo_line_to(pen, p.x, p.y);
   }
   cairo_close_path(pen);
 }
@@ -156,8 +158,9 @@ Colour scale_colour(const Legend& legend, double t) {
 }
 
 std::string tick_label(const Legend& legend, double t) {
-  const double value = legend.tint == Tint::size ? legend.from * std::pow(legend.to / legend.from, t)
-                                                 : legend.from + t * (legend.to - legend.from);
+  const double value = legend.tint == Tint::size
+                           ? legend.from * std::pow(legend.to / legend.from, t)
+                           : legend.from + t * (legend.to - legend.from);
   char text[32];
   std::snprintf(text, sizeof text, legend.tint == Tint::size ? "%.3g" : "%.1f", value);
   return text;
@@ -198,11 +201,14 @@ void draw_swatches(cairo_t* pen, const Legend& legend, double x, double y, doubl
   }
 }
 
-void draw_legend(cairo_t* pen, const Legend& legend, double x, double y, double width, double text) {
+void draw_legend(cairo_t* pen, const Legend& legend, double x, double y, double width,
+                 double text) {
   cairo_set_source_rgb(pen, 0, 0, 0);
   write(pen, x, y, legend.title + (legend.tint == Tint::reference ? ", by reference" : ""));
-  if (legend.tint == Tint::reference) draw_swatches(pen, legend, x, y + 0.5 * text, width, text);
-  else draw_scale(pen, legend, x, y + 0.5 * text, width, text);
+  if (legend.tint == Tint::reference)
+    draw_swatches(pen, legend, x, y + 0.5 * text, width, text);
+  else
+    draw_scale(pen, legend, x, y + 0.5 * text, width, text);
 }
 
 // ---- The whole ----
@@ -217,18 +223,20 @@ void draw_scene(cairo_t* pen, const Scene& scene, const Layout& layout, PictureF
   const bool titled = scene.panels.size() > 1;
   const double top = layout.margin + (titled ? 2.2 : 1.0) * layout.text;
   for (std::size_t i = 0; i < scene.panels.size(); ++i) {
-    const double left = layout.margin + static_cast<double>(i) * (layout.panel_width + layout.margin);
+    const double left =
+        layout.margin + static_cast<double>(i) * (layout.panel_width + layout.margin);
     const Bounds& b = layout.bounds[i];
     if (scene.panels[i].faces.empty()) continue;
     cairo_set_source_rgb(pen, 0, 0, 0);
     if (titled) write(pen, left, top - 0.5 * layout.text, scene.panels[i].title);
-    const ToPixels to_pixels{
-        left + layout.panel_width / 2 - layout.scale * (b.left + b.right) / 2,
-        top + layout.panel_height / 2 + layout.scale * (b.bottom + b.top) / 2, layout.scale};
+    const ToPixels to_pixels{left + layout.panel_width / 2 - layout.scale * (b.left + b.right) / 2,
+                             top + layout.panel_height / 2 + layout.scale * (b.bottom + b.top) / 2,
+                             layout.scale};
     draw_panel(pen, scene.panels[i], to_pixels, format);
   }
   const double below = top + layout.panel_height + 1.5 * layout.text;
-  const std::size_t first = scene.panels.size() - std::min(scene.panels.size(), scene.legends.size());
+  const std::size_t first =
+      scene.panels.size() - std::min(scene.panels.size(), scene.legends.size());
   for (std::size_t i = 0; i < scene.legends.size(); ++i) {
     const double left =
         layout.margin + static_cast<double>(first + i) * (layout.panel_width + layout.margin);
@@ -279,10 +287,9 @@ std::string draw_png(const Scene& scene, const Layout& layout) {
 
 std::string draw_svg(const Scene& scene, const Layout& layout) {
   if (scene.face_count() > most_svg_faces)
-    throw meshadapt::InputError(
-        "the picture would have " + with_commas(scene.face_count()) +
-        " polygons, expected at most " + with_commas(most_svg_faces) +
-        " for an .svg; give the picture a name ending in .png instead");
+    throw meshadapt::InputError("the picture would have " + with_commas(scene.face_count()) +
+                                " polygons, expected at most " + with_commas(most_svg_faces) +
+                                " for an .svg; give the picture a name ending in .png instead");
   std::string bytes;
   {
     const Surface surface(

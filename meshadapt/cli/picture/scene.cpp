@@ -15,7 +15,8 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 
 Position position(const AnyMesh& mesh, std::uint32_t vertex) {
-  const double* x = &mesh.coordinates[std::size_t{vertex} * static_cast<std::size_t>(mesh.dimension)];
+  const double* x =
+      &mesh.coordinates[std::size_t{vertex} * static_cast<std::size_t>(mesh.dimension)];
   return {{x[0], x[1], mesh.dimension == 3 ? x[2] : 0}};
 }
 
@@ -39,7 +40,8 @@ Tinting tint_by_size(const AnyMesh& mesh, std::size_t elements) {
   std::vector<double> sorted = size;
   std::sort(sorted.begin(), sorted.end());
   const auto at = [&](double share) {
-    return std::max(sorted[static_cast<std::size_t>(share * static_cast<double>(elements - 1))], 1e-300);
+    return std::max(sorted[static_cast<std::size_t>(share * static_cast<double>(elements - 1))],
+                    1e-300);
   };
   Tinting result{.legend = {.title = "size of the elements (edge of the regular one of the same " +
                                      std::string(mesh.dimension == 2 ? "area)" : "volume)"),
@@ -72,7 +74,8 @@ void add_solid(Scene& scene, const AnyMesh& mesh, const Tinting& tinting, int ax
   scene.panels.push_back(surface_panel(mesh, camera));
   const std::vector<std::int32_t> references = distinct(mesh.triangles.reference);
   if (references.size() > 1)
-    scene.legends.push_back({.title = "surface", .tint = Tint::reference, .references = references});
+    scene.legends.push_back(
+        {.title = "surface", .tint = Tint::reference, .references = references});
   if (mesh.tetrahedra.size() == 0) return;
   scene.panels.push_back(cut_panel(mesh, tinting.colour_of, camera, axis));
   scene.legends.push_back(tinting.legend);

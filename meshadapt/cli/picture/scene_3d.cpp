@@ -39,11 +39,14 @@ std::vector<Skin> facets_of_one(const AnyMesh& mesh) {
       facets.push_back({sorted(corners), corners});
     }
   }
-  std::sort(facets.begin(), facets.end(), [](const Skin& a, const Skin& b) { return a.key < b.key; });
+  std::sort(facets.begin(), facets.end(),
+            [](const Skin& a, const Skin& b) { return a.key < b.key; });
   std::vector<Skin> skin;
   for (std::size_t i = 0; i < facets.size(); ++i) {
-    if (i + 1 < facets.size() && facets[i].key == facets[i + 1].key) ++i;
-    else skin.push_back(facets[i]);
+    if (i + 1 < facets.size() && facets[i].key == facets[i + 1].key)
+      ++i;
+    else
+      skin.push_back(facets[i]);
   }
   return skin;
 }
@@ -144,7 +147,8 @@ std::vector<Position> section(const std::array<Position, 4>& corner, auto&& side
             between(behind[1], before[1]), between(behind[1], before[0])};
   const Position& apex = behind.size() == 1 ? behind[0] : before[0];
   std::vector<Position> triangle;
-  for (const Position& p : behind.size() == 1 ? before : behind) triangle.push_back(between(p, apex));
+  for (const Position& p : behind.size() == 1 ? before : behind)
+    triangle.push_back(between(p, apex));
   return triangle;
 }
 
@@ -193,12 +197,14 @@ Panel cut_panel(const AnyMesh& mesh, const std::vector<Colour>& colour_of, const
   panel.title.erase(panel.title.find_last_not_of('0') + 1);
   if (panel.title.ends_with('.')) panel.title.pop_back();
   panel.faces = visible_faces(
-      mesh, camera, [](const Skin&) { return Colour{0.86, 0.86, 0.86}; },
+      mesh, camera,
+      [](const Skin&) {
+        return Colour{0.86, 0.86, 0.86};
+      },
       [&](const std::vector<Position>& polygon) { return clip(polygon, side); });
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
     std::array<Position, 4> corner;
-    for (std::size_t i = 0; i < 4; ++i)
-      corner[i] = position(mesh, mesh.tetrahedra.vertices[e][i]);
+    for (std::size_t i = 0; i < 4; ++i) corner[i] = position(mesh, mesh.tetrahedra.vertices[e][i]);
     const std::vector<Position> polygon = section(corner, side);
     if (polygon.size() >= 3) panel.faces.push_back(project(polygon, colour_of[e], camera).face);
   }

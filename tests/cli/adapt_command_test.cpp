@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "program.hpp"
+
+namespace ductile::cli {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(AdaptCommand, TakesTheMetricBesideTheMeshAndWritesBesideIt) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const Outcome outcome = folder.run("adapt waves2d.mesh");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "written: waves2d.o.mesh, waves2d.o.sol")) << outcome.out;
+  EXPECT_EQ(folder.run("info waves2d.o.mesh -sol waves2d.o.sol").status, 0);
+  EXPECT_EQ(folder.file_count(), 4U);
+}
+
+TEST(AdaptCommand, WritesBinaryForBinary) {
+  const Folder folder;
+  folder.add_example("waves3d");
+  folder.run("convert waves3d.mesh b.meshb");
+  folder.run("convert waves3d.sol b.solb");
+  const Outcome outcome = folder.run("adapt b.meshb --iterations 1");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(folder.has("b.o.meshb"));
+  EXPECT_TRUE(folder.has("b.o.solb"));
+}
+
+TEST(AdaptCommand, DoesNotDependOnThreads) {
+  const Folder folder;
+  folder.add_example("waves3d");
+  for (const char* threads : {"1", "2", "8"})
+    EXPECT_EQ(folder
+                  .run(std::string("adapt waves3d.mesh --iterations 2 --threads ") + threads +
+                       " -o " + threads + ".mesh")
+                  .status,
+              0);
+  EXPECT_EQ(folder.read("1.mesh"), folder.read("2.mesh"));
+  EXPECT_EQ(folder.read("1.mesh"), folder.read("8.mesh"));
+  EXPECT_EQ(folder.read("1.sol"), folder.read("8.sol"));
+}
+
+TEST(AdaptCommand, TakesMmgsOptions) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const Outcome outcome = folder.run(
+      "adapt waves2d.mesh -sol waves2d.sol -out a.mesh -hmin 0.01 -hmax 0.2 -hgrad 1.5 -nomove "
+      "-noswap -noinsert -nosurf -v 0 -m 2000");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_TRUE(folder.has("a.mesh"));
+}
+
+TEST(AdaptCommand, AdaptsToOneSizeAndToTheSizesThatThereAre) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  EXPECT_EQ(folder.run("adapt waves2d.mesh -hsiz 0.1 -o one.mesh").status, 0);
+  std::filesystem::remove(folder.path() / "waves2d.sol");
+  const Outcome outcome = folder.run("adapt waves2d.mesh -o same.mesh");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(contains(outcome.err, "no metric given")) << outcome.err;
+}
+
+TEST(AdaptCommand, ReportsAsJsonAndForParaView) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  EXPECT_EQ(folder.run("adapt waves2d.mesh --json r.json --vtu r.vtu --racing").status, 0);
+  const std::string json = folder.read("r.json");
+  for (const char* part : {"\"before\"", "\"after\"", "\"coarsen\"", "\"seconds\"", "\"threads\"",
+                           "\"peak_memory_bytes\"", "\"deterministic\": false", "\"quality\""})
+    EXPECT_TRUE(contains(json, part)) << part;
+  EXPECT_TRUE(contains(folder.read("r.vtu"), "UnstructuredGrid"));
+}
+
+TEST(AdaptCommand, SaysNothingOfProgressInAPipe) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const Outcome outcome = folder.run("adapt waves2d.mesh");
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_FALSE(contains(outcome.out, "\r"));
+  EXPECT_FALSE(contains(outcome.out, "\033"));
+}
+
+TEST(AdaptCommand, LeavesOldOutputWhenTheInputIsWrong) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  folder.write("waves2d.o.mesh", "old mesh");
+  folder.write("waves2d.o.sol", "old metric");
+  folder.write("bad.sol",
+               "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n3\n1 1\n1\n1\n1\nEnd\n");
+  const Outcome outcome = folder.run("adapt waves2d.mesh -sol bad.sol");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(contains(outcome.err, "bad.sol")) << outcome.err;
+  EXPECT_EQ(folder.read("waves2d.o.mesh"), "old mesh");
+  EXPECT_EQ(folder.read("waves2d.o.sol"), "old metric");
+  EXPECT_EQ(folder.file_count(), 5U);
+}
+
+TEST(AdaptCommand, ChecksItsOutputsBeforeItWorks) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  for (const char* option : {"-o", "--json", "--vtu"}) {
+    const Outcome outcome =
+        folder.run(std::string("adapt waves2d.mesh ") + option + " nowhere/out." +
+                   (std::string(option) == "--vtu" ? "vtu" : "mesh"));
+    EXPECT_EQ(outcome.status, 2) << option;
+    EXPECT_TRUE(contains(outcome.err, "nowhere")) << outcome.err;
+  }
+  EXPECT_EQ(folder.file_count(), 2U);
+}
+
+}  // namespace
+}  // namespace ductile::cli

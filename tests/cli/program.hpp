@@ -1,0 +1,39 @@
+/// @file
+/// Runs the real program in a folder of its own and tells what it said.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace ductile::cli {
+
+struct Outcome {
+  int status = -1;  ///< exit status
+  std::string out, err;
+};
+
+/// A new empty folder, gone with the object.
+class Folder {
+ public:
+  Folder();
+  ~Folder();
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  /// Runs `ductile WORDS` here; the words are the shell's.
+  Outcome run(const std::string& words) const;
+
+  void write(const std::string& name, const std::string& text) const;
+  std::string read(const std::string& name) const;
+  bool has(const std::string& name) const { return std::filesystem::exists(path_ / name); }
+  /// Copies the bundled NAME.mesh and NAME.sol here.
+  void add_example(const std::string& name) const;
+  /// Number of files in it.
+  std::size_t file_count() const;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace ductile::cli

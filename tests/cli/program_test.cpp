@@ -1,0 +1,125 @@
+#include "program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace ductile::cli {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Program, ShowsItsCommandsAndVersion) {
+  const Folder folder;
+  EXPECT_EQ(folder.run("").status, 2);
+  EXPECT_EQ(folder.run("--version").out.rfind("ductile ", 0), 0U);
+  const Outcome help = folder.run("help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* command : {"adapt", "info", "view", "convert"}) {
+    EXPECT_TRUE(contains(help.out, command));
+    EXPECT_EQ(folder.run(std::string("help ") + command).status, 0);
+    EXPECT_EQ(folder.run(std::string(command) + " --help").status, 0);
+  }
+}
+
+TEST(Program, TellsWhatIsWrongWithACommandLine) {
+  const Folder folder;
+  const auto expect = [&](const char* words, const char* part) {
+    const Outcome outcome = folder.run(words);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, part)) << words << ": " << outcome.err;
+    EXPECT_EQ(outcome.out, "") << words;
+  };
+  expect("adpat", "did you mean 'adapt'");
+  expect("adapt a.mesh -hmn 1", "did you mean -hmin?");
+  expect("adapt a.mesh --itertions 1", "did you mean --iterations?");
+  expect("adapt a.mesh -hmin", "expected X after it, found nothing");
+  expect("adapt a.mesh -hmin -hmax 1", "expected X after it, found nothing");
+  expect("adapt a.mesh -hmin zero", "a number above 0, found 'zero'");
+  expect("adapt a.mesh -hmin -1", "a number above 0, found '-1'");
+  expect("adapt a.mesh -hmin nan", "found 'nan'");
+  expect("adapt a.mesh -hmin 2 -hmax 1", "-hmin to be the smaller");
+  expect("adapt a.mesh -hgrad 0.5", "1 or more");
+  expect("adapt a.mesh --threads 0", "a whole number from 1");
+  expect("adapt a.mesh --threads 1.5", "a whole number from 1");
+  expect("adapt a.mesh --racing=yes", "takes no value");
+  expect("adapt a.mesh -sol a.sol -hsiz 1", "expected one of them");
+  expect("adapt", "expected one mesh, found 0");
+  expect("adapt a.mesh b.mesh", "expected one mesh, found 2");
+  expect("adapt a.mesh -o b.vtk", "ending in .mesh or .meshb");
+  expect("view a.mesh -o b.gif", "ending in .png or .svg");
+  expect("view a.mesh --by colour", "quality, size or reference");
+  expect("view a.mesh --cut w", "x, y or z");
+  expect("convert a.mesh", "expected an input and an output");
+  expect("convert a.mesh a.sol", "ending in .mesh, .meshb or .vtu");
+}
+
+TEST(Program, TellsWhichFileIsMissing) {
+  const Folder folder;
+  for (const char* words :
+       {"adapt none.mesh", "info none.mesh", "view none.mesh", "convert none.mesh out.meshb"}) {
+    const Outcome outcome = folder.run(words);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, "none.mesh")) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
+TEST(Info, CountsAndMeasures) {
+  const Folder folder;
+  folder.add_example("waves3d");
+  const Outcome outcome = folder.run("info waves3d.mesh -sol waves3d.sol --json info.json");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* part : {"dimension 3", "1,331", "6,000", "valid", "quality", "[0.71, 1.41]"})
+    EXPECT_TRUE(contains(outcome.out, part)) << part << "\n" << outcome.out;
+  EXPECT_TRUE(contains(folder.read("info.json"), "\"tetrahedra\": 6000"));
+}
+
+TEST(Info, SaysWhyAMeshIsNotValid) {
+  const Folder folder;
+  folder.write("flat.mesh",
+               "MeshVersionFormatted 2\nDimension 2\nVertices\n3\n0 0 0\n1 0 0\n2 0 0\n"
+               "Triangles\n1\n1 2 3 1\nEnd\n");
+  const Outcome outcome = folder.run("info flat.mesh");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(contains(outcome.out, "not valid")) << outcome.out;
+}
+
+TEST(Info, RefusesTheMetricOfAnotherMesh) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  folder.add_example("waves3d");
+  EXPECT_EQ(folder.run("info waves2d.mesh -sol waves3d.sol").status, 2);
+}
+
+TEST(View, DrawsBothDimensionsInBothFormats) {
+  const Folder folder;
+  for (const char* name : {"waves2d", "waves3d"}) {
+    folder.add_example(name);
+    const std::string mesh = std::string(name) + ".mesh", metric = std::string(name) + ".sol";
+    for (const char* by : {"quality", "size", "reference"})
+      EXPECT_EQ(folder.run("view " + mesh + " --size 200 --by " + by).status, 0);
+    EXPECT_EQ(folder.read(std::string(name) + ".png").substr(1, 3), "PNG");
+    EXPECT_EQ(folder.run("view " + mesh + " -sol " + metric + " -o p.svg --size 200").status, 0);
+    EXPECT_TRUE(contains(folder.read("p.svg"), "<svg"));
+  }
+}
+
+TEST(Convert, GoesThereAndBack) {
+  const Folder folder;
+  folder.add_example("waves3d");
+  EXPECT_EQ(folder.run("convert waves3d.mesh a.meshb").status, 0);
+  EXPECT_EQ(folder.run("convert waves3d.sol a.solb").status, 0);
+  EXPECT_EQ(folder.run("convert a.meshb b.meshb --version-of-file 4").status, 0);
+  EXPECT_EQ(folder.run("convert b.meshb c.meshb").status, 0);
+  EXPECT_EQ(folder.read("a.meshb"), folder.read("c.meshb"));
+  EXPECT_EQ(folder.run("convert a.meshb a.vtu -sol a.solb").status, 0);
+  EXPECT_TRUE(contains(folder.read("a.vtu"), "UnstructuredGrid"));
+}
+
+}  // namespace
+}  // namespace ductile::cli
