@@ -153,6 +153,11 @@ void draw_panel(cairo_t* pen, const Panel& panel, const ToPixels& to_pixels, Pic
 
 // ---- Legends ----
 
+/// Where a legend goes: its upper left corner, how wide it may be and how large its letters are.
+struct Place {
+  double x, y, width, text;
+};
+
 Colour scale_colour(const Legend& legend, double t) {
   return legend.tint == Tint::size ? size_colour(t) : quality_colour(t);
 }
@@ -166,7 +171,8 @@ std::string tick_label(const Legend& legend, double t) {
   return text;
 }
 
-void draw_scale(cairo_t* pen, const Legend& legend, double x, double y, double width, double text) {
+void draw_scale(cairo_t* pen, const Legend& legend, const Place& place) {
+  const auto [x, y, width, text] = place;
   constexpr int steps = 200;
   for (int i = 0; i < steps; ++i) {
     set_colour(pen, scale_colour(legend, (i + 0.5) / steps));
@@ -181,9 +187,10 @@ void draw_scale(cairo_t* pen, const Legend& legend, double x, double y, double w
   }
 }
 
-void draw_swatches(cairo_t* pen, const Legend& legend, double x, double y, double width,
-                   double text) {
-  const double end = x + width;
+void draw_swatches(cairo_t* pen, const Legend& legend, const Place& place) {
+  const auto [left, y, width, text] = place;
+  const double end = left + width;
+  double x = left;
   for (std::size_t i = 0; i < legend.references.size(); ++i) {
     const bool more = x > end - 4 * text && i + 1 < legend.references.size();
     if (!more) {
@@ -201,14 +208,15 @@ void draw_swatches(cairo_t* pen, const Legend& legend, double x, double y, doubl
   }
 }
 
-void draw_legend(cairo_t* pen, const Legend& legend, double x, double y, double width,
-                 double text) {
+void draw_legend(cairo_t* pen, const Legend& legend, Place place) {
   cairo_set_source_rgb(pen, 0, 0, 0);
-  write(pen, x, y, legend.title + (legend.tint == Tint::reference ? ", by reference" : ""));
+  write(pen, place.x, place.y,
+        legend.title + (legend.tint == Tint::reference ? ", by reference" : ""));
+  place.y += 0.5 * place.text;
   if (legend.tint == Tint::reference)
-    draw_swatches(pen, legend, x, y + 0.5 * text, width, text);
+    draw_swatches(pen, legend, place);
   else
-    draw_scale(pen, legend, x, y + 0.5 * text, width, text);
+    draw_scale(pen, legend, place);
 }
 
 // ---- The whole ----
@@ -240,8 +248,8 @@ void draw_scene(cairo_t* pen, const Scene& scene, const Layout& layout, PictureF
   for (std::size_t i = 0; i < scene.legends.size(); ++i) {
     const double left =
         layout.margin + static_cast<double>(first + i) * (layout.panel_width + layout.margin);
-    draw_legend(pen, scene.legends[i], left, below, std::min(layout.panel_width, 36 * layout.text),
-                layout.text);
+    draw_legend(pen, scene.legends[i],
+                {left, below, std::min(layout.panel_width, 36 * layout.text), layout.text});
   }
 }
 
