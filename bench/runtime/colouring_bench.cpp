@@ -53,10 +53,11 @@ Edges mesh(std::uint32_t side, int dim) {
   return edges;
 }
 
+/// Renames vertices. By another hash than the colourings', which would see a natural order in it.
 Edges in_random_order(Edges edges, std::uint32_t vertices) {
   std::vector<std::uint32_t> name(vertices);
   std::iota(name.begin(), name.end(), 0U);
-  std::sort(name.begin(), name.end(), [](auto a, auto b) { return mix32(a) < mix32(b); });
+  std::sort(name.begin(), name.end(), [](auto a, auto b) { return mix64(a) < mix64(b); });
   for (auto& [u, v] : edges) u = name[u], v = name[v];
   return edges;
 }

@@ -26,8 +26,8 @@
 namespace ductile::runtime::detail {
 
 /// How ids are cut: vertex v is in block v >> block_bits; 2^step_bits blocks in a row are coloured
-/// in different steps, each row starting one step later than the one before: where the bits of ids
-/// have a meaning, equal low bits would gather related blocks in one step.
+/// in different steps, in an order that changes from row to row: where the bits of ids have a
+/// meaning, equal low bits would gather related blocks in one step.
 struct BlockLayout {
   unsigned block_bits, step_bits;
 
@@ -35,26 +35,24 @@ struct BlockLayout {
   /// fewer clashes, each step costs a launch.
   static BlockLayout of(std::size_t vertex_count) {
     const int bits = std::bit_width(vertex_count);
-    const int step_bits = std::clamp(bits - 13, 3, 6);
+    const int step_bits = std::clamp(bits - 13, 3, 5);
     const int width_bits = 5 + std::max(0, bits - 20) / 2;
     const int block_bits = std::max(0, bits - step_bits - width_bits);
     return {static_cast<unsigned>(block_bits), static_cast<unsigned>(step_bits)};
   }
   std::uint32_t step_count() const { return 1U << step_bits; }
-  std::uint32_t step_of(std::uint32_t block) const {
-    return (block + (block >> step_bits)) & (step_count() - 1);
-  }
-  /// The block of this row that has its turn in this step.
+  /// The block of this row that has its turn in this step. A block's step is its number in the
+  /// row, exclusive-or the row.
   std::size_t block_of(std::size_t row, std::size_t step) const {
-    return (row << step_bits) + ((step - row) & (step_count() - 1));
+    return (row << step_bits) + ((step ^ row) & (step_count() - 1));
   }
   std::size_t row_count(std::size_t vertex_count) const {
     return (vertex_count >> (block_bits + step_bits)) + 1;
   }
   /// In different blocks of one step, which are coloured at the same time.
   bool apart(std::uint32_t u, std::uint32_t v) const {
-    const std::uint32_t block_u = u >> block_bits, block_v = v >> block_bits;
-    return block_u != block_v && step_of(block_u) == step_of(block_v);
+    const std::uint32_t blocks = (u ^ v) >> block_bits;
+    return blocks != 0 && ((blocks ^ (blocks >> step_bits)) & (step_count() - 1)) == 0;
   }
 };
 
