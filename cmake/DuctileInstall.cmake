@@ -8,7 +8,8 @@ set(ductile_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Ductile)
 # Installs one library with its headers and its export. `component` is runtime or meshadapt.
 function(ductile_install_component target component)
   set_target_properties(${target} PROPERTIES
-    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    INSTALL_RPATH "$ORIGIN")
   install(TARGETS ${target} EXPORT Ductile_${component} COMPONENT ${component}
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_COMPONENT ${component}
@@ -23,6 +24,9 @@ if(DUCTILE_BUILD_MESHADAPT)
   ductile_install_component(ductile_meshadapt meshadapt)
 endif()
 if(TARGET ductile)
+  file(RELATIVE_PATH ductile_libraries_from_program
+    ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(ductile PROPERTIES INSTALL_RPATH "$ORIGIN/${ductile_libraries_from_program}")
   install(TARGETS ductile RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
 
