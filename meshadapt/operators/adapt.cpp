@@ -1,9 +1,11 @@
 #include "ductile/meshadapt/adapt.hpp"
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <utility>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/adapter.hpp"
 
@@ -11,20 +13,24 @@ namespace ductile::meshadapt {
 
 namespace {
 
+/// The metrics of the field within the sizes and the growth that the options allow.
 template <int Dim>
 std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const AnyField& field,
-                                    const AdaptOptions& options) {
+                                    const Mesh<Dim>& mesh, const AdaptOptions& options,
+                                    std::vector<std::string>& warnings) {
   std::vector<Metric<Dim>> metric_of(field.vertex_count);
-  const double low = options.largest_size > 0 ? 1 / (options.largest_size * options.largest_size) : 0;
-  const double high = options.smallest_size > 0 ? 1 / (options.smallest_size * options.smallest_size)
-                                                : std::numeric_limits<double>::infinity();
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric_of[v].m.begin());
-    if (options.largest_size <= 0 && options.smallest_size <= 0) return;
-    auto axes = eigen(metric_of[v]);
-    for (double& value : axes.value) value = std::clamp(value, low, high);
-    metric_of[v] = compose(axes);
   });
+  const SizeBounds bounds{options.smallest_size, options.largest_size};
+  bound_sizes(executor, metric_of, bounds);
+  if (options.gradation > 0) {
+    const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
+    if (!report.converged)
+      warnings.push_back(field.name + ": sizes still grow faster than asked for in places, after " +
+                         std::to_string(report.sweeps) + " sweeps over the edges");
+    bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
+  }
   return metric_of;
 }
 
@@ -38,8 +44,9 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
+  auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
   Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
-                       metrics_of<Dim>(executor, metric, options));
+                       std::exchange(metric_of, {}));
   adapter.report().setup_seconds = seconds();
   adapter.run();
   AdaptedMesh result{to_any_mesh(adapter.mesh()), to_any_field(adapter.mesh()), adapter.report()};

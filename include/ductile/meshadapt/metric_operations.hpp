@@ -1,0 +1,74 @@
+/// @file
+/// What is done to a metric before a mesh is adapted to it: bounds on the sizes it asks for, the
+/// intersection of two metrics, and a limit on how fast sizes grow from vertex to vertex.
+/// Nothing here lets a mesh become coarser than its metric asks for, except a smallest size.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::meshadapt {
+
+/// The finest sizes that either metric asks for: the largest ellipsoid inside both unit balls, by
+/// simultaneous reduction (Alauzet & Frey, INRIA RR-4759, 2003). No length is shorter in the result
+/// than in `a` or `b`, up to the rounding of their components; where one of them asks for at least
+/// the other's sizes in every direction, it is returned as it is; the order does not matter, bit
+/// for bit. Both are positive definite. Thread safety: any thread.
+template <int Dim>
+Metric<Dim> intersect(const Metric<Dim>& a, const Metric<Dim>& b);
+
+/// Edge lengths that a metric may ask for; 0 is no bound.
+struct SizeBounds {
+  double smallest = 0;
+  double largest = 0;
+};
+
+/// Clamps the sizes 1/sqrt(eigenvalue) of every metric between the bounds; one that is within them
+/// keeps its bits. Throws InputError if a bound is negative or not a number, or the smallest is
+/// above the largest. Thread safety: one caller; runs on the executor.
+template <int Dim>
+void bound_sizes(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
+                 const SizeBounds& bounds);
+
+struct GradationOptions {
+  double factor = 1.3;  ///< growth of sizes per unit of metric length, at least 1; Mmg's default
+  double tolerance = 1e-3;  ///< relative excess of a squared length that is let be
+  int sweeps = 1000;        ///< at most this many
+};
+
+struct GradationReport {
+  int sweeps = 0;
+  std::size_t raised = 0;  ///< how often a vertex got a finer metric
+  bool converged = false;  ///< false: the bound on sweeps was met first
+};
+
+/// Makes metrics finer until, along each edge pq, sizes grow by at most `factor` per unit of metric
+/// length: M_q measures no length less than M_p / (1 + l ln(factor))^2 does, where l is the length
+/// of pq in M_p. A metric that spreads keeps its anisotropy. This is the metric-space gradation of
+/// Alauzet, "Size gradation control of anisotropic meshes", Finite Elem. Anal. Des. 46 (2010).
+/// In each sweep a vertex intersects its metric with those of its neighbours before the sweep, in
+/// the order of their numbers, so the result does not depend on threads or timing. metric_of is
+/// indexed by the vertices of the mesh; the metrics in the mesh are not read. Throws InputError if
+/// the factor is below 1 or not finite, Error if memory runs out.
+/// Thread safety: one caller; runs on the executor.
+template <int Dim>
+GradationReport limit_gradation(const runtime::Executor& executor,
+                                std::vector<Metric<Dim>>& metric_of, const Mesh<Dim>& mesh,
+                                const GradationOptions& options = {});
+
+extern template Metric<2> intersect(const Metric<2>&, const Metric<2>&);
+extern template Metric<3> intersect(const Metric<3>&, const Metric<3>&);
+extern template void bound_sizes(const runtime::Executor&, std::vector<Metric<2>>&,
+                                 const SizeBounds&);
+extern template void bound_sizes(const runtime::Executor&, std::vector<Metric<3>>&,
+                                 const SizeBounds&);
+extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<2>>&,
+                                                const Mesh<2>&, const GradationOptions&);
+extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
+                                                const Mesh<3>&, const GradationOptions&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,308 @@
+#include "ductile/meshadapt/metric_operations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// A relative excess of a squared length that may be nothing but rounding.
+constexpr double rounding = 64 * epsilon;
+
+/// What cholesky() adds to a diagonal, so that errors of its factor stay below `rounding`.
+constexpr double shift = 4 * rounding;
+
+template <int Dim>
+using Matrix = std::array<std::array<double, Dim>, Dim>;  // [row][column]
+
+/// Lower Cholesky factor of `a` with its diagonal raised by `shift`. Errors do not depend on how
+/// differently the axes are scaled (Demmel, LAPACK Working Note 14, 1989). What is raised covers
+/// them: seen from the factor, no tensor that is `a` but for rounding is longer than 1 by more than
+/// that.
+template <int Dim>
+Matrix<Dim> cholesky(const Metric<Dim>& a) {
+  Matrix<Dim> lower{};
+  for (std::size_t j = 0; j < Dim; ++j) {
+    const double diagonal = a(static_cast<int>(j), static_cast<int>(j));
+    double pivot = (1 + shift) * diagonal;
+    for (std::size_t k = 0; k < j; ++k) pivot -= lower[j][k] * lower[j][k];
+    lower[j][j] = std::sqrt(std::max(pivot, epsilon * diagonal));
+    for (std::size_t i = j + 1; i < Dim; ++i) {
+      double rest = a(static_cast<int>(i), static_cast<int>(j));
+      for (std::size_t k = 0; k < j; ++k) rest -= lower[i][k] * lower[j][k];
+      lower[i][j] = rest / lower[j][j];
+    }
+  }
+  return lower;
+}
+
+/// L^-1 b.
+template <int Dim>
+std::array<double, Dim> solve(const Matrix<Dim>& lower, std::array<double, Dim> b) {
+  for (std::size_t i = 0; i < Dim; ++i) {
+    for (std::size_t k = 0; k < i; ++k) b[i] -= lower[i][k] * b[k];
+    b[i] /= lower[i][i];
+  }
+  return b;
+}
+
+/// L^-1 B L^-T: `other` seen from where LL' is the identity.
+template <int Dim>
+Metric<Dim> seen_from(const Matrix<Dim>& lower, const Metric<Dim>& other) {
+  Matrix<Dim> half;  // [column of B], L^-1 B
+  for (std::size_t j = 0; j < Dim; ++j) {
+    for (std::size_t i = 0; i < Dim; ++i)
+      half[j][i] = other(static_cast<int>(i), static_cast<int>(j));
+    half[j] = solve<Dim>(lower, half[j]);
+  }
+  Metric<Dim> seen;
+  for (std::size_t row = 0; row < Dim; ++row) {
+    std::array<double, Dim> across;
+    for (std::size_t j = 0; j < Dim; ++j) across[j] = half[j][row];
+    across = solve<Dim>(lower, across);
+    for (std::size_t column = row; column < Dim; ++column)
+      seen.m[column * (column + 1) / 2 + row] = across[column];
+  }
+  return seen;
+}
+
+/// Intersects `base` with `other`: squared lengths that are longer in `other` by more than
+/// `tolerance`, relatively, are raised to those. `base` is only ever added to. True if it was
+/// changed.
+template <int Dim>
+bool raise(Metric<Dim>& base, const Metric<Dim>& other, double tolerance) {
+  const Matrix<Dim> lower = cholesky(base);
+  const Eigen<Dim> ratio = eigen(seen_from<Dim>(lower, other));
+  bool changed = false;
+  for (std::size_t i = 0; i < Dim; ++i) {
+    const double excess = ratio.value[i] - 1;
+    if (!(excess > std::max(tolerance, rounding))) continue;
+    std::array<double, Dim> u{};  // L q
+    for (std::size_t row = 0; row < Dim; ++row)
+      for (std::size_t k = 0; k <= row; ++k) u[row] += lower[row][k] * ratio.vector[i].x[k];
+    for (std::size_t column = 0, at = 0; column < Dim; ++column)
+      for (std::size_t row = 0; row <= column; ++row, ++at)
+        base.m[at] += excess * u[row] * u[column];
+    changed = true;
+  }
+  return changed;
+}
+
+/// Is no squared length in `fine` shorter than in `coarse` by more than `tolerance`? A yes is
+/// certain up to rounding; a no may be one only because it is close. Cheap: Cholesky without roots.
+template <int Dim>
+bool surely_finer(const Metric<Dim>& fine, const Metric<Dim>& coarse, double tolerance) {
+  Matrix<Dim> rest;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j <= i; ++j)
+      rest[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+          (1 + tolerance) * fine(i, j) - coarse(i, j);
+  for (std::size_t j = 0; j < Dim; ++j) {
+    const int at = static_cast<int>(j);
+    if (!(rest[j][j] > rounding * (fine(at, at) + coarse(at, at)))) return false;
+    for (std::size_t i = j + 1; i < Dim; ++i) {
+      const double multiple = rest[i][j] / rest[j][j];
+      for (std::size_t k = j + 1; k <= i; ++k) rest[i][k] -= multiple * rest[k][j];
+    }
+  }
+  return true;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+double trace(const Metric<2>& a) { return a.m[0] + a.m[2]; }
+double trace(const Metric<3>& a) { return a.m[0] + a.m[2] + a.m[5]; }
+
+/// The Jacobi iteration of limit_gradation. After the first sweep only vertices with a neighbour
+/// that changed in the sweep before are looked at, and only against such neighbours: metrics never
+/// get coarser, so a bound that held still does.
+template <int Dim>
+class Gradation {
+ public:
+  Gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of, const Mesh<Dim>& mesh,
+            const GradationOptions& options)
+      : executor_(executor),
+        metric_of_(metric_of),
+        mesh_(mesh),
+        options_(options),
+        rate_(std::log(options.factor)),
+        changed_(metric_of.size()),
+        has_changed_(metric_of.size(), 1),
+        neighbours_(executor),
+        wake_(executor, {.unique = true}) {
+    std::iota(changed_.begin(), changed_.end(), VertexId{0});
+  }
+
+  GradationReport run() {
+    GradationReport report;
+    std::vector<VertexId> active = changed_;
+    while (!active.empty() && report.sweeps < options_.sweeps) {
+      sweep(active);
+      ++report.sweeps;
+      report.raised += changed_.size();
+      active = woken();
+    }
+    report.converged = active.empty();
+    return report;
+  }
+
+ private:
+  /// For loops of a few writes per vertex.
+  static constexpr runtime::LoopOptions cheap{.serial_below = 8192};
+
+  struct Raised {
+    VertexId vertex;
+    Metric<Dim> metric;
+  };
+
+  /// Finds the new metrics from the old ones, then puts them in place.
+  void sweep(const std::vector<VertexId>& active) {
+    const auto raised = runtime::parallel_collect<Raised>(
+        executor_, active.size(), [&](std::size_t i, auto&& append) {
+          Metric<Dim> metric = metric_of_[active[i]];
+          if (raise_from_neighbours(metric, active[i])) append(Raised{active[i], metric});
+        });
+    runtime::parallel_for(
+        executor_, changed_.size(), [&](std::size_t i) { has_changed_[changed_[i]] = 0; }, cheap);
+    changed_.resize(raised.size());
+    runtime::parallel_for(
+        executor_, raised.size(),
+        [&](std::size_t i) {
+          metric_of_[raised[i].vertex] = raised[i].metric;
+          has_changed_[raised[i].vertex] = 1;
+          changed_[i] = raised[i].vertex;
+        },
+        cheap);
+  }
+
+  bool raise_from_neighbours(Metric<Dim>& metric, VertexId vertex) {
+    bool raised = false;
+    for (const VertexId from : neighbours(vertex)) {
+      if (!has_changed_[from]) continue;
+      const Metric<Dim> reaching = grown(from, vertex);
+      if (!surely_finer(metric, reaching, options_.tolerance))
+        raised = raise(metric, reaching, options_.tolerance) || raised;
+    }
+    return raised;
+  }
+
+  /// The metric at `from` as it may be at `to` at most.
+  Metric<Dim> grown(VertexId from, VertexId to) const {
+    const Vector<Dim> edge = mesh_.site_of[to].position - mesh_.site_of[from].position;
+    const double length = std::sqrt(std::max(0.0, squared_length(metric_of_[from], edge)));
+    const double growth = 1 + length * rate_;
+    return 1 / (growth * growth) * metric_of_[from];
+  }
+
+  /// In the order of their numbers; valid until the thread asks again.
+  std::span<const VertexId> neighbours(VertexId vertex) {
+    std::vector<VertexId>& found = neighbours_.mine();
+    found.clear();
+    for (const ElementId element : mesh_.elements_of.of(vertex))
+      for (const VertexId corner : mesh_.corners_of[element])
+        if (corner != vertex) found.push_back(corner);
+    std::sort(found.begin(), found.end());
+    return {found.begin(), std::unique(found.begin(), found.end())};
+  }
+
+  std::vector<VertexId> woken() {
+    runtime::parallel_for(executor_, changed_.size(),
+                          [&](std::size_t i) {
+                            for (const VertexId neighbour : neighbours(changed_[i]))
+                              wake_.append(neighbour);
+                          },
+                          {.serial_below = 256});
+    wake_.collect();
+    return wake_.take();
+  }
+
+  const Executor& executor_;
+  std::vector<Metric<Dim>>& metric_of_;  // [vertex]
+  const Mesh<Dim>& mesh_;
+  GradationOptions options_;
+  double rate_;                            // growth per unit length
+  std::vector<VertexId> changed_;          // in the last sweep, all before the first
+  std::vector<std::uint8_t> has_changed_;  // [vertex]
+  runtime::PerThread<std::vector<VertexId>> neighbours_;
+  runtime::Worklist<VertexId> wake_;
+};
+
+}  // namespace
+
+template <int Dim>
+Metric<Dim> intersect(const Metric<Dim>& a, const Metric<Dim>& b) {
+  // One that is finer everywhere has the larger trace, so it is the base, and nothing is added.
+  const bool a_first = std::pair(trace(a), a.m) > std::pair(trace(b), b.m);
+  Metric<Dim> result = a_first ? a : b;
+  raise(result, a_first ? b : a, rounding);
+  return result;
+}
+
+template <int Dim>
+void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
+                 const SizeBounds& bounds) {
+  const auto [smallest, largest] = bounds;
+  if (!(smallest >= 0) || !(largest >= 0) || (largest > 0 && smallest > largest))
+    throw InputError(
+        "bounds on sizes: expected 0 (none) or more, and the smallest not above the "
+        "largest, found " +
+        number(smallest) + " and " + number(largest));
+  if (smallest == 0 && largest == 0) return;
+  const double low = largest > 0 ? 1 / (largest * largest) : 0;
+  const double high =
+      smallest > 0 ? 1 / (smallest * smallest) : std::numeric_limits<double>::infinity();
+  runtime::parallel_for(executor, metric_of.size(), [&, low, high](std::size_t v) {
+    Eigen<Dim> axes = eigen(metric_of[v]);
+    bool within = true;
+    for (double& value : axes.value) {
+      within = within && value >= low && value <= high;
+      value = std::clamp(value, low, high);
+    }
+    if (!within) metric_of[v] = compose(axes);
+  });
+}
+
+template <int Dim>
+GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
+                                const Mesh<Dim>& mesh, const GradationOptions& options) {
+  if (!(options.factor >= 1) || !std::isfinite(options.factor))
+    throw InputError("gradation: expected a factor of 1 or more, found " + number(options.factor));
+  if (metric_of.size() != mesh.vertex_slots())
+    throw InputError("gradation: expected a metric for each of the " +
+                     std::to_string(mesh.vertex_slots()) + " vertices, found " +
+                     std::to_string(metric_of.size()));
+  return Gradation<Dim>(executor, metric_of, mesh, options).run();
+}
+
+template Metric<2> intersect(const Metric<2>&, const Metric<2>&);
+template Metric<3> intersect(const Metric<3>&, const Metric<3>&);
+template void bound_sizes(const Executor&, std::vector<Metric<2>>&, const SizeBounds&);
+template void bound_sizes(const Executor&, std::vector<Metric<3>>&, const SizeBounds&);
+template GradationReport limit_gradation(const Executor&, std::vector<Metric<2>>&, const Mesh<2>&,
+                                         const GradationOptions&);
+template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>&, const Mesh<3>&,
+                                         const GradationOptions&);
+
+}  // namespace ductile::meshadapt
