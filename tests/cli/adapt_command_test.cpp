@@ -35,15 +35,15 @@ TEST(AdaptCommand, WritesBinaryForBinary) {
 TEST(AdaptCommand, DoesNotDependOnThreads) {
   const Folder folder;
   folder.add_example("waves3d");
-  for (const char* threads : {"1", "2", "8"})
+  for (const char* threads : {"1", "2", "4"})
     EXPECT_EQ(folder
-                  .run(std::string("adapt waves3d.mesh --iterations 2 --threads ") + threads +
+                  .run(std::string("adapt waves3d.mesh --iterations 1 --threads ") + threads +
                        " -o " + threads + ".mesh")
                   .status,
               0);
   EXPECT_EQ(folder.read("1.mesh"), folder.read("2.mesh"));
-  EXPECT_EQ(folder.read("1.mesh"), folder.read("8.mesh"));
-  EXPECT_EQ(folder.read("1.sol"), folder.read("8.sol"));
+  EXPECT_EQ(folder.read("1.mesh"), folder.read("4.mesh"));
+  EXPECT_EQ(folder.read("1.sol"), folder.read("4.sol"));
 }
 
 TEST(AdaptCommand, TakesMmgsOptions) {
@@ -51,11 +51,23 @@ TEST(AdaptCommand, TakesMmgsOptions) {
   folder.add_example("waves2d");
   const Outcome outcome = folder.run(
       "adapt waves2d.mesh -sol waves2d.sol -out a.mesh -hmin 0.01 -hmax 0.2 -hgrad 1.5 -nomove "
-      "-noswap -noinsert -nosurf -v 0 -m 2000");
+      "-noswap -noinsert -nosurf -v 0 -m 1000000000");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
   EXPECT_TRUE(folder.has("a.mesh"));
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+// Sanitizers take more memory for themselves than any limit here would leave them.
+TEST(AdaptCommand, FailsCleanlyWhenMemoryRunsOut) {
+  const Folder folder;
+  folder.add_example("waves3d");
+  const Outcome outcome = folder.run("adapt waves3d.mesh -m 4 --threads 1");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "out of memory")) << outcome.err;
+  EXPECT_EQ(folder.file_count(), 2U);
+}
+#endif
 
 TEST(AdaptCommand, AdaptsToOneSizeAndToTheSizesThatThereAre) {
   const Folder folder;
