@@ -182,7 +182,8 @@ class Classifier {
   }
 
   void add_curve_edge(Key key) {
-    CurveEdge edge{static_cast<VertexId>(key >> 32U), static_cast<VertexId>(key), {}, patches_at(key)};
+    CurveEdge edge{
+        static_cast<VertexId>(key >> 32U), static_cast<VertexId>(key), {}, patches_at(key)};
     if (const auto found = listed_.find(key); found != listed_.end()) {
       const ListedEdge& listed = found->second;
       edge.data = {{}, listed.reference, true, listed.required, listed.ridge};

@@ -13,9 +13,9 @@ namespace ductile::meshadapt {
 template <int Dim>
 struct TaggedFacet {
   Facet<Dim> corners{};
-  Patch<Dim> data;                       ///< normal not yet set
+  Patch<Dim> data;                         ///< normal not yet set
   ElementId element = none, other = none;  ///< on its sides; other is none on the boundary
-  int facet = 0, other_facet = 0;        ///< its number in them
+  int facet = 0, other_facet = 0;          ///< its number in them
   PatchId patch = 0;
 };
 

@@ -16,6 +16,7 @@ void Mesh<Dim>::grow(std::size_t vertices, std::size_t elements) {
   patches_of.resize(elements);
   region_of.resize(elements);
   shape_of.resize(elements);
+  changed_at.resize(elements, epoch);
   site_of.resize(vertices);
   kind_of.resize(vertices);
   entity_of.resize(vertices);

@@ -86,7 +86,8 @@ std::vector<Keyed<std::uint64_t>> sorted_vertices(const Executor& executor, cons
       const double at = (mesh.site_of[v].position[i] - box.low[i]) / width;
       cell[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(at * ((1U << bits) - 1));
     }
-    order[v] = {mesh.vertex_alive(vertex) ? hilbert_key<Dim>(cell, bits) : ~std::uint64_t{0}, vertex};
+    order[v] = {mesh.vertex_alive(vertex) ? hilbert_key<Dim>(cell, bits) : ~std::uint64_t{0},
+                vertex};
   });
   runtime::parallel_sort(executor, std::span(order));
   while (!order.empty() && order.back().key == ~std::uint64_t{0}) order.pop_back();
@@ -141,6 +142,7 @@ void renumber(const Executor& executor, Mesh<Dim>& mesh) {
   permute(executor, mesh.patches_of, elements);
   permute(executor, mesh.region_of, elements);
   permute(executor, mesh.shape_of, elements);
+  permute(executor, mesh.changed_at, elements);
   parallel_for(executor, elements.size(), [&](std::size_t e) {
     for (VertexId& v : mesh.corners_of[e]) v = new_id[v];
   });

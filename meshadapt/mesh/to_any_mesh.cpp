@@ -19,7 +19,8 @@ void add_facets(const Mesh<Dim>& mesh, AnyMesh& any) {
       const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[e], i);
       if constexpr (Dim == 2) {
         if (patch.ridge) any.ridges.push_back(static_cast<std::uint32_t>(any.edges.size()));
-        if (patch.required) any.required_edges.push_back(static_cast<std::uint32_t>(any.edges.size()));
+        if (patch.required)
+          any.required_edges.push_back(static_cast<std::uint32_t>(any.edges.size()));
         any.edges.add(corners, patch.reference);
       } else {
         if (patch.required)
@@ -44,8 +45,10 @@ void add_curves(const Mesh<3>& mesh, AnyMesh& any) {
 template <int Dim>
 void add_elements(const Mesh<Dim>& mesh, AnyMesh& any) {
   auto& cells = [&]() -> Cells<Dim + 1>& {
-    if constexpr (Dim == 2) return any.triangles;
-    else return any.tetrahedra;
+    if constexpr (Dim == 2)
+      return any.triangles;
+    else
+      return any.tetrahedra;
   }();
   auto& required = Dim == 2 ? any.required_triangles : any.required_tetrahedra;
   cells.vertices = mesh.corners_of;
@@ -83,7 +86,8 @@ AnyField to_any_field(const Mesh<Dim>& mesh) {
   field.types = {AnyField::Type::symmetric};
   field.values.resize(mesh.vertex_slots() * Metric<Dim>::size);
   for (std::size_t v = 0; v < mesh.vertex_slots(); ++v)
-    std::copy_n(mesh.site_of[v].metric.m.begin(), Metric<Dim>::size, &field.values[v * Metric<Dim>::size]);
+    std::copy_n(mesh.site_of[v].metric.m.begin(), Metric<Dim>::size,
+                &field.values[v * Metric<Dim>::size]);
   return field;
 }
 

@@ -65,7 +65,8 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const 
                      std::to_string(mesh.vertex_count()) + " vertices of " + mesh.name);
   if (mesh.dimension == 2) return adapt_in<2>(executor, mesh, metric, options);
   if (mesh.dimension == 3) return adapt_in<3>(executor, mesh, metric, options);
-  throw InputError(mesh.name + ": expected dimension 2 or 3, found " + std::to_string(mesh.dimension));
+  throw InputError(mesh.name + ": expected dimension 2 or 3, found " +
+                   std::to_string(mesh.dimension));
 }
 
 }  // namespace ductile::meshadapt

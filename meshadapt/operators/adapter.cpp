@@ -1,6 +1,7 @@
 #include "operators/adapter.hpp"
 
 #include <chrono>
+#include <utility>
 
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/coarsen.hpp"
@@ -60,10 +61,9 @@ template <int Dim>
 std::size_t Adapter<Dim>::iterate() {
   std::size_t changes = 0;
   if (options_.insert) changes += coarsen();
-  if (options_.swap) changes += swap(0.9);
   if (options_.insert) changes += refine();
   renumber_mesh();
-  if (options_.swap) changes += swap(0.9);
+  if (options_.swap) changes += swap();
   if (options_.move) smooth(1, 0.3, true);
   return changes;
 }
@@ -73,26 +73,44 @@ template <int Dim>
 void Adapter<Dim>::polish() {
   for (int pass = 0; pass < 3; ++pass) {
     if (options_.move) smooth(3, 0.5, true);
-    if (options_.swap) swap(0.95);
+    if (options_.swap) swap();
   }
   if (options_.move) smooth(2, 0.6, false);
+}
+
+/// Ends the mesh's epoch for a scan that starts now; returns when the same kernel's last one ended.
+template <int Dim>
+std::uint32_t Adapter<Dim>::end_epoch(std::uint32_t& seen) {
+  return std::exchange(seen, mesh_.epoch++);
 }
 
 template <int Dim>
 std::size_t Adapter<Dim>::coarsen() {
   const Stopwatch watch;
-  auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, options_.rules.short_edge);
-  Coarsen<Dim> op(mesh_, options_.rules);
-  const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
-  add(report_.coarsen, rounds, watch.seconds());
-  tell("coarsen", rounds.applied);
-  return rounds.applied;
+  std::size_t changes = 0;
+  for (int sweep = 0; sweep < 8; ++sweep) {
+    auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, options_.rules.short_edge,
+                                               end_epoch(seen_by_coarsen_));
+    Coarsen<Dim> op(mesh_, options_.rules);
+    const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
+    add(report_.coarsen, rounds, 0);
+    changes += rounds.applied;
+    if (rounds.applied < element_count() / 200) break;
+  }
+  report_.coarsen.seconds += watch.seconds();
+  tell("coarsen", changes);
+  return changes;
 }
 
 template <int Dim>
 std::size_t Adapter<Dim>::refine() {
   const Stopwatch watch;
-  auto work = Refine<Dim>::long_edges(executor_, mesh_, options_.rules.long_edge);
+  // The first rounds split very long edges only: swaps shorten many of the others.
+  constexpr double patience[] = {1, 1.4, 1.13};
+  const int i = report_.iterations;
+  if (i <= 3) seen_by_refine_ = 0;
+  const double limit = options_.rules.long_edge * (i < 3 ? patience[i] : 1);
+  auto work = Refine<Dim>::long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
   Refine<Dim> op(mesh_, background_, options_.rules);
   const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
   add(report_.refine, rounds, watch.seconds());
@@ -101,11 +119,11 @@ std::size_t Adapter<Dim>::refine() {
 }
 
 template <int Dim>
-std::size_t Adapter<Dim>::swap(double below) {
+std::size_t Adapter<Dim>::swap() {
   const Stopwatch watch;
   std::size_t changes = 0;
   for (int sweep = 0; sweep < 4; ++sweep) {
-    auto work = Swap<Dim>::improvements(executor_, mesh_, below);
+    auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_));
     if (work.empty()) break;
     Swap<Dim> op(mesh_);
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
@@ -121,9 +139,10 @@ std::size_t Adapter<Dim>::swap(double below) {
 template <int Dim>
 std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplacian) {
   const Stopwatch watch;
-  Smooth<Dim> op(mesh_, background_, {.laplacian = laplacian, .optimise_below = optimise_below});
-  const RoundsReport rounds = run_rounds(
-      executor_, op, Smooth<Dim>::movable_vertices(executor_, mesh_), {.most_rounds = sweeps});
+  Smooth<Dim> op(mesh_, background_,
+                 {.laplacian = laplacian, .optimise_below = optimise_below, .again = sweeps > 1});
+  auto work = Smooth<Dim>::movable_vertices(executor_, mesh_, end_epoch(seen_by_smooth_));
+  const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = sweeps});
   add(report_.smooth, rounds, watch.seconds());
   tell("smooth", rounds.applied);
   return rounds.applied;

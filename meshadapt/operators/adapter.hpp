@@ -25,11 +25,12 @@ class Adapter {
   // ---- Kernels: each returns how many changes it made ----
   std::size_t coarsen();
   std::size_t refine();
-  std::size_t swap(double below);
+  std::size_t swap();
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
 
   std::size_t iterate();
   void polish();
+  std::uint32_t end_epoch(std::uint32_t& seen);
   void renumber_mesh();
   std::size_t element_count() const;
   void tell(const char* step, std::size_t changes) const;
@@ -40,6 +41,8 @@ class Adapter {
   Mesh<Dim> mesh_;
   Background<Dim> background_;
   AdaptReport report_;
+  // The epoch up to which each kernel has seen all changes.
+  std::uint32_t seen_by_coarsen_ = 0, seen_by_refine_ = 0, seen_by_swap_ = 0, seen_by_smooth_ = 0;
 };
 
 }  // namespace ductile::meshadapt

@@ -28,11 +28,26 @@ struct ListChange {
 template <int Dim>
 void change_list(Mesh<Dim>& mesh, VertexId owner, const ListChange& change) {
   switch (change.kind) {
-    case ListChange::Kind::add_element: mesh.elements_of.insert(owner, change.element); break;
-    case ListChange::Kind::remove_element: mesh.elements_of.erase(owner, change.element); break;
-    case ListChange::Kind::add_link: mesh.links_of.insert(owner, {change.element, change.curve}); break;
-    case ListChange::Kind::remove_link: mesh.links_of.erase(owner, {change.element, change.curve}); break;
+    case ListChange::Kind::add_element:
+      mesh.elements_of.insert(owner, change.element);
+      break;
+    case ListChange::Kind::remove_element:
+      mesh.elements_of.erase(owner, change.element);
+      break;
+    case ListChange::Kind::add_link:
+      mesh.links_of.insert(owner, {change.element, change.curve});
+      break;
+    case ListChange::Kind::remove_link:
+      mesh.links_of.erase(owner, {change.element, change.curve});
+      break;
   }
+}
+
+/// Renews what is derived from an element's corners after they, or their sites, changed.
+template <int Dim>
+void update_element(Mesh<Dim>& mesh, ElementId element) {
+  mesh.shape_of[element] = static_cast<float>(mesh.shape_at(mesh.corners_of[element]));
+  mesh.changed_at[element] = mesh.epoch;
 }
 
 template <class Commit>
@@ -113,7 +128,7 @@ void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, Commit& commit) {
     const ElementId e = n < plan.old_elements.size() ? plan.old_elements[n] : commit.fresh();
     mesh.corners_of[e] = plan.new_elements[n];
     mesh.region_of[e] = region;
-    mesh.shape_of[e] = static_cast<float>(mesh.shape_at(plan.new_elements[n]));
+    update_element(mesh, e);
     mesh.patches_of[e].fill(0);
     for (std::size_t i = 0; i <= Dim && !tagged.empty(); ++i) {
       const Facet<Dim> facet = sorted(facet_of<Dim>(mesh.corners_of[e], static_cast<int>(i)));

@@ -8,21 +8,24 @@ namespace ductile::meshadapt {
 
 template <int Dim>
 std::vector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& executor,
-                                                     const Mesh<Dim>& mesh, double short_edge) {
+                                                     const Mesh<Dim>& mesh, double short_edge,
+                                                     std::uint32_t after) {
   return runtime::parallel_collect<VertexId>(
       executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
         const auto vertex = static_cast<VertexId>(v);
-        if (mesh.kind_of[v].freedom == 0) return;
+        if (mesh.kind_of[v].freedom == 0 || !mesh.changed_around(vertex, after)) return;
         for (const ElementId element : mesh.elements_of.of(vertex))
           for (const VertexId other : mesh.corners_of[element])
-            if (other != vertex && mesh.length(vertex, other) < short_edge) return append(vertex);
+            if (other != vertex && shorter_than(mesh.site_of[v], mesh.site_of[other], short_edge))
+              return append(vertex);
       });
 }
 
 template <int Dim>
 auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   const auto ball = mesh_.elements_of.of(gone);
-  if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].freedom == 0) return {};
+  if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].freedom == 0)
+    return {};
   VertexBuffer ring;
   neighbours_of(mesh_, gone, ring);
   const auto choices = candidates(gone, ring);
@@ -45,8 +48,9 @@ auto Coarsen<Dim>::candidates(VertexId gone, const VertexBuffer& ring) const
     -> Buffer<Candidate, 32> {
   Buffer<Candidate, 32> found;
   for (const VertexId kept : ring) {
-    const double length = mesh_.length(gone, kept);
-    if (length < rules_.short_edge && keeps_geometry({gone, kept})) found.push_back({length, kept});
+    if (shorter_than(mesh_.site_of[gone], mesh_.site_of[kept], rules_.short_edge) &&
+        keeps_geometry({gone, kept}))
+      found.push_back({mesh_.length(gone, kept), kept});
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -69,12 +73,13 @@ bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
 template <int Dim>
 bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const VertexBuffer& ring) const {
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
-  double longest_after = 0;
+  double longest_after = 0, longest_before = 0;
   for (const VertexId v : ring)
-    if (v != plan.kept) longest_after = std::max(longest_after, edge_length(mesh_.site_of[v], kept));
-  if (longest_after <= rules_.long_edge) return true;
-  double longest_before = 0;
-  for (const VertexId v : ring) longest_before = std::max(longest_before, mesh_.length(v, plan.gone));
+    if (v != plan.kept && !shorter_than(mesh_.site_of[v], kept, rules_.long_edge))
+      longest_after = std::max(longest_after, edge_length(mesh_.site_of[v], kept));
+  if (longest_after == 0) return true;
+  for (const VertexId v : ring)
+    longest_before = std::max(longest_before, mesh_.length(v, plan.gone));
   return longest_after <= 1.02 * longest_before;
 }
 
@@ -106,13 +111,20 @@ void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
       remove_element(e, plan, commit);
     } else {
       corners[static_cast<std::size_t>(corner_of(corners, plan.gone))] = plan.kept;
-      mesh_.shape_of[e] = static_cast<float>(mesh_.shape_at(corners));
+      update_element(mesh_, e);
       defer_add(commit, plan.kept, e);
     }
   }
   if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan, commit);
   mesh_.elements_of.clear(plan.gone);
-  for (const VertexId v : ring) commit.wake(v);
+  for (const VertexId v : ring) {
+    if (v == plan.kept || mesh_.kind_of[v].freedom == 0) continue;
+    if (shorter_than(mesh_.site_of[v], mesh_.site_of[plan.kept], rules_.short_edge))
+      commit.wake(v);
+    else
+      commit.disturb(v);
+  }
+  commit.wake(plan.kept);
 }
 
 /// An element on the collapsing edge folds flat: what lies on the patch of its facet at `kept` is
@@ -127,7 +139,8 @@ void Coarsen<Dim>::pass_patch_on(ElementId element, const Plan& plan) {
   for (const ElementId other : mesh_.elements_of.of(plan.gone)) {
     if (other == element || contains(mesh_.corners_of[other], plan.kept)) continue;
     int shared = 0;
-    for (const VertexId v : facet_of<Dim>(corners, at_kept)) shared += contains(mesh_.corners_of[other], v);
+    for (const VertexId v : facet_of<Dim>(corners, at_kept))
+      shared += contains(mesh_.corners_of[other], v);
     if (shared < Dim) continue;
     for (std::size_t i = 0; i <= Dim; ++i)
       if (!contains(corners, mesh_.corners_of[other][i])) mesh_.patches_of[other][i] = patch;

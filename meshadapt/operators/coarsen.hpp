@@ -25,9 +25,11 @@ class Coarsen {
 
   Coarsen(Mesh<Dim>& mesh, const Rules& rules) : mesh_(mesh), rules_(rules) {}
 
-  /// The vertices with an edge shorter than `short_edge` that could go.
+  /// The vertices with an edge shorter than `short_edge` that could go, next to elements changed
+  /// after an epoch.
   static std::vector<VertexId> crowded_vertices(const runtime::Executor& executor,
-                                                const Mesh<Dim>& mesh, double short_edge);
+                                                const Mesh<Dim>& mesh, double short_edge,
+                                                std::uint32_t after);
 
   // ---- Plan: the shortest edge that no rule refuses. Reads only. ----
   std::optional<Plan> plan(VertexId gone) const;
@@ -40,7 +42,8 @@ class Coarsen {
   }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
 
-  // ---- Apply: stretch or remove own elements, defer their vertices' lists, wake the whole ball ----
+  // ---- Apply: stretch or remove own elements, defer their vertices' lists, wake the whole ball
+  // ----
   void apply(const Plan& plan, runtime::Commit<Coarsen>& commit);
 
   // ---- Commit: one owner's list ----

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/hash.hpp"
 
 namespace ductile::meshadapt {
 
@@ -22,17 +23,19 @@ double metric_middle(const Site<Dim>& a, const Site<Dim>& b) {
 
 template <int Dim>
 std::vector<LongEdge> Refine<Dim>::long_edges(const runtime::Executor& executor,
-                                              const Mesh<Dim>& mesh, double long_edge) {
+                                              const Mesh<Dim>& mesh, double long_edge,
+                                              std::uint32_t after) {
   return runtime::parallel_collect<LongEdge>(
       executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
         const auto a = static_cast<VertexId>(v);
+        if (!mesh.changed_around(a, after)) return;
         VertexBuffer seen;
         for (const ElementId element : mesh.elements_of.of(a))
           for (const VertexId b : mesh.corners_of[element]) {
             if (b <= a || std::find(seen.begin(), seen.end(), b) != seen.end()) continue;
             seen.push_back(b);
-            const double length = mesh.length(a, b);
-            if (length > long_edge) append(LongEdge{a, b, static_cast<float>(length)});
+            if (!shorter_than(mesh.site_of[a], mesh.site_of[b], long_edge))
+              append(LongEdge{a, b, static_cast<float>(mesh.length(a, b))});
           }
       });
 }
@@ -77,7 +80,10 @@ template <int Dim>
 void Refine<Dim>::locate(const Shell& shell, Plan& plan) const {
   const Site<Dim>& a = mesh_.site_of[plan.a];
   const Site<Dim>& b = mesh_.site_of[plan.b];
-  const double t = metric_middle(a, b);
+  // Off the middle by up to 5 %, lest a regular mesh be refined into a regular mesh of worse
+  // shapes, in which no single change is an improvement.
+  const double chance = runtime::mix32(plan.a * 31 + plan.b) * (2.0 / 4294967296.0) - 1;
+  const double t = metric_middle(a, b) + 0.05 * chance;
   const Vector<Dim> position = (1 - t) * a.position + t * b.position;
   const auto sample = background_.sample(position, mesh_.host_of[t < 0.5 ? plan.a : plan.b]);
   plan.site = make_site(position, sample.metric);
@@ -101,7 +107,7 @@ template <int Dim>
 bool Refine<Dim>::makes_no_short_edge(const Shell& shell, const Plan& plan) const {
   for (const ElementId e : shell)
     for (const VertexId v : mesh_.corners_of[e])
-      if (edge_length(mesh_.site_of[v], plan.site) < rules_.shortest_split) return false;
+      if (shorter_than(mesh_.site_of[v], plan.site, rules_.shortest_split)) return false;
   return true;
 }
 
@@ -173,8 +179,8 @@ void Refine<Dim>::split_element(ElementId element, ElementId fresh, VertexId mid
   mesh_.patches_of[fresh][at_b] = 0;
   mesh_.corners_of[element][at_b] = middle;
   mesh_.patches_of[element][at_a] = 0;
-  mesh_.shape_of[element] = static_cast<float>(mesh_.shape_at(mesh_.corners_of[element]));
-  mesh_.shape_of[fresh] = static_cast<float>(mesh_.shape_at(mesh_.corners_of[fresh]));
+  update_element(mesh_, element);
+  update_element(mesh_, fresh);
 }
 
 template class Refine<2>;

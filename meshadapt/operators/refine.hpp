@@ -22,7 +22,7 @@ struct LongEdge {
 template <int Dim>
 struct EdgeSplit {
   VertexId a, b;
-  Site<Dim> site;        // of the new vertex
+  Site<Dim> site;  // of the new vertex
   ElementId host;
   VertexKind kind;
   std::uint32_t entity;  // patch or curve that the edge lies on, or 0
@@ -41,14 +41,15 @@ class Refine {
   Refine(Mesh<Dim>& mesh, const Background<Dim>& background, const Rules& rules)
       : mesh_(mesh), background_(background), rules_(rules) {}
 
-  /// The edges longer than `long_edge`, each once.
+  /// The edges no shorter than `long_edge`, each once, next to elements changed after an epoch.
   static std::vector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                          double long_edge);
+                                          double long_edge, std::uint32_t after);
 
   // ---- Plan: where the new vertex goes, unless a rule refuses. Reads only. ----
   std::optional<Plan> plan(const Item& edge) const;
 
-  // ---- Conflict rule: nobody else touches the elements around the edge; the longest goes first ----
+  // ---- Conflict rule: nobody else touches the elements around the edge; the longest goes first
+  // ----
   void footprint(const Item& edge, auto&& visit) const {
     for (const ElementId element : mesh_.elements_of.of(edge.a))
       if (contains(mesh_.corners_of[element], edge.b)) visit(element);

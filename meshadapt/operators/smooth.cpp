@@ -32,11 +32,11 @@ Vector<Dim> shortest_in_hull(const Vectors& gradients) {
 
 template <int Dim>
 std::vector<VertexId> Smooth<Dim>::movable_vertices(const runtime::Executor& executor,
-                                                    const Mesh<Dim>& mesh) {
+                                                    const Mesh<Dim>& mesh, std::uint32_t after) {
   return runtime::parallel_collect<VertexId>(
       executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
         const auto vertex = static_cast<VertexId>(v);
-        if (mesh.kind_of[v].freedom != 0 && mesh.vertex_alive(vertex)) append(vertex);
+        if (mesh.kind_of[v].freedom != 0 && mesh.changed_around(vertex, after)) append(vertex);
       });
 }
 
@@ -116,28 +116,48 @@ Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) cons
   return displacement - dot(displacement, normal) * normal;
 }
 
-/// Every neighbour pulls the vertex to unit distance along their edge; this is the mean pull.
+/// Every element around pulls the vertex to where it would be regular over its opposite facet, or
+/// half-way from there to where its edges have unit length; bad elements pull harder. This is the
+/// mean pull.
 template <int Dim>
-Vector<Dim> Smooth<Dim>::unit_length_displacement(VertexId vertex) const {
-  VertexBuffer ring;
-  neighbours_of(mesh_, vertex, ring);
+Vector<Dim> Smooth<Dim>::regular_displacement(VertexId vertex) const {
   const Site<Dim>& here = mesh_.site_of[vertex];
+  const Metric<Dim> dual = inverse(here.metric);
   Vector<Dim> sum;
-  double count = 0;
-  const int freedom = mesh_.kind_of[vertex].freedom;
-  for (const VertexId v : ring) {
-    if (freedom < Dim && mesh_.kind_of[v].freedom > freedom) continue;
-    const double length = edge_length(here, mesh_.site_of[v]);
-    sum += (1 - 1 / length) * (mesh_.site_of[v].position - here.position);
-    count += 1;
+  double total = 0;
+  for (const ElementId e : mesh_.elements_of.of(vertex)) {
+    const Corners<Dim>& corners = mesh_.corners_of[e];
+    const Facet<Dim> facet = facet_of<Dim>(corners, corner_of(corners, vertex));
+    std::array<Vector<Dim>, Dim> p;
+    Vector<Dim> centre;
+    for (std::size_t k = 0; k < Dim; ++k) {
+      p[k] = mesh_.site_of[facet[k]].position;
+      centre += (1.0 / Dim) * p[k];
+    }
+    double squares = squared_length(here.metric, p[1] - p[0]);
+    Vector<Dim> inward;  // as a covector
+    if constexpr (Dim == 2) {
+      inward = {{p[0][1] - p[1][1], p[1][0] - p[0][0]}};
+    } else {
+      inward = cross(p[2] - p[0], p[1] - p[0]);
+      squares = (squares + squared_length(here.metric, p[2] - p[0]) +
+                 squared_length(here.metric, p[2] - p[1])) /
+                3;
+    }
+    const double size = std::sqrt(std::sqrt(squares));  // geometric mean of the facet's and 1
+    const double height = size * std::sqrt(Dim == 2 ? 0.75 : 2.0 / 3);
+    const Vector<Dim> up = product(dual, inward);
+    const double weight = 1 / std::max(0.01F, mesh_.shape_of[e]);
+    sum += weight * (centre + (height / std::sqrt(dot(inward, up))) * up - here.position);
+    total += weight;
   }
-  return count > 0 ? allowed(vertex, (1 / count) * sum) : Vector<Dim>{};
+  return allowed(vertex, (1 / total) * sum);
 }
 
-/// Goes towards the unit-length place as far as shapes get better.
+/// Goes towards where the elements want it as far as their shapes get better.
 template <int Dim>
 bool Smooth<Dim>::relax(VertexId vertex, Place& best) const {
-  const Vector<Dim> step = unit_length_displacement(vertex);
+  const Vector<Dim> step = regular_displacement(vertex);
   if (squared_length(best.site.metric, step) < 1e-4) return false;
   const Vector<Dim> start = best.site.position;
   const double bound = std::min(best.score.worst, shape_of_mean_ratio<Dim>(0.7));
@@ -236,9 +256,12 @@ template <int Dim>
 void Smooth<Dim>::apply(const Plan& plan, runtime::Commit<Smooth>& commit) {
   mesh_.site_of[plan.vertex] = plan.site;
   mesh_.host_of[plan.vertex] = plan.host;
-  for (const ElementId e : mesh_.elements_of.of(plan.vertex))
-    mesh_.shape_of[e] = static_cast<float>(mesh_.shape_at(mesh_.corners_of[e]));
-  if (!plan.far) return;
+  for (const ElementId e : mesh_.elements_of.of(plan.vertex)) {
+    const std::uint32_t changed_at = mesh_.changed_at[e];
+    update_element(mesh_, e);
+    if (!plan.far) mesh_.changed_at[e] = changed_at;  // too little to reconsider anything
+  }
+  if (!plan.far || !options_.again) return;
   VertexBuffer ring;
   neighbours_of(mesh_, plan.vertex, ring);
   commit.wake(plan.vertex);

@@ -1,8 +1,9 @@
 /// @file
-/// Smooth: moves vertices to where their elements are better. Each vertex first tries the place
-/// that gives its edges unit length on average (a Laplacian in metric space, constrained by
-/// quality); where elements stay bad, it climbs towards the place where the worst of them is best.
-/// Neighbours never move together, so a sweep is a Gauss-Seidel iteration by colours.
+/// Smooth: moves vertices to where their elements are better. Each vertex first goes
+/// towards the mean of the places where each of its elements would be regular (a Laplacian in
+/// metric space, constrained by quality); where elements stay bad, it climbs towards the place
+/// where the worst of them is best. Neighbours never move together, so a sweep is a Gauss-Seidel
+/// iteration by colours.
 #pragma once
 
 #include <optional>
@@ -25,6 +26,7 @@ struct VertexMove {
 struct SmoothOptions {
   bool laplacian = true;
   double optimise_below = 0.4;  ///< optimise where the worst mean ratio around is below this
+  bool again = true;            ///< wake whoever has a neighbour that moved far
 };
 
 template <int Dim>
@@ -33,15 +35,15 @@ class Smooth {
   // ---- What it works on ----
   using Item = VertexId;
   using Plan = VertexMove<Dim>;
-  struct Update {};                          // every write is the item's own
+  struct Update {};                              // every write is the item's own
   static constexpr bool keeps_conflicts = true;  // moving changes no adjacency
 
   Smooth(Mesh<Dim>& mesh, const Background<Dim>& background, const SmoothOptions& options)
       : mesh_(mesh), background_(background), options_(options) {}
 
-  /// All vertices that may move.
+  /// All vertices that may move, next to elements changed after an epoch.
   static std::vector<VertexId> movable_vertices(const runtime::Executor& executor,
-                                                const Mesh<Dim>& mesh);
+                                                const Mesh<Dim>& mesh, std::uint32_t after);
 
   // ---- Plan: a better place, if there is one. Reads only. ----
   std::optional<Plan> plan(VertexId vertex) const;
@@ -74,7 +76,7 @@ class Smooth {
   std::optional<Place> place(VertexId vertex, const Vector<Dim>& position, ElementId near,
                              double give_up_below) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
-  Vector<Dim> unit_length_displacement(VertexId vertex) const;
+  Vector<Dim> regular_displacement(VertexId vertex) const;
   bool relax(VertexId vertex, Place& best) const;
   bool optimise(VertexId vertex, Place& best) const;
   Vector<Dim> ascent(VertexId vertex, const Place& at) const;

@@ -31,10 +31,9 @@ class Swap {
 
   explicit Swap(Mesh<Dim>& mesh) : mesh_(mesh) {}
 
-  /// All edges and faces whose swap would be an improvement now, around elements whose mean ratio is
-  /// below a bound.
+  /// All edges and faces of elements changed after an epoch whose swap would be an improvement now.
   static std::vector<Swappable> improvements(const runtime::Executor& executor, Mesh<Dim>& mesh,
-                                             double below);
+                                             std::uint32_t after);
 
   // ---- Plan: the elements to come, if they are better than those to go. Reads only. ----
   std::optional<Plan> plan(const Item& item) const;

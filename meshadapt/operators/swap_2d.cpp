@@ -35,7 +35,8 @@ std::optional<Replacement<2>> Swap<2>::plan(const Swappable& edge) const {
 template <>
 void Swap<2>::apply(const Replacement<2>& plan, runtime::Commit<Swap>& commit) {
   replace(mesh_, plan, commit);
-  const float worst = std::min(mesh_.shape_of[plan.old_elements[0]], mesh_.shape_of[plan.old_elements[1]]);
+  const float worst =
+      std::min(mesh_.shape_of[plan.old_elements[0]], mesh_.shape_of[plan.old_elements[1]]);
   const auto& [a, d, c] = plan.new_elements[0];
   const VertexId b = plan.new_elements[1][1];
   for (const auto& [p, q] : {std::pair{a, d}, {d, b}, {b, c}, {c, a}})
@@ -44,19 +45,18 @@ void Swap<2>::apply(const Replacement<2>& plan, runtime::Commit<Swap>& commit) {
 
 template <>
 std::vector<Swappable> Swap<2>::improvements(const runtime::Executor& executor, Mesh<2>& mesh,
-                                             double below) {
+                                             std::uint32_t after) {
   const Swap swap(mesh);
-  const double bound = shape_of_mean_ratio<2>(below);
   return runtime::parallel_collect<Swappable>(
       executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
         const auto element = static_cast<ElementId>(e);
-        if (!mesh.alive(element) || mesh.shape_of[e] > bound) return;
+        if (!mesh.alive(element) || mesh.changed_at[e] <= after) return;
         for (int i = 0; i < 3; ++i) {
           const auto [a, b] = facet_of<2>(mesh.corners_of[e], i);
           const ElementId other = neighbour(mesh, element, i);
-          if (other == none || std::pair(mesh.shape_of[other], other) < std::pair(mesh.shape_of[e], element))
-            continue;
-          const Swappable item{std::min(a, b), std::max(a, b), none, mesh.shape_of[e]};
+          if (other == none || (other < element && mesh.changed_at[other] > after)) continue;
+          const float worst = std::min(mesh.shape_of[e], mesh.shape_of[other]);
+          const Swappable item{std::min(a, b), std::max(a, b), none, worst};
           if (swap.plan(item)) append(item);
         }
       });

@@ -9,6 +9,9 @@ namespace {
 
 constexpr std::size_t largest_ring = 7;
 
+/// Elements of this shape (mean ratio 0.9) are left alone.
+constexpr float good_enough = 0.85F;
+
 /// The vertices around an edge a-b in order, counter-clockwise seen from b. `open` if the edge is
 /// on the boundary; the ring then starts and ends there.
 struct Ring {
@@ -42,7 +45,8 @@ std::optional<Ring> ring_around(const Mesh<3>& mesh, const Shell& shell, VertexI
   VertexId at = start;
   ring.vertices.push_back(at);
   for (std::size_t step = 0; step < sides.size(); ++step) {
-    const auto next = std::find_if(sides.begin(), sides.end(), [&](const auto& s) { return s[0] == at; });
+    const auto next =
+        std::find_if(sides.begin(), sides.end(), [&](const auto& s) { return s[0] == at; });
     if (next == sides.end()) return {};
     at = (*next)[1];
     if (at != start) ring.vertices.push_back(at);
@@ -137,56 +141,46 @@ class RingTriangulation {
   std::uint8_t apex_[largest_ring][largest_ring] = {};
 };
 
-std::optional<Replacement<3>> plan_edge_removal(const Mesh<3>& mesh, const Swappable& edge, auto bar) {
-  Shell shell;
-  shell_of(mesh, edge.a, edge.b, shell);
+std::optional<Replacement<3>> plan_edge_removal(const Mesh<3>& mesh, VertexId a, VertexId b,
+                                                const Shell& shell, double worst_allowed) {
   PatchId patch = 0;
-  if (shell.empty() || shell.size() > largest_ring || !removable(mesh, shell, edge.a, edge.b, patch))
+  if (shell.empty() || shell.size() > largest_ring || !removable(mesh, shell, a, b, patch))
     return {};
-  const auto ring = ring_around(mesh, shell, edge.a, edge.b);
+  const auto ring = ring_around(mesh, shell, a, b);
   // A patch on a closed ring is an interface or a sheet inside a region: its edges stay.
   if (!ring || ring->open != (patch != 0)) return {};
-  double worst = 1;
-  for (const ElementId e : shell) worst = std::min<double>(worst, mesh.shape_of[e]);
   Replacement<3> result;
-  if (!RingTriangulation(mesh, *ring, edge.a, edge.b, bar(worst)).find(result)) return {};
+  if (!RingTriangulation(mesh, *ring, a, b, worst_allowed).find(result)) return {};
   result.old_elements.assign(shell.begin(), shell.end());
   if (ring->open) {
     const VertexId first = ring->vertices.front(), last = ring->vertices.back();
-    result.new_facets = {{edge.a, first, last}, {edge.b, first, last}};
+    result.new_facets = {{a, first, last}, {b, first, last}};
     result.new_patch = patch;
   }
   return result;
 }
 
-std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappable& face, auto bar) {
-  Replacement<3> result;
-  for (const ElementId e : mesh.elements_of.of(face.a))
-    if (contains(mesh.corners_of[e], face.b) && contains(mesh.corners_of[e], face.c)) {
-      if (result.old_elements.size() == 2) return {};
-      result.old_elements.push_back(e);
-    }
-  if (result.old_elements.size() != 2) return {};
-  const ElementId e = result.old_elements[0], f = result.old_elements[1];
+/// Elements e and f share a face, which gives way to the edge between their other corners.
+std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, ElementId e, ElementId f,
+                                             double worst_allowed) {
   if (mesh.region_of[e] != mesh.region_of[f] || mesh.required_element(e)) return {};
-  const auto apex = [&](ElementId element) {
-    for (int i = 0; i < 4; ++i) {
-      const VertexId v = mesh.corners_of[element][static_cast<std::size_t>(i)];
-      if (v != face.a && v != face.b && v != face.c) return i;
-    }
-    return 0;
+  const auto apex = [&](ElementId element, ElementId other) {
+    std::size_t i = 0;
+    while (contains(mesh.corners_of[other], mesh.corners_of[element][i])) ++i;
+    return i;
   };
-  const int i = apex(e);
-  if (mesh.patches_of[e][static_cast<std::size_t>(i)] != 0) return {};
-  const VertexId low = mesh.corners_of[e][static_cast<std::size_t>(i)];
-  const VertexId high = mesh.corners_of[f][static_cast<std::size_t>(apex(f))];
-  const Facet<3> around = facet_of<3>(mesh.corners_of[e], i);  // counter-clockwise from `high`
-  const double least = bar(std::min(mesh.shape_of[e], mesh.shape_of[f]));
+  const std::size_t i = apex(e, f);
+  if (mesh.patches_of[e][i] != 0) return {};
+  const VertexId low = mesh.corners_of[e][i], high = mesh.corners_of[f][apex(f, e)];
+  // Counter-clockwise seen from `high`.
+  const Facet<3> around = facet_of<3>(mesh.corners_of[e], static_cast<int>(i));
+  Replacement<3> result;
   for (std::size_t k = 0; k < 3; ++k) {
     const Corners<3> corners{low, high, around[k], around[(k + 1) % 3]};
-    if (!(mesh.shape_at(corners) > least)) return {};
+    if (!(mesh.shape_at(corners) > worst_allowed)) return {};
     result.new_elements.push_back(corners);
   }
+  result.old_elements = {e, f};
   return result;
 }
 
@@ -194,7 +188,15 @@ std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappabl
 
 template <>
 std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
-  return item.c == none ? plan_edge_removal(mesh_, item, bar) : plan_face_swap(mesh_, item, bar);
+  Shell shell;
+  float worst = 1;
+  footprint(item, [&](ElementId e) {
+    shell.push_back(e);
+    worst = std::min(worst, mesh_.shape_of[e]);
+  });
+  if (item.c == none) return plan_edge_removal(mesh_, item.a, item.b, shell, bar(worst));
+  if (shell.size() != 2) return {};
+  return plan_face_swap(mesh_, shell[0], shell[1], bar(worst));
 }
 
 template <>
@@ -202,35 +204,96 @@ void Swap<3>::apply(const Replacement<3>& plan, runtime::Commit<Swap>& commit) {
   replace(mesh_, plan, commit);
 }
 
+namespace {
+
+/// The elements around a vertex, and which of them are around each of its edges to neighbours with
+/// a higher number, read once for all swaps that are looked for from here.
+class Star {
+ public:
+  static constexpr std::size_t most_around = 16;  // an edge in more elements is left alone
+
+  struct Entry {
+    ElementId element;
+    Corners<3> corners;
+    float shape;
+    bool changed;
+  };
+  struct Edge {
+    VertexId to;
+    std::uint32_t count = 0;
+    std::array<std::uint16_t, most_around> around{};
+  };
+
+  Star(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after) {
+    for (const ElementId e : mesh.elements_of.of(vertex)) {
+      entries.push_back({e, mesh.corners_of[e], mesh.shape_of[e], mesh.changed_at[e] > after});
+      changed = changed || entries.back().changed;
+    }
+    if (!changed || entries.size() > mesh.largest_ball) return;
+    for (std::uint16_t i = 0; i < entries.size(); ++i)
+      for (const VertexId v : entries[i].corners)
+        if (v > vertex) note(v, i);
+  }
+
+  Buffer<Entry, 64> entries;
+  Buffer<Edge, 24> edges;
+  bool changed = false;
+
+ private:
+  void note(VertexId to, std::uint16_t entry) {
+    auto at = std::find_if(edges.begin(), edges.end(), [&](const Edge& e) { return e.to == to; });
+    if (at == edges.end()) at = edges.insert(edges.end(), Edge{to});
+    if (at->count < most_around) at->around[at->count] = entry;
+    ++at->count;
+  }
+};
+
+void offer_edge(const Mesh<3>& mesh, VertexId a, const Star& star, const Star::Edge& edge, auto bar,
+                auto&& append) {
+  Shell shell;
+  float worst = 1;
+  bool changed = false;
+  for (std::uint32_t k = 0; k < edge.count; ++k) {
+    const Star::Entry& entry = star.entries[edge.around[k]];
+    shell.push_back(entry.element);
+    worst = std::min(worst, entry.shape);
+    changed = changed || entry.changed;
+  }
+  if (changed && worst < good_enough && plan_edge_removal(mesh, a, edge.to, shell, bar(worst)))
+    append(Swappable{a, edge.to, none, worst});
+}
+
+/// The faces on an edge whose third corner has a higher number still.
+void offer_faces(const Mesh<3>& mesh, VertexId a, const Star& star, const Star::Edge& edge,
+                 auto bar, auto&& append) {
+  for (std::uint32_t i = 0; i < edge.count; ++i)
+    for (std::uint32_t j = i + 1; j < edge.count; ++j) {
+      const Star::Entry &e = star.entries[edge.around[i]], &f = star.entries[edge.around[j]];
+      const float worst = std::min(e.shape, f.shape);
+      if ((!e.changed && !f.changed) || worst >= good_enough) continue;
+      for (const VertexId c : e.corners)
+        if (c > edge.to && contains(f.corners, c) &&
+            plan_face_swap(mesh, e.element, f.element, bar(worst)))
+          append(Swappable{a, edge.to, c, worst});
+    }
+}
+
+}  // namespace
+
 template <>
 std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, Mesh<3>& mesh,
-                                             double below) {
-  const Swap swap(mesh);
-  const double bound = shape_of_mean_ratio<3>(below);
-  const auto comes_first = [&](ElementId e, ElementId other) {
-    return std::pair(mesh.shape_of[e], e) < std::pair(mesh.shape_of[other], other);
-  };
-  return runtime::parallel_collect<Swappable>(
-      executor, mesh.element_slots(), [&](std::size_t at, auto&& append) {
-        const auto e = static_cast<ElementId>(at);
-        if (!mesh.alive(e) || mesh.shape_of[e] > bound) return;
-        const Corners<3>& corners = mesh.corners_of[e];
-        for (const auto& [i, j] : Simplex<3>::edge) {
-          const VertexId a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>(j)];
-          bool first = true;
-          swap.footprint({a, b}, [&](ElementId other) { first = first && !comes_first(other, e); });
-          const Swappable item{std::min(a, b), std::max(a, b), none, mesh.shape_of[e]};
-          if (first && swap.plan(item)) append(item);
-        }
-        for (int i = 0; i < 4; ++i) {
-          const ElementId other = neighbour(mesh, e, i);
-          if (other == none || comes_first(other, e)) continue;
-          Facet<3> f = facet_of<3>(corners, i);
-          std::sort(f.begin(), f.end());
-          const Swappable item{f[0], f[1], f[2], mesh.shape_of[e]};
-          if (swap.plan(item)) append(item);
-        }
-      });
+                                             std::uint32_t after) {
+  return runtime::parallel_collect<Swappable>(executor, mesh.vertex_slots(),
+                                              [&](std::size_t v, auto&& append) {
+                                                const auto a = static_cast<VertexId>(v);
+                                                const Star star(mesh, a, after);
+                                                for (const Star::Edge& edge : star.edges) {
+                                                  if (edge.count > Star::most_around) continue;
+                                                  if (edge.count <= largest_ring)
+                                                    offer_edge(mesh, a, star, edge, bar, append);
+                                                  offer_faces(mesh, a, star, edge, bar, append);
+                                                }
+                                              });
 }
 
 template class Swap<3>;

@@ -23,14 +23,14 @@ struct AdaptProgress {
 };
 
 struct AdaptOptions {
-  int iterations = 12;         ///< at most this many rounds of the four kernels
-  double smallest_size = 0;    ///< no edge length below this is asked for; 0: no bound
-  double largest_size = 0;     ///< no edge length above this is asked for; 0: no bound
-  double gradation = 0;        ///< sizes grow by at most this factor per unit of metric length (see
-                               ///< limit_gradation); 0 or less: as given. Mmg's default is 1.3
-  bool move = true;            ///< smooth vertices
-  bool swap = true;            ///< swap edges and faces
-  bool insert = true;          ///< split and collapse edges
+  int iterations = 12;       ///< at most this many rounds of the four kernels
+  double smallest_size = 0;  ///< no edge length below this is asked for; 0: no bound
+  double largest_size = 0;   ///< no edge length above this is asked for; 0: no bound
+  double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
+                             ///< limit_gradation); 0 or less: as given. Mmg's default is 1.3
+  bool move = true;          ///< smooth vertices
+  bool swap = true;          ///< swap edges and faces
+  bool insert = true;        ///< split and collapse edges
   Rules rules;
   MakeMeshOptions make;
   std::function<void(const AdaptProgress&)> progress;  ///< called on the calling thread

@@ -19,8 +19,8 @@ class Background {
   Background(const runtime::Executor& executor, const Mesh<Dim>& mesh, Neighbours<Dim> neighbours,
              const std::vector<Metric<Dim>>& metric_of);
 
-  /// Where a point lies, and the metric there: log-Euclidean interpolation (Arsigny, Fillard, Pennec
-  /// & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007) of the element's vertices.
+  /// Where a point lies, and the metric there: log-Euclidean interpolation (Arsigny, Fillard,
+  /// Pennec & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007) of the element's vertices.
   struct Sample {
     ElementId host;
     Metric<Dim> metric;
@@ -45,10 +45,10 @@ class Background {
   Walk walk(const Vector<Dim>& point, ElementId near) const;
   Walk search(const Vector<Dim>& point) const;
 
-  std::vector<Corners<Dim>> corners_of_;           // [element]
-  Neighbours<Dim> neighbours_;                     // [element][facet]
-  std::vector<Vector<Dim>> position_of_;           // [vertex]
-  std::vector<Metric<Dim>> log_metric_of_;         // [vertex]
+  std::vector<Corners<Dim>> corners_of_;    // [element]
+  Neighbours<Dim> neighbours_;              // [element][facet]
+  std::vector<Vector<Dim>> position_of_;    // [vertex]
+  std::vector<Metric<Dim>> log_metric_of_;  // [vertex]
 };
 
 extern template class Background<2>;

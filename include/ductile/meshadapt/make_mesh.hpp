@@ -14,8 +14,9 @@
 namespace ductile::meshadapt {
 
 struct MakeMeshOptions {
-  bool complete_boundary = false;  ///< give unlisted boundary facets reference 0, do not refuse them
-  bool lock_boundary = false;      ///< treat every boundary and interface facet as required
+  bool complete_boundary =
+      false;                   ///< give unlisted boundary facets reference 0, do not refuse them
+  bool lock_boundary = false;  ///< treat every boundary and interface facet as required
 };
 
 /// The element across each facet, or none: [element][facet].

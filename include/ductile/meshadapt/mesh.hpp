@@ -26,16 +26,16 @@ using CurveId = std::uint32_t;
 /// interface between regions. In 2D, a straight chain of edges.
 template <int Dim>
 struct Patch {
-  Vector<Dim> normal;           ///< unit length
+  Vector<Dim> normal;  ///< unit length
   std::int32_t reference = 0;
-  bool listed = true;           ///< was in the file, and is written
-  bool required = false;        ///< its facets may not change
-  bool ridge = false;           ///< 2D: its edges were listed as ridges
+  bool listed = true;     ///< was in the file, and is written
+  bool required = false;  ///< its facets may not change
+  bool ridge = false;     ///< 2D: its edges were listed as ridges
 };
 
 /// A maximal straight chain of edges in 3D: between patches, or listed in the file.
 struct Curve {
-  Vector<3> direction;          ///< unit length
+  Vector<3> direction;  ///< unit length
   std::int32_t reference = 0;
   bool listed = false;
   bool required = false;
@@ -67,19 +67,21 @@ struct Region {
 template <int Dim>
 struct Mesh {
   // ---- Elements; one is gone when its first corner is none ----
-  std::vector<Corners<Dim>> corners_of;                   // [element], positively oriented
-  std::vector<std::array<PatchId, Dim + 1>> patches_of;   // [element][facet], 0 inside
-  std::vector<std::uint32_t> region_of;                   // [element], index into regions
-  std::vector<float> shape_of;                            // [element], see shape()
+  std::vector<Corners<Dim>> corners_of;                  // [element], positively oriented
+  std::vector<std::array<PatchId, Dim + 1>> patches_of;  // [element][facet], 0 inside
+  std::vector<std::uint32_t> region_of;                  // [element], index into regions
+  std::vector<float> shape_of;                           // [element], see shape()
+  std::vector<std::uint32_t> changed_at;                 // [element], epoch of its last change
+  std::uint32_t epoch = 1;  ///< what changes now is marked with this; a scan ends an epoch
 
   // ---- Vertices; one is gone when it has no elements ----
-  std::vector<Site<Dim>> site_of;                         // [vertex]
-  std::vector<VertexKind> kind_of;                        // [vertex]
-  std::vector<std::uint32_t> entity_of;                   // [vertex], its patch or curve, or 0
-  std::vector<std::int32_t> reference_of;                 // [vertex]
-  std::vector<ElementId> host_of;                         // [vertex], background element it lies in
-  ListPool<ElementId> elements_of;                        // [vertex], sorted
-  ListPool<CurveLink> links_of;                           // [vertex], 3D only
+  std::vector<Site<Dim>> site_of;          // [vertex]
+  std::vector<VertexKind> kind_of;         // [vertex]
+  std::vector<std::uint32_t> entity_of;    // [vertex], its patch or curve, or 0
+  std::vector<std::int32_t> reference_of;  // [vertex]
+  std::vector<ElementId> host_of;          // [vertex], background element it lies in
+  ListPool<ElementId> elements_of;         // [vertex], sorted
+  ListPool<CurveLink> links_of;            // [vertex], 3D only
 
   // ---- Geometry; entry 0 stands for none ----
   std::vector<Patch<Dim>> patches;
@@ -99,6 +101,13 @@ struct Mesh {
   }
   double length(VertexId a, VertexId b) const { return edge_length(site_of[a], site_of[b]); }
   double shape_at(const Corners<Dim>& corners) const { return shape<Dim>(sites(corners)); }
+
+  /// Has an element around the vertex changed after this epoch?
+  bool changed_around(VertexId vertex, std::uint32_t after) const {
+    for (const ElementId element : elements_of.of(vertex))
+      if (changed_at[element] > after) return true;
+    return false;
+  }
 
   bool required_element(ElementId element) const { return regions[region_of[element]].required; }
 
@@ -126,8 +135,8 @@ void rebuild_elements_of(const runtime::Executor& executor, Mesh<Dim>& mesh);
 template <int Dim>
 void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
-/// Removes what is gone and renumbers what is left along a space-filling curve, so that what is near
-/// in space is near in memory. The result does not depend on the number of threads.
+/// Removes what is gone and renumbers what is left along a space-filling curve, so that what is
+/// near in space is near in memory. The result does not depend on the number of threads.
 template <int Dim>
 void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh);
 

@@ -60,6 +60,16 @@ inline double determinant(const Metric<3>& a) {
          a.m[3] * (a.m[1] * a.m[4] - a.m[2] * a.m[3]);
 }
 
+inline Metric<2> inverse(const Metric<2>& a) {
+  return (1 / determinant(a)) * Metric<2>{{a.m[2], -a.m[1], a.m[0]}};
+}
+inline Metric<3> inverse(const Metric<3>& a) {
+  const auto& [xx, xy, yy, xz, yz, zz] = a.m;
+  return (1 / determinant(a)) *
+         Metric<3>{{yy * zz - yz * yz, xz * yz - xy * zz, xx * zz - xz * xz, xy * yz - xz * yy,
+                    xy * xz - xx * yz, xx * yy - xy * xy}};
+}
+
 /// Length of an edge whose end metrics measure it as `at_one_end` and `at_other`: the size is taken
 /// to vary geometrically along it, which gives their logarithmic mean (Alauzet, Finite Elem. Anal.
 /// Des. 46, 2010).

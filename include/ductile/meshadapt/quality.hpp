@@ -28,7 +28,20 @@ Site<Dim> make_site(const Vector<Dim>& position, const Metric<Dim>& metric) {
 template <int Dim>
 double edge_length(const Site<Dim>& a, const Site<Dim>& b) {
   const Vector<Dim> d = b.position - a.position;
-  return mean_length(std::sqrt(squared_length(a.metric, d)), std::sqrt(squared_length(b.metric, d)));
+  return mean_length(std::sqrt(squared_length(a.metric, d)),
+                     std::sqrt(squared_length(b.metric, d)));
+}
+
+/// edge_length(a, b) < limit, mostly decided without roots and logarithms: the logarithmic mean
+/// lies between the geometric mean and the larger of the two end lengths.
+template <int Dim>
+bool shorter_than(const Site<Dim>& a, const Site<Dim>& b, double limit) {
+  const Vector<Dim> d = b.position - a.position;
+  const double at_a = squared_length(a.metric, d), at_b = squared_length(b.metric, d);
+  const double square = limit * limit;
+  if (at_a * at_b >= square * square) return false;
+  if (std::max(at_a, at_b) < square) return true;
+  return mean_length(std::sqrt(at_a), std::sqrt(at_b)) < limit;
 }
 
 /// The corner with the densest metric: the metric an element is judged by, as the unstructured grid
@@ -68,12 +81,14 @@ double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   if (!(determinant > 0)) return determinant;
   const Site<Dim>& judge = densest<Dim>(corner);
   const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
-  if constexpr (Dim == 2) return 2 * std::sqrt(3.0) * judge.density * determinant / squares;
-  else return 12 * std::sqrt(3.0) * judge.density * determinant / (squares * std::sqrt(squares));
+  if constexpr (Dim == 2)
+    return 2 * std::sqrt(3.0) * judge.density * determinant / squares;
+  else
+    return 12 * std::sqrt(3.0) * judge.density * determinant / (squares * std::sqrt(squares));
 }
 
-/// Mean ratio from shape: 12 (3V)^(2/3) / (sum of the six squared lengths) in 3D (Liu & Joe, BIT 34,
-/// 1994), shape itself in 2D.
+/// Mean ratio from shape: 12 (3V)^(2/3) / (sum of the six squared lengths) in 3D (Liu & Joe, BIT
+/// 34, 1994), shape itself in 2D.
 template <int Dim>
 double mean_ratio(double shape) {
   return Dim == 2 || shape <= 0 ? shape : std::cbrt(shape * shape);

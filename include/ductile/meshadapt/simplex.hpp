@@ -72,8 +72,10 @@ inline double certain_determinant(const Vector<3>& a, const Vector<3>& b, const 
 
 template <int Dim>
 double certain_determinant(const std::array<Vector<Dim>, Dim + 1>& p) {
-  if constexpr (Dim == 2) return certain_determinant(p[0], p[1], p[2]);
-  else return certain_determinant(p[0], p[1], p[2], p[3]);
+  if constexpr (Dim == 2)
+    return certain_determinant(p[0], p[1], p[2]);
+  else
+    return certain_determinant(p[0], p[1], p[2], p[3]);
 }
 
 /// Position of `vertex` among the corners, or -1.

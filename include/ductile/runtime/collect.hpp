@@ -10,8 +10,8 @@
 
 namespace ductile::runtime {
 
-/// Calls find(i, append) for i in [0, n); append(item) adds an item to the result. Items of a lower i
-/// come first. Thread safety: one caller; runs on the executor.
+/// Calls find(i, append) for i in [0, n); append(item) adds an item to the result. Items of a lower
+/// i come first. Thread safety: one caller; runs on the executor.
 template <class Item, class Find>
 std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find) {
   constexpr std::size_t block_size = 1024;
@@ -29,13 +29,12 @@ std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find
     total += found[b].size();
   }
   std::vector<Item> all(total);
-  parallel_for(
-      executor, found.size(),
-      [&](std::size_t b) {
-        std::copy(found[b].begin(), found[b].end(),
-                  all.begin() + static_cast<std::ptrdiff_t>(offset[b]));
-      },
-      {.grain = 16});
+  parallel_for(executor, found.size(),
+               [&](std::size_t b) {
+                 std::copy(found[b].begin(), found[b].end(),
+                           all.begin() + static_cast<std::ptrdiff_t>(offset[b]));
+               },
+               {.grain = 16});
   return all;
 }
 

@@ -39,9 +39,9 @@ concept Operator = requires(Op& op, const Op& reader, const typename Op::Item it
 template <class Op>
 concept ColouredOperator = Operator<Op> && std::same_as<typename Op::Item, std::uint32_t> &&
     requires(const Op& op, std::uint32_t item) {
-      op.conflicts(item, [](std::uint32_t) {});
-      { op.item_count() } -> std::convertible_to<std::size_t>;
-    };
+  op.conflicts(item, [](std::uint32_t) {});
+  { op.item_count() } -> std::convertible_to<std::size_t>;
+};
 
 /// footprint(item, visit) visits the numbers, below resource_count(), of all that the item's plan
 /// reads and its application writes or invalidates; it visits nothing if the item is void.
@@ -72,8 +72,8 @@ struct Kinds {
 };
 template <GrowingOperator Op>
 struct Kinds<Op> {
-  static constexpr std::size_t count =
-      std::tuple_size_v<decltype(std::declval<const Op&>().demand(std::declval<typename Op::Plan>()))>;
+  static constexpr std::size_t count = std::tuple_size_v<decltype(std::declval<const Op&>().demand(
+      std::declval<typename Op::Plan>()))>;
 };
 
 }  // namespace detail
@@ -99,6 +99,13 @@ class Commit {
     woken_->append(item);
   }
 
+  /// Says that an item's conflicts may have changed but nothing else that matters to it: if it is
+  /// still to be planned in this round, it leaves the round and comes back in the next one.
+  void disturb(Item item) requires ColouredOperator<Op> {
+    std::atomic_ref((*woken_at_)[item]).store(round_, std::memory_order_relaxed);
+    if ((*turn_of_)[item] > turn_ && (*turn_of_)[item] != 0xffffffffU) woken_->append(item);
+  }
+
   /// The next of the numbers of this kind that demand() asked for.
   std::uint32_t fresh(std::size_t kind = 0) { return next_[kind]++; }
 
@@ -107,7 +114,9 @@ class Commit {
   friend class Rounds;
   DeferredUpdate<Update>* deferred_ = nullptr;
   Worklist<Item>* woken_ = nullptr;
-  std::vector<std::uint32_t>* woken_at_ = nullptr;  // [item], the round it was last woken in
+  std::vector<std::uint32_t>* woken_at_ = nullptr;       // [item], the round it was last woken in
+  const std::vector<std::uint32_t>* turn_of_ = nullptr;  // [item], its class in this round
+  std::uint32_t turn_ = 0;                               // the class being applied
   std::uint64_t source_ = 0;
   std::uint32_t round_ = 0;
   std::array<std::uint32_t, detail::Kinds<Op>::count> next_{};

@@ -9,7 +9,7 @@
 namespace ductile::runtime {
 
 struct RoundsOptions {
-  int most_rounds = 1000;           ///< stop there even if work is left
+  int most_rounds = 1000;                ///< stop there even if work is left
   CommitOrder order = CommitOrder::any;  ///< by_source if an owner's updates do not commute
 };
 

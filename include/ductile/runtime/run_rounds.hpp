@@ -21,9 +21,9 @@ namespace ductile::runtime {
 /// contract. Throws what the operator throws; the operator's data are then not to be used.
 /// Thread safety: one caller; runs on the executor.
 template <class Op>
-  requires ColouredOperator<Op> || ReservingOperator<Op>
-RoundsReport run_rounds(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
-                        const RoundsOptions& options = {}) {
+requires ColouredOperator<Op> || ReservingOperator<Op> RoundsReport
+run_rounds(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
+           const RoundsOptions& options = {}) {
   return Rounds<Op>(executor, op, options).run(std::move(work));
 }
 

@@ -72,30 +72,28 @@ class Rounds {
 
   // ---- Colouring: cut the round into classes of items that do not conflict ----
 
-  std::vector<Item> coloured_round(std::vector<Item> work)
-    requires ColouredOperator<Op>
-  {
+  std::vector<Item> coloured_round(std::vector<Item> work) requires ColouredOperator<Op> {
     std::vector<std::vector<Item>> classes;
     {
       const PhaseTimer timer(report_.conflict_seconds);
       woken_at_.resize(op_.item_count(), 0);
       classes = independent_classes(work);
     }
-    for (std::vector<Item>& members : classes) {
-      drop_woken(members);
-      execute(members);
+    for (turn_ = 0; turn_ < classes.size(); ++turn_) {
+      drop_woken(classes[turn_]);
+      execute(classes[turn_]);
     }
+    parallel_for(executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; });
     return take_woken();
   }
 
   std::vector<std::vector<Item>> independent_classes(const std::vector<Item>& work) {
-    position_of_.resize(op_.item_count(), absent);
-    parallel_for(executor_, work.size(), [&](std::size_t i) {
-      position_of_[work[i]] = static_cast<std::uint32_t>(i);
-    });
+    turn_of_.resize(op_.item_count(), absent);
+    parallel_for(executor_, work.size(),
+                 [&](std::size_t i) { turn_of_[work[i]] = static_cast<std::uint32_t>(i); });
     const CallbackGraph graph(work.size(), [&](std::uint32_t i, auto&& visit) {
       op_.conflicts(work[i], [&](Item other) {
-        if (position_of_[other] != absent) visit(position_of_[other]);
+        if (turn_of_[other] != absent) visit(turn_of_[other]);
       });
     });
     const Colouring colouring = colour(executor_, graph);
@@ -107,7 +105,9 @@ class Rounds {
       parallel_for(executor_, members.size(),
                    [&](std::size_t i) { classes[c][i] = work[members[i]]; });
     }
-    parallel_for(executor_, work.size(), [&](std::size_t i) { position_of_[work[i]] = absent; });
+    // From here on the array holds each item's class instead of its position.
+    parallel_for(executor_, work.size(),
+                 [&](std::size_t i) { turn_of_[work[i]] = colouring.colour_of[i]; });
     return classes;
   }
 
@@ -119,21 +119,25 @@ class Rounds {
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
 
-  std::vector<Item> reserved_round(std::vector<Item> work)
-    requires ReservingOperator<Op>
-  {
+  std::vector<Item> reserved_round(std::vector<Item> work) requires ReservingOperator<Op> {
     std::vector<std::uint8_t> outcome(work.size());
     {
       const PhaseTimer timer(report_.conflict_seconds);
       reserved_.resize(op_.resource_count(), ~std::uint64_t{0});
       if (!executor_.deterministic()) ticket_of_.resize(work.size());
-      parallel_for_blocks(executor_, work.size(), block, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) outcome[i] = reserve(work[i], i);
-      }, by_block);
-      parallel_for_blocks(executor_, work.size(), block, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          if (outcome[i] == waits && holds_all(work[i], i)) outcome[i] = runs;
-      }, by_block);
+      parallel_for_blocks(
+          executor_, work.size(), block,
+          [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) outcome[i] = reserve(work[i], i);
+          },
+          by_block);
+      parallel_for_blocks(
+          executor_, work.size(), block,
+          [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+              if (outcome[i] == waits && holds_all(work[i], i)) outcome[i] = runs;
+          },
+          by_block);
     }
     std::vector<Item> winners = select(work, outcome, runs);
     std::vector<Item> rest = select(work, outcome, waits);
@@ -176,15 +180,21 @@ class Rounds {
   std::vector<Item> select(const std::vector<Item>& work, const std::vector<std::uint8_t>& outcome,
                            std::uint8_t wanted) {
     std::vector<std::uint32_t> offset((work.size() + block - 1) / block);
-    parallel_for_blocks(executor_, work.size(), block, [&](std::size_t b, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) offset[b] += outcome[i] == wanted;
-    }, by_block);
+    parallel_for_blocks(
+        executor_, work.size(), block,
+        [&](std::size_t b, std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) offset[b] += outcome[i] == wanted;
+        },
+        by_block);
     std::vector<Item> selected(exclusive_scan<std::uint32_t>(executor_, offset));
-    parallel_for_blocks(executor_, work.size(), block, [&](std::size_t b, std::size_t begin, std::size_t end) {
-      std::uint32_t at = offset[b];
-      for (std::size_t i = begin; i < end; ++i)
-        if (outcome[i] == wanted) selected[at++] = work[i];
-    }, by_block);
+    parallel_for_blocks(
+        executor_, work.size(), block,
+        [&](std::size_t b, std::size_t begin, std::size_t end) {
+          std::uint32_t at = offset[b];
+          for (std::size_t i = begin; i < end; ++i)
+            if (outcome[i] == wanted) selected[at++] = work[i];
+        },
+        by_block);
     return selected;
   }
 
@@ -197,18 +207,20 @@ class Rounds {
     plans_.resize(batch.size());
     {
       const PhaseTimer timer(report_.plan_seconds);
-      parallel_for_blocks(executor_, batch.size(), block, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) plans_[i] = op_.plan(batch[i]);
-      }, by_block);
+      parallel_for_blocks(
+          executor_, batch.size(), block,
+          [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) plans_[i] = op_.plan(batch[i]);
+          },
+          by_block);
     }
     {
       const PhaseTimer timer(report_.apply_seconds);
       apply_plans();
     }
     const PhaseTimer timer(report_.commit_seconds);
-    deferred_.commit([&](std::uint32_t owner, const typename Op::Update& update) {
-      op_.commit(owner, update);
-    });
+    deferred_.commit(
+        [&](std::uint32_t owner, const typename Op::Update& update) { op_.commit(owner, update); });
   }
 
   void apply_plans() {
@@ -216,28 +228,34 @@ class Rounds {
     first_of_.assign(blocks, {});
     applied_of_.assign(blocks, 0);
     if constexpr (kinds > 0) number_new_things();
-    parallel_for_blocks(executor_, plans_.size(), block, [&](std::size_t b, std::size_t begin, std::size_t end) {
-      Commit<Op> commit = new_commit();
-      commit.next_ = first_of_[b];
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!plans_[i]) continue;
-        commit.source_ = i;
-        op_.apply(*plans_[i], commit);
-        ++applied_of_[b];
-      }
-    }, by_block);
+    parallel_for_blocks(
+        executor_, plans_.size(), block,
+        [&](std::size_t b, std::size_t begin, std::size_t end) {
+          Commit<Op> commit = new_commit();
+          commit.next_ = first_of_[b];
+          for (std::size_t i = begin; i < end; ++i) {
+            if (!plans_[i]) continue;
+            commit.source_ = i;
+            op_.apply(*plans_[i], commit);
+            ++applied_of_[b];
+          }
+        },
+        by_block);
     for (const std::uint32_t applied : applied_of_) report_.applied += applied;
   }
 
   /// Sets first_of_ to the first new number of each kind for each block of the batch.
   void number_new_things() {
-    parallel_for_blocks(executor_, plans_.size(), block, [&](std::size_t b, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!plans_[i]) continue;
-        const auto demand = op_.demand(*plans_[i]);
-        for (std::size_t k = 0; k < kinds; ++k) first_of_[b][k] += demand[k];
-      }
-    }, by_block);
+    parallel_for_blocks(
+        executor_, plans_.size(), block,
+        [&](std::size_t b, std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            if (!plans_[i]) continue;
+            const auto demand = op_.demand(*plans_[i]);
+            for (std::size_t k = 0; k < kinds; ++k) first_of_[b][k] += demand[k];
+          }
+        },
+        by_block);
     std::array<std::uint32_t, kinds> total{};
     for (auto& first : first_of_)
       for (std::size_t k = 0; k < kinds; ++k) total[k] += std::exchange(first[k], total[k]);
@@ -250,7 +268,11 @@ class Rounds {
     Commit<Op> commit;
     commit.deferred_ = &deferred_;
     commit.woken_ = &woken_;
-    if constexpr (ColouredOperator<Op>) commit.woken_at_ = &woken_at_;
+    if constexpr (ColouredOperator<Op>) {
+      commit.woken_at_ = &woken_at_;
+      commit.turn_of_ = &turn_of_;
+      commit.turn_ = static_cast<std::uint32_t>(turn_);
+    }
     commit.round_ = round_;
     return commit;
   }
@@ -270,14 +292,15 @@ class Rounds {
   DeferredUpdate<typename Op::Update> deferred_;
   Worklist<Item> woken_;
   std::uint32_t round_ = 0;
-  std::vector<std::uint32_t> woken_at_;                // [item], colouring only
-  std::vector<std::uint32_t> position_of_;             // [item], its place in the work, or absent
-  std::vector<std::uint64_t> reserved_;                // [resource], the lowest key that asked
-  std::vector<std::uint32_t> ticket_of_;               // [position], racing mode: order of arrival
+  std::vector<std::uint32_t> woken_at_;  // [item], colouring only
+  std::vector<std::uint32_t> turn_of_;   // [item], its place in the work, then its class, or absent
+  std::size_t turn_ = 0;                 // class being executed, colouring only
+  std::vector<std::uint64_t> reserved_;  // [resource], the lowest key that asked
+  std::vector<std::uint32_t> ticket_of_;  // [position], racing mode: order of arrival
   std::uint32_t ticket_ = 0;
-  std::vector<std::optional<Plan>> plans_;             // [position in the batch]
+  std::vector<std::optional<Plan>> plans_;                  // [position in the batch]
   std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block of the batch][kind]
-  std::vector<std::uint32_t> applied_of_;              // [block of the batch]
+  std::vector<std::uint32_t> applied_of_;                   // [block of the batch]
 };
 
 }  // namespace ductile::runtime
