@@ -13,7 +13,7 @@ namespace ductile::cli {
 namespace fs = std::filesystem;
 
 Folder::Folder() {
-  std::string name = (fs::temp_directory_path() / "ductile-test-XXXXXX").string();
+  std::string name = (fs::temp_directory_path() / ("ductile-test-" + std::string(6, 'X'))).string();
   if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
   path_ = name;
 }
