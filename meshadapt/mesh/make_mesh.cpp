@@ -1,11 +1,11 @@
 #include "ductile/meshadapt/make_mesh.hpp"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <map>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/classify.hpp"
 
@@ -20,18 +20,26 @@ constexpr std::size_t no_index = static_cast<std::size_t>(-1);
 
 template <int Dim>
 const Cells<Dim + 1>& element_cells(const AnyMesh& any) {
-  if constexpr (Dim == 2) return any.triangles;
-  else return any.tetrahedra;
+  if constexpr (Dim == 2)
+    return any.triangles;
+  else
+    return any.tetrahedra;
 }
 template <int Dim>
 const Cells<Dim>& facet_cells(const AnyMesh& any) {
-  if constexpr (Dim == 2) return any.edges;
-  else return any.triangles;
+  if constexpr (Dim == 2)
+    return any.edges;
+  else
+    return any.triangles;
 }
 template <int Dim>
-const char* element_name() { return Dim == 2 ? "triangle" : "tetrahedron"; }
+const char* element_name() {
+  return Dim == 2 ? "triangle" : "tetrahedron";
+}
 template <int Dim>
-const char* facet_name() { return Dim == 2 ? "edge" : "triangle"; }
+const char* facet_name() {
+  return Dim == 2 ? "edge" : "triangle";
+}
 
 /// The first index below n for which bad(index) holds, or no_index.
 template <class Bad>
@@ -39,25 +47,6 @@ std::size_t first_bad(const Executor& executor, std::size_t n, Bad&& bad) {
   return runtime::parallel_reduce(
       executor, n, no_index, [&](std::size_t i) { return bad(i) ? i : no_index; },
       [](std::size_t a, std::size_t b) { return std::min(a, b); });
-}
-
-/// Exact sign of the signed volume, for elements too flat for floating-point certainty.
-template <int Dim>
-int exact_orientation(const std::array<Vector<Dim>, Dim + 1>& p) {
-  using Exact = boost::multiprecision::cpp_rational;
-  Exact d[Dim][Dim];
-  for (int i = 0; i < Dim; ++i)
-    for (int k = 0; k < Dim; ++k)
-      d[i][k] = Exact(p[static_cast<std::size_t>(i + 1)][k]) - Exact(p[0][k]);
-  const auto minor = [&](int r, int s, int a, int b) -> Exact {
-    return d[r][a] * d[s][b] - d[r][b] * d[s][a];
-  };
-  Exact determinant;
-  if constexpr (Dim == 2) determinant = minor(0, 1, 0, 1);
-  else
-    determinant = d[0][0] * minor(1, 2, 1, 2) - d[0][1] * minor(1, 2, 0, 2) +
-                  d[0][2] * minor(1, 2, 0, 1);
-  return determinant.sign();
 }
 
 template <int Dim>
@@ -85,7 +74,9 @@ class MeshMaker {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(any_.name + ": " + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(any_.name + ": " + what);
+  }
 
   std::string entity(const char* kind, std::size_t index) const {
     return std::string(kind) + " " + std::to_string(index + 1);
@@ -97,10 +88,11 @@ class MeshMaker {
     if (cells.size() == 0)
       fail(std::string("no ") + element_name<Dim>() + " in the mesh; there is nothing to adapt");
     if (Dim == 2 && any_.tetrahedra.size() != 0) fail("tetrahedra in a mesh of dimension 2");
-    if (any_.vertex_count() >= none || cells.size() >= none / 4) fail("too many entities for 32-bit numbers");
-    const std::size_t bad_vertex = first_bad(executor_, any_.coordinates.size(), [&](std::size_t i) {
-      return !std::isfinite(any_.coordinates[i]);
-    });
+    if (any_.vertex_count() >= none || cells.size() >= none / 4)
+      fail("too many entities for 32-bit numbers");
+    const std::size_t bad_vertex =
+        first_bad(executor_, any_.coordinates.size(),
+                  [&](std::size_t i) { return !std::isfinite(any_.coordinates[i]); });
     if (bad_vertex != no_index)
       fail(entity("vertex", bad_vertex / Dim) + " has a coordinate that is not a finite number");
     check_cells(cells, element_name<Dim>());
@@ -136,7 +128,8 @@ class MeshMaker {
         mesh_.site_of[v].position[i] = any_.coordinates[v * Dim + static_cast<std::size_t>(i)];
       mesh_.reference_of[v] = any_.vertex_reference[v];
     });
-    for (const std::uint32_t v : any_.corners) mesh_.kind_of[checked_vertex(v, "corner")].corner = true;
+    for (const std::uint32_t v : any_.corners)
+      mesh_.kind_of[checked_vertex(v, "corner")].corner = true;
     for (const std::uint32_t v : any_.required_vertices)
       mesh_.kind_of[checked_vertex(v, "required vertex")].required = true;
     mesh_.corners_of = cells.vertices;
@@ -165,7 +158,8 @@ class MeshMaker {
     for (const std::uint32_t i : list) {
       if (i >= count)
         fail(std::string("a required or ridge ") + kind + " has number " +
-             std::to_string(std::uint64_t{i} + 1) + ", but there are only " + std::to_string(count));
+             std::to_string(std::uint64_t{i} + 1) + ", but there are only " +
+             std::to_string(count));
       flags[i] = true;
     }
     return flags;
@@ -173,9 +167,9 @@ class MeshMaker {
 
   int orientation(std::size_t e) const {
     std::array<Vector<Dim>, Dim + 1> p;
-    for (std::size_t i = 0; i < p.size(); ++i) p[i] = mesh_.site_of[mesh_.corners_of[e][i]].position;
-    const double determinant = certain_determinant<Dim>(p);
-    return determinant > 0 ? 1 : determinant < 0 ? -1 : exact_orientation<Dim>(p);
+    for (std::size_t i = 0; i < p.size(); ++i)
+      p[i] = mesh_.site_of[mesh_.corners_of[e][i]].position;
+    return meshadapt::orientation<Dim>(p);
   }
 
   /// Turns all elements over if the first points the wrong way; all must then agree.
@@ -199,9 +193,7 @@ class MeshMaker {
   void report_unused_vertices() {
     const auto unused = runtime::parallel_reduce(
         executor_, mesh_.vertex_slots(), std::size_t{0},
-        [&](std::size_t v) {
-          return std::size_t{!mesh_.vertex_alive(static_cast<VertexId>(v))};
-        },
+        [&](std::size_t v) { return std::size_t{!mesh_.vertex_alive(static_cast<VertexId>(v))}; },
         [](std::size_t a, std::size_t b) { return a + b; });
     if (unused != 0)
       warnings_.push_back(any_.name + ": " + std::to_string(unused) + " of " +
@@ -266,7 +258,8 @@ class MeshMaker {
     auto a = mesh_.corners_of[element], b = mesh_.corners_of[other];
     std::sort(a.begin(), a.end());
     std::sort(b.begin(), b.end());
-    const std::string both = entity(element_name<Dim>(), element) + " and " + std::to_string(other + 1);
+    const std::string both =
+        entity(element_name<Dim>(), element) + " and " + std::to_string(other + 1);
     if (a == b) fail(both + " are the same element; remove one");
     fail(both + " overlap or share a " + facet_name<Dim>() +
          " with a third; a facet may belong to two elements at most, one on each side");
@@ -278,18 +271,21 @@ class MeshMaker {
     const auto& cells = facet_cells<Dim>(any_);
     const auto& required_list = Dim == 2 ? any_.required_edges : any_.required_triangles;
     const auto required = marked(cells.size(), required_list, facet_name<Dim>());
-    const auto ridge = marked(cells.size(), Dim == 2 ? any_.ridges : std::vector<std::uint32_t>{}, "edge");
+    const auto ridge =
+        marked(cells.size(), Dim == 2 ? any_.ridges : std::vector<std::uint32_t>{}, "edge");
     std::vector<TaggedFacet<Dim>> facets(cells.size());
     parallel_for(executor_, cells.size(), [&](std::size_t f) {
       facets[f].corners = cells.vertices[f];
-      facets[f].data = {{}, cells.reference[f], true, required[f] || options_.lock_boundary, ridge[f]};
+      facets[f].data = {
+          {}, cells.reference[f], true, required[f] || options_.lock_boundary, ridge[f]};
       attach(facets[f]);
     });
     for (std::size_t f = 0; f < facets.size(); ++f) {
       if (facets[f].element == none)
         fail(entity(facet_name<Dim>(), f) + " is not a facet of any " + element_name<Dim>() +
              "; remove it or repair the mesh");
-      PatchId& mark = mesh_.patches_of[facets[f].element][static_cast<std::size_t>(facets[f].facet)];
+      PatchId& mark =
+          mesh_.patches_of[facets[f].element][static_cast<std::size_t>(facets[f].facet)];
       if (mark != 0)
         fail(entity(facet_name<Dim>(), f) + " is the same as " + facet_name<Dim>() + " " +
              std::to_string(mark) + "; remove one");
@@ -321,7 +317,8 @@ class MeshMaker {
       for (std::size_t i = 0; i <= Dim; ++i) {
         const ElementId other = neighbours_[e][i];
         const bool boundary = other == none;
-        const bool interface = !boundary && other > e && mesh_.region_of[e] != mesh_.region_of[other];
+        const bool interface =
+            !boundary && other > e && mesh_.region_of[e] != mesh_.region_of[other];
         if ((!boundary && !interface) || mesh_.patches_of[e][i] != 0) continue;
         if (boundary && !options_.complete_boundary) fail_unlisted(e, static_cast<int>(i));
         unlisted_boundary += boundary;
@@ -357,7 +354,8 @@ class MeshMaker {
         std::vector<ElementId> shell;
         shell_of(mesh_, a, b, shell);
         if (shell.empty())
-          fail(entity("edge", i) + " is not an edge of any tetrahedron; remove it or repair the mesh");
+          fail(entity("edge", i) +
+               " is not an edge of any tetrahedron; remove it or repair the mesh");
       }
     }
     return edges;

@@ -1,0 +1,32 @@
+/// @file
+/// check_mesh: says what is wrong with a mesh, if anything: of one that is to be written whether it
+/// is a mesh at all, of one that is being adapted whether its parts still agree with each other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::meshadapt {
+
+/// What is wrong, a line for each kind of fault, naming the first entity that has it (numbered from
+/// 1, as in a file) and how many have; empty if nothing is. Checked: indices in range, every vertex
+/// used, every element with a positive volume (exactly), no facet with more than two elements or
+/// with two on one side, every boundary facet listed once and nothing listed that is not there.
+/// Linear in the mesh. Thread safety: one caller; runs on the executor.
+std::vector<std::string> check_mesh(const runtime::Executor& executor, const AnyMesh& mesh);
+
+/// As above for a mesh that is being adapted, entities numbered from 0 as in memory. Checked as
+/// well: the lists of vertices agree with the corners of elements, shapes are up to date, facets
+/// carry the same patch on both sides, patches are flat, curves straight, and what vertices may do
+/// fits what they lie on. Slower than the one above; for tests and debugging.
+template <int Dim>
+std::vector<std::string> check_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
+
+extern template std::vector<std::string> check_mesh(const runtime::Executor&, const Mesh<2>&);
+extern template std::vector<std::string> check_mesh(const runtime::Executor&, const Mesh<3>&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,284 @@
+/// @file
+/// The check of a mesh as it will be written. Facets, those of elements and those listed, are put
+/// into buckets by their lowest vertex, with a counting sort; equal facets then lie close together.
+#include "ductile/meshadapt/check_mesh.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "ductile/meshadapt/orientation.hpp"
+#include "ductile/runtime/atomic_count.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "mesh/problems.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::atomic_count;
+using runtime::Executor;
+using runtime::parallel_for;
+
+namespace {
+
+/// A facet in the bucket of its lowest vertex.
+struct Entry {
+  std::uint64_t others;  // its other vertices, ascending
+  std::uint32_t owner;   // element, or number in the list
+  std::uint8_t kind;     // of Kind
+  friend bool operator<(const Entry& a, const Entry& b) {
+    if (a.others != b.others) return a.others < b.others;
+    return a.kind != b.kind ? a.kind < b.kind : a.owner < b.owner;
+  }
+};
+
+/// An element's facet, by the parity of its corners' order, or a listed one.
+enum Kind : std::uint8_t { even, odd, listed };
+
+/// The faults of one facet. The first entry with this number of its bucket's group is `owner`.
+enum Fault : std::uint8_t { sound, crowded, unlisted, not_a_facet, listed_twice };
+
+template <int Dim>
+class AnyMeshChecker {
+ public:
+  AnyMeshChecker(const Executor& executor, const AnyMesh& mesh)
+      : executor_(executor), mesh_(mesh), problems_(executor) {}
+
+  std::vector<std::string> run() {
+    if (check_indices()) {
+      check_volumes();
+      fill_buckets();
+      check_vertices();
+      check_facets();
+      if constexpr (Dim == 3) check_edges();
+    }
+    return problems_.take();
+  }
+
+ private:
+  static constexpr const char* element_name = Dim == 2 ? "triangle " : "tetrahedron ";
+  static constexpr const char* facet_name = Dim == 2 ? "edge " : "triangle ";
+
+  const Cells<Dim + 1>& elements() const {
+    if constexpr (Dim == 2)
+      return mesh_.triangles;
+    else
+      return mesh_.tetrahedra;
+  }
+  const Cells<Dim>& facets() const {
+    if constexpr (Dim == 2)
+      return mesh_.edges;
+    else
+      return mesh_.triangles;
+  }
+  static std::string number(std::size_t i) { return std::to_string(i + 1); }
+
+  // ---- Indices ----
+
+  template <int N>
+  bool check_cells(const Cells<N>& cells, const std::string& name) {
+    problems_.expect_none(
+        cells.reference.size() == cells.size() ? 0 : 1, [](std::size_t) { return true; },
+        [&](std::size_t) { return "not every " + name + "has a reference"; });
+    return problems_.expect_none(
+        cells.size(),
+        [&](std::size_t i) {
+          const auto& corners = cells.vertices[i];
+          for (std::size_t a = 0; a < N; ++a) {
+            if (corners[a] >= mesh_.vertex_count()) return true;
+            for (std::size_t b = 0; b < a; ++b)
+              if (corners[a] == corners[b]) return true;
+          }
+          return false;
+        },
+        [&](std::size_t i) {
+          return name + number(i) + " names a vertex twice or one that does not exist";
+        });
+  }
+
+  bool check_list(const std::vector<std::uint32_t>& list, std::size_t limit, const char* name) {
+    return problems_.expect_none(
+        list.size(), [&](std::size_t i) { return list[i] >= limit; },
+        [&](std::size_t i) { return std::string(name) + " " + number(i) + " does not exist"; });
+  }
+
+  bool check_indices() {
+    bool good = problems_.expect_none(
+        mesh_.coordinates.size() == mesh_.vertex_count() * Dim ? 0 : 1,
+        [](std::size_t) { return true; },
+        [](std::size_t) { return "not every vertex has its coordinates"; });
+    good = check_cells(elements(), element_name) && good;
+    good = check_cells(facets(), facet_name) && good;
+    if constexpr (Dim == 3) good = check_cells(mesh_.edges, "edge ") && good;
+    good = check_list(mesh_.corners, mesh_.vertex_count(), "corner") && good;
+    good = check_list(mesh_.required_vertices, mesh_.vertex_count(), "required vertex") && good;
+    good = check_list(mesh_.ridges, mesh_.edges.size(), "ridge") && good;
+    good = check_list(mesh_.required_edges, mesh_.edges.size(), "required edge") && good;
+    good =
+        check_list(mesh_.required_triangles, mesh_.triangles.size(), "required triangle") && good;
+    return check_list(mesh_.required_tetrahedra, mesh_.tetrahedra.size(), "required tetrahedron") &&
+           good;
+  }
+
+  // ---- Volumes ----
+
+  int orientation_of(std::size_t element) const {
+    std::array<Vector<Dim>, Dim + 1> p;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      for (std::size_t axis = 0; axis < Dim; ++axis)
+        p[i].x[axis] = mesh_.coordinates[elements().vertices[element][i] * std::size_t{Dim} + axis];
+    return orientation<Dim>(p);
+  }
+
+  void check_volumes() {
+    problems_.expect_none(
+        elements().size(), [&](std::size_t e) { return orientation_of(e) <= 0; },
+        [&](std::size_t e) {
+          return element_name + number(e) +
+                 (orientation_of(e) < 0 ? " is inverted" : " has no volume");
+        });
+  }
+
+  // ---- Facets ----
+
+  struct Keyed {
+    VertexId lowest;
+    Entry entry;
+  };
+
+  /// Sorts the corners of a facet; the parity of their order tells its two sides apart.
+  static Keyed keyed(Facet<Dim> f, std::uint32_t owner) {
+    std::uint8_t parity = even;
+    const auto order = [&](std::size_t a, std::size_t b) {
+      if (f[a] <= f[b]) return;
+      std::swap(f[a], f[b]);
+      parity ^= 1U;
+    };
+    order(0, 1);
+    if constexpr (Dim == 3) {
+      order(1, 2);
+      order(0, 1);
+    }
+    const std::uint64_t others = Dim == 2 ? f[1] : std::uint64_t{f[1]} << 32U | f[Dim - 1];
+    return {f[0], {others, owner, parity}};
+  }
+
+  /// Calls visit(keyed facet) for the facets of all elements and those listed.
+  template <class Visit>
+  void each_facet(Visit&& visit) const {
+    parallel_for(executor_, elements().size(), [&](std::size_t e) {
+      for (int i = 0; i <= Dim; ++i)
+        visit(keyed(facet_of<Dim>(elements().vertices[e], i), static_cast<std::uint32_t>(e)));
+    });
+    parallel_for(executor_, facets().size(), [&](std::size_t f) {
+      Keyed facet = keyed(facets().vertices[f], static_cast<std::uint32_t>(f));
+      facet.entry.kind = listed;
+      visit(facet);
+    });
+  }
+
+  void fill_buckets() {
+    begin_.assign(mesh_.vertex_count() + 1, 0);
+    each_facet([&](const Keyed& facet) { atomic_count(begin_[facet.lowest]); });
+    entries_.resize(runtime::exclusive_scan(executor_, std::span(begin_)));
+    std::vector<std::uint32_t> next(begin_);
+    each_facet(
+        [&](const Keyed& facet) { entries_[atomic_count(next[facet.lowest])] = facet.entry; });
+    faults_.assign(entries_.size(), sound);
+    parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
+      std::sort(entries_.begin() + begin_[v], entries_.begin() + begin_[v + 1]);
+      for (std::uint32_t at = begin_[v], end = at; at != begin_[v + 1]; at = end) {
+        std::array<int, 3> count{};
+        for (; end != begin_[v + 1] && entries_[end].others == entries_[at].others; ++end)
+          ++count[entries_[end].kind];
+        faults_[at] = fault(count);
+      }
+    });
+  }
+
+  static Fault fault(const std::array<int, 3>& count) {
+    if (count[even] > 1 || count[odd] > 1) return crowded;
+    if (count[even] + count[odd] == 0) return not_a_facet;
+    if (count[listed] > 1) return listed_twice;
+    return count[even] + count[odd] + count[listed] == 1 ? unlisted : sound;
+  }
+
+  void check_facets() {
+    const auto expect_no = [&](Fault fault, const std::string& before, const char* after) {
+      problems_.expect_none(
+          entries_.size(), [&](std::size_t i) { return faults_[i] == fault; },
+          [&](std::size_t i) { return before + number(entries_[i].owner) + after; });
+    };
+    expect_no(crowded, std::string("a facet of ") + element_name,
+              " has two elements on one side, or more than two");
+    expect_no(unlisted, std::string("a boundary facet of ") + element_name, " is not listed");
+    expect_no(not_a_facet, facet_name, " is no facet of an element");
+    expect_no(listed_twice, std::string("a facet of ") + element_name, " is listed twice");
+  }
+
+  // ---- Vertices and edges ----
+
+  void check_vertices() {
+    std::vector<std::uint32_t> uses(mesh_.vertex_count(), 0);
+    parallel_for(executor_, elements().size(), [&](std::size_t e) {
+      for (const VertexId v : elements().vertices[e]) atomic_count(uses[v]);
+    });
+    problems_.expect_none(
+        uses.size(), [&](std::size_t v) { return uses[v] == 0; },
+        [](std::size_t v) { return "vertex " + number(v) + " belongs to no element"; });
+  }
+
+  /// Listed edges are few: the edges of elements are looked up among them.
+  void check_edges() {
+    const std::size_t count = mesh_.edges.size();
+    std::vector<std::uint64_t> key(count);
+    std::vector<std::uint8_t> at_edge(mesh_.vertex_count(), 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [a, b] = mesh_.edges.vertices[i];
+      key[i] = std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+      at_edge[a] = at_edge[b] = 1;
+    }
+    std::sort(key.begin(), key.end());
+    problems_.expect_none(
+        count, [&](std::size_t i) { return i > 0 && key[i] == key[i - 1]; },
+        [&](std::size_t i) {
+          return "the edge of vertices " + number(key[i] >> 32U) + " and " +
+                 number(key[i] & 0xffffffffU) + " is listed twice";
+        });
+    std::vector<std::uint32_t> found(count, 0);
+    parallel_for(executor_, elements().size(), [&](std::size_t e) {
+      for (const auto& [i, j] : Simplex<Dim>::edge) {
+        const VertexId a = elements().vertices[e][static_cast<std::size_t>(i)];
+        const VertexId b = elements().vertices[e][static_cast<std::size_t>(j)];
+        if (!at_edge[a] || !at_edge[b]) continue;
+        const std::uint64_t wanted = std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+        const auto at = std::lower_bound(key.begin(), key.end(), wanted);
+        if (at != key.end() && *at == wanted)
+          atomic_count(found[static_cast<std::size_t>(at - key.begin())]);
+      }
+    });
+    problems_.expect_none(
+        count, [&](std::size_t i) { return found[i] == 0 && (i == 0 || key[i] != key[i - 1]); },
+        [&](std::size_t i) {
+          return "the listed edge of vertices " + number(key[i] >> 32U) + " and " +
+                 number(key[i] & 0xffffffffU) + " is no edge of an element";
+        });
+  }
+
+  const Executor& executor_;
+  const AnyMesh& mesh_;
+  Problems problems_;
+  std::vector<std::uint32_t> begin_;  // [vertex], of its bucket in entries_
+  std::vector<Entry> entries_;        // by bucket, sorted
+  std::vector<std::uint8_t> faults_;  // [entry], of the group that starts there
+};
+
+}  // namespace
+
+std::vector<std::string> check_mesh(const Executor& executor, const AnyMesh& mesh) {
+  if (mesh.dimension == 2) return AnyMeshChecker<2>(executor, mesh).run();
+  if (mesh.dimension == 3) return AnyMeshChecker<3>(executor, mesh).run();
+  return {"the dimension is " + std::to_string(mesh.dimension) + ", expected 2 or 3"};
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,63 @@
+/// @file
+/// Adapts random meshes to random metrics; every result must be a valid mesh that has kept what it
+/// had to. DUCTILE_TRIALS says how many (default 60), DUCTILE_FIRST_TRIAL where to start, and
+/// DUCTILE_TRIAL_FOLDER where to write inputs and outputs, if anywhere.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+#include "ductile/meshadapt/gmf.hpp"
+#include "support/preserved.hpp"
+#include "support/random_case.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+
+std::uint64_t setting(const char* name, std::uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+void write_files(const std::string& name, const AnyMesh& mesh, const AnyField& metric) {
+  const char* folder = std::getenv("DUCTILE_TRIAL_FOLDER");
+  if (folder == nullptr) return;
+  const std::filesystem::path base = std::filesystem::path(folder) / name;
+  write_mesh(base.string() + ".mesh", mesh);
+  write_field(base.string() + ".sol", metric);
+}
+
+void try_case(std::uint64_t seed) {
+  test::RandomCase random = test::random_case(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed) + ": " + random.what);
+  const std::string name = "case" + std::to_string(seed);
+  write_files(name, random.mesh, random.metric);
+  const bool racing = seed % 5 == 4;
+  const Executor executor({.threads = static_cast<int>(1 + seed % 3), .deterministic = !racing});
+  const auto start = std::chrono::steady_clock::now();
+  const AdaptedMesh result = adapt(executor, random.mesh, random.metric, random.options);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  write_files(name + ".o", result.mesh, result.metric);
+  if (random.options.make.lock_boundary) test::require_facets(random.mesh);
+  const auto faults = test::faults_of(executor, random.mesh, result);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  EXPECT_LT(seconds.count(), 60) << "it took too long";
+  const std::size_t size = result.mesh.triangles.size() + result.mesh.tetrahedra.size();
+  EXPECT_LT(size, 150000U) << "there are far more elements than asked for";
+  if (std::getenv("DUCTILE_TRIAL_FOLDER") != nullptr)
+    std::printf("%llu %zu %.2fs %s\n", static_cast<unsigned long long>(seed), size, seconds.count(),
+                random.what.c_str());
+}
+
+TEST(RandomMeshes, AreValidAfterAdaptation) {
+  const std::uint64_t first = setting("DUCTILE_FIRST_TRIAL", 0);
+  const std::uint64_t count = setting("DUCTILE_TRIALS", 60);
+  for (std::uint64_t seed = first; seed < first + count; ++seed)
+    ASSERT_NO_THROW(try_case(seed)) << "seed " << seed;
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt

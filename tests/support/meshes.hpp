@@ -1,0 +1,75 @@
+/// @file
+/// Meshes to test with: grids with holes and regions over the unit square and cube, and what makes
+/// them less tame: moved vertices, slivers, other places, sizes and directions in space.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <random>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+
+namespace ductile::meshadapt::test {
+
+using Random = std::mt19937_64;
+double uniform(Random& random, double low, double high);
+bool chance(Random& random, double probability);
+std::size_t below(Random& random, std::size_t limit);
+
+using Cell = std::array<int, 3>;
+
+struct Grid {
+  int dimension = 2;
+  std::array<std::vector<double>, 3> lines;  ///< [axis], ascending
+  std::function<int(const Cell&)> region;    ///< reference of a cell's elements, 0: no cell there
+  std::uint64_t seed = 0;                    ///< 2D: of the directions of diagonals; 0: all alike
+};
+
+/// n equal cells along each axis of the unit square or cube, one region.
+Grid unit_grid(int dimension, int n);
+
+/// Cuts the cells into 2 triangles or 6 tetrahedra (Kuhn), lists boundary facets and, unless told
+/// otherwise, interfaces. A facet's reference says which way it faces: 1 to 6 for -x +x -y +y -z
+/// +z, 10 more on interfaces. No vertex is unused.
+AnyMesh make_grid(const Grid& grid, bool list_interfaces = true);
+
+/// Shapes, by the region of a cell of an n x n (x n) grid; see Grid::region.
+int whole(const Cell& cell);
+std::function<int(const Cell&)> l_shape(int n);
+std::function<int(const Cell&)> with_hole(int n);   ///< a cavity in 3D
+std::function<int(const Cell&)> two_halves(int n);  ///< two regions that share a plane
+std::function<int(const Cell&)> checkerboard();     ///< two regions
+std::function<int(const Cell&)> random_regions(std::uint64_t seed, int count, bool holes);
+
+/// The other facets, edges and corners of a mesh.
+template <int Dim>
+using FacetElements = std::map<Facet<Dim>, std::vector<ElementId>>;  // sorted corners -> elements
+template <int Dim>
+const Cells<Dim + 1>& elements(const AnyMesh& mesh);
+template <int Dim>
+const Cells<Dim>& facets(const AnyMesh& mesh);
+template <int Dim>
+FacetElements<Dim> facet_elements(const AnyMesh& mesh);
+template <int Dim>
+Vector<Dim> point(const AnyMesh& mesh, std::uint32_t vertex);
+
+/// Lists the edges of a 3D mesh between listed facets of different references as ridges with
+/// references of their own, and the vertices where several references of them meet as corners.
+void list_ridges(AnyMesh& mesh);
+
+/// Moves each vertex that lies inside a region by up to `amount` times the extent of its
+/// surroundings, unless that would invert an element.
+void jiggle(AnyMesh& mesh, Random& random, double amount);
+
+/// Moves `count` inner vertices to almost onto a facet of an element around them: `thickness` is
+/// what is left of the distance. Every element keeps an exactly positive volume.
+void make_slivers(AnyMesh& mesh, Random& random, std::size_t count, double thickness);
+
+/// Turns the mesh by a random rotation, scales it and moves it.
+void place(AnyMesh& mesh, Random& random, double scale, double offset);
+
+}  // namespace ductile::meshadapt::test
