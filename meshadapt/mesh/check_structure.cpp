@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/orientation.hpp"
@@ -26,6 +27,7 @@ class StructureChecker {
     check_facets();
     if (!check_numbers()) return problems_.take();
     check_flatness();
+    check_folds();
     if constexpr (Dim == 3) check_curves();
     check_kinds();
     return problems_.take();
@@ -228,6 +230,42 @@ class StructureChecker {
           return false;
         },
         " has a facet that does not lie in the plane of its patch");
+  }
+
+  /// How large a facet is, seen along the normal of its patch; negative if seen from behind.
+  double projection(ElementId e, int i) const {
+    const Facet<Dim> facet = facet_of<Dim>(mesh_.corners_of[e], i);
+    const auto side = [&](std::size_t k) {
+      return mesh_.site_of[facet[k]].position - mesh_.site_of[facet[0]].position;
+    };
+    const Vector<Dim>& normal = mesh_.patches[patch(e, i)].normal;
+    if constexpr (Dim == 2)
+      return side(1)[1] * normal[0] - side(1)[0] * normal[1];
+    else
+      return dot(cross(side(1), side(2)), normal);
+  }
+
+  /// All elements of a region lie on one side of a patch, unless the patch is inside that region.
+  void check_folds() {
+    const auto inside_region = [&](ElementId e, int i) {
+      const Ids others = across(e, i);
+      return !others.empty() && mesh_.region_of[others[0]] == mesh_.region_of[e];
+    };
+    std::map<std::pair<PatchId, std::uint32_t>, double> largest;
+    const auto key = [&](ElementId e, int i) { return std::pair(patch(e, i), mesh_.region_of[e]); };
+    for (ElementId e = 0; e < mesh_.element_slots(); ++e)
+      for (int i = 0; mesh_.alive(e) && i <= Dim; ++i) {
+        if (patch(e, i) == 0 || inside_region(e, i)) continue;
+        double& most = largest[key(e, i)];
+        if (std::abs(projection(e, i)) > std::abs(most)) most = projection(e, i);
+      }
+    const double allowed = std::pow(tolerance(), Dim - 1);
+    no_facet(
+        [&](ElementId e, int i) {
+          if (patch(e, i) == 0 || inside_region(e, i)) return false;
+          return projection(e, i) * std::copysign(1.0, largest.at(key(e, i))) < -allowed;
+        },
+        " has a facet that is folded over in its patch");
   }
 
   Ids shell(VertexId a, VertexId b) const {
