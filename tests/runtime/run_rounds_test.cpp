@@ -1,0 +1,367 @@
+#include "ductile/runtime/run_rounds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "ductile/runtime/hash.hpp"
+
+namespace ductile::runtime {
+namespace {
+
+using Vertex = std::uint32_t;
+constexpr std::array thread_counts{1, 2, 3, 4, 8};
+
+std::vector<Vertex> all_items(std::size_t n) {
+  std::vector<Vertex> items(n);
+  std::iota(items.begin(), items.end(), 0U);
+  return items;
+}
+
+// ---- Maximal independent set: by colours, nothing is deferred that does not commute ----
+
+/// A ring of vertices with chords. A vertex joins the set unless a neighbour has; it tells its
+/// neighbours by deferred writes.
+class IndependentSet {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+  static constexpr bool keeps_conflicts = true;
+
+  explicit IndependentSet(std::size_t n) : member(n), barred(n) {}
+
+  std::optional<Plan> plan(Vertex v) const {
+    if (member[v] || barred[v]) return {};
+    return v;
+  }
+  void conflicts(Vertex v, auto&& visit) const {
+    const auto n = static_cast<Vertex>(member.size());
+    for (const Vertex step : {1U, 7U, n - 1, n - 7}) visit((v + step) % n);
+  }
+  std::size_t item_count() const { return member.size(); }
+  void apply(const Plan& v, Commit<IndependentSet>& commit) {
+    member[v] = 1;
+    conflicts(v, [&](Vertex other) { commit.defer(other, {}); });
+  }
+  void commit(std::uint32_t owner, const Update&) { barred[owner] = 1; }
+
+  std::vector<std::uint8_t> member, barred;  // [vertex]
+};
+
+void expect_maximal_independent(const IndependentSet& set) {
+  for (Vertex v = 0; v < set.member.size(); ++v) {
+    int members_beside = 0;
+    set.conflicts(v, [&](Vertex other) { members_beside += set.member[other]; });
+    EXPECT_EQ(set.member[v] != 0, members_beside == 0) << "vertex " << v;
+  }
+}
+
+TEST(RunRounds, FindsAMaximalIndependentSetByColours) {
+  std::vector<std::uint8_t> first;
+  for (const int threads : thread_counts) {
+    IndependentSet set(5000);
+    const Executor executor({.threads = threads});
+    const RoundsReport report = run_rounds(executor, set, all_items(5000));
+    expect_maximal_independent(set);
+    EXPECT_EQ(report.rounds, 1U);
+    EXPECT_EQ(report.planned, 5000U);
+    EXPECT_EQ(report.left, 0U);
+    if (first.empty()) first = set.member;
+    EXPECT_EQ(set.member, first) << threads << " threads";
+  }
+}
+
+TEST(RunRounds, FindsAMaximalIndependentSetInArrivalOrder) {
+  for (int run = 0; run < 5; ++run) {
+    IndependentSet set(5000);
+    run_rounds(Executor({.threads = 4, .deterministic = false}), set, all_items(5000));
+    expect_maximal_independent(set);
+  }
+}
+
+// ---- Labels that flow through a graph that is rewired meanwhile ----
+
+/// Vertices on lines of ten. A vertex bypasses its successor if that is not the end of its line, so
+/// that in the end every line is its first and its last vertex. Applying joins vertices that were
+/// not neighbours: a colouring is stale at once, and whoever is woken must leave the round.
+class Bypass {
+ public:
+  using Item = Vertex;
+  struct Plan {
+    Vertex keeper, gone, next;
+  };
+  struct Update {
+    Vertex previous;
+  };
+  static constexpr Vertex length = 10, nobody = 0xffffffffU;
+
+  explicit Bypass(std::size_t n) : next(n), previous(n), gone(n) {
+    for (Vertex v = 0; v < n; ++v) {
+      next[v] = v % length == length - 1 ? nobody : v + 1;
+      previous[v] = v % length == 0 ? nobody : v - 1;
+    }
+  }
+
+  std::optional<Plan> plan(Vertex v) const {
+    if (gone[v] || next[v] == nobody || next[next[v]] == nobody) return {};
+    return Plan{v, next[v], next[next[v]]};
+  }
+  /// Three vertices apart at most: what is read or changed for one, and whom it wakes.
+  void conflicts(Vertex v, auto&& visit) const {
+    Vertex forward = v, back = v;
+    for (int step = 0; step < 3; ++step) {
+      if (forward != nobody) forward = next[forward];
+      if (back != nobody) back = previous[back];
+      if (forward != nobody) visit(forward);
+      if (back != nobody) visit(back);
+    }
+  }
+  std::size_t item_count() const { return next.size(); }
+  void apply(const Plan& plan, Commit<Bypass>& commit) {
+    if (gone[plan.keeper] || next[plan.keeper] != plan.gone || next[plan.gone] != plan.next)
+      stale = true;
+    next[plan.keeper] = plan.next;
+    gone[plan.gone] = 1;
+    commit.defer(plan.next, {plan.keeper});
+    Vertex near = plan.keeper;
+    for (int step = 0; step < 3 && near != nobody; ++step, near = previous[near]) commit.wake(near);
+    near = plan.next;
+    for (int step = 0; step < 2 && near != nobody; ++step, near = next[near]) commit.wake(near);
+  }
+  void commit(std::uint32_t owner, const Update& update) { previous[owner] = update.previous; }
+
+  std::vector<Vertex> next, previous;  // [vertex]
+  std::vector<std::uint8_t> gone;      // [vertex]
+  bool stale = false;                  // a plan was applied to what it was not made for
+};
+
+void expect_all_bypassed(const Bypass& lines) {
+  EXPECT_FALSE(lines.stale);
+  for (Vertex v = 0; v < lines.next.size(); v += Bypass::length) {
+    const Vertex end = v + Bypass::length - 1;
+    EXPECT_EQ(lines.next[v], end);
+    EXPECT_EQ(lines.previous[end], v);
+  }
+}
+
+TEST(RunRounds, WhoIsWokenLeavesTheRound) {
+  std::size_t rounds = 0, applied = 0;
+  for (const int threads : thread_counts) {
+    Bypass lines(20000);
+    const RoundsReport report = run_rounds(Executor({.threads = threads}), lines, all_items(20000));
+    expect_all_bypassed(lines);
+    EXPECT_EQ(report.applied, 2000U * (Bypass::length - 2));
+    EXPECT_GT(report.rounds, 1U);
+    if (rounds == 0) rounds = report.rounds, applied = report.planned;
+    EXPECT_EQ(report.rounds, rounds) << threads << " threads";
+    EXPECT_EQ(report.planned, applied) << threads << " threads";
+  }
+}
+
+TEST(RunRounds, StaleColoursDoNoHarmInArrivalOrder) {
+  for (int run = 0; run < 5; ++run) {
+    Bypass lines(20000);
+    run_rounds(Executor({.threads = 4, .deterministic = false}), lines, all_items(20000));
+    expect_all_bypassed(lines);
+  }
+}
+
+TEST(RunRounds, StopsAfterTheMostRoundsAllowed) {
+  Bypass lines(20000);
+  const RoundsReport report =
+      run_rounds(Executor({.threads = 2}), lines, all_items(20000), {.most_rounds = 1});
+  EXPECT_EQ(report.rounds, 1U);
+  EXPECT_GT(report.left, 0U);
+}
+
+// ---- Matching: by reservations, heavier edges first, each match makes a new vertex ----
+
+struct Edge {
+  Vertex a, b;
+  std::uint32_t weight;
+  friend auto operator<=>(const Edge&, const Edge&) = default;
+};
+
+/// An edge between two free vertices is contracted to a new vertex.
+class Matching {
+ public:
+  using Item = Edge;
+  using Plan = Edge;
+  struct Update {
+    Vertex parent;
+  };
+
+  explicit Matching(std::size_t n) : parent(n, free) {}
+
+  std::optional<Plan> plan(const Edge& edge) const {
+    if (parent[edge.a] != free || parent[edge.b] != free) return {};
+    return edge;
+  }
+  void footprint(const Edge& edge, auto&& visit) const {
+    if (parent[edge.a] != free || parent[edge.b] != free) return;
+    visit(edge.a);
+    visit(edge.b);
+  }
+  std::size_t resource_count() const { return parent.size(); }
+  std::uint8_t priority(const Edge& edge) const {
+    return static_cast<std::uint8_t>(255 - edge.weight);
+  }
+  std::array<std::uint32_t, 1> demand(const Plan&) const { return {1}; }
+  std::array<std::uint32_t, 1> grow(const std::array<std::uint32_t, 1>& total) {
+    const auto first = static_cast<std::uint32_t>(parent.size());
+    parent.resize(parent.size() + total[0], free);
+    matched.resize(matched.size() + total[0]);
+    return {first};
+  }
+  void apply(const Plan& edge, Commit<Matching>& commit) {
+    const Vertex fresh = commit.fresh();
+    matched[fresh - (parent.size() - matched.size())] = edge;
+    commit.defer(edge.a, {fresh});
+    commit.defer(edge.b, {fresh});
+  }
+  void commit(std::uint32_t owner, const Update& update) { parent[owner] = update.parent; }
+
+  static constexpr Vertex free = 0xffffffffU;
+  std::vector<Vertex> parent;  // [vertex], new ones at the end
+  std::vector<Edge> matched;   // [new vertex]
+};
+
+std::vector<Edge> random_edges(Vertex n, bool distinct) {
+  std::vector<Edge> edges;
+  for (std::uint32_t i = 0; i < 4 * n; ++i) {
+    const Vertex a = mix32(2 * i) % n, b = mix32(2 * i + 1) % n;
+    if (a != b) edges.push_back({a, b, distinct ? i % 256 : mix32(i) % 256});
+  }
+  return edges;
+}
+
+void expect_maximal(const Matching& result, const std::vector<Edge>& edges) {
+  std::vector<int> uses(result.parent.size(), 0);
+  for (const Edge& edge : result.matched) ++uses[edge.a], ++uses[edge.b];
+  EXPECT_LE(*std::max_element(uses.begin(), uses.end()), 1);
+  for (const Edge& edge : edges) EXPECT_TRUE(uses[edge.a] == 1 || uses[edge.b] == 1);
+  for (std::size_t i = 0; i < result.matched.size(); ++i) {
+    const auto fresh = static_cast<Vertex>(result.parent.size() - result.matched.size() + i);
+    EXPECT_EQ(result.parent[result.matched[i].a], fresh);
+    EXPECT_EQ(result.parent[result.matched[i].b], fresh);
+  }
+}
+
+TEST(RunRounds, MatchesByReservationTheSameAtEachThreadCount) {
+  const auto edges = random_edges(3000, false);
+  std::vector<Edge> first;
+  for (const int threads : thread_counts)
+    for (int run = 0; run < 2; ++run) {
+      Matching matching(3000);
+      const RoundsReport report = run_rounds(Executor({.threads = threads}), matching, edges);
+      expect_maximal(matching, edges);
+      EXPECT_EQ(report.applied, matching.matched.size());
+      EXPECT_GT(report.lost, 0U);
+      if (first.empty()) first = matching.matched;
+      EXPECT_EQ(matching.matched, first) << threads << " threads";
+    }
+}
+
+TEST(RunRounds, MatchesByReservationInArrivalOrder) {
+  const auto edges = random_edges(3000, false);
+  for (int run = 0; run < 5; ++run) {
+    Matching matching(3000);
+    run_rounds(Executor({.threads = 4, .deterministic = false}), matching, edges);
+    expect_maximal(matching, edges);
+  }
+}
+
+/// With priorities that all differ, reservations give what greed in the order of priority gives.
+TEST(RunRounds, ThePriorityDecides) {
+  std::vector<Edge> edges = random_edges(100, true);
+  edges.resize(200);
+  std::vector<bool> used(100, false);
+  std::vector<Edge> greedy = edges, expected;
+  for (std::uint32_t i = 0; i < edges.size(); ++i) edges[i].weight = greedy[i].weight = i;
+  std::reverse(greedy.begin(), greedy.end());
+  for (const Edge& edge : greedy) {
+    if (used[edge.a] || used[edge.b]) continue;
+    used[edge.a] = used[edge.b] = true;
+    expected.push_back(edge);
+  }
+  Matching matching(100);
+  run_rounds(Executor({.threads = 3}), matching, edges);
+  std::sort(expected.begin(), expected.end());
+  std::sort(matching.matched.begin(), matching.matched.end());
+  EXPECT_EQ(matching.matched, expected);
+}
+
+// ---- Order of commits, and what goes wrong ----
+
+/// Every item appends itself to one common list, which keeps the order.
+class Append {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  using Update = Vertex;
+  static constexpr bool keeps_conflicts = true;
+
+  explicit Append(std::size_t n) : size_(n) {}
+  std::optional<Plan> plan(Vertex v) const {
+    if (v == throws_in_plan) throw std::runtime_error("plan");
+    return v;
+  }
+  void conflicts(Vertex, auto&&) const {}
+  std::size_t item_count() const { return size_; }
+  void apply(const Plan& v, Commit<Append>& commit) {
+    if (v == throws_in_apply) throw std::runtime_error("apply");
+    commit.defer(v % 3, v);
+  }
+  void commit(std::uint32_t owner, const Update& v) {
+    if (v == throws_in_commit) throw std::runtime_error("commit");
+    lists[owner].push_back(v);
+  }
+
+  std::array<std::vector<Vertex>, 3> lists;
+  Vertex throws_in_plan = ~0U, throws_in_apply = ~0U, throws_in_commit = ~0U;
+
+ private:
+  std::size_t size_;
+};
+
+TEST(RunRounds, CommitsInTheOrderOfSourcesIfAsked) {
+  for (const int threads : thread_counts) {
+    Append append(10000);
+    run_rounds(Executor({.threads = threads}), append, all_items(10000),
+               {.order = CommitOrder::by_source});
+    for (const auto& list : append.lists) {
+      EXPECT_TRUE(std::is_sorted(list.begin(), list.end()));
+      EXPECT_NEAR(static_cast<double>(list.size()), 3333, 1);
+    }
+  }
+}
+
+TEST(RunRounds, PassesOnWhatAnOperatorThrows) {
+  const auto message = [](Append& append) -> std::string {
+    try {
+      run_rounds(Executor({.threads = 4}), append, all_items(10000));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "nothing thrown";
+  };
+  Append plan(10000), apply(10000), commit(10000);
+  plan.throws_in_plan = apply.throws_in_apply = commit.throws_in_commit = 6789;
+  EXPECT_EQ(message(plan), "plan");
+  EXPECT_EQ(message(apply), "apply");
+  EXPECT_EQ(message(commit), "commit");
+}
+
+TEST(RunRounds, NoWorkIsNoRound) {
+  Append append(10);
+  const RoundsReport report = run_rounds(Executor({.threads = 2}), append, {});
+  EXPECT_EQ(report.rounds, 0U);
+  EXPECT_EQ(report.planned, 0U);
+}
+
+}  // namespace
+}  // namespace ductile::runtime
