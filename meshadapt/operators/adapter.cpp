@@ -63,7 +63,7 @@ std::size_t Adapter<Dim>::iterate() {
   if (options_.insert) changes += coarsen();
   if (options_.insert) changes += refine();
   renumber_mesh();
-  if (options_.swap) changes += swap();
+  if (options_.swap) changes += swap(4, 0.9);
   if (options_.move) smooth(1, 0.3, true);
   return changes;
 }
@@ -73,7 +73,7 @@ template <int Dim>
 void Adapter<Dim>::polish() {
   for (int pass = 0; pass < 3; ++pass) {
     if (options_.move) smooth(3, 0.5, true);
-    if (options_.swap) swap();
+    if (options_.swap) swap(4, 0.95);
   }
   if (options_.move) smooth(2, 0.6, false);
 }
@@ -119,11 +119,11 @@ std::size_t Adapter<Dim>::refine() {
 }
 
 template <int Dim>
-std::size_t Adapter<Dim>::swap() {
+std::size_t Adapter<Dim>::swap(int sweeps, double below) {
   const Stopwatch watch;
   std::size_t changes = 0;
-  for (int sweep = 0; sweep < 4; ++sweep) {
-    auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_));
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below);
     if (work.empty()) break;
     Swap<Dim> op(mesh_);
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work));

@@ -25,7 +25,7 @@ class Adapter {
   // ---- Kernels: each returns how many changes it made ----
   std::size_t coarsen();
   std::size_t refine();
-  std::size_t swap();
+  std::size_t swap(int sweeps, double below);
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
 
   std::size_t iterate();

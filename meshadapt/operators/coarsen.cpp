@@ -56,11 +56,17 @@ auto Coarsen<Dim>::candidates(VertexId gone, const VertexBuffer& ring) const
   return found;
 }
 
-/// A vertex leaves a curve only along the curve, and a patch only within the patch.
+/// A vertex leaves a curve only along the curve, and a patch only within the patch. No element on
+/// the edge may have two facets on patches there: it would take the boundary with it (such an
+/// element is flat but for rounding).
 template <int Dim>
 bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
   const int freedom = mesh_.kind_of[plan.gone].freedom;
   if (freedom == Dim) return true;
+  for (const ElementId e : mesh_.elements_of.of(plan.gone)) {
+    const int at_kept = corner_of(mesh_.corners_of[e], plan.kept);
+    if (at_kept >= 0 && mesh_.patches_of[e][static_cast<std::size_t>(at_kept)] != 0) return false;
+  }
   if (Dim == 3 && freedom == 1) return mesh_.curve_of(plan.gone, plan.kept) != 0;
   for (const ElementId e : mesh_.elements_of.of(plan.gone))
     if (contains(mesh_.corners_of[e], plan.kept) &&

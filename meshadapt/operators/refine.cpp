@@ -51,9 +51,9 @@ auto Refine<Dim>::plan(const Item& edge) const -> std::optional<Plan> {
   Shell shell;
   shell_of(mesh_, edge.a, edge.b, shell);
   if (shell.empty() || !may_split(shell, edge.a, edge.b)) return {};
-  Plan plan{edge.a, edge.b, {}, 0, {}, 0, 0, static_cast<std::uint32_t>(shell.size())};
-  locate(shell, plan);
-  if (!makes_no_short_edge(shell, plan) || !keeps_shapes(shell, plan)) return {};
+  Plan plan{edge.a, edge.b, {}, 0, {}, 0, 0, std::move(shell)};
+  locate(plan);
+  if (!makes_no_short_edge(plan) || !keeps_shapes(plan)) return {};
   return plan;
 }
 
@@ -77,7 +77,7 @@ bool Refine<Dim>::may_split(const Shell& shell, VertexId a, VertexId b) const {
 
 /// Position, metric and classification of the new vertex.
 template <int Dim>
-void Refine<Dim>::locate(const Shell& shell, Plan& plan) const {
+void Refine<Dim>::locate(Plan& plan) const {
   const Site<Dim>& a = mesh_.site_of[plan.a];
   const Site<Dim>& b = mesh_.site_of[plan.b];
   // Off the middle by up to 5 %, lest a regular mesh be refined into a regular mesh of worse
@@ -89,7 +89,7 @@ void Refine<Dim>::locate(const Shell& shell, Plan& plan) const {
   plan.site = make_site(position, sample.metric);
   plan.host = sample.host;
   plan.kind.freedom = Dim;
-  for (const ElementId e : shell)
+  for (const ElementId e : plan.shell)
     if (const PatchId patch = patch_of_edge(mesh_, e, plan.a, plan.b)) {
       plan.entity = patch;
       plan.kind.freedom = Dim - 1;
@@ -104,19 +104,19 @@ void Refine<Dim>::locate(const Shell& shell, Plan& plan) const {
 }
 
 template <int Dim>
-bool Refine<Dim>::makes_no_short_edge(const Shell& shell, const Plan& plan) const {
-  for (const ElementId e : shell)
+bool Refine<Dim>::makes_no_short_edge(const Plan& plan) const {
+  for (const ElementId e : plan.shell)
     for (const VertexId v : mesh_.corners_of[e])
       if (shorter_than(mesh_.site_of[v], plan.site, rules_.shortest_split)) return false;
   return true;
 }
 
 template <int Dim>
-bool Refine<Dim>::keeps_shapes(const Shell& shell, const Plan& plan) const {
+bool Refine<Dim>::keeps_shapes(const Plan& plan) const {
   double before = 1;
-  for (const ElementId e : shell) before = std::min<double>(before, mesh_.shape_of[e]);
+  for (const ElementId e : plan.shell) before = std::min<double>(before, mesh_.shape_of[e]);
   const double least = std::min(rules_.split_keeps * before, rules_.accepted_shape);
-  for (const ElementId e : shell)
+  for (const ElementId e : plan.shell)
     for (const VertexId end : {plan.a, plan.b}) {
       auto sites = mesh_.sites(mesh_.corners_of[e]);
       sites[static_cast<std::size_t>(corner_of(mesh_.corners_of[e], end))] = &plan.site;
@@ -136,17 +136,16 @@ std::array<std::uint32_t, 2> Refine<Dim>::grow(const std::array<std::uint32_t, 2
 
 template <int Dim>
 void Refine<Dim>::apply(const Plan& plan, runtime::Commit<Refine>& commit) {
-  Shell shell;
-  shell_of(mesh_, plan.a, plan.b, shell);
   const VertexId middle = commit.fresh(0);
   mesh_.site_of[middle] = plan.site;
   mesh_.kind_of[middle] = plan.kind;
   mesh_.entity_of[middle] = plan.entity;
   mesh_.reference_of[middle] = plan.reference;
   mesh_.host_of[middle] = plan.host;
-  mesh_.elements_of.reserve(middle, 2 * plan.shell_size + (Dim == 2 ? 4 : 16));
-  for (const ElementId element : shell) mesh_.elements_of.insert(middle, element);
-  for (const ElementId element : shell) {
+  mesh_.elements_of.reserve(
+      middle, 2 * static_cast<std::uint32_t>(plan.shell.size()) + (Dim == 2 ? 4 : 16));
+  for (const ElementId element : plan.shell) mesh_.elements_of.insert(middle, element);
+  for (const ElementId element : plan.shell) {
     const ElementId fresh = commit.fresh(1);
     split_element(element, fresh, middle, plan);
     mesh_.elements_of.insert(middle, fresh);

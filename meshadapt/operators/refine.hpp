@@ -27,7 +27,7 @@ struct EdgeSplit {
   VertexKind kind;
   std::uint32_t entity;  // patch or curve that the edge lies on, or 0
   std::int32_t reference;
-  std::uint32_t shell_size;
+  Shell shell;  // the elements to be halved
 };
 
 template <int Dim>
@@ -58,7 +58,9 @@ class Refine {
   std::uint8_t priority(const Item& edge) const;
 
   // ---- Apply: halve the elements around the edge, defer the change of their vertices' lists ----
-  std::array<std::uint32_t, 2> demand(const Plan& plan) const { return {1, plan.shell_size}; }
+  std::array<std::uint32_t, 2> demand(const Plan& plan) const {
+    return {1, static_cast<std::uint32_t>(plan.shell.size())};
+  }
   std::array<std::uint32_t, 2> grow(const std::array<std::uint32_t, 2>& total);
   void apply(const Plan& plan, runtime::Commit<Refine>& commit);
 
@@ -68,10 +70,10 @@ class Refine {
  private:
   // ---- Rules ----
   bool may_split(const Shell& shell, VertexId a, VertexId b) const;
-  bool keeps_shapes(const Shell& shell, const Plan& plan) const;
-  bool makes_no_short_edge(const Shell& shell, const Plan& plan) const;
+  bool keeps_shapes(const Plan& plan) const;
+  bool makes_no_short_edge(const Plan& plan) const;
 
-  void locate(const Shell& shell, Plan& plan) const;
+  void locate(Plan& plan) const;
   void split_element(ElementId element, ElementId fresh, VertexId middle, const Plan& plan);
 
   Mesh<Dim>& mesh_;

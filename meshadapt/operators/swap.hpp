@@ -31,9 +31,13 @@ class Swap {
 
   explicit Swap(Mesh<Dim>& mesh) : mesh_(mesh) {}
 
-  /// All edges and faces of elements changed after an epoch whose swap would be an improvement now.
+  /// All edges and faces of elements changed after an epoch whose swap would be an improvement now,
+  /// where the worst mean ratio is below a bound.
   static std::vector<Swappable> improvements(const runtime::Executor& executor, Mesh<Dim>& mesh,
-                                             std::uint32_t after);
+                                             std::uint32_t after, double below);
+
+  /// New elements are worth it if the worst of them is better than this.
+  static double bar(double worst_before) { return worst_before * 1.02 + 1e-4; }
 
   // ---- Plan: the elements to come, if they are better than those to go. Reads only. ----
   std::optional<Plan> plan(const Item& item) const;
@@ -66,9 +70,6 @@ class Swap {
   void commit(std::uint32_t owner, const Update& update) { change_list(mesh_, owner, update); }
 
  private:
-  /// New elements are worth it if the worst of them is better than this.
-  static double bar(double worst_before) { return worst_before * 1.02 + 1e-4; }
-
   Mesh<Dim>& mesh_;
 };
 

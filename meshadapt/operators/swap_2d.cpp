@@ -45,7 +45,7 @@ void Swap<2>::apply(const Replacement<2>& plan, runtime::Commit<Swap>& commit) {
 
 template <>
 std::vector<Swappable> Swap<2>::improvements(const runtime::Executor& executor, Mesh<2>& mesh,
-                                             std::uint32_t after) {
+                                             std::uint32_t after, double below) {
   const Swap swap(mesh);
   return runtime::parallel_collect<Swappable>(
       executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
@@ -57,7 +57,7 @@ std::vector<Swappable> Swap<2>::improvements(const runtime::Executor& executor, 
           if (other == none || (other < element && mesh.changed_at[other] > after)) continue;
           const float worst = std::min(mesh.shape_of[e], mesh.shape_of[other]);
           const Swappable item{std::min(a, b), std::max(a, b), none, worst};
-          if (swap.plan(item)) append(item);
+          if (worst < shape_of_mean_ratio<2>(below) && swap.plan(item)) append(item);
         }
       });
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "ductile/runtime/collect.hpp"
+#include "operators/star.hpp"
 #include "operators/swap.hpp"
 
 namespace ductile::meshadapt {
@@ -8,9 +9,6 @@ namespace ductile::meshadapt {
 namespace {
 
 constexpr std::size_t largest_ring = 7;
-
-/// Elements of this shape (mean ratio 0.9) are left alone.
-constexpr float good_enough = 0.85F;
 
 /// The vertices around an edge a-b in order, counter-clockwise seen from b. `open` if the edge is
 /// on the boundary; the ring then starts and ends there.
@@ -206,94 +204,68 @@ void Swap<3>::apply(const Replacement<3>& plan, runtime::Commit<Swap>& commit) {
 
 namespace {
 
-/// The elements around a vertex, and which of them are around each of its edges to neighbours with
-/// a higher number, read once for all swaps that are looked for from here.
-class Star {
+/// Looks for swaps of the edges from one vertex, and of their faces, that are worth it.
+class SwapSearch {
  public:
-  static constexpr std::size_t most_around = 16;  // an edge in more elements is left alone
+  SwapSearch(const Mesh<3>& mesh, VertexId vertex, const Star& star, float good_enough)
+      : mesh_(mesh), vertex_(vertex), star_(star), good_enough_(good_enough) {}
 
-  struct Entry {
-    ElementId element;
-    Corners<3> corners;
-    float shape;
-    bool changed;
-  };
-  struct Edge {
-    VertexId to;
-    std::uint32_t count = 0;
-    std::array<std::uint16_t, most_around> around{};
-  };
-
-  Star(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after) {
-    for (const ElementId e : mesh.elements_of.of(vertex)) {
-      entries.push_back({e, mesh.corners_of[e], mesh.shape_of[e], mesh.changed_at[e] > after});
-      changed = changed || entries.back().changed;
+  void try_edge(const Star::Edge& edge, auto&& append) const {
+    if (edge.count > largest_ring) return;
+    Shell shell;
+    float worst = 1;
+    bool changed = false;
+    for (std::uint32_t k = 0; k < edge.count; ++k) {
+      const Star::Entry& entry = star_.entries[edge.around[k]];
+      shell.push_back(entry.element);
+      worst = std::min(worst, entry.shape);
+      changed = changed || entry.changed;
     }
-    if (!changed || entries.size() > mesh.largest_ball) return;
-    for (std::uint16_t i = 0; i < entries.size(); ++i)
-      for (const VertexId v : entries[i].corners)
-        if (v > vertex) note(v, i);
+    if (changed && worst < good_enough_ &&
+        plan_edge_removal(mesh_, vertex_, edge.to, shell, Swap<3>::bar(worst)))
+      append(Swappable{vertex_, edge.to, none, worst});
   }
 
-  Buffer<Entry, 64> entries;
-  Buffer<Edge, 24> edges;
-  bool changed = false;
+  /// The faces on an edge whose third corner has a higher number still.
+  void try_faces(const Star::Edge& edge, auto&& append) const {
+    if (edge.count > Star::most_around) return;
+    for (std::uint32_t i = 0; i < edge.count; ++i)
+      for (std::uint32_t j = i + 1; j < edge.count; ++j)
+        try_face(edge.to, star_.entries[edge.around[i]], star_.entries[edge.around[j]], append);
+  }
 
  private:
-  void note(VertexId to, std::uint16_t entry) {
-    auto at = std::find_if(edges.begin(), edges.end(), [&](const Edge& e) { return e.to == to; });
-    if (at == edges.end()) at = edges.insert(edges.end(), Edge{to});
-    if (at->count < most_around) at->around[at->count] = entry;
-    ++at->count;
+  void try_face(VertexId b, const Star::Entry& e, const Star::Entry& f, auto&& append) const {
+    const float worst = std::min(e.shape, f.shape);
+    if ((!e.changed && !f.changed) || worst >= good_enough_) return;
+    for (const VertexId c : e.corners)
+      if (c > b && contains(f.corners, c) &&
+          plan_face_swap(mesh_, e.element, f.element, Swap<3>::bar(worst)))
+        append(Swappable{vertex_, b, c, worst});
   }
+
+  const Mesh<3>& mesh_;
+  VertexId vertex_;
+  const Star& star_;
+  float good_enough_;
 };
-
-void offer_edge(const Mesh<3>& mesh, VertexId a, const Star& star, const Star::Edge& edge, auto bar,
-                auto&& append) {
-  Shell shell;
-  float worst = 1;
-  bool changed = false;
-  for (std::uint32_t k = 0; k < edge.count; ++k) {
-    const Star::Entry& entry = star.entries[edge.around[k]];
-    shell.push_back(entry.element);
-    worst = std::min(worst, entry.shape);
-    changed = changed || entry.changed;
-  }
-  if (changed && worst < good_enough && plan_edge_removal(mesh, a, edge.to, shell, bar(worst)))
-    append(Swappable{a, edge.to, none, worst});
-}
-
-/// The faces on an edge whose third corner has a higher number still.
-void offer_faces(const Mesh<3>& mesh, VertexId a, const Star& star, const Star::Edge& edge,
-                 auto bar, auto&& append) {
-  for (std::uint32_t i = 0; i < edge.count; ++i)
-    for (std::uint32_t j = i + 1; j < edge.count; ++j) {
-      const Star::Entry &e = star.entries[edge.around[i]], &f = star.entries[edge.around[j]];
-      const float worst = std::min(e.shape, f.shape);
-      if ((!e.changed && !f.changed) || worst >= good_enough) continue;
-      for (const VertexId c : e.corners)
-        if (c > edge.to && contains(f.corners, c) &&
-            plan_face_swap(mesh, e.element, f.element, bar(worst)))
-          append(Swappable{a, edge.to, c, worst});
-    }
-}
 
 }  // namespace
 
 template <>
 std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, Mesh<3>& mesh,
-                                             std::uint32_t after) {
-  return runtime::parallel_collect<Swappable>(executor, mesh.vertex_slots(),
-                                              [&](std::size_t v, auto&& append) {
-                                                const auto a = static_cast<VertexId>(v);
-                                                const Star star(mesh, a, after);
-                                                for (const Star::Edge& edge : star.edges) {
-                                                  if (edge.count > Star::most_around) continue;
-                                                  if (edge.count <= largest_ring)
-                                                    offer_edge(mesh, a, star, edge, bar, append);
-                                                  offer_faces(mesh, a, star, edge, bar, append);
-                                                }
-                                              });
+                                             std::uint32_t after, double below) {
+  const auto good_enough = static_cast<float>(shape_of_mean_ratio<3>(below));
+  const auto find = [&](std::size_t v, auto&& append) {
+    const auto a = static_cast<VertexId>(v);
+    const Star star(mesh, a, after);
+    const SwapSearch search(mesh, a, star, good_enough);
+    for (const Star::Edge& edge : star.edges) {
+      search.try_edge(edge, append);
+      search.try_faces(edge, append);
+    }
+  };
+  return runtime::parallel_collect<Swappable>(executor, mesh.vertex_slots(), find);
 }
 
 template class Swap<3>;
