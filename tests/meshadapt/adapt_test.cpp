@@ -1,0 +1,175 @@
+#include "ductile/meshadapt/adapt.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+using test::Random;
+
+/// Every test runs for both dimensions.
+class Adapt : public testing::TestWithParam<int> {
+ protected:
+  int dimension() const { return GetParam(); }
+  std::size_t element_count(const AnyMesh& mesh) const {
+    return dimension() == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+  }
+  /// Two regions with a listed interface, ridges, and some of everything required.
+  AnyMesh rich_mesh() const {
+    test::Grid grid = test::unit_grid(dimension(), 6);
+    grid.region = test::two_halves(6);
+    AnyMesh mesh = test::make_grid(grid);
+    if (dimension() == 3) test::list_ridges(mesh);
+    Random random(7);
+    test::jiggle(mesh, random, 0.2);
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+      mesh.vertex_reference[v] = static_cast<std::int32_t>(v % 3);
+    mesh.required_vertices = {3, 40};
+    mesh.required_edges = {1, 5};
+    mesh.required_triangles = {2, 9};
+    if (dimension() == 3) mesh.required_tetrahedra = {4, 77};
+    return mesh;
+  }
+  AnyField layered(const AnyMesh& mesh, double complexity) const {
+    Random random(3);
+    AnyField field = test::layer_field(mesh, random, 0.05);
+    test::scale_to(field, mesh, complexity);
+    return field;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Dimensions, Adapt, testing::Values(2, 3),
+                         [](const auto& at) { return std::to_string(at.param) + "D"; });
+
+std::vector<std::uint64_t> bits(const std::vector<double>& values) {
+  std::vector<std::uint64_t> result;
+  for (const double value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
+  return result;
+}
+
+void expect_identical(const AdaptedMesh& a, const AdaptedMesh& b) {
+  EXPECT_EQ(bits(a.mesh.coordinates), bits(b.mesh.coordinates));
+  EXPECT_EQ(bits(a.metric.values), bits(b.metric.values));
+  EXPECT_EQ(a.mesh.vertex_reference, b.mesh.vertex_reference);
+  EXPECT_EQ(a.mesh.edges.vertices, b.mesh.edges.vertices);
+  EXPECT_EQ(a.mesh.edges.reference, b.mesh.edges.reference);
+  EXPECT_EQ(a.mesh.triangles.vertices, b.mesh.triangles.vertices);
+  EXPECT_EQ(a.mesh.triangles.reference, b.mesh.triangles.reference);
+  EXPECT_EQ(a.mesh.tetrahedra.vertices, b.mesh.tetrahedra.vertices);
+  EXPECT_EQ(a.mesh.tetrahedra.reference, b.mesh.tetrahedra.reference);
+  EXPECT_EQ(a.mesh.corners, b.mesh.corners);
+  EXPECT_EQ(a.mesh.ridges, b.mesh.ridges);
+  EXPECT_EQ(a.mesh.required_vertices, b.mesh.required_vertices);
+  EXPECT_EQ(a.mesh.required_edges, b.mesh.required_edges);
+  EXPECT_EQ(a.mesh.required_triangles, b.mesh.required_triangles);
+  EXPECT_EQ(a.mesh.required_tetrahedra, b.mesh.required_tetrahedra);
+}
+
+TEST_P(Adapt, KeepsRegionsInterfacesReferencesAndWhatIsRequired) {
+  const AnyMesh mesh = rich_mesh();
+  for (const double complexity : {20.0, 600.0}) {
+    const Executor executor({.threads = 2});
+    const AdaptedMesh result = adapt(executor, mesh, layered(mesh, complexity));
+    const auto faults = test::faults_of(executor, mesh, result);
+    EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  }
+}
+
+TEST_P(Adapt, GivesTheSameBytesAtEachThreadCountAndInEachRun) {
+  const AnyMesh mesh = rich_mesh();
+  const AnyField metric = layered(mesh, dimension() == 2 ? 2000 : 500);
+  const AdaptedMesh first = adapt(Executor({.threads = 1}), mesh, metric);
+  EXPECT_GT(element_count(first.mesh), element_count(mesh));
+  for (const int threads : {1, 2, 2, 3, 4, 8}) {
+    SCOPED_TRACE(threads);
+    expect_identical(first, adapt(Executor({.threads = threads}), mesh, metric));
+  }
+}
+
+TEST_P(Adapt, IsValidInArrivalOrder) {
+  const AnyMesh mesh = rich_mesh();
+  const AnyField metric = layered(mesh, 500);
+  for (const int threads : {1, 2, 4, 4, 8}) {
+    const Executor executor({.threads = threads, .deterministic = false});
+    const AdaptedMesh result = adapt(executor, mesh, metric);
+    const auto faults = test::faults_of(executor, mesh, result);
+    EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  }
+}
+
+TEST_P(Adapt, MeetsAUniformSize) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 3));
+  AnyField metric = constant_metric(mesh, dimension() == 2 ? 0.02 : 0.06);
+  const Executor executor({.threads = 2});
+  const AdaptedMesh result = adapt(executor, mesh, metric);
+  const MeshStatistics statistics = measure(executor, result.mesh, &result.metric);
+  EXPECT_GT(statistics.share_in_range(), dimension() == 2 ? 0.97 : 0.9);
+  EXPECT_GT(statistics.quality.mean, dimension() == 2 ? 0.93 : 0.78);
+  EXPECT_GT(statistics.quality.min, dimension() == 2 ? 0.3 : 0.05);
+}
+
+TEST_P(Adapt, CoarsensABoxToLittleMoreThanItsCorners) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), dimension() == 2 ? 20 : 8));
+  const Executor executor({.threads = 2});
+  const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 10));
+  EXPECT_LE(element_count(result.mesh), dimension() == 2 ? 2U : 12U);
+  const auto faults = test::faults_of(executor, mesh, result);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+}
+
+TEST_P(Adapt, ChangesLittleTheSecondTime) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 4));
+  const Executor executor({.threads = 2});
+  const AdaptedMesh once = adapt(executor, mesh, layered(mesh, dimension() == 2 ? 3000 : 800));
+  const AdaptedMesh again = adapt(executor, once.mesh, once.metric);
+  const std::size_t changes =
+      again.report.coarsen.applied + again.report.refine.applied + again.report.swap.applied;
+  EXPECT_LT(static_cast<double>(changes), 0.02 * static_cast<double>(element_count(once.mesh)));
+  const double before = measure(executor, once.mesh, &once.metric).quality.mean;
+  EXPECT_GT(measure(executor, again.mesh, &again.metric).quality.mean, before - 1e-3);
+}
+
+TEST_P(Adapt, LeavesALockedBoundaryAsItIs) {
+  AnyMesh mesh = rich_mesh();
+  AdaptOptions options;
+  options.make.lock_boundary = true;
+  const Executor executor({.threads = 2});
+  const AdaptedMesh result = adapt(executor, mesh, layered(mesh, 100), options);
+  test::require_facets(mesh);
+  const auto faults = test::faults_of(executor, mesh, result);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+}
+
+TEST_P(Adapt, OnlyDoesWhatItMay) {
+  const AnyMesh mesh = rich_mesh();
+  const AnyField metric = layered(mesh, 300);
+  AdaptOptions options;
+  options.move = options.swap = options.insert = false;
+  const AdaptedMesh result = adapt(Executor({.threads = 2}), mesh, metric, options);
+  EXPECT_EQ(result.report.coarsen.applied + result.report.refine.applied +
+                result.report.swap.applied + result.report.smooth.applied,
+            0U);
+  EXPECT_EQ(element_count(result.mesh), element_count(mesh));
+  options.swap = true;
+  const AdaptedMesh swapped = adapt(Executor({.threads = 2}), mesh, metric, options);
+  EXPECT_EQ(swapped.mesh.vertex_count(), mesh.vertex_count());
+}
+
+TEST_P(Adapt, RefusesAMetricOfTheWrongShape) {
+  const AnyMesh mesh = rich_mesh();
+  AnyField metric = constant_metric(mesh, 0.1);
+  --metric.vertex_count;
+  EXPECT_THROW(adapt(Executor({.threads = 1}), mesh, metric), InputError);
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
