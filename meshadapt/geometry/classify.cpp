@@ -41,8 +41,12 @@ Vector<Dim> facet_normal(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
 template <int Dim>
 double extent(const Mesh<Dim>& mesh) {
   double largest = 0;
-  for (const auto& site : mesh.site_of)
-    largest = std::max(largest, norm(site.position - mesh.site_of[0].position));
+  const Vector<Dim>* first = nullptr;
+  for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
+    if (!mesh.vertex_alive(v)) continue;
+    if (first == nullptr) first = &mesh.site_of[v].position;
+    largest = std::max(largest, norm(mesh.site_of[v].position - *first));
+  }
   return largest;
 }
 
@@ -96,6 +100,7 @@ class Classifier {
         const std::uint32_t next = across(f, key);
         if (next == none || facets_[next].patch != 0 || !agree(f, next)) return;
         if (!in_plane(facets_[next].corners, origin, patch.normal)) return;
+        if (folds_back(facets_[f].corners, facets_[next].corners, key)) return;
         facets_[next].patch = id;
         front.push_back(next);
       });
@@ -132,6 +137,28 @@ class Classifier {
       if (std::abs(dot(mesh_.site_of[v].position - origin, normal)) > tolerance_) return false;
     const Vector<Dim> own = facet_normal<Dim>(mesh_, facet);
     return std::abs(dot(own, normal)) > 0.9 * norm(own);
+  }
+
+  /// Do two facets of one plane lie on the same side of what they share? So it is at the tip of a
+  /// slit, where the boundary turns back.
+  bool folds_back(const Facet<Dim>& f, const Facet<Dim>& g, Key key) const {
+    return dot(away_from(f, key), away_from(g, key)) > 0;
+  }
+
+  /// From a side of a facet into the facet, at a right angle.
+  Vector<Dim> away_from(const Facet<Dim>& facet, Key key) const {
+    const auto at = [&](VertexId v) { return mesh_.site_of[v].position; };
+    if constexpr (Dim == 2) {
+      const auto shared = static_cast<VertexId>(key);
+      return at(facet[0] == shared ? facet[1] : facet[0]) - at(shared);
+    } else {
+      const auto a = static_cast<VertexId>(key >> 32U), b = static_cast<VertexId>(key);
+      VertexId third = facet[0];
+      for (const VertexId v : facet)
+        if (v != a && v != b) third = v;
+      const Vector<3> side = at(b) - at(a), inwards = at(third) - at(a);
+      return inwards - (dot(inwards, side) / dot(side, side)) * side;
+    }
   }
 
   void store_patches() {
@@ -201,12 +228,14 @@ class Classifier {
     direction *= 1 / norm(direction);
     curve_edges_[seed].curve = id;
     for (const VertexId start : {curve_edges_[seed].a, curve_edges_[seed].b}) {
+      const Vector<Dim> heading = (start == curve_edges_[seed].a ? -1.0 : 1.0) * direction;
       VertexId v = start;
       for (std::uint32_t e = next_edge(seed, v); e != none; e = next_edge(e, v)) {
         CurveEdge& edge = curve_edges_[e];
         const VertexId end = edge.a == v ? edge.b : edge.a;
         const Vector<Dim> d = mesh_.site_of[end].position - origin;
-        if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed]) ||
+        const Vector<Dim> step = mesh_.site_of[end].position - mesh_.site_of[v].position;
+        if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed]) || dot(step, heading) <= 0 ||
             norm(d - dot(d, direction) * direction) > tolerance_)
           break;
         edge.curve = id;

@@ -252,16 +252,22 @@ class MeshMaker {
   [[noreturn]] void fail_crowded(ElementId element) const {
     const auto facet = corner_of(neighbours_[element], crowded);
     const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
-    ElementId other = none;
-    for (const ElementId e : mesh_.elements_of.of(corners[0]))
-      if (e != element && has_all(e, corners)) other = e;
-    auto a = mesh_.corners_of[element], b = mesh_.corners_of[other];
-    std::sort(a.begin(), a.end());
-    std::sort(b.begin(), b.end());
-    const std::string both =
-        entity(element_name<Dim>(), element) + " and " + std::to_string(other + 1);
-    if (a == b) fail(both + " are the same element; remove one");
-    fail(both + " overlap or share a " + facet_name<Dim>() +
+    std::vector<std::pair<Corners<Dim>, ElementId>> crowd;  // by their sorted corners
+    for (const ElementId e : mesh_.elements_of.of(corners[0])) {
+      Corners<Dim> key = mesh_.corners_of[e];
+      std::sort(key.begin(), key.end());
+      if (has_all(e, corners)) crowd.emplace_back(key, e);
+    }
+    std::sort(crowd.begin(), crowd.end());
+    const auto both = [](ElementId a, ElementId b) {
+      return std::string(element_name<Dim>()) + " " + std::to_string(a + 1) + " and " +
+             std::to_string(b + 1);
+    };
+    for (std::size_t i = 1; i < crowd.size(); ++i)
+      if (crowd[i].first == crowd[i - 1].first)
+        fail(both(crowd[i - 1].second, crowd[i].second) + " are the same element; remove one");
+    const ElementId other = crowd[0].second == element ? crowd[1].second : crowd[0].second;
+    fail(both(element, other) + " overlap, or share " + (Dim == 2 ? "an edge" : "a triangle") +
          " with a third; a facet may belong to two elements at most, one on each side");
   }
 

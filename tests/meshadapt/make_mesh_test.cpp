@@ -1,0 +1,296 @@
+#include "ductile/meshadapt/make_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "support/meshes.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+
+template <int Dim>
+struct Made {
+  Mesh<Dim> mesh;
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+};
+
+/// Makes the mesh and checks all but its shapes, which need a metric.
+template <int Dim>
+Made<Dim> make(const AnyMesh& any, const MakeMeshOptions& options = {}) {
+  const Executor executor({.threads = 2});
+  Made<Dim> made;
+  made.mesh = make_mesh<Dim>(executor, any, options, made.neighbours, made.warnings);
+  for (auto& site : made.mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
+  update_shapes(executor, made.mesh);
+  const auto faults = check_mesh(executor, made.mesh);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  return made;
+}
+
+template <int Dim>
+std::array<int, 4> vertices_by_freedom(const Mesh<Dim>& mesh) {
+  std::array<int, 4> count{};
+  for (VertexId v = 0; v < mesh.vertex_slots(); ++v)
+    if (mesh.vertex_alive(v)) ++count[mesh.kind_of[v].freedom];
+  return count;
+}
+
+std::string complaint(const AnyMesh& any, const MakeMeshOptions& options = {}) {
+  try {
+    if (any.dimension == 2)
+      make<2>(any, options);
+    else
+      make<3>(any, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing thrown";
+}
+
+#define EXPECT_COMPLAINT(mesh, part) \
+  EXPECT_NE(complaint(mesh).find(part), std::string::npos) << complaint(mesh)
+
+AnyMesh square(int n) { return test::make_grid(test::unit_grid(2, n)); }
+AnyMesh cube(int n) { return test::make_grid(test::unit_grid(3, n)); }
+
+// ---- What lies where ----
+
+TEST(MakeMesh, FindsTheSidesAndCornersOfASquare) {
+  const auto made = make<2>(square(4));
+  EXPECT_EQ(made.mesh.patches.size(), 1U + 4);
+  EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{4, 12, 9, 0}));
+}
+
+TEST(MakeMesh, FindsTheSidesRidgesAndCornersOfACube) {
+  const auto made = make<3>(cube(4));
+  EXPECT_EQ(made.mesh.patches.size(), 1U + 6);
+  EXPECT_EQ(made.mesh.curves.size(), 1U + 12);
+  EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{8, 36, 54, 27}));
+}
+
+TEST(MakeMesh, FindsTheSameInAnyDirectionOfSpace) {
+  for (const double offset : {0.0, 100.0}) {
+    test::Random random(5);
+    AnyMesh flat = square(4), solid = cube(4);
+    test::place(flat, random, 1e-3, offset * 1e-3);
+    test::place(solid, random, 1e3, offset * 1e3);
+    EXPECT_EQ(vertices_by_freedom(make<2>(flat).mesh), (std::array{4, 12, 9, 0}));
+    EXPECT_EQ(vertices_by_freedom(make<3>(solid).mesh), (std::array{8, 36, 54, 27}));
+  }
+}
+
+TEST(MakeMesh, FindsInterfacesBetweenRegionsListedOrNot) {
+  for (const bool listed : {true, false}) {
+    test::Grid grid = test::unit_grid(3, 4);
+    grid.region = test::two_halves(4);
+    const auto made = make<3>(test::make_grid(grid, listed));
+    EXPECT_EQ(made.mesh.regions.size(), 2U);
+    EXPECT_EQ(made.mesh.patches.size(), 1U + 2 + 8 + 1);  // ends, halved sides, interface
+    EXPECT_EQ(made.mesh.curves.size(), 1U + 8 + 8 + 4);
+    EXPECT_EQ(vertices_by_freedom(made.mesh)[0], 12);
+  }
+}
+
+TEST(MakeMesh, GivesEachFacetOfACurvedBoundaryItsOwnPatch) {
+  AnyMesh any = cube(4);
+  for (std::size_t v = 0; v < any.vertex_count(); ++v) {
+    double largest = 0, square_sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double& x = any.coordinates[3 * v + axis];
+      x = 2 * x - 1 + 1e-3 * std::sin(static_cast<double>(7 * v + axis));
+      largest = std::max(largest, std::abs(x));
+      square_sum += x * x;
+    }
+    const double scale = square_sum > 0 ? largest / std::sqrt(square_sum) : 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) any.coordinates[3 * v + axis] *= scale;
+  }
+  std::fill(any.triangles.reference.begin(), any.triangles.reference.end(), 1);
+  const auto made = make<3>(any);
+  EXPECT_EQ(made.mesh.patches.size(), 1 + any.triangles.size());
+  EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{98, 0, 0, 27}));
+}
+
+TEST(MakeMesh, RequiredEntitiesFixTheirVertices) {
+  AnyMesh any = square(4);
+  any.required_triangles = {12};
+  any.required_edges = {0};
+  const auto made = make<2>(any);
+  for (const VertexId v : any.triangles.vertices[12]) EXPECT_EQ(made.mesh.kind_of[v].freedom, 0);
+  for (const VertexId v : any.edges.vertices[0]) EXPECT_EQ(made.mesh.kind_of[v].freedom, 0);
+  EXPECT_EQ(vertices_by_freedom(make<2>(square(4), {.lock_boundary = true}).mesh)[0], 16);
+}
+
+/// Lines that only rounding or a far-away vertex without elements could make look flat.
+TEST(MakeMesh, AnUnusedVertexFarAwayDoesNotFlattenTheBoundary) {
+  AnyMesh any = square(4);
+  any.coordinates[1] -= 1e-6;
+  any.coordinates.insert(any.coordinates.end(), {1e9, 1e9});
+  any.vertex_reference.push_back(0);
+  const auto made = make<2>(any);
+  EXPECT_GT(made.mesh.patches.size(), 1U + 4);
+  ASSERT_EQ(made.warnings.size(), 1U);
+  EXPECT_NE(made.warnings[0].find("belong to no element"), std::string::npos);
+}
+
+/// A slit from the middle of the left side to the centre: its sides have vertices of their own but
+/// share the tip, which neither side may be slid past.
+TEST(MakeMesh, TheTipOfASlitIsACorner) {
+  test::Grid grid = test::unit_grid(2, 4);
+  grid.region = [](const test::Cell& cell) { return cell[0] < 2 && cell[1] >= 2 ? 2 : 1; };
+  AnyMesh any = test::make_grid(grid, false);
+  const auto at = [&](double x, double y) {
+    std::uint32_t v = 0;
+    while (any.coordinates[2 * v] != x || any.coordinates[2 * v + 1] != y) ++v;
+    return v;
+  };
+  const std::uint32_t outer = at(0, 0.5), middle = at(0.25, 0.5), tip = at(0.5, 0.5);
+  const auto twin = [&](std::uint32_t v) {
+    any.coordinates.insert(any.coordinates.end(),
+                           {any.coordinates[2 * v], any.coordinates[2 * v + 1]});
+    any.vertex_reference.push_back(0);
+    return static_cast<std::uint32_t>(any.vertex_count() - 1);
+  };
+  const std::uint32_t outer_twin = twin(outer), middle_twin = twin(middle);
+  const auto above = [&](std::uint32_t& v) {
+    v = v == outer ? outer_twin : v == middle ? middle_twin : v;
+  };
+  for (std::size_t t = 0; t < any.triangles.size(); ++t)
+    if (any.triangles.reference[t] == 2)
+      std::for_each(any.triangles.vertices[t].begin(), any.triangles.vertices[t].end(), above);
+  for (auto& edge : any.edges.vertices)
+    if (any.coordinates[2 * edge[0] + 1] + any.coordinates[2 * edge[1] + 1] > 1)
+      std::for_each(edge.begin(), edge.end(), above);
+  std::fill(any.triangles.reference.begin(), any.triangles.reference.end(), 1);
+  for (const auto& edge :
+       {std::array{outer, middle}, {middle, tip}, {tip, middle_twin}, {middle_twin, outer_twin}})
+    any.edges.add(edge, 9);
+  const auto made = make<2>(any);
+  EXPECT_EQ(made.mesh.kind_of[tip].freedom, 0);
+  EXPECT_EQ(made.mesh.kind_of[middle].freedom, 1);
+  EXPECT_EQ(made.mesh.kind_of[middle_twin].freedom, 1);
+}
+
+// ---- What is wrong ----
+
+TEST(MakeMesh, ReorientsAMeshThatIsInvertedAsAWhole) {
+  for (AnyMesh any : {square(3), cube(2)}) {
+    for (auto& t : any.triangles.vertices) std::swap(t[0], t[1]);
+    for (auto& t : any.tetrahedra.vertices) std::swap(t[0], t[1]);
+    const auto warnings = any.dimension == 2 ? make<2>(any).warnings : make<3>(any).warnings;
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("reoriented"), std::string::npos);
+  }
+}
+
+TEST(MakeMesh, RefusesAnInvertedElement) {
+  AnyMesh flat = square(3), solid = cube(2);
+  std::swap(flat.triangles.vertices[4][0], flat.triangles.vertices[4][1]);
+  std::swap(solid.tetrahedra.vertices[4][0], solid.tetrahedra.vertices[4][1]);
+  EXPECT_COMPLAINT(flat, "triangle 5 is inverted");
+  EXPECT_COMPLAINT(solid, "tetrahedron 5 is inverted");
+}
+
+TEST(MakeMesh, RefusesAnElementWithoutVolume) {
+  AnyMesh flat = square(2), solid = cube(2);
+  const auto collapse = [](AnyMesh& mesh, const auto& corners) {
+    const auto dimension = static_cast<std::size_t>(mesh.dimension);
+    for (std::size_t axis = 0; axis < dimension; ++axis)
+      mesh.coordinates[corners[0] * dimension + axis] =
+          mesh.coordinates[corners[1] * dimension + axis];
+  };
+  collapse(flat, flat.triangles.vertices[3]);
+  collapse(solid, solid.tetrahedra.vertices[3]);
+  EXPECT_COMPLAINT(flat, "has no volume");
+  EXPECT_COMPLAINT(solid, "has no volume");
+}
+
+TEST(MakeMesh, AcceptsAnElementThatOnlyExactArithmeticFindsPositive) {
+  AnyMesh any;
+  any.dimension = 2;
+  any.vertex_reference = {0, 0, 0};
+  const double up = std::nextafter(0.7, 1.0);
+  any.coordinates = {0.1, 0.1, 0.3, 0.3, 0.7, up};
+  any.triangles.add({0, 1, 2}, 1);
+  for (std::uint32_t i = 0; i < 3; ++i) any.edges.add({i, (i + 1) % 3}, 1);
+  EXPECT_TRUE(make<2>(any).warnings.empty());
+}
+
+TEST(MakeMesh, RefusesDuplicates) {
+  AnyMesh flat = square(2), solid = cube(1);
+  flat.triangles.add(flat.triangles.vertices[1], 1);
+  solid.tetrahedra.add(solid.tetrahedra.vertices[1], 1);
+  EXPECT_COMPLAINT(flat, "triangle 2 and 9 are the same element");
+  EXPECT_COMPLAINT(solid, "tetrahedron 2 and 7 are the same element");
+  AnyMesh twice = square(2);
+  twice.edges.add(twice.edges.vertices[3], 1);
+  EXPECT_COMPLAINT(twice, "edge 9 is the same as edge 4");
+}
+
+TEST(MakeMesh, RefusesAThirdElementAtAFacet) {
+  AnyMesh any = square(1);
+  any.coordinates.insert(any.coordinates.end(), {0.9, 0.2});
+  any.vertex_reference.push_back(0);
+  any.triangles.add({0, 4, 2}, 1);  // overlaps, on the diagonal
+  EXPECT_COMPLAINT(any, "overlap, or share an edge with a third");
+}
+
+TEST(MakeMesh, RefusesOrCompletesAnUnlistedBoundary) {
+  for (AnyMesh any : {square(2), cube(1)}) {
+    any.dimension == 2 ? any.edges.vertices.pop_back() : any.triangles.vertices.pop_back();
+    any.dimension == 2 ? any.edges.reference.pop_back() : any.triangles.reference.pop_back();
+    EXPECT_COMPLAINT(any, "is not listed in the file");
+    EXPECT_EQ(complaint(any, {.complete_boundary = true}), "nothing thrown");
+  }
+}
+
+TEST(MakeMesh, RefusesIndicesAndNumbersThatAreNone) {
+  AnyMesh any = square(2);
+  any.triangles.vertices[5][1] = 100;
+  EXPECT_COMPLAINT(any, "triangle 6 names vertex 101, but there are only 9");
+  any = square(2);
+  any.triangles.vertices[5][1] = any.triangles.vertices[5][0];
+  EXPECT_COMPLAINT(any, "triangle 6 names the same vertex twice");
+  any = square(2);
+  any.coordinates[7] = std::nan("");
+  EXPECT_COMPLAINT(any, "vertex 4 has a coordinate that is not a finite number");
+  any = square(2);
+  any.required_vertices = {9};
+  EXPECT_COMPLAINT(any, "names vertex 10");
+  any = square(2);
+  any.required_triangles = {8};
+  EXPECT_COMPLAINT(any, "has number 9, but there are only 8");
+  any = square(2);
+  any.edges.add({0, 8}, 1);
+  EXPECT_COMPLAINT(any, "edge 9 is not a facet of any triangle");
+  AnyMesh none;
+  none.dimension = 3;
+  EXPECT_COMPLAINT(none, "there is nothing to adapt");
+}
+
+TEST(ToAnyMesh, GivesBackWhatWasMade) {
+  test::Grid grid = test::unit_grid(3, 3);
+  grid.region = test::checkerboard();
+  AnyMesh any = test::make_grid(grid);
+  test::list_ridges(any);
+  any.required_tetrahedra = {3, 5};
+  any.required_triangles = {7};
+  any.required_vertices = {11};
+  const AnyMesh back = to_any_mesh(make<3>(any).mesh);
+  const auto changes = test::changes_of_what_is_kept(any, back);
+  EXPECT_TRUE(changes.empty()) << test::joined(changes);
+  EXPECT_EQ(back.tetrahedra.vertices, any.tetrahedra.vertices);
+  EXPECT_EQ(back.triangles.size(), any.triangles.size());
+  EXPECT_EQ(back.edges.size(), any.edges.size());
+  EXPECT_EQ(back.ridges.size(), any.ridges.size());
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
