@@ -148,7 +148,12 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
   const ProgressLine line(job.verbosity > 0 && stderr_is_terminal());
   AdaptOptions adapt = job.adapt;
   adapt.progress = [&line](const meshadapt::AdaptProgress& progress) { line.show(progress); };
-  return meshadapt::adapt(executor, mesh, metric, adapt);
+  AdaptedMesh adapted = meshadapt::adapt(executor, mesh, metric, adapt);
+  const auto faults = meshadapt::check_mesh(executor, adapted.mesh);
+  if (!faults.empty())
+    throw meshadapt::Error("the adapted mesh is not valid (" + faults.front() +
+                           "); nothing was written; please report this with its input");
+  return adapted;
 }
 
 void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::string& json) {

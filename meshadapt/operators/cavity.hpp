@@ -80,6 +80,26 @@ PatchId patch_of_edge(const Mesh<Dim>& mesh, ElementId element, VertexId a, Vert
   return 0;
 }
 
+/// Do the element's facets on patches keep their turn if one of its corners moves? On a patch that
+/// is flat only up to rounding, positive volumes alone do not say so.
+template <int Dim>
+bool keeps_facets_turned(const Mesh<Dim>& mesh, ElementId element, VertexId vertex,
+                         const Vector<Dim>& position) {
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    const PatchId patch = mesh.patches_of[element][i];
+    if (patch == 0 || mesh.corners_of[element][i] == vertex) continue;
+    const Facet<Dim> facet = facet_of<Dim>(mesh.corners_of[element], static_cast<int>(i));
+    std::array<Vector<Dim>, Dim> before, after;
+    for (std::size_t k = 0; k < Dim; ++k) {
+      before[k] = mesh.site_of[facet[k]].position;
+      after[k] = facet[k] == vertex ? position : before[k];
+    }
+    const Vector<Dim>& normal = mesh.patches[patch].normal;
+    if (!(dot(facet_normal(before), normal) * dot(facet_normal(after), normal) > 0)) return false;
+  }
+  return true;
+}
+
 /// Elements to go and elements to come, of the same region, filling the same space. Old numbers are
 /// used again first; `fresh` ones only when there are more new elements than old.
 template <int Dim>

@@ -92,10 +92,12 @@ bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const VertexBuffer& ring)
 template <int Dim>
 bool Coarsen<Dim>::keeps_shapes(const Plan& plan, double worst_before) const {
   const double least = std::min(worst_before, rules_.accepted_shape);
+  const bool on_boundary = mesh_.kind_of[plan.gone].freedom < Dim;
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
   for (const ElementId e : mesh_.elements_of.of(plan.gone)) {
     const Corners<Dim>& corners = mesh_.corners_of[e];
     if (contains(corners, plan.kept)) continue;
+    if (on_boundary && !keeps_facets_turned(mesh_, e, plan.gone, kept.position)) return false;
     auto sites = mesh_.sites(corners);
     sites[static_cast<std::size_t>(corner_of(corners, plan.gone))] = &kept;
     const double after = shape<Dim>(sites);

@@ -115,7 +115,9 @@ template <int Dim>
 bool Refine<Dim>::keeps_shapes(const Plan& plan) const {
   double before = 1;
   for (const ElementId e : plan.shell) before = std::min<double>(before, mesh_.shape_of[e]);
-  const double least = std::min(rules_.split_keeps * before, rules_.accepted_shape);
+  const double least = before < rules_.poor_shape
+                           ? before
+                           : std::min(rules_.split_keeps * before, rules_.accepted_shape);
   for (const ElementId e : plan.shell)
     for (const VertexId end : {plan.a, plan.b}) {
       auto sites = mesh_.sites(mesh_.corners_of[e]);

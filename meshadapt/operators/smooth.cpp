@@ -80,6 +80,7 @@ auto Smooth<Dim>::score(VertexId vertex, const Site<Dim>& site, double give_up_b
 /// Looked at first: it needs no metric, and a place that passes lies inside the domain.
 template <int Dim>
 bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) const {
+  const bool on_boundary = mesh_.kind_of[vertex].freedom < Dim;
   for (const ElementId e : mesh_.elements_of.of(vertex)) {
     std::array<Vector<Dim>, Dim + 1> p;
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -87,6 +88,7 @@ bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) co
       p[i] = v == vertex ? position : mesh_.site_of[v].position;
     }
     if (!(certain_determinant<Dim>(p) > 0)) return false;
+    if (on_boundary && !keeps_facets_turned(mesh_, e, vertex, position)) return false;
   }
   return true;
 }

@@ -139,6 +139,15 @@ class RingTriangulation {
   std::uint8_t apex_[largest_ring][largest_ring] = {};
 };
 
+/// Does the quadrilateral of two facets on a patch remain unfolded when its diagonal is swapped?
+bool convex_in_patch(const Mesh<3>& mesh, const std::array<VertexId, 4>& corners, PatchId patch) {
+  const auto at = [&](std::size_t i) { return mesh.site_of[corners[i]].position; };
+  const Vector<3>& normal = mesh.patches[patch].normal;
+  return dot(facet_normal({at(0), at(1), at(3)}), normal) *
+             dot(facet_normal({at(1), at(2), at(3)}), normal) >
+         0;
+}
+
 std::optional<Replacement<3>> plan_edge_removal(const Mesh<3>& mesh, VertexId a, VertexId b,
                                                 const Shell& shell, double worst_allowed) {
   PatchId patch = 0;
@@ -152,6 +161,7 @@ std::optional<Replacement<3>> plan_edge_removal(const Mesh<3>& mesh, VertexId a,
   result.old_elements.assign(shell.begin(), shell.end());
   if (ring->open) {
     const VertexId first = ring->vertices.front(), last = ring->vertices.back();
+    if (!convex_in_patch(mesh, {a, first, b, last}, patch)) return {};
     result.new_facets = {{a, first, last}, {b, first, last}};
     result.new_patch = patch;
   }

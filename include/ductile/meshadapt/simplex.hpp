@@ -78,6 +78,14 @@ double certain_determinant(const std::array<Vector<Dim>, Dim + 1>& p) {
     return certain_determinant(p[0], p[1], p[2], p[3]);
 }
 
+/// Normal of a facet, as long as the facet is large.
+inline Vector<2> facet_normal(const std::array<Vector<2>, 2>& p) {
+  return {{p[1][1] - p[0][1], p[0][0] - p[1][0]}};
+}
+inline Vector<3> facet_normal(const std::array<Vector<3>, 3>& p) {
+  return cross(p[1] - p[0], p[2] - p[0]);
+}
+
 /// Position of `vertex` among the corners, or -1.
 template <std::size_t N>
 int corner_of(const std::array<VertexId, N>& corners, VertexId vertex) {
