@@ -28,14 +28,10 @@ void each_side(const Facet<Dim>& facet, Visit visit) {
 
 /// Normal of a facet, as long as the facet is large.
 template <int Dim>
-Vector<Dim> facet_normal(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
-  const auto at = [&](std::size_t i) { return mesh.site_of[facet[i]].position; };
-  if constexpr (Dim == 2) {
-    const Vector<2> d = at(1) - at(0);
-    return {{d[1], -d[0]}};
-  } else {
-    return cross(at(1) - at(0), at(2) - at(0));
-  }
+Vector<Dim> normal_of(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
+  std::array<Vector<Dim>, Dim> p;
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = mesh.site_of[facet[i]].position;
+  return facet_normal(p);
 }
 
 template <int Dim>
@@ -78,7 +74,7 @@ class Classifier {
     std::iota(order.begin(), order.end(), 0U);
     std::vector<double> size(facets_.size());
     for (std::size_t f = 0; f < size.size(); ++f)
-      size[f] = norm(facet_normal<Dim>(mesh_, facets_[f].corners));
+      size[f] = norm(normal_of<Dim>(mesh_, facets_[f].corners));
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return size[a] > size[b]; });
     for (const std::uint32_t seed : order)
@@ -88,7 +84,7 @@ class Classifier {
   void grow_patch(std::uint32_t seed) {
     const auto id = static_cast<PatchId>(mesh_.patches.size());
     Patch<Dim> patch = facets_[seed].data;
-    patch.normal = facet_normal<Dim>(mesh_, facets_[seed].corners);
+    patch.normal = normal_of<Dim>(mesh_, facets_[seed].corners);
     patch.normal *= 1 / norm(patch.normal);
     const Vector<Dim> origin = mesh_.site_of[facets_[seed].corners[0]].position;
     facets_[seed].patch = id;
@@ -135,7 +131,7 @@ class Classifier {
                 const Vector<Dim>& normal) const {
     for (const VertexId v : facet)
       if (std::abs(dot(mesh_.site_of[v].position - origin, normal)) > tolerance_) return false;
-    const Vector<Dim> own = facet_normal<Dim>(mesh_, facet);
+    const Vector<Dim> own = normal_of<Dim>(mesh_, facet);
     return std::abs(dot(own, normal)) > 0.9 * norm(own);
   }
 
