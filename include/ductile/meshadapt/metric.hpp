@@ -54,10 +54,13 @@ Vector<Dim> product(const Metric<Dim>& a, const Vector<Dim>& d) {
 }
 
 inline double determinant(const Metric<2>& a) { return a.m[0] * a.m[2] - a.m[1] * a.m[1]; }
+/// By the pivots of LDL' elimination: the sum of products of cofactors would cancel all digits of a
+/// metric that is turned and stretched by 1e4 or more.
 inline double determinant(const Metric<3>& a) {
-  return a.m[0] * (a.m[2] * a.m[5] - a.m[4] * a.m[4]) -
-         a.m[1] * (a.m[1] * a.m[5] - a.m[4] * a.m[3]) +
-         a.m[3] * (a.m[1] * a.m[4] - a.m[2] * a.m[3]);
+  const auto& [xx, xy, yy, xz, yz, zz] = a.m;
+  const double second = yy - xy / xx * xy;
+  const double rest = yz - xy / xx * xz;
+  return xx * second * (zz - xz / xx * xz - rest / second * rest);
 }
 
 inline Metric<2> inverse(const Metric<2>& a) {

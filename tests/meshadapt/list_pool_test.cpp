@@ -1,0 +1,49 @@
+#include "ductile/meshadapt/list_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+namespace ductile::meshadapt {
+namespace {
+
+TEST(ListPool, BehavesLikeSortedSets) {
+  constexpr std::uint32_t lists = 50;
+  ListPool<std::uint32_t> pool;
+  std::vector<std::set<std::uint32_t>> expected(lists);
+  pool.reset(lists);
+  std::mt19937 random(1);
+  for (int step = 0; step < 50000; ++step) {
+    const std::uint32_t list = random() % lists, value = random() % 200;
+    const auto action = random() % 100;
+    if (action == 0) {
+      pool.clear(list);
+      expected[list].clear();
+    } else if (action < 55) {
+      if (expected[list].insert(value).second) pool.insert(list, value);
+    } else {
+      expected[list].erase(value);
+      pool.erase(list, value);  // does nothing if it is not there
+    }
+    if (step % 97 == 0) pool.reserve(list, 10);
+  }
+  for (std::uint32_t i = 0; i < lists; ++i)
+    EXPECT_TRUE(
+        std::equal(pool.of(i).begin(), pool.of(i).end(), expected[i].begin(), expected[i].end()));
+}
+
+TEST(ListPool, GrowsAndForgets) {
+  ListPool<std::uint32_t> pool;
+  pool.reset(2);
+  pool.insert(1, 7);
+  pool.grow(4);
+  EXPECT_EQ(pool.size(), 4U);
+  EXPECT_EQ(pool.of(1).size(), 1U);
+  EXPECT_TRUE(pool.of(3).empty());
+  pool.reset(3);
+  for (std::uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(pool.of(i).empty());
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt

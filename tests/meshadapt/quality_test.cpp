@@ -1,0 +1,110 @@
+#include "ductile/meshadapt/quality.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using test::Random;
+using test::uniform;
+
+template <int Dim>
+using Sites = std::array<Site<Dim>, Dim + 1>;
+
+template <int Dim>
+double shape_of(const Sites<Dim>& sites) {
+  std::array<const Site<Dim>*, Dim + 1> corner;
+  for (std::size_t i = 0; i < corner.size(); ++i) corner[i] = &sites[i];
+  return shape<Dim>(corner);
+}
+
+Sites<2> triangle(double height) {
+  const auto unit = isotropic<2>(1);
+  return {make_site<2>({{0, 0}}, unit), make_site<2>({{1, 0}}, unit),
+          make_site<2>({{0.5, height}}, unit)};
+}
+Sites<3> tetrahedron(double height) {
+  const auto unit = isotropic<3>(1);
+  const double h = std::sqrt(3.0) / 2;
+  return {make_site<3>({{0, 0, 0}}, unit), make_site<3>({{1, 0, 0}}, unit),
+          make_site<3>({{0.5, h, 0}}, unit), make_site<3>({{0.5, h / 3, height}}, unit)};
+}
+
+TEST(Shape, IsOneForRegularElementsAndFallsToZeroOrLess) {
+  EXPECT_NEAR(shape_of<2>(triangle(std::sqrt(3.0) / 2)), 1, 1e-14);
+  EXPECT_NEAR(shape_of<3>(tetrahedron(std::sqrt(2.0 / 3))), 1, 1e-14);
+  EXPECT_EQ(shape_of<2>(triangle(0)), 0);
+  EXPECT_EQ(shape_of<3>(tetrahedron(0)), 0);
+  EXPECT_LT(shape_of<2>(triangle(-1)), 0);
+  EXPECT_LT(shape_of<3>(tetrahedron(-1)), 0);
+  // Right isosceles triangle: 4 sqrt(3) / 2 / (1 + 1 + 2); corner of a cube: 12 sqrt(3) / 9^(3/2).
+  const auto unit2 = isotropic<2>(1);
+  EXPECT_NEAR(shape_of<2>({make_site<2>({{0, 0}}, unit2), make_site<2>({{1, 0}}, unit2),
+                           make_site<2>({{0, 1}}, unit2)}),
+              std::sqrt(3.0) / 2, 1e-14);
+  const auto unit3 = isotropic<3>(1);
+  const double corner =
+      shape_of<3>({make_site<3>({{0, 0, 0}}, unit3), make_site<3>({{1, 0, 0}}, unit3),
+                   make_site<3>({{0, 1, 0}}, unit3), make_site<3>({{0, 0, 1}}, unit3)});
+  EXPECT_NEAR(corner, 12 * std::sqrt(3.0) / 27, 1e-14);
+  EXPECT_NEAR(mean_ratio<3>(corner), 12 * std::pow(0.5, 2.0 / 3) / 9, 1e-14);
+  EXPECT_NEAR(shape_of_mean_ratio<3>(mean_ratio<3>(corner)), corner, 1e-14);
+}
+
+/// What is regular after the metric's own stretching is regular in the metric.
+template <int Dim>
+void expect_regular_in(const Sites<Dim>& regular, double anisotropy) {
+  Random random(9);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::array<double, Dim> sizes;
+    for (double& h : sizes) h = std::pow(anisotropy, uniform(random, 0, 1));
+    const auto metric = test::random_metric<Dim>(random, sizes);
+    const auto axes = eigen(metric);
+    Sites<Dim> sites;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      Vector<Dim> p;
+      for (std::size_t k = 0; k < Dim; ++k)
+        p += (regular[i].position.x[k] / std::sqrt(axes.value[k])) * axes.vector[k];
+      sites[i] = make_site(p, metric);
+    }
+    EXPECT_NEAR(std::abs(shape_of<Dim>(sites)), 1, 1e-6);
+    EXPECT_NEAR(edge_length(sites[0], sites[1]), 1, 1e-6);
+  }
+}
+
+TEST(Shape, IsMeasuredInTheMetric) {
+  expect_regular_in<2>(triangle(std::sqrt(3.0) / 2), 1e3);
+  expect_regular_in<3>(tetrahedron(std::sqrt(2.0 / 3)), 1e3);
+}
+
+TEST(Shape, IsJudgedInTheDensestMetric) {
+  Sites<2> sites = triangle(std::sqrt(3.0) / 2);
+  Metric<2> stretched = isotropic<2>(0.1);
+  stretched.m[0] *= 100;
+  sites[2] = make_site(sites[2].position, stretched);
+  const double judged = shape_of<2>(sites);
+  for (auto& site : sites) site = make_site(site.position, stretched);
+  EXPECT_NEAR(judged, shape_of<2>(sites), 1e-14);
+}
+
+TEST(ShorterThan, SaysWhatTheLengthSays) {
+  Random random(11);
+  for (int trial = 0; trial < 20000; ++trial) {
+    const auto at = [&] {
+      std::array<double, 3> sizes;
+      for (double& h : sizes) h = std::pow(10.0, uniform(random, -1, 1));
+      Vector<3> p{{uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1)}};
+      return make_site(p, test::random_metric<3>(random, sizes));
+    };
+    const auto a = at(), b = at();
+    const double length = edge_length(a, b), limit = length * uniform(random, 0.7, 1.3);
+    if (std::abs(length / limit - 1) < 1e-9) continue;
+    ASSERT_EQ(shorter_than(a, b, limit), length < limit);
+  }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
