@@ -1,0 +1,115 @@
+#include "ductile/meshadapt/background.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+using test::Random;
+using test::uniform;
+
+template <class Dimension>
+class BackgroundIn : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(BackgroundIn, Dimensions);
+
+/// A mesh with a hole, so that straight walks may end at a boundary.
+template <int Dim>
+struct Scene {
+  AnyMesh any;
+  Mesh<Dim> mesh;
+  std::vector<Metric<Dim>> metric_of;
+  std::unique_ptr<Background<Dim>> background;
+
+  explicit Scene(Random& random) {
+    test::Grid grid = test::unit_grid(Dim, 6);
+    grid.region = test::with_hole(6);
+    any = test::make_grid(grid);
+    test::jiggle(any, random, 0.3);
+    const Executor executor({.threads = 2});
+    Neighbours<Dim> neighbours;
+    std::vector<std::string> warnings;
+    mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
+    for (std::size_t v = 0; v < any.vertex_count(); ++v) {
+      std::array<double, Dim> sizes;
+      for (double& h : sizes) h = std::pow(10.0, uniform(random, -2, 0));
+      metric_of.push_back(test::random_metric<Dim>(random, sizes));
+    }
+    background =
+        std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours), metric_of);
+  }
+};
+
+template <int Dim>
+double difference(const Metric<Dim>& a, const Metric<Dim>& b) {
+  double most = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j <= i; ++j)
+      most = std::max(most, std::abs(a(i, j) - b(i, j)) / std::sqrt(a(i, i) * a(j, j)));
+  return most;
+}
+
+/// A point in a random element, and the metric there by the definition.
+template <int Dim>
+Metric<Dim> brute_force(const Scene<Dim>& scene, Random& random, Vector<Dim>& point) {
+  const auto& corners = scene.mesh.corners_of[test::below(random, scene.mesh.element_slots())];
+  std::array<double, Dim + 1> weight;
+  double sum = 0;
+  for (double& w : weight) sum += w = uniform(random, 0, 1);
+  point = {};
+  Metric<Dim> log_metric;
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    point += (weight[i] / sum) * scene.mesh.site_of[corners[i]].position;
+    log_metric += (weight[i] / sum) * logarithm(scene.metric_of[corners[i]]);
+  }
+  return exponential(log_metric);
+}
+
+TYPED_TEST(BackgroundIn, FindsEveryPointFromEverywhere) {
+  constexpr int Dim = TypeParam::value;
+  Random random(3);
+  const Scene<Dim> scene(random);
+  for (int trial = 0; trial < 2000; ++trial) {
+    Vector<Dim> point;
+    const Metric<Dim> expected = brute_force(scene, random, point);
+    const auto near = static_cast<ElementId>(test::below(random, scene.mesh.element_slots()));
+    const auto sample = scene.background->sample(point, near);
+    ASSERT_LT(difference(expected, sample.metric), 1e-8) << "trial " << trial;
+  }
+}
+
+TYPED_TEST(BackgroundIn, GivesTheMetricOfAVertexThere) {
+  constexpr int Dim = TypeParam::value;
+  Random random(4);
+  const Scene<Dim> scene(random);
+  for (VertexId v = 0; v < scene.mesh.vertex_slots(); v += 3) {
+    const auto sample = scene.background->sample(scene.mesh.site_of[v].position, 0);
+    EXPECT_LT(difference(scene.metric_of[v], sample.metric), 1e-8);
+    EXPECT_TRUE(contains(scene.mesh.corners_of[sample.host], v));
+  }
+}
+
+TYPED_TEST(BackgroundIn, TakesAPointOutsideToBeInTheClosestElement) {
+  constexpr int Dim = TypeParam::value;
+  Random random(5);
+  const Scene<Dim> scene(random);
+  for (const double beyond : {1e-15, 1e-9, 1e-3, 10.0}) {
+    Vector<Dim> outside;
+    outside.x.fill(0.3);
+    outside[0] = 1 + beyond;
+    const auto sample = scene.background->sample(outside, 0);
+    for (int i = 0; i < Dim; ++i) {
+      EXPECT_TRUE(std::isfinite(sample.metric(i, i)));
+      EXPECT_GT(sample.metric(i, i), 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt

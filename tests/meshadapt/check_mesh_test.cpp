@@ -1,0 +1,147 @@
+#include "ductile/meshadapt/check_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "support/meshes.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+
+const Executor executor({.threads = 2});
+
+AnyMesh box(int dimension) {
+  test::Grid grid = test::unit_grid(dimension, 4);
+  grid.region = test::two_halves(4);
+  AnyMesh mesh = test::make_grid(grid);
+  if (dimension == 3) test::list_ridges(mesh);
+  return mesh;
+}
+
+template <int Dim>
+Mesh<Dim> made(const AnyMesh& any) {
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  Mesh<Dim> mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
+  for (auto& site : mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
+  update_shapes(executor, mesh);
+  return mesh;
+}
+
+#define EXPECT_FINDS(mesh, part)                                                    \
+  EXPECT_NE(test::joined(check_mesh(executor, mesh)).find(part), std::string::npos) \
+      << "found only:" << test::joined(check_mesh(executor, mesh))
+
+TEST(CheckMesh, HasNothingToSayOfSoundMeshes) {
+  EXPECT_EQ(test::joined(check_mesh(executor, box(2))), "");
+  EXPECT_EQ(test::joined(check_mesh(executor, box(3))), "");
+  EXPECT_EQ(test::joined(check_mesh(executor, made<2>(box(2)))), "");
+  EXPECT_EQ(test::joined(check_mesh(executor, made<3>(box(3)))), "");
+}
+
+TEST(CheckMesh, FindsWhatIsWrongWithElements) {
+  for (const int dimension : {2, 3}) {
+    const std::string name = dimension == 2 ? "triangle " : "tetrahedron ";
+    AnyMesh any = box(dimension);
+    const auto change = [&](auto&& edit) {
+      any = box(dimension);
+      if (dimension == 2)
+        edit(any.triangles);
+      else
+        edit(any.tetrahedra);
+    };
+    change([](auto& cells) { std::swap(cells.vertices[6][0], cells.vertices[6][1]); });
+    EXPECT_FINDS(any, name + "7 is inverted");
+    change([](auto& cells) { cells.vertices[6][0] = 100000; });
+    EXPECT_FINDS(any, name + "7 names a vertex twice or one that does not exist");
+    change([](auto& cells) { cells.vertices[6][0] = cells.vertices[6][1]; });
+    EXPECT_FINDS(any, name + "7 names a vertex twice or one that does not exist");
+    change([](auto& cells) { cells.add(cells.vertices[6], 1); });
+    EXPECT_FINDS(any, "has two elements on one side, or more than two");
+    change([](auto& cells) {
+      cells.vertices.erase(cells.vertices.begin() + 5);
+      cells.reference.pop_back();
+    });
+    EXPECT_FINDS(any, "is not listed");
+    any = box(dimension);
+    any.coordinates[3] = std::nan("");
+    EXPECT_FINDS(any, "has no volume");
+    any = box(dimension);
+    any.vertex_reference.push_back(0);
+    any.coordinates.resize(any.coordinates.size() + static_cast<std::size_t>(dimension), 0.5);
+    EXPECT_FINDS(any, "belongs to no element");
+  }
+}
+
+TEST(CheckMesh, FindsWhatIsWrongWithFacetsAndEdges) {
+  AnyMesh any = box(3);
+  any.triangles.add(any.triangles.vertices[4], 1);
+  EXPECT_FINDS(any, "is listed twice");
+  any = box(3);
+  any.triangles.vertices[4][0] = any.triangles.vertices[9][2];
+  EXPECT_FINDS(any, "is no facet of an element");
+  EXPECT_FINDS(any, "is not listed");
+  any = box(3);
+  any.edges.vertices[4] = {0, static_cast<std::uint32_t>(any.vertex_count() - 1)};
+  EXPECT_FINDS(any, "is no edge of an element");
+  any.edges.vertices[4] = any.edges.vertices[5];
+  EXPECT_FINDS(any, "is listed twice");
+  any = box(2);
+  any.ridges = {100000};
+  EXPECT_FINDS(any, "ridge 1 does not exist");
+  any.dimension = 4;
+  EXPECT_FINDS(any, "the dimension is 4");
+}
+
+template <int Dim>
+ElementId element_at_boundary(const Mesh<Dim>& mesh, int& facet) {
+  for (ElementId e = 0; e < mesh.element_slots(); ++e)
+    for (facet = 0; facet <= Dim; ++facet)
+      if (mesh.patches_of[e][static_cast<std::size_t>(facet)] != 0) return e;
+  return none;
+}
+
+template <int Dim>
+void expect_finds_faults_of_structure() {
+  const AnyMesh any = box(Dim);
+  int facet = 0;
+  Mesh<Dim> mesh = made<Dim>(any);
+  mesh.shape_of[3] *= 1.01F;
+  EXPECT_FINDS(mesh, "element 3's shape is not up to date");
+  mesh = made<Dim>(any);
+  mesh.elements_of.erase(mesh.corners_of[3][0], 3);
+  EXPECT_FINDS(mesh, "element 3 is missing in the list of one of its vertices");
+  mesh = made<Dim>(any);
+  mesh.corners_of[3].fill(none);
+  EXPECT_FINDS(mesh, "list of elements is not sorted, or has one that is not its own");
+  mesh = made<Dim>(any);
+  const ElementId e = element_at_boundary(mesh, facet);
+  mesh.patches_of[e][static_cast<std::size_t>(facet)] = 0;
+  EXPECT_FINDS(mesh, Dim == 2 ? "has a" : "has an edge between patches");
+  mesh = made<Dim>(any);
+  mesh.patches_of[e][static_cast<std::size_t>(facet)] %= mesh.patches.size() - 1;
+  mesh.patches_of[e][static_cast<std::size_t>(facet)] += 1;
+  EXPECT_FINDS(mesh, "has a facet that does not lie in the plane of its patch");
+  mesh = made<Dim>(any);
+  mesh.kind_of[0].freedom = Dim;
+  EXPECT_FINDS(mesh, "vertex 0 may move or go in a way that does not fit what it lies on");
+  mesh = made<Dim>(any);
+  mesh.region_of[3] = 7;
+  EXPECT_FINDS(mesh, "is in a region that does not exist");
+}
+
+TEST(CheckMesh, FindsWhatIsWrongWithTheDataStructure) {
+  expect_finds_faults_of_structure<2>();
+  expect_finds_faults_of_structure<3>();
+  Mesh<3> mesh = made<3>(box(3));
+  VertexId v = 0;
+  while (mesh.links_of.of(v).empty()) ++v;
+  mesh.links_of.erase(v, CurveLink(mesh.links_of.of(v)[0]));
+  EXPECT_FINDS(mesh, "links are not sorted, not mutual, or not along edges");
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt

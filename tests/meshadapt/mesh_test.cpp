@@ -1,0 +1,108 @@
+#include "ductile/meshadapt/mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "support/meshes.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+
+template <class Dimension>
+class MeshIn : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(MeshIn, Dimensions);
+
+template <int Dim>
+AnyMesh shuffled_box() {
+  test::Grid grid = test::unit_grid(Dim, 5);
+  grid.region = test::two_halves(5);
+  AnyMesh any = test::make_grid(grid);
+  if (Dim == 3) test::list_ridges(any);
+  test::Random random(2);
+  if constexpr (Dim == 2)
+    std::shuffle(any.triangles.vertices.begin(), any.triangles.vertices.end(), random);
+  test::jiggle(any, random, 0.2);
+  any.required_vertices = {7};
+  return any;
+}
+
+template <int Dim>
+Mesh<Dim> made(const AnyMesh& any, int threads) {
+  const Executor executor({.threads = threads});
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  MakeMeshOptions options;
+  Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options, neighbours, warnings);
+  for (auto& site : mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
+  update_shapes(executor, mesh);
+  return mesh;
+}
+
+TYPED_TEST(MeshIn, RenumberingKeepsEverything) {
+  constexpr int Dim = TypeParam::value;
+  test::Grid grid = test::unit_grid(Dim, 4);
+  AnyMesh any = test::make_grid(grid);
+  Mesh<Dim> mesh = made<Dim>(any, 2);
+  const Executor executor({.threads = 2});
+  renumber(executor, mesh);
+  const auto faults = check_mesh(executor, mesh);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  const AnyMesh back = to_any_mesh(mesh);
+  const auto changes = test::changes_of_what_is_kept(any, back);
+  EXPECT_TRUE(changes.empty()) << test::joined(changes);
+  EXPECT_EQ(back.vertex_count(), any.vertex_count());
+}
+
+TYPED_TEST(MeshIn, RenumberingDropsWhatIsGoneAndBringsNeighboursTogether) {
+  constexpr int Dim = TypeParam::value;
+  AnyMesh any = shuffled_box<Dim>();
+  any.vertex_reference.push_back(0);  // belongs to no element
+  any.coordinates.resize(any.coordinates.size() + Dim, 0.1);
+  Mesh<Dim> mesh = made<Dim>(any, 2);
+  mesh.grow(mesh.vertex_slots() + 5, mesh.element_slots() + 5);
+  const Executor executor({.threads = 2});
+  renumber(executor, mesh);
+  EXPECT_EQ(mesh.vertex_slots(), any.vertex_count() - 1);
+  EXPECT_EQ(mesh.element_slots(), any.triangles.size() * (Dim == 2) + any.tetrahedra.size());
+  const auto faults = check_mesh(executor, mesh);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  for (ElementId e = 1; e < mesh.element_slots(); ++e)
+    EXPECT_LE(*std::min_element(mesh.corners_of[e - 1].begin(), mesh.corners_of[e - 1].end()),
+              *std::min_element(mesh.corners_of[e].begin(), mesh.corners_of[e].end()));
+}
+
+TYPED_TEST(MeshIn, RenumberingIsTheSameAtEachThreadCount) {
+  constexpr int Dim = TypeParam::value;
+  const AnyMesh any = shuffled_box<Dim>();
+  Mesh<Dim> first = made<Dim>(any, 1);
+  renumber(Executor({.threads = 1}), first);
+  for (const int threads : {2, 8}) {
+    Mesh<Dim> mesh = made<Dim>(any, threads);
+    renumber(Executor({.threads = threads}), mesh);
+    EXPECT_EQ(mesh.corners_of, first.corners_of);
+    EXPECT_EQ(mesh.patches_of, first.patches_of);
+    for (VertexId v = 0; v < mesh.vertex_slots(); ++v)
+      EXPECT_EQ(mesh.site_of[v].position, first.site_of[v].position);
+  }
+}
+
+TYPED_TEST(MeshIn, NeighboursAreMutual) {
+  constexpr int Dim = TypeParam::value;
+  const Mesh<Dim> mesh = made<Dim>(shuffled_box<Dim>(), 1);
+  for (ElementId e = 0; e < mesh.element_slots(); ++e)
+    for (int i = 0; i <= Dim; ++i) {
+      const ElementId other = neighbour(mesh, e, i);
+      if (other == none) continue;
+      bool back = false;
+      for (int k = 0; k <= Dim; ++k) back = back || neighbour(mesh, other, k) == e;
+      EXPECT_TRUE(back);
+    }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
