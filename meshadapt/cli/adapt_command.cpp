@@ -6,6 +6,7 @@
 #include "adapt_report.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/vtu.hpp"

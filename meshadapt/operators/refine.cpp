@@ -48,10 +48,11 @@ std::uint8_t Refine<Dim>::priority(const Item& edge) const {
 
 template <int Dim>
 auto Refine<Dim>::plan(const Item& edge) const -> std::optional<Plan> {
-  Shell shell;
-  shell_of(mesh_, edge.a, edge.b, shell);
-  if (shell.empty() || !may_split(shell, edge.a, edge.b)) return {};
-  Plan plan{edge.a, edge.b, {}, 0, {}, 0, 0, std::move(shell)};
+  Plan plan;
+  plan.a = edge.a;
+  plan.b = edge.b;
+  shell_of(mesh_, edge.a, edge.b, plan.shell);
+  if (plan.shell.empty() || !may_split(plan.shell, edge.a, edge.b)) return {};
   locate(plan);
   if (!makes_no_short_edge(plan) || !keeps_shapes(plan)) return {};
   return plan;

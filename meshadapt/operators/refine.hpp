@@ -21,12 +21,12 @@ struct LongEdge {
 
 template <int Dim>
 struct EdgeSplit {
-  VertexId a, b;
+  VertexId a = none, b = none;
   Site<Dim> site;  // of the new vertex
-  ElementId host;
+  ElementId host = none;
   VertexKind kind;
-  std::uint32_t entity;  // patch or curve that the edge lies on, or 0
-  std::int32_t reference;
+  std::uint32_t entity = 0;  // patch or curve that the edge lies on, or 0
+  std::int32_t reference = 0;
   Shell shell;  // the elements to be halved
 };
 
