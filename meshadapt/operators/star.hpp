@@ -32,7 +32,7 @@ class Star {
       entries.push_back({e, mesh.corners_of[e], mesh.shape_of[e], mesh.changed_at[e] > after});
       changed = changed || entries.back().changed;
     }
-    if (!changed || entries.size() > mesh.largest_ball) return;
+    if (!changed || entries.size() > Mesh<3>::largest_ball) return;
     for (std::size_t i = 0; i < entries.size(); ++i)
       for (const VertexId v : entries[i].corners)
         if (v > vertex) note(v, static_cast<std::uint16_t>(i));

@@ -52,6 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, Adapt, testing::Values(2, 3),
 
 std::vector<std::uint64_t> bits(const std::vector<double>& values) {
   std::vector<std::uint64_t> result;
+  result.reserve(values.size());
   for (const double value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
   return result;
 }

@@ -92,22 +92,27 @@ template <int Dim, std::size_t N>
 std::pair<std::vector<Place<Dim>>, std::int32_t> by_place(
     const AnyMesh& mesh, const std::array<std::uint32_t, N>& corners, std::int32_t reference) {
   std::vector<Place<Dim>> places;
+  places.reserve(N);
   for (const std::uint32_t v : corners) places.push_back(point<Dim>(mesh, v).x);
   std::sort(places.begin(), places.end());
   return {places, reference};
 }
 
+struct Both {
+  const AnyMesh &before, &after;
+};
+
 template <int Dim, int N>
-void compare_required(Lines& lines, const AnyMesh& before, const AnyMesh& after,
-                      Cells<N> AnyMesh::*cells, std::vector<std::uint32_t> AnyMesh::*required,
-                      const char* name) {
+void compare_required(Lines& lines, const Both& both, Cells<N> AnyMesh::*cells,
+                      std::vector<std::uint32_t> AnyMesh::*required, const char* name) {
   const auto all = [&](const AnyMesh& mesh) {
     std::multiset<std::pair<std::vector<Place<Dim>>, std::int32_t>> set;
     for (const std::uint32_t i : mesh.*required)
       set.insert(by_place<Dim>(mesh, (mesh.*cells).vertices[i], (mesh.*cells).reference[i]));
     return set;
   };
-  if (all(before) != all(after)) lines.push_back(std::string("required ") + name + " changed");
+  if (all(both.before) != all(both.after))
+    lines.push_back(std::string("required ") + name + " changed");
 }
 
 template <int Dim>
@@ -139,12 +144,12 @@ Lines changes_in(const AnyMesh& before, const AnyMesh& after) {
   compare(lines, measures<Dim>(before), measures<Dim>(after), tolerance<Dim>(before));
   compare_vertices<Dim>(lines, before, after, &AnyMesh::corners, "corners");
   compare_vertices<Dim>(lines, before, after, &AnyMesh::required_vertices, "required vertices");
-  compare_required<Dim>(lines, before, after, &AnyMesh::edges, &AnyMesh::required_edges, "edges");
-  compare_required<Dim>(lines, before, after, &AnyMesh::triangles, &AnyMesh::required_triangles,
+  compare_required<Dim>(lines, {before, after}, &AnyMesh::edges, &AnyMesh::required_edges, "edges");
+  compare_required<Dim>(lines, {before, after}, &AnyMesh::triangles, &AnyMesh::required_triangles,
                         "triangles");
   if constexpr (Dim == 3)
-    compare_required<Dim>(lines, before, after, &AnyMesh::tetrahedra, &AnyMesh::required_tetrahedra,
-                          "tetrahedra");
+    compare_required<Dim>(lines, {before, after}, &AnyMesh::tetrahedra,
+                          &AnyMesh::required_tetrahedra, "tetrahedra");
   return lines;
 }
 

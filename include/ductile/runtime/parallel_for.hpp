@@ -17,9 +17,9 @@
 namespace ductile::runtime {
 
 struct LoopOptions {
-  std::size_t grain = 0;                     ///< iterations handed out at once; 0: chosen
-  Schedule schedule = Schedule::automatic;   ///< automatic: the executor's
-  std::size_t serial_below = 0;              ///< fewer iterations than this run on the caller alone
+  std::size_t grain = 0;                    ///< iterations handed out at once; 0: chosen
+  Schedule schedule = Schedule::automatic;  ///< automatic: the executor's
+  std::size_t serial_below = 0;             ///< fewer iterations than this run on the caller alone
 };
 
 namespace detail {
@@ -86,7 +86,8 @@ T parallel_reduce(const Executor& executor, std::size_t n, T identity, Map&& map
   parallel_for_blocks(executor, n, block_size,
                       [&](std::size_t block, std::size_t begin, std::size_t end) {
                         T sum = identity;
-                        for (std::size_t i = begin; i < end; ++i) sum = combine(std::move(sum), map(i));
+                        for (std::size_t i = begin; i < end; ++i)
+                          sum = combine(std::move(sum), map(i));
                         partial[block] = std::move(sum);
                       });
   T total = identity;
