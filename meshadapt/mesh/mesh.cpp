@@ -1,6 +1,8 @@
 #include "ductile/meshadapt/mesh.hpp"
 
 #include "ductile/runtime/atomic_count.hpp"
+#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -53,6 +55,20 @@ void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
 }
 
 template <int Dim>
+std::vector<VertexId> vertices_changed(const Executor& executor, const Mesh<Dim>& mesh,
+                                       std::uint32_t after) {
+  std::vector<std::uint8_t> marked(mesh.vertex_slots());
+  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    if (mesh.changed_at[e] <= after || !mesh.alive(static_cast<ElementId>(e))) return;
+    for (const VertexId v : mesh.corners_of[e]) runtime::atomic_mark(marked[v]);
+  });
+  return runtime::parallel_collect<VertexId>(executor, marked.size(),
+                                             [&](std::size_t v, auto&& append) {
+                                               if (marked[v]) append(static_cast<VertexId>(v));
+                                             });
+}
+
+template <int Dim>
 void update_shapes(const Executor& executor, Mesh<Dim>& mesh) {
   parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     if (mesh.alive(static_cast<ElementId>(e)))
@@ -64,6 +80,8 @@ template struct Mesh<2>;
 template struct Mesh<3>;
 template void rebuild_elements_of(const Executor&, Mesh<2>&);
 template void rebuild_elements_of(const Executor&, Mesh<3>&);
+template std::vector<VertexId> vertices_changed(const Executor&, const Mesh<2>&, std::uint32_t);
+template std::vector<VertexId> vertices_changed(const Executor&, const Mesh<3>&, std::uint32_t);
 template void update_shapes(const Executor&, Mesh<2>&);
 template void update_shapes(const Executor&, Mesh<3>&);
 

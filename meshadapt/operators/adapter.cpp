@@ -1,6 +1,8 @@
 #include "operators/adapter.hpp"
 
 #include <chrono>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "ductile/runtime/parallel_for.hpp"
@@ -15,6 +17,12 @@ using runtime::parallel_for;
 using runtime::RoundsReport;
 
 namespace {
+
+/// How much longer than the rules want edges must be to be split, by stage: coarsening and swapping
+/// shorten many long edges, so the first stage splits none, and each after it what is left of the
+/// longest.
+constexpr double longer_than_wanted[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25,
+                                         1};
 
 class Stopwatch {
  public:
@@ -49,21 +57,38 @@ template <int Dim>
 void Adapter<Dim>::run() {
   for (int i = 1; i <= options_.iterations && !report_.converged; ++i) {
     report_.iterations = i;
-    const std::size_t changes = iterate();
-    report_.converged = static_cast<double>(changes) < 0.01 * static_cast<double>(element_count());
+    report_.converged = few(iterate());
   }
   polish();
   renumber_mesh();
 }
 
-/// One round of the kernels that change the number of vertices.
+/// So few that another iteration is not worth it?
+template <int Dim>
+bool Adapter<Dim>::few(std::size_t changes) const {
+  return static_cast<double>(changes) < 0.01 * static_cast<double>(element_count());
+}
+
+template <int Dim>
+bool Adapter<Dim>::next_stage() {
+  if (!options_.insert || stage_ + 1 == std::size(longer_than_wanted)) return false;
+  ++stage_;
+  return true;
+}
+
+/// One round of the kernels that change the number of vertices. Refinement is one stage further in
+/// each, or more if there is little else to do.
 template <int Dim>
 std::size_t Adapter<Dim>::iterate() {
   std::size_t changes = 0;
-  if (options_.insert) changes += coarsen();
-  if (options_.insert) changes += refine();
+  if (options_.insert) {
+    changes += coarsen();
+    changes += refine();
+  }
+  while (few(changes) && next_stage()) changes += refine();
+  next_stage();
   renumber_mesh();
-  if (options_.swap) changes += swap(4, 0.9);
+  if (options_.swap) changes += swap(8, 0.9);
   if (options_.move) smooth(1, 0.3, true);
   return changes;
 }
@@ -105,12 +130,9 @@ std::size_t Adapter<Dim>::coarsen() {
 template <int Dim>
 std::size_t Adapter<Dim>::refine() {
   const Stopwatch watch;
-  // The first rounds split very long edges only: swaps shorten many of the others.
-  constexpr double patience[] = {1, 1.4, 1.13};
-  const int i = report_.iterations;
-  if (i <= 3) seen_by_refine_ = 0;
-  const double limit = options_.rules.long_edge * (i < 3 ? patience[i] : 1);
+  const double limit = options_.rules.long_edge * longer_than_wanted[stage_];
   auto work = Refine<Dim>::long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
+  if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
   Refine<Dim> op(mesh_, background_, options_.rules);
   const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
   add(report_.refine, rounds, watch.seconds());

@@ -29,6 +29,8 @@ class Adapter {
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
 
   std::size_t iterate();
+  bool next_stage();
+  bool few(std::size_t changes) const;
   void polish();
   std::uint32_t end_epoch(std::uint32_t& seen);
   void renumber_mesh();
@@ -41,6 +43,7 @@ class Adapter {
   Mesh<Dim> mesh_;
   Background<Dim> background_;
   AdaptReport report_;
+  std::size_t stage_ = 0;  // of refinement
   // The epoch up to which each kernel has seen all changes.
   std::uint32_t seen_by_coarsen_ = 0, seen_by_refine_ = 0, seen_by_swap_ = 0, seen_by_smooth_ = 0;
 };

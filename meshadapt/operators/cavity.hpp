@@ -17,6 +17,37 @@ using Buffer = boost::container::small_vector<T, N>;
 using Shell = Buffer<ElementId, 16>;
 using VertexBuffer = Buffer<VertexId, 64>;
 
+/// Numbers vertices in the order in which they are first met; by hashing, for as few as meet around
+/// one vertex.
+class Numbering {
+ public:
+  std::size_t number_of(VertexId vertex) {
+    if (vertices_.size() >= most_hashed) return search(vertex);
+    std::size_t at = (vertex * 2654435761U) >> 24U;
+    while (slots_[at] != 0 && vertices_[slots_[at] - 1U] != vertex) at = (at + 1) % slots_.size();
+    if (slots_[at] == 0) {
+      vertices_.push_back(vertex);
+      slots_[at] = static_cast<std::uint8_t>(vertices_.size());
+    }
+    return slots_[at] - 1U;
+  }
+  std::size_t size() const { return vertices_.size(); }
+  VertexBuffer& vertices() { return vertices_; }
+
+ private:
+  static constexpr std::size_t most_hashed = 192;
+
+  std::size_t search(VertexId vertex) {
+    const auto at = std::find(vertices_.begin(), vertices_.end(), vertex);
+    const auto number = static_cast<std::size_t>(at - vertices_.begin());
+    if (at == vertices_.end()) vertices_.push_back(vertex);
+    return number;
+  }
+
+  VertexBuffer vertices_;
+  std::array<std::uint8_t, 256> slots_{};  // number + 1, or 0
+};
+
 /// One change to the lists of a vertex, carried out by whoever owns that vertex in the commit.
 struct ListChange {
   enum class Kind : std::uint32_t { add_element, remove_element, add_link, remove_link };
@@ -60,14 +91,13 @@ void defer_remove(Commit& commit, VertexId owner, ElementId element) {
 }
 
 /// The vertices that share an element with `vertex`, each once, in order of first appearance.
-template <int Dim, class Vertices>
-void neighbours_of(const Mesh<Dim>& mesh, VertexId vertex, Vertices& neighbours) {
-  neighbours.clear();
+template <int Dim>
+VertexBuffer neighbours_of(const Mesh<Dim>& mesh, VertexId vertex) {
+  Numbering seen;
   for (const ElementId element : mesh.elements_of.of(vertex))
     for (const VertexId other : mesh.corners_of[element])
-      if (other != vertex &&
-          std::find(neighbours.begin(), neighbours.end(), other) == neighbours.end())
-        neighbours.push_back(other);
+      if (other != vertex) seen.number_of(other);
+  return std::move(seen.vertices());
 }
 
 /// The patch on which the edge a-b of this element lies, judging by the element's own facets.
@@ -142,10 +172,15 @@ template <int Dim, class Commit>
 void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, Commit& commit) {
   const auto tagged = tagged_facets(mesh, plan);
   const std::uint32_t region = mesh.region_of[plan.old_elements[0]];
-  for (const ElementId e : plan.old_elements)
-    for (const VertexId v : mesh.corners_of[e]) defer_remove(commit, v, e);
   for (std::size_t n = 0; n < plan.new_elements.size(); ++n) {
     const ElementId e = n < plan.old_elements.size() ? plan.old_elements[n] : commit.fresh();
+    Corners<Dim> before;
+    before.fill(none);
+    if (n < plan.old_elements.size()) before = mesh.corners_of[e];
+    for (const VertexId v : before)
+      if (v != none && !contains(plan.new_elements[n], v)) defer_remove(commit, v, e);
+    for (const VertexId v : plan.new_elements[n])
+      if (!contains(before, v)) defer_add(commit, v, e);
     mesh.corners_of[e] = plan.new_elements[n];
     mesh.region_of[e] = region;
     update_element(mesh, e);
@@ -155,10 +190,12 @@ void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, Commit& commit) {
       for (const FacetOnPatch<Dim>& t : tagged)
         if (t.corners == facet) mesh.patches_of[e][i] = t.patch;
     }
-    for (const VertexId v : plan.new_elements[n]) defer_add(commit, v, e);
   }
-  for (std::size_t n = plan.new_elements.size(); n < plan.old_elements.size(); ++n)
-    mesh.corners_of[plan.old_elements[n]].fill(none);
+  for (std::size_t n = plan.new_elements.size(); n < plan.old_elements.size(); ++n) {
+    Corners<Dim>& corners = mesh.corners_of[plan.old_elements[n]];
+    for (const VertexId v : corners) defer_remove(commit, v, plan.old_elements[n]);
+    corners.fill(none);
+  }
 }
 
 }  // namespace ductile::meshadapt

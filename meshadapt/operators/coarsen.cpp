@@ -10,14 +10,15 @@ template <int Dim>
 std::vector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& executor,
                                                      const Mesh<Dim>& mesh, double short_edge,
                                                      std::uint32_t after) {
+  const auto changed = vertices_changed(executor, mesh, after);
   return runtime::parallel_collect<VertexId>(
-      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
-        const auto vertex = static_cast<VertexId>(v);
-        if (mesh.kind_of[v].freedom == 0 || !mesh.changed_around(vertex, after)) return;
-        for (const ElementId element : mesh.elements_of.of(vertex))
+      executor, changed.size(), [&](std::size_t i, auto&& append) {
+        const VertexId v = changed[i];
+        if (mesh.kind_of[v].freedom == 0) return;
+        for (const ElementId element : mesh.elements_of.of(v))
           for (const VertexId other : mesh.corners_of[element])
-            if (other != vertex && shorter_than(mesh.site_of[v], mesh.site_of[other], short_edge))
-              return append(vertex);
+            if (other != v && shorter_than(mesh.site_of[v], mesh.site_of[other], short_edge))
+              return append(v);
       });
 }
 
@@ -26,10 +27,10 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   const auto ball = mesh_.elements_of.of(gone);
   if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].freedom == 0)
     return {};
-  VertexBuffer ring;
-  neighbours_of(mesh_, gone, ring);
+  const VertexBuffer ring = neighbours_of(mesh_, gone);
   const auto choices = candidates(gone, ring);
   if (choices.empty()) return {};
+  const double longest = longest_allowed(gone, ring);
   double worst = 1;
   for (const ElementId e : ball) {
     if (mesh_.required_element(e)) return {};
@@ -37,7 +38,7 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   }
   for (const Candidate& choice : choices) {
     const Plan plan{gone, choice.kept};
-    if (keeps_edges_short(plan, ring) && keeps_shapes(plan, worst)) return plan;
+    if (keeps_edges_short(plan, ring, longest) && keeps_shapes(plan, worst)) return plan;
   }
   return {};
 }
@@ -75,18 +76,23 @@ bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
   return false;
 }
 
-/// No new edge is too long; where edges are too long already, none gets longer than they are.
+/// No new edge may be too long; where edges are too long already, none may get much longer.
 template <int Dim>
-bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const VertexBuffer& ring) const {
+double Coarsen<Dim>::longest_allowed(VertexId gone, const VertexBuffer& ring) const {
+  double longest = rules_.long_edge / 1.02;
+  for (const VertexId v : ring)
+    if (!shorter_than(mesh_.site_of[v], mesh_.site_of[gone], longest))
+      longest = mesh_.length(v, gone);
+  return 1.02 * longest;
+}
+
+template <int Dim>
+bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const VertexBuffer& ring,
+                                     double longest) const {
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
-  double longest_after = 0, longest_before = 0;
-  for (const VertexId v : ring)
-    if (v != plan.kept && !shorter_than(mesh_.site_of[v], kept, rules_.long_edge))
-      longest_after = std::max(longest_after, edge_length(mesh_.site_of[v], kept));
-  if (longest_after == 0) return true;
-  for (const VertexId v : ring)
-    longest_before = std::max(longest_before, mesh_.length(v, plan.gone));
-  return longest_after <= 1.02 * longest_before;
+  return std::all_of(ring.begin(), ring.end(), [&](VertexId v) {
+    return v == plan.kept || shorter_than(mesh_.site_of[v], kept, longest);
+  });
 }
 
 template <int Dim>
@@ -100,16 +106,14 @@ bool Coarsen<Dim>::keeps_shapes(const Plan& plan, double worst_before) const {
     if (on_boundary && !keeps_facets_turned(mesh_, e, plan.gone, kept.position)) return false;
     auto sites = mesh_.sites(corners);
     sites[static_cast<std::size_t>(corner_of(corners, plan.gone))] = &kept;
-    const double after = shape<Dim>(sites);
-    if (!(after > 0) || after < least) return false;
+    if (!shape_above<Dim>(sites, least)) return false;
   }
   return true;
 }
 
 template <int Dim>
 void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
-  VertexBuffer ring;
-  neighbours_of(mesh_, plan.gone, ring);
+  const VertexBuffer ring = neighbours_of(mesh_, plan.gone);
   const auto ball = mesh_.elements_of.of(plan.gone);
   for (const ElementId e : ball)
     if (contains(mesh_.corners_of[e], plan.kept)) pass_patch_on(e, plan);

@@ -25,18 +25,13 @@ template <int Dim>
 std::vector<LongEdge> Refine<Dim>::long_edges(const runtime::Executor& executor,
                                               const Mesh<Dim>& mesh, double long_edge,
                                               std::uint32_t after) {
+  const auto changed = vertices_changed(executor, mesh, after);
   return runtime::parallel_collect<LongEdge>(
-      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
-        const auto a = static_cast<VertexId>(v);
-        if (!mesh.changed_around(a, after)) return;
-        VertexBuffer seen;
-        for (const ElementId element : mesh.elements_of.of(a))
-          for (const VertexId b : mesh.corners_of[element]) {
-            if (b <= a || std::find(seen.begin(), seen.end(), b) != seen.end()) continue;
-            seen.push_back(b);
-            if (!shorter_than(mesh.site_of[a], mesh.site_of[b], long_edge))
-              append(LongEdge{a, b, static_cast<float>(mesh.length(a, b))});
-          }
+      executor, changed.size(), [&](std::size_t i, auto&& append) {
+        const VertexId a = changed[i];
+        for (const VertexId b : neighbours_of(mesh, a))
+          if (a < b && !shorter_than(mesh.site_of[a], mesh.site_of[b], long_edge))
+            append(LongEdge{a, b, static_cast<float>(mesh.length(a, b))});
       });
 }
 

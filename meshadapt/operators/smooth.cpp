@@ -33,43 +33,55 @@ Vector<Dim> shortest_in_hull(const Vectors& gradients) {
 template <int Dim>
 std::vector<VertexId> Smooth<Dim>::movable_vertices(const runtime::Executor& executor,
                                                     const Mesh<Dim>& mesh, std::uint32_t after) {
-  return runtime::parallel_collect<VertexId>(
-      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
-        const auto vertex = static_cast<VertexId>(v);
-        if (mesh.kind_of[v].freedom != 0 && mesh.changed_around(vertex, after)) append(vertex);
-      });
+  const auto changed = vertices_changed(executor, mesh, after);
+  return runtime::parallel_collect<VertexId>(executor, changed.size(),
+                                             [&](std::size_t i, auto&& append) {
+                                               if (mesh.kind_of[changed[i]].freedom != 0)
+                                                 append(changed[i]);
+                                             });
 }
 
 template <int Dim>
 auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
   const auto ball = mesh_.elements_of.of(vertex);
   if (ball.empty() || ball.size() > mesh_.largest_ball) return {};
-  Score before{1, 0};
+  Place best{mesh_.site_of[vertex], mesh_.host_of[vertex], {1, 0}};
   for (const ElementId e : ball) {
-    before.worst = std::min<double>(before.worst, mesh_.shape_of[e]);
-    before.sum += mesh_.shape_of[e];
+    best.score.worst = std::min<double>(best.score.worst, mesh_.shape_of[e]);
+    best.score.sum += mesh_.shape_of[e];
   }
-  Place best{mesh_.site_of[vertex], mesh_.host_of[vertex], before};
-  bool moved = options_.laplacian && relax(vertex, best);
-  if (best.score.worst < shape_of_mean_ratio<Dim>(options_.optimise_below))
-    moved = optimise(vertex, best) || moved;
+  const double good_enough = shape_of_mean_ratio<Dim>(options_.optimise_below);
+  if (!options_.laplacian && best.score.worst >= good_enough) return {};
+  const Bases bases = bases_around(vertex);
+  bool moved = options_.laplacian && relax(vertex, bases, best);
+  if (best.score.worst < good_enough) moved = optimise(vertex, bases, best) || moved;
   if (!moved) return {};
   const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
-  const bool far = squared_length(best.site.metric, step) > 0.02 * 0.02;
+  const bool far = squared_length(best.site.metric, step) > options_.far * options_.far;
   return Plan{vertex, best.host, best.site, far};
+}
+
+template <int Dim>
+auto Smooth<Dim>::bases_around(VertexId vertex) const -> Bases {
+  Bases bases;
+  for (const ElementId e : mesh_.elements_of.of(vertex)) {
+    const Corners<Dim>& corners = mesh_.corners_of[e];
+    std::array<const Site<Dim>*, Dim> sites;
+    const Facet<Dim> facet = facet_of<Dim>(corners, corner_of(corners, vertex));
+    for (std::size_t k = 0; k < Dim; ++k) sites[k] = &mesh_.site_of[facet[k]];
+    bases.push_back(make_base<Dim>(sites));
+    weigh(bases.back());
+  }
+  return bases;
 }
 
 /// Worst and summed shape of the elements around the vertex if it were at this site; stops at the
 /// first element below a bound.
 template <int Dim>
-auto Smooth<Dim>::score(VertexId vertex, const Site<Dim>& site, double give_up_below) const
-    -> Score {
+auto Smooth<Dim>::score(const Bases& bases, const Site<Dim>& site, double give_up_below) -> Score {
   Score result{1, 0};
-  for (const ElementId e : mesh_.elements_of.of(vertex)) {
-    const Corners<Dim>& corners = mesh_.corners_of[e];
-    auto sites = mesh_.sites(corners);
-    sites[static_cast<std::size_t>(corner_of(corners, vertex))] = &site;
-    const double value = shape<Dim>(sites);
+  for (const Base<Dim>& base : bases) {
+    const double value = shape_over(base, site);
     if (!(value > 0) || value < give_up_below) return {-1, 0};
     result.worst = std::min(result.worst, value);
     result.sum += value;
@@ -77,7 +89,8 @@ auto Smooth<Dim>::score(VertexId vertex, const Site<Dim>& site, double give_up_b
   return result;
 }
 
-/// Looked at first: it needs no metric, and a place that passes lies inside the domain.
+/// Is it certain that every element around the vertex has a positive volume if it moves there, and
+/// that its facets on patches keep their turn?
 template <int Dim>
 bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) const {
   const bool on_boundary = mesh_.kind_of[vertex].freedom < Dim;
@@ -93,14 +106,18 @@ bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) co
   return true;
 }
 
+/// A place that scores better than a bar, if this is one. Volumes are looked at first: that needs
+/// no metric, and a place with positive volumes lies inside the domain.
 template <int Dim>
-auto Smooth<Dim>::place(VertexId vertex, const Vector<Dim>& position, ElementId near,
-                        double give_up_below) const -> std::optional<Place> {
-  if (!keeps_volumes(vertex, position)) return {};
-  const auto sample = background_.sample(position, near);
+auto Smooth<Dim>::place(VertexId vertex, const Bases& bases, const Vector<Dim>& position,
+                        const Place& near, const Score& bar) const -> std::optional<Place> {
+  for (const Base<Dim>& base : bases)
+    if (!(volume_over(base, position) > 0)) return {};
+  const auto sample = background_.sample(position, near.host);
   Place result{make_site(position, sample.metric), sample.host, {}};
-  result.score = score(vertex, result.site, give_up_below);
-  if (result.score.worst <= 0) return {};
+  result.score = score(bases, result.site, bar.worst);
+  if (!(result.score.worst > 0 && result.score.sum > bar.sum) || !keeps_volumes(vertex, position))
+    return {};
   return result;
 }
 
@@ -122,35 +139,21 @@ Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) cons
 /// half-way from there to where its edges have unit length; bad elements pull harder. This is the
 /// mean pull.
 template <int Dim>
-Vector<Dim> Smooth<Dim>::regular_displacement(VertexId vertex) const {
+Vector<Dim> Smooth<Dim>::regular_displacement(VertexId vertex, const Bases& bases) const {
   const Site<Dim>& here = mesh_.site_of[vertex];
   const Metric<Dim> dual = inverse(here.metric);
+  const auto ball = mesh_.elements_of.of(vertex);
   Vector<Dim> sum;
   double total = 0;
-  for (const ElementId e : mesh_.elements_of.of(vertex)) {
-    const Corners<Dim>& corners = mesh_.corners_of[e];
-    const Facet<Dim> facet = facet_of<Dim>(corners, corner_of(corners, vertex));
-    std::array<Vector<Dim>, Dim> p;
-    Vector<Dim> centre;
-    for (std::size_t k = 0; k < Dim; ++k) {
-      p[k] = mesh_.site_of[facet[k]].position;
-      centre += (1.0 / Dim) * p[k];
-    }
-    double squares = squared_length(here.metric, p[1] - p[0]);
-    Vector<Dim> inward;  // as a covector
-    if constexpr (Dim == 2) {
-      inward = {{p[0][1] - p[1][1], p[1][0] - p[0][0]}};
-    } else {
-      inward = cross(p[2] - p[0], p[1] - p[0]);
-      squares = (squares + squared_length(here.metric, p[2] - p[0]) +
-                 squared_length(here.metric, p[2] - p[1])) /
-                3;
-    }
-    const double size = std::sqrt(std::sqrt(squares));  // geometric mean of the facet's and 1
+  for (std::size_t i = 0; i < bases.size(); ++i) {
+    const Base<Dim>& base = bases[i];
+    const double square = base_squares(base, here.metric) / (Dim == 2 ? 1 : 3);
+    const double size = std::sqrt(std::sqrt(square));  // geometric mean of the facet's and 1
     const double height = size * std::sqrt(Dim == 2 ? 0.75 : 2.0 / 3);
-    const Vector<Dim> up = product(dual, inward);
-    const double weight = 1 / std::max(0.01F, mesh_.shape_of[e]);
-    sum += weight * (centre + (height / std::sqrt(dot(inward, up))) * up - here.position);
+    const Vector<Dim> up = product(dual, base.normal);
+    const double weight = 1 / std::max(0.01F, mesh_.shape_of[ball[i]]);
+    const double stretch = height / std::sqrt(dot(base.normal, up));
+    sum += weight * (base.centre + stretch * up - here.position);
     total += weight;
   }
   return allowed(vertex, (1 / total) * sum);
@@ -158,61 +161,43 @@ Vector<Dim> Smooth<Dim>::regular_displacement(VertexId vertex) const {
 
 /// Goes towards where the elements want it as far as their shapes get better.
 template <int Dim>
-bool Smooth<Dim>::relax(VertexId vertex, Place& best) const {
-  const Vector<Dim> step = regular_displacement(vertex);
+bool Smooth<Dim>::relax(VertexId vertex, const Bases& bases, Place& best) const {
+  const Vector<Dim> step = regular_displacement(vertex, bases);
   if (squared_length(best.site.metric, step) < 1e-4) return false;
-  const Vector<Dim> start = best.site.position;
-  const double bound = std::min(best.score.worst, shape_of_mean_ratio<Dim>(0.7));
+  const Score bar{std::min(best.score.worst, shape_of_mean_ratio<Dim>(0.7)),
+                  best.score.sum * (1 + 1e-4)};
   for (const double fraction : {1.0, 0.5, 0.25}) {
-    const auto trial = place(vertex, start + fraction * step, best.host, bound);
-    if (!trial || trial->score.sum <= best.score.sum * (1 + 1e-4)) continue;
+    const Vector<Dim> position = mesh_.site_of[vertex].position + fraction * step;
+    const auto trial = place(vertex, bases, position, best, bar);
+    if (!trial) continue;
     best = *trial;
     return true;
   }
   return false;
 }
 
-/// Gradient of an element's shape by the position of one corner, in the metric that judges it now.
+/// Gradient of an element's shape by the position of its apex, in the metric that judges it now.
 template <int Dim>
-Vector<Dim> Smooth<Dim>::shape_gradient(ElementId element, VertexId vertex, const Site<Dim>& site,
-                                        double& shape_here) const {
-  const Corners<Dim>& corners = mesh_.corners_of[element];
-  const int at = corner_of(corners, vertex);
-  auto sites = mesh_.sites(corners);
-  sites[static_cast<std::size_t>(at)] = &site;
-  shape_here = shape<Dim>(sites);
-  const Metric<Dim>& metric = densest<Dim>(sites).metric;
-  const auto corner = [&](int k) {
-    const auto facet = Simplex<Dim>::facet[static_cast<std::size_t>(at)];
-    return sites[static_cast<std::size_t>(facet[static_cast<std::size_t>(k)])]->position;
-  };
-  Vector<Dim> volume_gradient;
-  if constexpr (Dim == 2) {
-    const Vector<2> side = corner(1) - corner(0);
-    volume_gradient = {{-side[1], side[0]}};
-  } else {
-    volume_gradient = -1.0 * cross(corner(1) - corner(0), corner(2) - corner(0));
-  }
-  const double volume = dot(site.position - corner(0), volume_gradient);
-  Vector<Dim> spread = Dim * site.position;
-  for (int k = 0; k < Dim; ++k) spread -= corner(k);
-  const double squares = sum_of_squared_lengths<Dim>(metric, sites);
+Vector<Dim> Smooth<Dim>::shape_gradient(const Base<Dim>& base, const Site<Dim>& apex,
+                                        double shape_here) {
+  const Vector<Dim> up = apex.position - base.centre;
+  const Metric<Dim>& metric = apex.density > base.judge->density ? apex.metric : base.judge->metric;
+  const double squares = squares_over(base, apex.position, metric, base_squares(base, metric));
   constexpr double power = Dim == 2 ? 1.0 : 1.5;
-  return shape_here *
-         ((1 / volume) * volume_gradient - (2 * power / squares) * product(metric, spread));
+  return shape_here * ((1 / dot(base.normal, up)) * base.normal -
+                       (2 * power * Dim / squares) * product(metric, up));
 }
 
 /// A direction in which all of the worst elements get better, or nearly 0 if there is none. It is
 /// sought in the space where the metric is the identity, lest the thin direction hide the others.
 template <int Dim>
-Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Place& at) const {
+Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Bases& bases, const Place& at) const {
   const Eigen<Dim> axes = eigen(at.site.metric);
   Buffer<Vector<Dim>, 16> gradients;
-  for (const ElementId e : mesh_.elements_of.of(vertex)) {
-    double value = 0;
-    const Vector<Dim> gradient = shape_gradient(e, vertex, at.site, value);
+  for (const Base<Dim>& base : bases) {
+    const double value = shape_over(base, at.site);
     if (value > at.score.worst * 1.15 + 0.01) continue;
-    const Vector<Dim> free = allowed(vertex, gradient);
+    const Vector<Dim> free = allowed(vertex, shape_gradient(base, at.site, value));
     Vector<Dim> unit;
     for (int i = 0; i < Dim; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -232,18 +217,18 @@ Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Place& at) const {
 
 /// Climbs the worst shape around the vertex by line searches.
 template <int Dim>
-bool Smooth<Dim>::optimise(VertexId vertex, Place& best) const {
+bool Smooth<Dim>::optimise(VertexId vertex, const Bases& bases, Place& best) const {
   constexpr int climbs = 4, halvings = 5;
   bool moved = false;
   double reach = 0.3;  // metric length of the first trial step
   for (int climb = 0; climb < climbs; ++climb) {
-    const Vector<Dim> direction = ascent(vertex, best);
+    const Vector<Dim> direction = ascent(vertex, bases, best);
     const double length = std::sqrt(squared_length(best.site.metric, direction));
     if (!(length > 0) || !std::isfinite(length)) break;
     bool better = false;
     for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
       const Vector<Dim> position = best.site.position + (reach / length) * direction;
-      const auto trial = place(vertex, position, best.host, best.score.worst * 1.001);
+      const auto trial = place(vertex, bases, position, best, {best.score.worst * 1.001, 0});
       if (!trial) continue;
       best = *trial;
       better = moved = true;
@@ -264,10 +249,8 @@ void Smooth<Dim>::apply(const Plan& plan, runtime::Commit<Smooth>& commit) {
     if (!plan.far) mesh_.changed_at[e] = changed_at;  // too little to reconsider anything
   }
   if (!plan.far || !options_.again) return;
-  VertexBuffer ring;
-  neighbours_of(mesh_, plan.vertex, ring);
   commit.wake(plan.vertex);
-  for (const VertexId v : ring)
+  for (const VertexId v : neighbours_of(mesh_, plan.vertex))
     if (mesh_.kind_of[v].freedom != 0) commit.wake(v);
 }
 

@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "operators/base.hpp"
 #include "operators/cavity.hpp"
 
 namespace ductile::meshadapt {
@@ -26,6 +27,7 @@ struct VertexMove {
 struct SmoothOptions {
   bool laplacian = true;
   double optimise_below = 0.4;  ///< optimise where the worst mean ratio around is below this
+  double far = 0.02;            ///< metric length of a move that neighbours take notice of
   bool again = true;            ///< wake whoever has a neighbour that moved far
 };
 
@@ -71,17 +73,19 @@ class Smooth {
     ElementId host;
     Score score;
   };
-  Score score(VertexId vertex, const Site<Dim>& site, double give_up_below) const;
+  using Bases = Buffer<Base<Dim>, 40>;  // the facets opposite a vertex, in the order of its list
+  Bases bases_around(VertexId vertex) const;
+  static Score score(const Bases& bases, const Site<Dim>& site, double give_up_below);
   bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
-  std::optional<Place> place(VertexId vertex, const Vector<Dim>& position, ElementId near,
-                             double give_up_below) const;
+  std::optional<Place> place(VertexId vertex, const Bases& bases, const Vector<Dim>& position,
+                             const Place& near, const Score& bar) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
-  Vector<Dim> regular_displacement(VertexId vertex) const;
-  bool relax(VertexId vertex, Place& best) const;
-  bool optimise(VertexId vertex, Place& best) const;
-  Vector<Dim> ascent(VertexId vertex, const Place& at) const;
-  Vector<Dim> shape_gradient(ElementId element, VertexId vertex, const Site<Dim>& site,
-                             double& shape_here) const;
+  Vector<Dim> regular_displacement(VertexId vertex, const Bases& bases) const;
+  bool relax(VertexId vertex, const Bases& bases, Place& best) const;
+  bool optimise(VertexId vertex, const Bases& bases, Place& best) const;
+  Vector<Dim> ascent(VertexId vertex, const Bases& bases, const Place& at) const;
+  static Vector<Dim> shape_gradient(const Base<Dim>& base, const Site<Dim>& apex,
+                                    double shape_here);
 
   Mesh<Dim>& mesh_;
   const Background<Dim>& background_;

@@ -20,6 +20,8 @@ class Star {
     Corners<3> corners;
     float shape;
     bool changed;
+    bool on_patch;  // has a facet on one
+    std::uint32_t region;
   };
   struct Edge {
     VertexId to;
@@ -28,26 +30,29 @@ class Star {
   };
 
   Star(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after) {
-    for (const ElementId e : mesh.elements_of.of(vertex)) {
-      entries.push_back({e, mesh.corners_of[e], mesh.shape_of[e], mesh.changed_at[e] > after});
-      changed = changed || entries.back().changed;
+    const auto ball = mesh.elements_of.of(vertex);
+    if (ball.size() > Mesh<3>::largest_ball) return;
+    Numbering numbers;
+    for (const ElementId e : ball) {
+      constexpr std::array<PatchId, 4> inside{};
+      entries.push_back({e, mesh.corners_of[e], mesh.shape_of[e], mesh.changed_at[e] > after,
+                         mesh.patches_of[e] != inside, mesh.region_of[e]});
+      for (const VertexId v : entries.back().corners)
+        if (v > vertex) note(numbers, v);
     }
-    if (!changed || entries.size() > Mesh<3>::largest_ball) return;
-    for (std::size_t i = 0; i < entries.size(); ++i)
-      for (const VertexId v : entries[i].corners)
-        if (v > vertex) note(v, static_cast<std::uint16_t>(i));
   }
 
   Buffer<Entry, 64> entries;
   Buffer<Edge, 24> edges;
-  bool changed = false;
 
  private:
-  void note(VertexId to, std::uint16_t entry) {
-    auto at = std::find_if(edges.begin(), edges.end(), [&](const Edge& e) { return e.to == to; });
-    if (at == edges.end()) at = edges.insert(edges.end(), Edge{to});
-    if (at->count < most_around) at->around[at->count] = entry;
-    ++at->count;
+  void note(Numbering& numbers, VertexId to) {
+    const std::size_t at = numbers.number_of(to);
+    if (at == edges.size()) edges.push_back({to});
+    Edge& edge = edges[at];
+    if (edge.count < most_around)
+      edge.around[edge.count] = static_cast<std::uint16_t>(entries.size() - 1);
+    ++edge.count;
   }
 };
 

@@ -44,10 +44,9 @@ class Swap {
 
   // ---- Conflict rule: nobody else touches the elements to go; the worst go first ----
   void footprint(const Item& item, auto&& visit) const {
-    for (const ElementId e : mesh_.elements_of.of(item.a)) {
-      const Corners<Dim>& corners = mesh_.corners_of[e];
-      if (contains(corners, item.b) && (item.c == none || contains(corners, item.c))) visit(e);
-    }
+    visit_shell(mesh_, item.a, item.b, [&](ElementId e) {
+      if (item.c == none || contains(mesh_.corners_of[e], item.c)) visit(e);
+    });
   }
   std::size_t resource_count() const { return mesh_.element_slots(); }
   std::uint8_t priority(const Item& item) const {

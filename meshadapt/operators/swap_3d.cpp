@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "ductile/runtime/collect.hpp"
+#include "operators/base.hpp"
+#include "operators/ring.hpp"
 #include "operators/star.hpp"
 #include "operators/swap.hpp"
 
@@ -9,51 +11,6 @@ namespace ductile::meshadapt {
 namespace {
 
 constexpr std::size_t largest_ring = 7;
-
-/// The vertices around an edge a-b in order, counter-clockwise seen from b. `open` if the edge is
-/// on the boundary; the ring then starts and ends there.
-struct Ring {
-  boost::container::static_vector<VertexId, largest_ring> vertices;
-  bool open = false;
-};
-
-/// The two other corners p, q of an element on a-b, such that (a, b, p, q) is positive.
-std::array<VertexId, 2> others(const Corners<3>& corners, VertexId a, VertexId b) {
-  // Even permutations of the four corners, by the positions of a and b.
-  static constexpr int rest[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1, 2}},
-                                        {{3, 2}, {0, 0}, {0, 3}, {2, 0}},
-                                        {{1, 3}, {3, 0}, {0, 0}, {0, 1}},
-                                        {{2, 1}, {0, 2}, {1, 0}, {0, 0}}};
-  const auto& r = rest[corner_of(corners, a)][corner_of(corners, b)];
-  return {corners[static_cast<std::size_t>(r[0])], corners[static_cast<std::size_t>(r[1])]};
-}
-
-std::optional<Ring> ring_around(const Mesh<3>& mesh, const Shell& shell, VertexId a, VertexId b) {
-  if (shell.size() > largest_ring) return {};
-  boost::container::static_vector<std::array<VertexId, 2>, largest_ring> sides;
-  for (const ElementId e : shell) sides.push_back(others(mesh.corners_of[e], a, b));
-  Ring ring;
-  VertexId start = sides[0][0];
-  for (const auto& side : sides)
-    if (std::none_of(sides.begin(), sides.end(), [&](const auto& s) { return s[1] == side[0]; })) {
-      start = side[0];
-      ring.open = true;
-    }
-  if (ring.open && shell.size() + 1 > largest_ring) return {};
-  VertexId at = start;
-  ring.vertices.push_back(at);
-  for (std::size_t step = 0; step < sides.size(); ++step) {
-    const auto next =
-        std::find_if(sides.begin(), sides.end(), [&](const auto& s) { return s[0] == at; });
-    if (next == sides.end()) return {};
-    at = (*next)[1];
-    if (at != start) ring.vertices.push_back(at);
-    if (ring.vertices.size() > sides.size() + 1) return {};
-  }
-  const std::size_t expected = shell.size() + (ring.open ? 1 : 0);
-  if (ring.vertices.size() != expected || expected < 3) return {};
-  return ring;
-}
 
 /// May this edge go? Not if it is on a curve, on an interface or between different regions; on a
 /// boundary patch it may, if the patch is flat and free. Returns false or sets `patch`.
@@ -81,7 +38,10 @@ bool removable(const Mesh<3>& mesh, const Shell& shell, VertexId a, VertexId b, 
 class RingTriangulation {
  public:
   RingTriangulation(const Mesh<3>& mesh, const Ring& ring, VertexId a, VertexId b, double bar)
-      : mesh_(mesh), ring_(ring), a_(a), b_(b), bar_(bar) {}
+      : ring_(ring), a_(a), b_(b), site_a_(&mesh.site_of[a]), site_b_(&mesh.site_of[b]), bar_(bar) {
+    for (std::size_t i = 0; i < ring.vertices.size(); ++i)
+      site_[i] = &mesh.site_of[ring.vertices[i]];
+  }
 
   /// Fills `elements`; false if no triangulation beats the bar.
   bool find(Replacement<3>& plan) {
@@ -108,35 +68,34 @@ class RingTriangulation {
     worst_[i][j] = best;
   }
 
-  Corners<3> upper(std::size_t i, std::size_t k, std::size_t j) const {
-    return {ring_.vertices[i], ring_.vertices[k], ring_.vertices[j], b_};
-  }
-  Corners<3> lower(std::size_t i, std::size_t k, std::size_t j) const {
-    return {ring_.vertices[i], ring_.vertices[j], ring_.vertices[k], a_};
-  }
-
   /// The worse of a ring triangle's two elements; the second is not looked at if the first is bad.
-  double triangle(std::size_t i, std::size_t k, std::size_t j, double give_up_below) const {
-    const double up = mesh_.shape_at(upper(i, k, j));
-    if (!(up > give_up_below)) return -1;
-    return std::min(up, mesh_.shape_at(lower(i, k, j)));
+  double triangle(std::size_t i, std::size_t k, std::size_t j, double bar) const {
+    Base<3> base = make_base<3>({site_[i], site_[j], site_[k]});
+    if (!(volume_over(base, site_b_->position) > 0 && volume_over(base, site_a_->position) < 0))
+      return -1;
+    weigh(base);
+    const double up = shape_over(base, *site_b_);
+    return up > bar ? std::min(up, shape_over(base, *site_a_, true)) : -1;
   }
 
   void collect(std::size_t i, std::size_t j, Replacement<3>& plan) const {
     if (j - i < 2) return;
     const std::size_t k = apex_[i][j];
-    plan.new_elements.push_back(upper(i, k, j));
-    plan.new_elements.push_back(lower(i, k, j));
+    const VertexId p = ring_.vertices[i], q = ring_.vertices[k], r = ring_.vertices[j];
+    plan.new_elements.push_back({p, q, r, b_});
+    plan.new_elements.push_back({p, r, q, a_});
     collect(i, k, plan);
     collect(k, j, plan);
   }
 
-  const Mesh<3>& mesh_;
   const Ring& ring_;
   VertexId a_, b_;
+  std::array<const Site<3>*, largest_ring> site_{};
+  const Site<3>* site_a_;
+  const Site<3>* site_b_;
   double bar_;
-  double worst_[largest_ring][largest_ring] = {};
-  std::uint8_t apex_[largest_ring][largest_ring] = {};
+  std::array<std::array<double, largest_ring>, largest_ring> worst_{};
+  std::array<std::array<std::uint8_t, largest_ring>, largest_ring> apex_{};
 };
 
 /// Does the quadrilateral of two facets on a patch remain unfolded when its diagonal is swapped?
@@ -148,46 +107,64 @@ bool convex_in_patch(const Mesh<3>& mesh, const std::array<VertexId, 4>& corners
          0;
 }
 
-std::optional<Replacement<3>> plan_edge_removal(const Mesh<3>& mesh, VertexId a, VertexId b,
-                                                const Shell& shell, double worst_allowed) {
+/// An edge's removal by the best triangulation of its ring, if its worst element beats the bar.
+std::optional<Replacement<3>> triangulate(const Mesh<3>& mesh, const Swappable& edge,
+                                          const Ring& ring, double bar) {
+  std::optional<Replacement<3>> result(std::in_place);
+  if (!RingTriangulation(mesh, ring, edge.a, edge.b, bar).find(*result)) return {};
+  return result;
+}
+
+std::optional<Replacement<3>> plan_edge_removal(const Mesh<3>& mesh, const Swappable& edge,
+                                                const Shell& shell, const Ring& ring, double bar) {
   PatchId patch = 0;
-  if (shell.empty() || shell.size() > largest_ring || !removable(mesh, shell, a, b, patch))
-    return {};
-  const auto ring = ring_around(mesh, shell, a, b);
+  if (!removable(mesh, shell, edge.a, edge.b, patch)) return {};
   // A patch on a closed ring is an interface or a sheet inside a region: its edges stay.
-  if (!ring || ring->open != (patch != 0)) return {};
-  Replacement<3> result;
-  if (!RingTriangulation(mesh, *ring, a, b, worst_allowed).find(result)) return {};
-  result.old_elements.assign(shell.begin(), shell.end());
-  if (ring->open) {
-    const VertexId first = ring->vertices.front(), last = ring->vertices.back();
-    if (!convex_in_patch(mesh, {a, first, b, last}, patch)) return {};
-    result.new_facets = {{a, first, last}, {b, first, last}};
-    result.new_patch = patch;
+  if (ring.open != (patch != 0)) return {};
+  auto result = triangulate(mesh, edge, ring, bar);
+  if (!result) return {};
+  for (const Corners<3>& corners : result->new_elements)
+    if (!(mesh.shape_at(corners) > 0)) return {};
+  result->old_elements.assign(shell.begin(), shell.end());
+  if (ring.open) {
+    const VertexId first = ring.vertices.front(), last = ring.vertices.back();
+    if (!convex_in_patch(mesh, {edge.a, first, edge.b, last}, patch)) return {};
+    result->new_facets = {{edge.a, first, last}, {edge.b, first, last}};
+    result->new_patch = patch;
   }
   return result;
 }
 
-/// Elements e and f share a face, which gives way to the edge between their other corners.
-std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, ElementId e, ElementId f,
-                                             double worst_allowed) {
-  if (mesh.region_of[e] != mesh.region_of[f] || mesh.required_element(e)) return {};
-  const auto apex = [&](ElementId element, ElementId other) {
-    std::size_t i = 0;
-    while (contains(mesh.corners_of[other], mesh.corners_of[element][i])) ++i;
-    return i;
-  };
-  const std::size_t i = apex(e, f);
-  if (mesh.patches_of[e][i] != 0) return {};
-  const VertexId low = mesh.corners_of[e][i], high = mesh.corners_of[f][apex(f, e)];
-  // Counter-clockwise seen from `high`.
-  const Facet<3> around = facet_of<3>(mesh.corners_of[e], static_cast<int>(i));
-  Replacement<3> result;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Corners<3> corners{low, high, around[k], around[(k + 1) % 3]};
-    if (!(mesh.shape_at(corners) > worst_allowed)) return {};
-    result.new_elements.push_back(corners);
+/// The face a-b-c gives way to the edge from p to q, where (a, b, p, c) and (a, b, c, q) are the
+/// elements on its two sides; empty if one of the new elements is not above the bar.
+std::array<Corners<3>, 3> elements_around(const Swappable& face, VertexId p, VertexId q) {
+  return {{{p, q, face.a, face.b}, {p, q, face.b, face.c}, {p, q, face.c, face.a}}};
+}
+
+bool worth_piercing(const Mesh<3>& mesh, const Swappable& face, VertexId p, VertexId q,
+                    double bar) {
+  const auto elements = elements_around(face, p, q);
+  return std::all_of(elements.begin(), elements.end(), [&](const Corners<3>& corners) {
+    return shape_above<3>(mesh.sites(corners), bar);
+  });
+}
+
+std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappable& face,
+                                             const Shell& shell, double bar) {
+  ElementId e = shell[0], f = shell[1];
+  auto [p, c] = others(mesh.corners_of[e], face.a, face.b);
+  if (c != face.c) {
+    std::swap(e, f);
+    p = others(mesh.corners_of[e], face.a, face.b)[0];
   }
+  const VertexId q = others(mesh.corners_of[f], face.a, face.b)[1];
+  const auto at_p = static_cast<std::size_t>(corner_of(mesh.corners_of[e], p));
+  if (mesh.region_of[e] != mesh.region_of[f] || mesh.required_element(e) ||
+      mesh.patches_of[e][at_p] != 0 || !worth_piercing(mesh, face, p, q, bar))
+    return {};
+  Replacement<3> result;
+  for (const Corners<3>& corners : elements_around(face, p, q))
+    result.new_elements.push_back(corners);
   result.old_elements = {e, f};
   return result;
 }
@@ -202,9 +179,14 @@ std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
     shell.push_back(e);
     worst = std::min(worst, mesh_.shape_of[e]);
   });
-  if (item.c == none) return plan_edge_removal(mesh_, item.a, item.b, shell, bar(worst));
-  if (shell.size() != 2) return {};
-  return plan_face_swap(mesh_, shell[0], shell[1], bar(worst));
+  if (item.c != none)
+    return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(worst)) : std::nullopt;
+  Ring ring;
+  if (!ring.close(shell.size(), item.a, item.b,
+                  [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }) ||
+      ring.vertices.size() > largest_ring)
+    return {};
+  return plan_edge_removal(mesh_, item, shell, ring, bar(worst));
 }
 
 template <>
@@ -217,46 +199,79 @@ namespace {
 /// Looks for swaps of the edges from one vertex, and of their faces, that are worth it.
 class SwapSearch {
  public:
-  SwapSearch(const Mesh<3>& mesh, VertexId vertex, const Star& star, float good_enough)
-      : mesh_(mesh), vertex_(vertex), star_(star), good_enough_(good_enough) {}
+  SwapSearch(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after, float good_enough)
+      : mesh_(mesh), vertex_(vertex), star_(mesh, vertex, after), good_enough_(good_enough) {}
 
-  void try_edge(const Star::Edge& edge, auto&& append) const {
-    if (edge.count > largest_ring) return;
-    Shell shell;
-    float worst = 1;
-    bool changed = false;
-    for (std::uint32_t k = 0; k < edge.count; ++k) {
-      const Star::Entry& entry = star_.entries[edge.around[k]];
-      shell.push_back(entry.element);
-      worst = std::min(worst, entry.shape);
-      changed = changed || entry.changed;
+  void run(auto&& append) const {
+    for (const Star::Edge& edge : star_.edges) {
+      if (edge.count > Star::most_around || !concerns(edge)) continue;
+      Ring ring;
+      if (!ring.close(edge.count, vertex_, edge.to,
+                      [&](std::size_t i) { return star_.entries[edge.around[i]].corners; }))
+        continue;
+      if (ring.vertices.size() <= largest_ring) try_edge(edge, ring, append);
+      try_faces(edge, ring, append);
     }
-    if (changed && worst < good_enough_ &&
-        plan_edge_removal(mesh_, vertex_, edge.to, shell, Swap<3>::bar(worst)))
-      append(Swappable{vertex_, edge.to, none, worst});
-  }
-
-  /// The faces on an edge whose third corner has a higher number still.
-  void try_faces(const Star::Edge& edge, auto&& append) const {
-    if (edge.count > Star::most_around) return;
-    for (std::uint32_t i = 0; i < edge.count; ++i)
-      for (std::uint32_t j = i + 1; j < edge.count; ++j)
-        try_face(edge.to, star_.entries[edge.around[i]], star_.entries[edge.around[j]], append);
   }
 
  private:
-  void try_face(VertexId b, const Star::Entry& e, const Star::Entry& f, auto&& append) const {
-    const float worst = std::min(e.shape, f.shape);
-    if ((!e.changed && !f.changed) || worst >= good_enough_) return;
-    for (const VertexId c : e.corners)
-      if (c > b && contains(f.corners, c) &&
-          plan_face_swap(mesh_, e.element, f.element, Swap<3>::bar(worst)))
-        append(Swappable{vertex_, b, c, worst});
+  bool concerns(const Star::Edge& edge) const {
+    bool changed = false, bad = false;
+    for (std::uint32_t i = 0; i < edge.count; ++i) {
+      const Star::Entry& entry = star_.entries[edge.around[i]];
+      changed = changed || entry.changed;
+      bad = bad || entry.shape < good_enough_;
+    }
+    return changed && bad;
+  }
+
+  void try_edge(const Star::Edge& edge, const Ring& ring, auto&& append) const {
+    Shell shell;
+    Swappable item{vertex_, edge.to, none, 1};
+    bool on_patch = false;
+    for (std::uint32_t i = 0; i < edge.count; ++i) {
+      const Star::Entry& entry = star_.entries[edge.around[i]];
+      shell.push_back(entry.element);
+      item.worst = std::min(item.worst, entry.shape);
+      on_patch = on_patch || entry.on_patch;
+    }
+    const double bar = Swap<3>::bar(item.worst);
+    if (on_patch || ring.open ? plan_edge_removal(mesh_, item, shell, ring, bar).has_value()
+                              : may_change(edge) && triangulate(mesh_, item, ring, bar).has_value())
+      append(item);
+  }
+
+  /// Are the elements around an edge, none of which is on a patch, of one region that is free?
+  bool may_change(const Star::Edge& edge) const {
+    const std::uint32_t region = star_.entries[edge.around[0]].region;
+    return !mesh_.regions[region].required;
+  }
+
+  /// The faces on an edge whose third corner has a higher number still.
+  void try_faces(const Star::Edge& edge, const Ring& ring, auto&& append) const {
+    const std::size_t n = ring.vertices.size();
+    for (std::size_t i = 0; i + 1 < n + (ring.open ? 0 : 1); ++i) {
+      const std::size_t j = (i + 1) % n;
+      if (ring.vertices[j] < edge.to || (ring.open && j + 1 == n)) continue;
+      const Star::Entry& e = star_.entries[edge.around[ring.order[i]]];
+      const Star::Entry& f = star_.entries[edge.around[ring.order[j]]];
+      const Swappable face{vertex_, edge.to, ring.vertices[j], std::min(e.shape, f.shape)};
+      if ((!e.changed && !f.changed) || face.worst >= good_enough_) continue;
+      const VertexId p = ring.vertices[i], q = ring.vertices[(j + 1) % n];
+      if (worth_piercing(mesh_, face, p, q, Swap<3>::bar(face.worst)) && may_pierce(e, f, p))
+        append(face);
+    }
+  }
+
+  bool may_pierce(const Star::Entry& e, const Star::Entry& f, VertexId p) const {
+    const auto at_p = static_cast<std::size_t>(corner_of(e.corners, p));
+    return e.region == f.region && !mesh_.regions[e.region].required &&
+           mesh_.patches_of[e.element][at_p] == 0;
   }
 
   const Mesh<3>& mesh_;
   VertexId vertex_;
-  const Star& star_;
+  Star star_;
   float good_enough_;
 };
 
@@ -266,16 +281,11 @@ template <>
 std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, Mesh<3>& mesh,
                                              std::uint32_t after, double below) {
   const auto good_enough = static_cast<float>(shape_of_mean_ratio<3>(below));
-  const auto find = [&](std::size_t v, auto&& append) {
-    const auto a = static_cast<VertexId>(v);
-    const Star star(mesh, a, after);
-    const SwapSearch search(mesh, a, star, good_enough);
-    for (const Star::Edge& edge : star.edges) {
-      search.try_edge(edge, append);
-      search.try_faces(edge, append);
-    }
-  };
-  return runtime::parallel_collect<Swappable>(executor, mesh.vertex_slots(), find);
+  const auto changed = vertices_changed(executor, mesh, after);
+  return runtime::parallel_collect<Swappable>(
+      executor, changed.size(), [&](std::size_t i, auto&& append) {
+        SwapSearch(mesh, changed[i], after, good_enough).run(append);
+      });
 }
 
 template class Swap<3>;

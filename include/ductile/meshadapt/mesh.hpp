@@ -102,13 +102,6 @@ struct Mesh {
   double length(VertexId a, VertexId b) const { return edge_length(site_of[a], site_of[b]); }
   double shape_at(const Corners<Dim>& corners) const { return shape<Dim>(sites(corners)); }
 
-  /// Has an element around the vertex changed after this epoch?
-  bool changed_around(VertexId vertex, std::uint32_t after) const {
-    for (const ElementId element : elements_of.of(vertex))
-      if (changed_at[element] > after) return true;
-    return false;
-  }
-
   bool required_element(ElementId element) const { return regions[region_of[element]].required; }
 
   /// The curve that the edge a-b belongs to, or 0. 3D only.
@@ -140,12 +133,29 @@ void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
 template <int Dim>
 void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
-/// The elements around the edge a-b, in the order of a's list. Buffer is any vector-like type.
+/// The living vertices next to an element that changed after this epoch, in order.
+template <int Dim>
+std::vector<VertexId> vertices_changed(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                       std::uint32_t after);
+
+/// Visits the elements around the edge a-b in order: what two sorted lists have in common. Steps
+/// without branches, as which list is ahead cannot be foreseen.
+template <int Dim>
+void visit_shell(const Mesh<Dim>& mesh, VertexId a, VertexId b, auto&& visit) {
+  const auto of_a = mesh.elements_of.of(a), of_b = mesh.elements_of.of(b);
+  for (std::size_t i = 0, j = 0; i < of_a.size() && j < of_b.size();) {
+    const ElementId x = of_a[i], y = of_b[j];
+    if (x == y) visit(x);
+    i += x <= y;
+    j += y <= x;
+  }
+}
+
+/// The elements around the edge a-b, in order. Buffer is any vector-like type.
 template <int Dim, class Buffer>
 void shell_of(const Mesh<Dim>& mesh, VertexId a, VertexId b, Buffer& shell) {
   shell.clear();
-  for (const ElementId element : mesh.elements_of.of(a))
-    if (contains(mesh.corners_of[element], b)) shell.push_back(element);
+  visit_shell(mesh, a, b, [&](ElementId element) { shell.push_back(element); });
 }
 
 /// The element on the other side of an element's facet, or none on the boundary.

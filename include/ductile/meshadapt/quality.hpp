@@ -69,6 +69,15 @@ double sum_of_squared_lengths(const Metric<Dim>& metric,
   return (Dim + 1) * squares - squared_length(metric, sum);
 }
 
+/// Shape from the metric volume, times 2 in 2D or 6 in 3D, and the sum of squared edge lengths.
+template <int Dim>
+double shape_from(double volume, double squares) {
+  if constexpr (Dim == 2)
+    return 2 * std::sqrt(3.0) * volume / squares;
+  else
+    return 12 * std::sqrt(3.0) * volume / (squares * std::sqrt(squares));
+}
+
 /// Shape of an element in the metric of its densest corner: 4 sqrt(3) A / (sum of squared lengths)
 /// in 2D; the volume-length ratio 72 sqrt(3) V / (sum of squared lengths)^(3/2) in 3D
 /// (Parthasarathy, Graichen & Hathaway, Finite Elem. Anal. Des. 15, 1994). 1 for a regular element,
@@ -81,10 +90,23 @@ double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   if (!(determinant > 0)) return determinant;
   const Site<Dim>& judge = densest<Dim>(corner);
   const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
+  return shape_from<Dim>(judge.density * determinant, squares);
+}
+
+/// shape(corner) > bar, decided without the root and the division; bar is not negative.
+template <int Dim>
+bool shape_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
+  std::array<Vector<Dim>, Dim + 1> p;
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
+  const double determinant = certain_determinant<Dim>(p);
+  if (!(determinant > 0)) return false;
+  const Site<Dim>& judge = densest<Dim>(corner);
+  const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
+  const double volume = judge.density * determinant;
   if constexpr (Dim == 2)
-    return 2 * std::sqrt(3.0) * judge.density * determinant / squares;
+    return 2 * std::sqrt(3.0) * volume > bar * squares;
   else
-    return 12 * std::sqrt(3.0) * judge.density * determinant / (squares * std::sqrt(squares));
+    return 432 * volume * volume > bar * bar * (squares * squares * squares);
 }
 
 /// Mean ratio from shape: 12 (3V)^(2/3) / (sum of the six squared lengths) in 3D (Liu & Joe, BIT

@@ -1,0 +1,19 @@
+/// @file
+/// atomic_mark: many threads set flags of an ordinary array. In one phase of a loop such a flag is
+/// accessed through this function only.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace ductile::runtime {
+
+/// Sets the flag to 1. Relaxed, as all write the same value: the barrier at the end of the loop
+/// orders it before whoever reads. A flag that is set already is not written, so its cache line
+/// stays shared. Thread safety: any thread.
+inline void atomic_mark(std::uint8_t& flag) {
+  const std::atomic_ref word(flag);
+  if (word.load(std::memory_order_relaxed) == 0) word.store(1, std::memory_order_relaxed);
+}
+
+}  // namespace ductile::runtime

@@ -1,0 +1,90 @@
+/// @file
+/// Base: a facet as the base of elements with different apexes. What does not depend on the apex is
+/// computed once, so that a kernel can try many apexes over one facet, or two sides of it.
+#pragma once
+
+#include <array>
+
+#include "ductile/meshadapt/quality.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+struct Base {
+  Vector<Dim>
+      normal;  ///< towards the side of the element; as long as the facet is large, twice in 3D
+  Vector<Dim> centre;
+  std::array<Vector<Dim>, Dim - 1> side;  ///< from the facet's first corner to the others
+  const Site<Dim>* judge = nullptr;       ///< its densest corner
+  double squares = 0;                     ///< sum of its squared edge lengths there, once weighed
+};
+
+/// Sum of the squared lengths of the base's edges.
+template <int Dim>
+double base_squares(const Base<Dim>& base, const Metric<Dim>& metric) {
+  if constexpr (Dim == 2)
+    return squared_length(metric, base.side[0]);
+  else
+    return squared_length(metric, base.side[0]) + squared_length(metric, base.side[1]) +
+           squared_length(metric, base.side[1] - base.side[0]);
+}
+
+/// The base whose element lies behind the facet, of which these are the corners in outward order.
+/// It is to be weighed before shapes are asked for; whether an apex is above it can be asked at
+/// once.
+template <int Dim>
+Base<Dim> make_base(const std::array<const Site<Dim>*, Dim>& corner) {
+  Base<Dim> base;
+  base.judge = corner[0];
+  Vector<Dim> sum = corner[0]->position;
+  for (std::size_t i = 1; i < Dim; ++i) {
+    base.side[i - 1] = corner[i]->position - corner[0]->position;
+    sum += corner[i]->position;
+    if (corner[i]->density > base.judge->density) base.judge = corner[i];
+  }
+  base.centre = (1.0 / Dim) * sum;
+  if constexpr (Dim == 2)
+    base.normal = {{-base.side[0][1], base.side[0][0]}};
+  else
+    base.normal = cross(base.side[1], base.side[0]);
+  return base;
+}
+
+template <int Dim>
+void weigh(Base<Dim>& base) {
+  base.squares = base_squares(base, base.judge->metric);
+}
+
+/// Twice the area, or six times the volume, of the element with this apex; negative underneath. Its
+/// sign is not certain.
+template <int Dim>
+double volume_over(const Base<Dim>& base, const Vector<Dim>& apex) {
+  return dot(base.normal, apex - base.centre);
+}
+
+/// The sum of all squared edge lengths of the element with this apex, in a metric in which those of
+/// the base sum up to `squares`: the squares of the distances from a facet's centre to its corners
+/// sum up to `squares` / Dim.
+template <int Dim>
+double squares_over(const Base<Dim>& base, const Vector<Dim>& apex, const Metric<Dim>& metric,
+                    double squares) {
+  return (Dim + 1.0) / Dim * squares + Dim * squared_length(metric, apex - base.centre);
+}
+
+/// shape() of the element with this apex over the base, or under it, but for rounding: 0 or less
+/// only says that the volume is not positive. To be confirmed by certain_determinant() before it is
+/// acted on.
+template <int Dim>
+double shape_over(const Base<Dim>& base, const Site<Dim>& apex, bool under = false) {
+  const double above = volume_over(base, apex.position);
+  const double determinant = under ? -above : above;
+  if (!(determinant > 0)) return determinant;
+  const bool apex_judges = apex.density > base.judge->density;
+  const Site<Dim>& judge = apex_judges ? apex : *base.judge;
+  const double squares =
+      squares_over(base, apex.position, judge.metric,
+                   apex_judges ? base_squares(base, judge.metric) : base.squares);
+  return shape_from<Dim>(judge.density * determinant, squares);
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,74 @@
+#include "operators/base.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using test::Random;
+using test::uniform;
+
+template <int Dim>
+Site<Dim> random_site(Random& random) {
+  std::array<double, Dim> sizes;
+  for (double& h : sizes) h = std::pow(10.0, uniform(random, -1, 1));
+  Vector<Dim> p;
+  for (int i = 0; i < Dim; ++i) p[i] = uniform(random, 0, 1);
+  return make_site(p, test::random_metric<Dim>(random, sizes));
+}
+
+template <class Dimension>
+class BaseOf : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(BaseOf, Dimensions);
+
+TYPED_TEST(BaseOf, GivesTheShapeOfTheElementOnEitherSide) {
+  constexpr int Dim = TypeParam::value;
+  Random random(21);
+  for (int trial = 0; trial < 5000; ++trial) {
+    std::array<Site<Dim>, Dim + 1> sites;
+    std::array<const Site<Dim>*, Dim + 1> element;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      sites[i] = random_site<Dim>(random);
+      element[i] = &sites[i];
+    }
+    const int apex = trial % (Dim + 1);
+    std::array<const Site<Dim>*, Dim> facet;
+    for (std::size_t k = 0; k < Dim; ++k)
+      facet[k] =
+          element[static_cast<std::size_t>(Simplex<Dim>::facet[static_cast<std::size_t>(apex)][k])];
+    Base<Dim> base = make_base<Dim>(facet);
+    weigh(base);
+    const Site<Dim>& top = sites[static_cast<std::size_t>(apex)];
+    const bool positive = shape<Dim>(element) > 0;
+    EXPECT_EQ(volume_over(base, top.position) > 0, positive);
+    EXPECT_EQ(shape_over(base, top) > 0, positive);
+    EXPECT_EQ(shape_over(base, top, true) > 0, !positive);
+    if (!positive) std::swap(element[0], element[1]);
+    EXPECT_NEAR(shape_over(base, top, !positive), shape<Dim>(element), 1e-12);
+  }
+}
+
+TYPED_TEST(BaseOf, AgreesThatAShapeIsAboveABar) {
+  constexpr int Dim = TypeParam::value;
+  Random random(22);
+  for (int trial = 0; trial < 5000; ++trial) {
+    std::array<Site<Dim>, Dim + 1> sites;
+    std::array<const Site<Dim>*, Dim + 1> element;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      sites[i] = random_site<Dim>(random);
+      element[i] = &sites[i];
+    }
+    const double value = shape<Dim>(element);
+    EXPECT_EQ(shape_above<Dim>(element, 0), value > 0);
+    if (value <= 0) continue;
+    EXPECT_TRUE(shape_above<Dim>(element, value * (1 - 1e-9)));
+    EXPECT_FALSE(shape_above<Dim>(element, value * (1 + 1e-9)));
+  }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
