@@ -99,7 +99,7 @@ std::vector<std::uint32_t> boost_core_numbers(runtime::CsrGraph<> graph) {
     boost::core_numbers(
         copy, boost::make_iterator_property_map(core_of.begin(), get(boost::vertex_index, copy)));
   });
-  std::printf("Boost.Graph, one thread%44.3f\n", seconds);
+  example::print_yardstick("Boost.Graph, one thread", seconds);
   return core_of;
 }
 

@@ -22,6 +22,11 @@ namespace example {
 
 namespace runtime = ductile::runtime;
 
+/// Prints what the same took without Ductile, or without threads, below the table of runs.
+inline void print_yardstick(const char* what, double seconds) {
+  std::printf("%-71s %6.3f\n", what, seconds);
+}
+
 /// Throws unless a result is what it should be.
 inline void require(bool as_expected, const char* what) {
   if (!as_expected) throw std::runtime_error(what);
@@ -46,14 +51,16 @@ template <class Solve>
 auto solve_at_each_thread_count(const Arguments& arguments, Solve&& solve) {
   using Result = std::invoke_result_t<Solve, runtime::Executor&, runtime::RoundsReport&>;
   std::optional<Result> first;
-  std::printf("threads  rounds     planned     applied   conflicts  seconds\n");
+  std::printf(
+      "threads  rounds  planned  applied conflicts  seconds: find   plan  apply commit  all\n");
   for (const int threads : arguments.thread_counts) {
     runtime::Executor executor({.threads = threads});
     runtime::RoundsReport report;
     std::optional<Result> result;
     const double seconds = seconds_of([&] { result = solve(executor, report); });
-    std::printf("%7d %7zu %11zu %11zu %11zu %8.3f\n", threads, report.rounds, report.planned,
-                report.applied, report.lost, seconds);
+    std::printf("%7d %7zu %8zu %8zu %9zu %14.3f %6.3f %6.3f %6.3f %6.3f\n", threads, report.rounds,
+                report.planned, report.applied, report.lost, report.conflict_seconds,
+                report.plan_seconds, report.apply_seconds, report.commit_seconds, seconds);
     require(report.left == 0, "work is left");
     require(!first || *first == *result, "the result depends on the number of threads");
     if (!first) first = std::move(result);

@@ -75,7 +75,7 @@ void compare(const example::Arguments& arguments) {
   IndependentSet serial(graph);
   const double seconds =
       example::seconds_of([&] { example::OneByOne<IndependentSet>(serial, vertices); });
-  std::printf("serial: one vertex after the other%33.3f\n", seconds);
+  example::print_yardstick("serial: one vertex after the other", seconds);
   std::printf("members: %d, serial %d\n", std::accumulate(member.begin(), member.end(), 0),
               std::accumulate(serial.member.begin(), serial.member.end(), 0));
   example::require(is_maximal_independent(graph, member), "not a maximal independent set");

@@ -138,7 +138,7 @@ std::vector<Weight> kruskal(runtime::CsrGraph<> graph) {
   std::vector<decltype(copy)::edge_descriptor> tree;
   const double seconds = example::seconds_of(
       [&] { boost::kruskal_minimum_spanning_tree(copy, std::back_inserter(tree)); });
-  std::printf("Boost.Graph, Kruskal, one thread%35.3f\n", seconds);
+  example::print_yardstick("Boost.Graph, Kruskal, one thread", seconds);
   std::vector<Weight> weights;
   for (const auto& edge : tree) weights.push_back(get(boost::edge_weight, copy, edge));
   std::sort(weights.begin(), weights.end());
