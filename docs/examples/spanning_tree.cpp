@@ -1,9 +1,8 @@
 /// @file
 /// The minimum spanning tree of a grid with random weights by contraction, Boruvka's way: every
-/// vertex looks for the lightest edge that leaves it, and the two ends become one. Each keeps the
-/// edges that leave it in a skew heap, so two heaps melt into one in logarithmic time (Sleator &
-/// Tarjan, SIAM J. Comput. 15, 1986). A contraction reserves its two ends. Compared with Kruskal's
-/// in Boost.Graph.
+/// vertex looks for the lightest edge that leaves it, and the two ends become one. Each vertex
+/// keeps the edges that leave it in a heap, and two heaps melt into one. A contraction reserves its
+/// two ends. Compared with one contraction after the other and with Kruskal's in Boost.Graph.
 
 #include <algorithm>
 #include <cstdio>
@@ -16,11 +15,11 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "example.hpp"
 #include "graphs.hpp"
+#include "skew_heaps.hpp"
 
 namespace {
 
 using example::Vertex;
-using ArcId = std::uint32_t;
 using Weight = std::uint64_t;
 namespace runtime = ductile::runtime;
 
@@ -28,6 +27,12 @@ namespace runtime = ductile::runtime;
 Weight weight_of(Vertex a, Vertex b) {
   return runtime::mix64(std::uint64_t{std::min(a, b)} << 32U | std::max(a, b));
 }
+
+struct Arc {
+  Weight weight;
+  Vertex target;  // it may have been contracted since
+  bool operator<(const Arc& other) const { return weight < other.weight; }
+};
 
 class Contraction {
  public:
@@ -44,40 +49,42 @@ class Contraction {
       : tree_edge_of(graph.vertex_count()),
         parent_of_(graph.vertex_count()),
         size_of_(graph.vertex_count(), 1),
-        heap_of_(graph.vertex_count(), none),
-        arcs_(graph.neighbour.size()) {
+        heap_of_(graph.vertex_count(), Heaps::none),
+        heaps_(graph.neighbour.size()) {
     runtime::parallel_for(executor, graph.vertex_count(), [&](std::size_t i) {
       const auto from = static_cast<Vertex>(i);
       parent_of_[from] = from;
-      for (ArcId arc = graph.offset[from]; arc < graph.offset[from + 1]; ++arc) {
-        const Vertex to = graph.neighbour[arc];
-        arcs_[arc] = {weight_of(from, to), to, none, none};
-        heap_of_[from] = melt(heap_of_[from], arc);
+      for (std::uint32_t arc = graph.offset[from]; arc < graph.offset[from + 1]; ++arc) {
+        heaps_.least(arc) = {weight_of(from, graph.neighbour[arc]), graph.neighbour[arc]};
+        heap_of_[from] = heaps_.melt(heap_of_[from], arc);
       }
     });
   }
 
-  // ---- Plan: contract the lightest edge. Reads only. ----
+  // ---- Plan: contract the lightest edge, unless the vertex is gone or has none. Reads only. ----
   std::optional<Plan> plan(Vertex vertex) const {
-    const Vertex other = nearest(vertex);
+    if (parent_of_[vertex] != vertex || heap_of_[vertex] == Heaps::none) return {};
+    const Vertex other = root(heaps_.least(heap_of_[vertex]).target);
     if (size_of_[vertex] > size_of_[other]) return Plan{vertex, other, vertex};
     return Plan{vertex, vertex, other};
   }
-  // ---- Conflict rule: both ends change. A vertex that is gone, or has no edge left, is void. ----
+  // ---- Conflict rule: both ends change ----
   void footprint(Vertex vertex, auto&& visit) const {
-    if (parent_of_[vertex] != vertex || heap_of_[vertex] == none) return;
-    visit(vertex);
-    visit(nearest(vertex));
+    const std::optional<Plan> contraction = plan(vertex);
+    if (!contraction) return;
+    visit(contraction->gone);
+    visit(contraction->kept);
   }
   std::size_t resource_count() const { return parent_of_.size(); }
   // ---- Apply: one heap out of two. Others look for `gone`, so telling them has to wait. ----
   void apply(const Plan& plan, auto& commit) {
-    tree_edge_of[plan.gone] = arcs_[heap_of_[plan.item]].weight;
-    ArcId heap = melt(heap_of_[plan.gone], heap_of_[plan.kept]);
+    tree_edge_of[plan.gone] = heaps_.least(heap_of_[plan.item]).weight;
     size_of_[plan.kept] += size_of_[plan.gone];
-    if (size_of_[plan.kept] == size_of_.size()) heap = none;  // that was the last edge
-    while (heap != none && leads_into(heap, plan)) heap = melt(arcs_[heap].left, arcs_[heap].right);
-    heap_of_[plan.kept] = heap;
+    auto& heap = heap_of_[plan.kept];
+    heap = heaps_.melt(heap, heap_of_[plan.gone]);
+    if (size_of_[plan.kept] == size_of_.size()) heap = Heaps::none;  // that was the last edge
+    while (heap != Heaps::none && leads_inside(heaps_.least(heap), plan))
+      heap = heaps_.without_least(heap);
     commit.defer(plan.gone, {plan.kept});
     if (plan.kept == plan.item) commit.wake(plan.kept);  // else it still waits for its own turn
   }
@@ -87,43 +94,22 @@ class Contraction {
   std::vector<Weight> tree_edge_of;  // [vertex], the edge by which it was contracted, or 0
 
  private:
-  struct Arc {
-    Weight weight;
-    Vertex target;  // it may have been contracted since
-    ArcId left, right;
-  };
-  static constexpr ArcId none = 0xffffffffU;
+  using Heaps = example::SkewHeaps<Arc>;
 
   /// What a vertex has become. The larger takes in the smaller, so the way there is short.
   Vertex root(Vertex vertex) const {
     while (parent_of_[vertex] != vertex) vertex = parent_of_[vertex];
     return vertex;
   }
-  Vertex nearest(Vertex vertex) const { return root(arcs_[heap_of_[vertex]].target); }
-
-  bool leads_into(ArcId arc, const Plan& plan) {
-    arcs_[arc].target = root(arcs_[arc].target);
-    return arcs_[arc].target == plan.gone || arcs_[arc].target == plan.kept;
-  }
-
-  /// One heap of two: merges their right spines and swaps the children on the way.
-  ArcId melt(ArcId a, ArcId b) {
-    ArcId top = none;
-    for (ArcId* place = &top;; place = &arcs_[*place].left) {
-      if (a == none || b == none) {
-        *place = a == none ? b : a;
-        return top;
-      }
-      if (arcs_[b].weight < arcs_[a].weight) std::swap(a, b);
-      *place = a;
-      a = std::exchange(arcs_[a].right, arcs_[a].left);
-    }
+  bool leads_inside(Arc& arc, const Plan& plan) const {
+    arc.target = root(arc.target);  // shorter next time
+    return arc.target == plan.gone || arc.target == plan.kept;
   }
 
   std::vector<Vertex> parent_of_;       // [vertex], itself unless contracted
-  std::vector<std::uint32_t> size_of_;  // [vertex], how many it has become
-  std::vector<ArcId> heap_of_;          // [vertex], the lightest arc that leaves it
-  std::vector<Arc> arcs_;               // as the graph's neighbours
+  std::vector<std::uint32_t> size_of_;  // [vertex], how many it stands for
+  std::vector<Heaps::Heap> heap_of_;    // [vertex], the arcs that leave it
+  Heaps heaps_;                         // of arcs, numbered as the graph's neighbours
 };
 
 /// The weights of the tree by Boost.Graph, ascending.
@@ -159,6 +145,11 @@ void compare(const example::Arguments& arguments) {
         report = runtime::run_rounds(executor, contraction, vertices);
         return contraction.tree_edge_of;
       });
+  const double seconds = example::seconds_of([&] {
+    Contraction contraction(runtime::Executor({.threads = 1}), graph);
+    example::OneByOne<Contraction>(contraction, vertices);
+  });
+  example::print_yardstick("serial: one contraction after the other", seconds);
   std::erase(tree, Weight{0});
   std::sort(tree.begin(), tree.end());
   std::printf("edges in the tree: %zu\n", tree.size());
