@@ -11,7 +11,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "example.hpp"
 #include "plane.hpp"
-#include "rows_of_points.hpp"
+#include "start_meshes.hpp"
 
 namespace {
 

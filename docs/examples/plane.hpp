@@ -51,6 +51,23 @@ inline bool in_circle(Point a, Point b, Point c, Point d) {
   return exact > 0;
 }
 
+inline double squared_length(Point a, Point b) {
+  return std::pow(a.x - b.x, 2) + std::pow(a.y - b.y, 2);
+}
+
+/// The centre of the circle through three points, rounded to whole numbers; if that is far outside
+/// the range of coordinates, a point on the way that is outside too.
+inline Point circle_centre(Point a, Point b, Point c) {
+  const double b_squared = squared_length(a, b), c_squared = squared_length(a, c);
+  const double scale = 0.5 / static_cast<double>(turn(a, b, c));
+  const double x = a.x + scale * ((c.y - a.y) * b_squared - (b.y - a.y) * c_squared);
+  const double y = a.y + scale * ((b.x - a.x) * c_squared - (c.x - a.x) * b_squared);
+  const auto rounded = [](double value) {
+    return static_cast<std::int32_t>(std::lround(std::clamp(value, -0x1p23, 0x1.8p24)));
+  };
+  return {rounded(x), rounded(y)};
+}
+
 /// Triangles go anticlockwise. Across the edge opposite to corner i lies neighbour i, or `outside`.
 struct Triangulation {
   std::vector<Point> points;

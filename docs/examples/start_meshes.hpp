@@ -1,6 +1,7 @@
 /// @file
-/// Random points in a square and a triangulation of them that is valid but far from Delaunay: the
-/// points are sorted into rows, and the stripe between two rows is triangulated from left to right.
+/// Triangulations to start from: random points in a square, sorted into rows, with the stripe
+/// between two rows triangulated from left to right, which is far from Delaunay; and a plate with
+/// holes.
 #pragma once
 
 #include <algorithm>
@@ -82,6 +83,29 @@ inline Triangulation rows_of_points(std::size_t n) {
     if (!below.empty()) triangulate_between(mesh, below, row);
     below = row;
   }
+  find_neighbours(mesh);
+  return mesh;
+}
+
+/// The plate has so many cells in a row, and a hole in every other one of every other row.
+constexpr std::int32_t plate_cells = 15, cell_side = 1 << 20;
+constexpr std::int64_t plate_area =
+    (plate_cells * plate_cells - (plate_cells / 2) * (plate_cells / 2)) * std::int64_t{cell_side} *
+    cell_side;
+
+/// The cells of the plate, two triangles each.
+inline Triangulation plate() {
+  Triangulation mesh;
+  for (std::int32_t y = 0; y <= plate_cells; ++y)
+    for (std::int32_t x = 0; x <= plate_cells; ++x)
+      mesh.points.push_back({x * cell_side, y * cell_side});
+  for (VertexId y = 0; y < plate_cells; ++y)
+    for (VertexId x = 0; x < plate_cells; ++x) {
+      if (x % 2 == 1 && y % 2 == 1) continue;
+      const VertexId low = y * (plate_cells + 1) + x, high = low + plate_cells + 1;
+      mesh.corners_of.push_back({low, low + 1, high + 1});
+      mesh.corners_of.push_back({low, high + 1, high});
+    }
   find_neighbours(mesh);
   return mesh;
 }
