@@ -125,8 +125,9 @@ std::vector<Weight> kruskal(runtime::CsrGraph<> graph) {
   const double seconds = example::seconds_of(
       [&] { boost::kruskal_minimum_spanning_tree(copy, std::back_inserter(tree)); });
   example::print_yardstick("Boost.Graph, Kruskal, one thread", seconds);
-  std::vector<Weight> weights;
-  for (const auto& edge : tree) weights.push_back(get(boost::edge_weight, copy, edge));
+  std::vector<Weight> weights(tree.size());
+  std::transform(tree.begin(), tree.end(), weights.begin(),
+                 [&](const auto& edge) { return get(boost::edge_weight, copy, edge); });
   std::sort(weights.begin(), weights.end());
   return weights;
 }
