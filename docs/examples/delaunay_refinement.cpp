@@ -36,6 +36,7 @@ class RefineTriangles {
     Point point;
     std::vector<TriangleId> cavity;
     std::vector<Side> sides;
+    std::vector<TriangleId> also_read;
   };
   struct Update {
     VertexId begin;  // of the edge, seen from the owner
@@ -58,23 +59,24 @@ class RefineTriangles {
     const TriangleId t = item.triangle;
     if (mesh_.corners_of[t][2] != item.last || !is_bad(t)) return {};
     const Point centre = circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
-    Plan insertion{item, centre, {}, {}};
+    Plan insertion{item, centre, {}, {}, {}};
     const std::optional<Side> in_the_way = dig(insertion, t, outside);
-    if (in_the_way) {
-      const Point a = mesh_.points[in_the_way->begin], b = mesh_.points[in_the_way->end];
-      insertion = {item, {(a.x + b.x) / 2, (a.y + b.y) / 2}, {}, {}};
-      dig(insertion, in_the_way->beyond, in_the_way->begin);
-    }
-    return insertion;
+    if (!in_the_way) return insertion;
+    const Point a = mesh_.points[in_the_way->begin], b = mesh_.points[in_the_way->end];
+    Plan halving{item, {(a.x + b.x) / 2, (a.y + b.y) / 2}, {}, {}, insertion.cavity};
+    for (const Side& side : insertion.sides) halving.also_read.push_back(side.beyond);
+    dig(halving, in_the_way->beyond, in_the_way->begin);
+    return halving;
   }
-  // ---- Conflict rule: the cavity goes, and the triangles around it get new neighbours ----
+  // ---- Conflict rule: the cavity goes, the triangles around it get new neighbours ----
   void footprint(const Item& item, auto&& visit) const {
     const std::optional<Plan> insertion = plan(item);
     if (!insertion) return;
-    visit(item.triangle);
     for (const TriangleId gone : insertion->cavity) visit(gone);
     for (const Side& side : insertion->sides)
       if (side.beyond != outside) visit(side.beyond);
+    for (const TriangleId read : insertion->also_read)
+      if (read != outside) visit(read);
   }
   std::size_t resource_count() const { return mesh_.corners_of.size(); }
   // ---- Growth: a vertex, and one or two triangles more than there were ----
