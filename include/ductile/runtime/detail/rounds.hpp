@@ -8,7 +8,6 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -169,9 +168,9 @@ class Rounds {
   }
 
   std::size_t count(const std::vector<std::uint8_t>& outcome, std::uint8_t wanted) const {
-    return parallel_reduce(
-        executor_, outcome.size(), std::size_t{0},
-        [&](std::size_t i) -> std::size_t { return outcome[i] == wanted; }, std::plus<>());
+    const auto one_if_wanted = [&](std::size_t i) -> std::size_t { return outcome[i] == wanted; };
+    const auto sum = [](std::size_t a, std::size_t b) { return a + b; };
+    return parallel_reduce(executor_, outcome.size(), std::size_t{0}, one_if_wanted, sum);
   }
 
   /// A later round always has the lower key, so reservations never have to be cleared.
