@@ -27,9 +27,9 @@ class IndependentSet {
   explicit IndependentSet(runtime::CsrGraph<> graph)
       : member(graph.vertex_count()), graph_(graph) {}
 
-  // ---- Plan: join, unless a neighbour has. Reads only. ----
+  // ---- Plan: join, unless it or a neighbour has. Reads only. ----
   std::optional<Plan> plan(Vertex vertex) const {
-    bool free = true;
+    bool free = member[vertex] == 0;
     graph_.for_each_neighbour(vertex, [&](Vertex other) { free = free && member[other] == 0; });
     return free ? std::optional(vertex) : std::nullopt;
   }
