@@ -35,13 +35,13 @@ forbid("#include .*meshadapt" "runtime knows nothing of meshadapt" include/ducti
 forbid("#include .*meshadapt" "runtime's tests build without meshadapt" tests/runtime)
 forbid("#include .*cli/" "only the program includes the program" ${below_program})
 
-set(adaptation include/ductile/meshadapt meshadapt)
-forbid("#pragma +omp|<omp\\.h>|omp_[a-z]+_" "OpenMP stays inside runtime" ${adaptation})
+set(above_runtime include/ductile/meshadapt meshadapt docs/examples)
+forbid("#pragma +omp|<omp\\.h>|omp_[a-z]+_" "OpenMP stays inside runtime" ${above_runtime})
 forbid("<(atomic|mutex|shared_mutex|thread|condition_variable|future|semaphore|barrier|latch|stop_token)>"
-  "atomics, locks and threads stay inside runtime" ${adaptation})
+  "atomics, locks and threads stay inside runtime" ${above_runtime})
 forbid("std::(atomic|mutex|shared_mutex|thread|jthread|async|call_once)|__atomic_|__sync_|pthread_"
-  "atomics, locks and threads stay inside runtime" ${adaptation})
-forbid("<(csignal|signal\\.h)>|sigaction|std::signal" "signals stay inside runtime" ${adaptation})
+  "atomics, locks and threads stay inside runtime" ${above_runtime})
+forbid("<(csignal|signal\\.h)>|sigaction|std::signal" "signals stay inside runtime" ${above_runtime})
 
 if(failures)
   message(FATAL_ERROR "layers broken:\n${failures}")

@@ -295,6 +295,40 @@ TEST(RunRounds, ThePriorityDecides) {
   EXPECT_EQ(matching.matched, expected);
 }
 
+/// Fifty items share each list, and every one appends itself once: one in fifty can win a round.
+class TakeTurns {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  explicit TakeTurns(std::size_t n) : lists(n / 50) {}
+  std::optional<Plan> plan(Vertex v) const { return v; }
+  void footprint(Vertex v, auto&& visit) const { visit(v / 50); }
+  std::size_t resource_count() const { return lists.size(); }
+  void apply(const Plan& v, Commit<TakeTurns>&) { lists[v / 50].push_back(v); }
+  void commit(std::uint32_t, const Update&) {}
+
+  std::vector<std::vector<Vertex>> lists;  // [resource]
+};
+
+TEST(RunRounds, FewerAskWhereTooFewWin) {
+  constexpr std::size_t n = 50000;
+  TakeTurns all_ask(n);
+  const RoundsReport wasteful = run_rounds(Executor({.threads = 2}), all_ask, all_items(n));
+  std::vector<std::vector<Vertex>> first;
+  for (const int threads : thread_counts) {
+    TakeTurns turns(n);
+    const RoundsReport report =
+        run_rounds(Executor({.threads = threads}), turns, all_items(n), {.least_won = 0.5});
+    EXPECT_EQ(report.applied, n);
+    EXPECT_EQ(report.left, 0U);
+    EXPECT_LT(10 * report.lost, wasteful.lost);
+    if (first.empty()) first = turns.lists;
+    EXPECT_EQ(turns.lists, first) << threads << " threads";
+  }
+}
+
 // ---- Order of commits, and what goes wrong ----
 
 /// Every item appends itself to one common list, which keeps the order.

@@ -11,6 +11,9 @@ namespace ductile::runtime {
 struct RoundsOptions {
   int most_rounds = 1000;                ///< stop there even if work is left
   CommitOrder order = CommitOrder::any;  ///< by_source if an owner's updates do not commute
+  /// Reservations: if a smaller share than this of those that asked held all, fewer ask in the next
+  /// round and the others wait their turn, which saves them planning in vain. 0: all ask always.
+  double least_won = 0;
 };
 
 /// What a run did. `planned` counts calls of plan, `applied` those that gave a plan, `lost` the

@@ -128,7 +128,8 @@ class Rounds {
       parallel_for_blocks(
           executor_, work.size(), block,
           [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) outcome[i] = reserve(work[i], i);
+            for (std::size_t i = begin; i < end; ++i)
+              outcome[i] = asks(i) ? reserve(work[i], i) : passes;
           },
           by_block);
       parallel_for_blocks(
@@ -140,12 +141,36 @@ class Rounds {
           by_block);
     }
     std::vector<Item> winners = select(work, outcome, runs);
-    std::vector<Item> rest = select(work, outcome, waits);
-    report_.lost += rest.size();
+    std::vector<Item> rest = select(work, outcome, waits | passes);
+    const std::size_t lost = rest.size() - (share_ < everyone ? count(outcome, passes) : 0);
+    report_.lost += lost;
+    adapt_share(winners.size(), lost);
     execute(winners);
     const std::vector<Item> woken = take_woken();
     rest.insert(rest.end(), woken.begin(), woken.end());
     return rest;
+  }
+
+  /// Whether the item at this position asks for its footprint in this round.
+  bool asks(std::size_t position) const {
+    if (share_ == everyone) return true;
+    return mix32(static_cast<std::uint32_t>(position) ^ (round_ * 0x85ebca6bU)) <= share_;
+  }
+
+  /// Fewer ask in the next round if too few of those that asked won, and more if most did.
+  void adapt_share(std::size_t won, std::size_t lost) {
+    const double asked = static_cast<double>(won + lost), wanted = options_.least_won * asked;
+    if (won + lost < block || static_cast<double>(won) > (asked + wanted) / 2) {
+      share_ = share_ > everyone / 2 ? everyone : 2 * share_ + 1;
+    } else if (static_cast<double>(won) < wanted) {
+      share_ /= 2;
+    }
+  }
+
+  std::size_t count(const std::vector<std::uint8_t>& outcome, std::uint8_t wanted) const {
+    const auto one_if_wanted = [&](std::size_t i) -> std::size_t { return outcome[i] == wanted; };
+    const auto sum = [](std::size_t a, std::size_t b) { return a + b; };
+    return parallel_reduce(executor_, outcome.size(), std::size_t{0}, one_if_wanted, sum);
   }
 
   /// A later round always has the lower key, so reservations never have to be cleared.
@@ -176,14 +201,14 @@ class Rounds {
     return all;
   }
 
-  /// The items with this outcome, in order.
+  /// The items with one of these outcomes, in order.
   std::vector<Item> select(const std::vector<Item>& work, const std::vector<std::uint8_t>& outcome,
                            std::uint8_t wanted) {
     std::vector<std::uint32_t> offset((work.size() + block - 1) / block);
     parallel_for_blocks(
         executor_, work.size(), block,
         [&](std::size_t b, std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) offset[b] += outcome[i] == wanted;
+          for (std::size_t i = begin; i < end; ++i) offset[b] += (outcome[i] & wanted) != 0;
         },
         by_block);
     std::vector<Item> selected(exclusive_scan<std::uint32_t>(executor_, offset));
@@ -192,7 +217,7 @@ class Rounds {
         [&](std::size_t b, std::size_t begin, std::size_t end) {
           std::uint32_t at = offset[b];
           for (std::size_t i = begin; i < end; ++i)
-            if (outcome[i] == wanted) selected[at++] = work[i];
+            if ((outcome[i] & wanted) != 0) selected[at++] = work[i];
         },
         by_block);
     return selected;
@@ -283,7 +308,8 @@ class Rounds {
   }
 
   static constexpr std::uint32_t absent = 0xffffffffU;
-  static constexpr std::uint8_t gone = 0, waits = 1, runs = 2;
+  static constexpr std::uint8_t gone = 0, waits = 1, runs = 2, passes = 4;
+  static constexpr std::uint32_t everyone = 0xffffffffU;
 
   const Executor& executor_;
   Op& op_;
@@ -298,7 +324,8 @@ class Rounds {
   std::vector<std::uint64_t> reserved_;  // [resource], the lowest key that asked
   std::vector<std::uint32_t> ticket_of_;  // [position], racing mode: order of arrival
   std::uint32_t ticket_ = 0;
-  std::vector<std::optional<Plan>> plans_;                  // [position in the batch]
+  std::uint32_t share_ = everyone;          // who has a hash up to this asks, reservation only
+  std::vector<std::optional<Plan>> plans_;  // [position in the batch]
   std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block of the batch][kind]
   std::vector<std::uint32_t> applied_of_;                   // [block of the batch]
 };

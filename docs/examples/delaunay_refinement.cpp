@@ -1,0 +1,195 @@
+/// @file
+/// Delaunay refinement of a plate with square holes (Ruppert, J. Algorithms 18, 1995): the centre
+/// of a bad triangle's circle becomes a vertex, and the triangles whose circles hold it, the
+/// cavity, are replaced by triangles around it; a boundary edge in its way is halved instead. An
+/// insertion reserves its cavity and the triangles around that. Compared with one after the other.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "ductile/runtime/run_rounds.hpp"
+#include "example.hpp"
+#include "plane.hpp"
+#include "start_meshes.hpp"
+
+namespace {
+
+using namespace example;
+
+class RefineTriangles {
+ public:
+  // ---- What it works on: a triangle, for as long as it has the last corner that it has now ----
+  struct Item {
+    TriangleId triangle;
+    VertexId last;
+    friend auto operator<=>(const Item&, const Item&) = default;
+  };
+  struct Side {  // of a cavity, anticlockwise, and the triangle beyond
+    VertexId begin, end;
+    TriangleId beyond;
+  };
+  struct Plan {
+    Item item;
+    Point point;
+    std::vector<TriangleId> cavity;
+    std::vector<Side> sides;
+    std::vector<TriangleId> also_read;
+  };
+  struct Update {
+    VertexId begin;  // of the edge, seen from the owner
+    TriangleId now;
+  };
+
+  RefineTriangles(Triangulation& mesh, double size) : mesh_(mesh), size_(size) {}
+
+  /// Too large, or with an angle below 20.7 degrees: the radius is over sqrt(2) shortest edges.
+  bool is_bad(TriangleId t) const {
+    const Point a = mesh_.corner(t, 0), b = mesh_.corner(t, 1), c = mesh_.corner(t, 2);
+    const double ab = squared_length(a, b), bc = squared_length(b, c), ca = squared_length(c, a);
+    const double radius_squared =
+        ab * bc * ca / (4 * std::pow(static_cast<double>(turn(a, b, c)), 2));
+    return radius_squared > 2 * std::min({ab, bc, ca}) || radius_squared > std::pow(size_, 2);
+  }
+
+  // ---- Plan: the cavity of the circle's centre, or of the middle of an edge. Reads only. ----
+  std::optional<Plan> plan(const Item& item) const {
+    const TriangleId t = item.triangle;
+    if (mesh_.corners_of[t][2] != item.last || !is_bad(t)) return {};
+    const Point centre = circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
+    Plan insertion{item, centre, {}, {}, {}};
+    const std::optional<Side> in_the_way = dig(insertion, t, outside);
+    if (!in_the_way) return insertion;
+    const Point a = mesh_.points[in_the_way->begin], b = mesh_.points[in_the_way->end];
+    Plan halving{item, {(a.x + b.x) / 2, (a.y + b.y) / 2}, {}, {}, insertion.cavity};
+    for (const Side& side : insertion.sides) halving.also_read.push_back(side.beyond);
+    dig(halving, in_the_way->beyond, in_the_way->begin);
+    return halving;
+  }
+  // ---- Conflict rule: the cavity goes, the triangles around it get new neighbours ----
+  void footprint(const Item& item, auto&& visit) const {
+    const std::optional<Plan> insertion = plan(item);
+    if (!insertion) return;
+    for (const TriangleId gone : insertion->cavity) visit(gone);
+    for (const Side& side : insertion->sides)
+      if (side.beyond != outside) visit(side.beyond);
+    for (const TriangleId read : insertion->also_read)
+      if (read != outside) visit(read);
+  }
+  std::size_t resource_count() const { return mesh_.corners_of.size(); }
+  // ---- Growth: a vertex, and one or two triangles more than there were ----
+  std::array<std::uint32_t, 2> demand(const Plan& insertion) const {
+    return {1, static_cast<std::uint32_t>(insertion.sides.size() - insertion.cavity.size())};
+  }
+  std::array<std::uint32_t, 2> grow(const std::array<std::uint32_t, 2>& more) {
+    const std::array<std::size_t, 2> first{mesh_.points.size(), mesh_.corners_of.size()};
+    mesh_.points.resize(first[0] + more[0]);
+    mesh_.corners_of.resize(first[1] + more[1]);
+    mesh_.neighbours_of.resize(first[1] + more[1]);
+    return {static_cast<std::uint32_t>(first[0]), static_cast<std::uint32_t>(first[1])};
+  }
+  // ---- Apply: a triangle on each side of the cavity; wake those that are bad ----
+  void apply(const Plan& insertion, auto& commit) {
+    const VertexId vertex = commit.fresh(0);
+    mesh_.points[vertex] = insertion.point;
+    const auto& sides = insertion.sides;
+    std::vector<TriangleId> triangles = insertion.cavity;
+    while (triangles.size() < sides.size()) triangles.push_back(commit.fresh(1));
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      const Side& side = sides[i];
+      mesh_.corners_of[triangles[i]] = {side.begin, side.end, vertex};
+      mesh_.neighbours_of[triangles[i]] = {outside, outside, side.beyond};
+      if (side.beyond != outside) commit.defer(side.beyond, {side.end, triangles[i]});
+      for (std::size_t j = 0; j < sides.size(); ++j) {
+        if (sides[j].begin == side.end) mesh_.neighbours_of[triangles[i]][0] = triangles[j];
+        if (sides[j].end == side.begin) mesh_.neighbours_of[triangles[i]][1] = triangles[j];
+      }
+      if (is_bad(triangles[i])) commit.wake({triangles[i], vertex});
+    }
+    commit.wake(insertion.item);
+  }
+  // ---- Commit: a triangle has another neighbour ----
+  void commit(TriangleId owner, const Update& update) {
+    const std::size_t begin = place_of(update.begin, mesh_.corners_of[owner]);
+    mesh_.neighbours_of[owner][(begin + 2) % 3] = update.now;
+  }
+
+ private:
+  /// Fills in the cavity around a plan's point and its sides, without the boundary edge that begins
+  /// at `halved`. Returns, with the triangle on this side of it, a boundary edge of which the point
+  /// is beyond, or inside the circle on it.
+  std::optional<Side> dig(Plan& insertion, TriangleId start, VertexId halved) const {
+    std::vector<TriangleId>& cavity = insertion.cavity;
+    cavity.push_back(start);
+    for (std::size_t k = 0; k < cavity.size(); ++k) {
+      const TriangleId t = cavity[k];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const TriangleId other = mesh_.neighbours_of[t][i];
+        if (std::find(cavity.begin(), cavity.end(), other) != cavity.end()) continue;
+        const VertexId begin = mesh_.corners_of[t][(i + 1) % 3];
+        const VertexId end = mesh_.corners_of[t][(i + 2) % 3];
+        if (other == outside) {
+          if (begin == halved) continue;
+          if (halved == outside && is_in_the_way(begin, end, insertion.point))
+            return Side{begin, end, t};
+        } else if (in_circle(mesh_.corner(other, 0), mesh_.corner(other, 1), mesh_.corner(other, 2),
+                             insertion.point)) {
+          cavity.push_back(other);
+          continue;
+        }
+        insertion.sides.push_back({begin, end, other});
+      }
+    }
+    return {};
+  }
+
+  bool is_in_the_way(VertexId begin, VertexId end, Point point) const {
+    const Point a = mesh_.points[begin], b = mesh_.points[end];
+    const std::int64_t across = std::int64_t{a.x - point.x} * (b.x - point.x) +
+                                std::int64_t{a.y - point.y} * (b.y - point.y);
+    return across < 0 || turn(a, b, point) <= 0;
+  }
+
+  Triangulation& mesh_;
+  double size_;  // no triangle's circle has a greater radius
+};
+
+/// It still covers the plate, is Delaunay, and has no bad triangle.
+bool is_refined(const Triangulation& mesh, const RefineTriangles& refine) {
+  for (TriangleId t = 0; t < mesh.corners_of.size(); ++t)
+    if (refine.is_bad(t)) return false;
+  return delaunay_area(mesh) == 2 * plate_area;
+}
+
+void compare(const Arguments& arguments) {
+  const Triangulation start = plate();
+  // About as many triangles as asked for: that was measured.
+  const double size = plate_cells * cell_side / std::sqrt(static_cast<double>(arguments.size));
+  std::vector<RefineTriangles::Item> triangles;
+  for (TriangleId t = 0; t < start.corners_of.size(); ++t)
+    triangles.push_back({t, start.corners_of[t][2]});
+  std::printf("Delaunay refinement of %zu triangles\n", triangles.size());
+  Triangulation mesh = solve_at_each_thread_count(
+      arguments, [&](const runtime::Executor& executor, runtime::RoundsReport& report) {
+        Triangulation refined = start;
+        RefineTriangles refine(refined, size);
+        report = runtime::run_rounds(executor, refine, triangles,
+                                     {.most_rounds = 100000, .least_won = 0.5});
+        return refined;
+      });
+  Triangulation serial = start;
+  RefineTriangles refine(serial, size);
+  print_yardstick("serial: one insertion after the other",
+                  seconds_of([&] { OneByOne<RefineTriangles>(refine, triangles); }));
+  std::printf("triangles: %zu, serial %zu\n", mesh.corners_of.size(), serial.corners_of.size());
+  require(is_refined(serial, refine), "the serial mesh is not as it should be");
+  require(is_refined(mesh, RefineTriangles(mesh, size)), "the mesh is not as it should be");
+}
+
+}  // namespace
+
+int main(int argument_count, char** argument) {
+  return run(argument_count, argument, 100000, compare);
+}

@@ -1,0 +1,120 @@
+/// @file
+/// What the examples of the runtime share, and no part of Ductile: arguments, a table of runs at
+/// several thread counts whose results must be identical, and a driver without any parallelism.
+///   PROGRAM [SIZE [THREADS...]]
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace example {
+
+namespace runtime = ductile::runtime;
+
+/// Prints what the same took without Ductile, or without threads, below the table of runs.
+inline void print_yardstick(const char* what, double seconds) {
+  std::printf("%-71s %6.3f\n", what, seconds);
+}
+
+/// Throws unless a result is what it should be.
+inline void require(bool as_expected, const char* what) {
+  if (!as_expected) throw std::runtime_error(what);
+}
+
+/// How long f() takes, in seconds.
+template <class F>
+double seconds_of(F&& f) {
+  const auto start = std::chrono::steady_clock::now();
+  f();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Arguments {
+  std::size_t size;
+  std::vector<int> thread_counts{1, 2, 3, 4, 8};
+};
+
+/// Calls solve(executor, report) at each thread count and prints a line for each. Throws unless
+/// all results are equal; returns the result.
+template <class Solve>
+auto solve_at_each_thread_count(const Arguments& arguments, Solve&& solve) {
+  using Result = std::invoke_result_t<Solve, runtime::Executor&, runtime::RoundsReport&>;
+  std::optional<Result> first;
+  std::printf(
+      "threads  rounds  planned  applied conflicts  seconds: find   plan  apply commit  all\n");
+  for (const int threads : arguments.thread_counts) {
+    runtime::Executor executor({.threads = threads});
+    runtime::RoundsReport report;
+    std::optional<Result> result;
+    const double seconds = seconds_of([&] { result = solve(executor, report); });
+    std::printf("%7d %7zu %8zu %8zu %9zu %14.3f %6.3f %6.3f %6.3f %6.3f\n", threads, report.rounds,
+                report.planned, report.applied, report.lost, report.conflict_seconds,
+                report.plan_seconds, report.apply_seconds, report.commit_seconds, seconds);
+    require(report.left == 0, "work is left");
+    require(!first || *first == *result, "the result depends on the number of threads");
+    if (!first) first = std::move(result);
+  }
+  return *std::move(first);
+}
+
+/// Runs an operator one item at a time, the last woken first, and writes at once what it defers:
+/// the serial algorithm, to compare with.
+template <class Op>
+class OneByOne {
+ public:
+  using Item = typename Op::Item;
+
+  OneByOne(Op& op, std::vector<Item> work) : op_(op), work_(std::move(work)) {
+    while (!work_.empty()) {
+      const Item item = work_.back();
+      work_.pop_back();
+      const std::optional<typename Op::Plan> plan = op_.plan(item);
+      if (!plan) continue;
+      if constexpr (runtime::GrowingOperator<Op>) {
+        for (const std::uint32_t first : op_.grow(op_.demand(*plan))) next_.push_back(first);
+      }
+      op_.apply(*plan, *this);
+      next_.clear();
+    }
+  }
+
+  void defer(std::uint32_t owner, const typename Op::Update& update) { op_.commit(owner, update); }
+  void wake(Item item) { work_.push_back(item); }
+  std::uint32_t fresh(std::size_t kind = 0) { return next_[kind]++; }
+
+ private:
+  Op& op_;
+  std::vector<Item> work_;
+  std::vector<std::uint32_t> next_;  // [kind], the next new number
+};
+
+/// Calls body(arguments); returns what main() should: 1 and a message if it throws.
+template <class Body>
+int run(int argument_count, char** argument, std::size_t usual_size, Body&& body) {
+  try {
+    Arguments arguments{usual_size};
+    if (argument_count > 1) arguments.size = std::strtoull(argument[1], nullptr, 10);
+    require(arguments.size >= 10, "SIZE is a number, at least 10");
+    if (argument_count > 2) arguments.thread_counts.clear();
+    for (int i = 2; i < argument_count; ++i)
+      arguments.thread_counts.push_back(std::atoi(argument[i]));
+    body(arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", argument[0], error.what());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace example
