@@ -64,6 +64,16 @@ concept RankedOperator = requires(const Op& op, const typename Op::Item item) {
   { op.priority(item) } -> std::convertible_to<std::uint8_t>;
 };
 
+/// An operator that tells a Recording what an item costs, in nanoseconds, instead of having it
+/// timed: plan_cost(item), apply_cost(plan), or both.
+template <class Op>
+concept CostedOperator = requires(const Op& op, const typename Op::Item item) {
+  { op.plan_cost(item) } -> std::convertible_to<double>;
+}
+|| requires(const Op& op, const typename Op::Plan plan) {
+  { op.apply_cost(plan) } -> std::convertible_to<double>;
+};
+
 namespace detail {
 
 template <class Op>
