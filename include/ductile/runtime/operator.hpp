@@ -21,6 +21,13 @@ namespace ductile::runtime {
 template <class Op>
 class Commit;
 
+namespace detail {
+template <class Op>
+class OperatorCheck;
+template <class Op>
+class OppositeOrder;
+}  // namespace detail
+
 /// What any operator provides. `plan` and the conflict members only read; `apply` writes what the
 /// item owns and defers every other write; `commit` carries one deferred write out, on behalf of
 /// the owner of what it changes. All are called by many threads.
@@ -120,8 +127,10 @@ class Commit {
   std::uint32_t fresh(std::size_t kind = 0) { return next_[kind]++; }
 
  private:
-  template <class>
+  template <class, class>
   friend class Rounds;
+  friend class detail::OperatorCheck<Op>;
+  friend class detail::OppositeOrder<Op>;
   DeferredUpdate<Update>* deferred_ = nullptr;
   Worklist<Item>* woken_ = nullptr;
   std::vector<std::uint32_t>* woken_at_ = nullptr;       // [item], the round it was last woken in

@@ -24,7 +24,12 @@
 
 namespace ductile::runtime {
 
-template <class Op>
+/// Instead of detail::OperatorCheck: nothing is checked.
+struct NoCheck {
+  static constexpr bool on = false;
+};
+
+template <class Op, class Check = NoCheck>
 class Rounds {
  public:
   using Item = typename Op::Item;
@@ -43,6 +48,7 @@ class Rounds {
       round_ = static_cast<std::uint32_t>(round);
       ++report_.rounds;
       if (recording_ != nullptr) recording_->begin_round();
+      if constexpr (Check::on) check_.begin_round(op_, round_, work);
       if constexpr (ColouredOperator<Op>) {
         work = coloured_round(std::move(work));
       } else {
@@ -71,6 +77,7 @@ class Rounds {
     for (turn_ = 0; turn_ < classes.size(); ++turn_) {
       drop_woken(classes[turn_]);
       execute(classes[turn_]);
+      if constexpr (Check::on) check_waiting(classes);
     }
     parallel_for(executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; });
     return take_woken();
@@ -105,6 +112,12 @@ class Rounds {
     if constexpr (requires { Op::keeps_conflicts; }) return;
     const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
     report_.dropped += std::erase_if(members, [&](Item item) { return woken_at_[item] == round_; });
+  }
+
+  void check_waiting(const std::vector<std::vector<Item>>& classes) {
+    for (std::size_t turn = turn_ + 1; turn < classes.size(); ++turn)
+      for (const Item item : classes[turn])
+        if (woken_at_[item] != round_) check_.expect_kept(op_, item);
   }
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
@@ -209,6 +222,7 @@ class Rounds {
           },
           by_block);
     }
+    if constexpr (Check::on) return apply_checked(batch);
     {
       const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
       apply_plans();
@@ -241,6 +255,24 @@ class Rounds {
         },
         by_block);
     for (const std::uint32_t applied : applied_of_) report_.applied += applied;
+  }
+
+  void apply_checked(const std::vector<Item>& batch) {
+    first_of_.assign((batch.size() + block - 1) / block, {});
+    if constexpr (kinds > 0) number_new_things();
+    std::vector<Commit<Op>> commits(batch.size());
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      commits[i] = new_commit();
+      commits[i].source_ = i;
+      commits[i].next_ = first_of_[i / block];
+      if (!plans_[i]) continue;
+      ++report_.applied;
+      if constexpr (kinds > 0) {
+        const auto demand = op_.demand(*plans_[i]);
+        for (std::size_t k = 0; k < kinds; ++k) first_of_[i / block][k] += demand[k];
+      }
+    }
+    check_.run_batch(op_, batch, plans_, commits, deferred_, options_.order);
   }
 
   /// Sets first_of_ to the first new number of each kind for each block of the batch.
@@ -296,6 +328,10 @@ class Rounds {
     const PhaseTimer timer(report_.wake_seconds, executor_, Phase::wake);
     woken_.collect();
     report_.woken += woken_.size();
+    if constexpr (Check::on) {
+      const auto items = woken_.items();
+      check_.end_round(op_, {items.begin(), items.end()});
+    }
     return woken_.take();
   }
 
@@ -305,6 +341,7 @@ class Rounds {
   const Executor& executor_;
   Op& op_;
   RoundsOptions options_;
+  [[no_unique_address]] Check check_;
   RoundsReport report_;
   Recording* recording_;  // null but for replays
   DeferredUpdate<typename Op::Update> deferred_;
