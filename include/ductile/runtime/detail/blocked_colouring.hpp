@@ -76,7 +76,7 @@ class BlockedRun {
                    {.grain = 1});
     find_losers();
     losers_.collect();
-    colour_by_priority(executor_, graph_, losers_.take(), colours_);
+    colour_by_priority(executor_, graph_, losers_.take(), colours_, outranks);
   }
 
  private:

@@ -18,7 +18,7 @@
 
 namespace ductile::runtime::detail {
 
-/// Vertices, in ascending order: all below `count`, or those listed.
+/// Vertices: all below `count`, or those listed; in ascending order unless a method takes any.
 struct VertexSet {
   std::size_t count;
   const std::uint32_t* list = nullptr;
