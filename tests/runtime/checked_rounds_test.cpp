@@ -56,7 +56,6 @@ class Bypass {
     int reach = 3;
     bool wakes_back = true, wakes_ahead = true, wakes_itself = true;
     bool symmetric = true, in_range = true, plans_only_read = true;
-    friend bool operator==(const Faults&, const Faults&) = default;
   };
   static constexpr Vertex length = 10;
 
