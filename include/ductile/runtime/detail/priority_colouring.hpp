@@ -21,18 +21,24 @@
 
 namespace ductile::runtime::detail {
 
-inline bool outranks(std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); }
+/// An object and not a function, so that it is inlined where it is handed on.
+constexpr auto outranks = [](std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); };
 
 /// Colours v unless it has to wait for a neighbour; false then. `before(u, v)` is a strict order.
 template <class Word, Graph G, class Before>
 bool colour_in_turn(const G& graph, std::uint32_t v, const Colours<Word>& colours,
                     const Before& before) {
   bool waits = false;
+  TakenColours<Word> seen;
   graph.for_each_neighbour(v, [&](std::uint32_t u) {
-    waits = waits || (colours[u] == Colours<Word>::waiting && before(u, v));
+    const Word colour = colours[u];
+    if (colour == Colours<Word>::waiting) [[unlikely]]
+      waits = waits || before(u, v);
+    seen.add(colour);
   });
-  if (!waits) colours.set(v, least_free(graph, v, colours));
-  return !waits;
+  if (waits) return false;
+  colours.set(v, least_free(graph, v, colours, seen, [](std::uint32_t) { return true; }));
+  return true;
 }
 
 /// Takes the colours of `vertices` away and gives them new ones.
