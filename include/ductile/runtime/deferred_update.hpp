@@ -149,7 +149,7 @@ class DeferredUpdate {
   static void append(Lane& lane, std::uint32_t number, ChunkList<Entry>& bucket, Entry&& entry) {
     if (bucket.full()) [[unlikely]]
       make_room(lane, number, bucket);
-    bucket.append(std::move(entry));
+    bucket.append(std::forward<Entry>(entry));
   }
 
   /// Not inlined, so as to keep the caller's loop tight.

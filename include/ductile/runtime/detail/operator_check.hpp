@@ -49,9 +49,16 @@ class OperatorCheck {
              "its plan changed while it waited for its turn, and nobody woke or disturbed it");
   }
 
-  /// Applies and commits the plans of a batch one after the other; commits[i] is for plans[i].
-  void run_batch(Op& op, const std::vector<Item>& batch, std::vector<std::optional<Plan>>& plans,
-                 std::vector<Commit<Op>>& commits, Deferred& deferred, CommitOrder order) {
+  /// plans[i] and commits[i] belong to items[i].
+  struct Batch {
+    const std::vector<Item>& items;
+    const std::vector<std::optional<Plan>>& plans;
+    std::vector<Commit<Op>>& commits;
+  };
+
+  /// Applies and commits the plans of a batch one after the other.
+  void run_batch(Op& op, const Batch& run, Deferred& deferred, CommitOrder order) {
+    const auto& [batch, plans, commits] = run;
     const OppositeOrder<Op> opposite(op, plans, commits, order);
     for (std::size_t i = 0; i < batch.size(); ++i)
       expect_plan_only_reads(op, batch[i], i, plans[i]);

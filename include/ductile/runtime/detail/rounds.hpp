@@ -272,7 +272,7 @@ class Rounds {
         for (std::size_t k = 0; k < kinds; ++k) first_of_[i / block][k] += demand[k];
       }
     }
-    check_.run_batch(op_, batch, plans_, commits, deferred_, options_.order);
+    check_.run_batch(op_, {batch, plans_, commits}, deferred_, options_.order);
   }
 
   /// Sets first_of_ to the first new number of each kind for each block of the batch.
