@@ -4,14 +4,19 @@ namespace ductile::runtime {
 
 RoundsReport& RoundsReport::operator+=(const RoundsReport& other) {
   rounds += other.rounds;
+  batches += other.batches;
   planned += other.planned;
   applied += other.applied;
   lost += other.lost;
+  dropped += other.dropped;
+  committed += other.committed;
+  woken += other.woken;
   left += other.left;
   conflict_seconds += other.conflict_seconds;
   plan_seconds += other.plan_seconds;
   apply_seconds += other.apply_seconds;
   commit_seconds += other.commit_seconds;
+  wake_seconds += other.wake_seconds;
   return *this;
 }
 

@@ -32,6 +32,48 @@ void count_items(benchmark::State& state, std::size_t items) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(items));
 }
 
+/// Writes what an item brings to a place of its own: what no buffer can avoid.
+template <class Bytes, class Make>
+void private_array(benchmark::State& state, Make&& make) {
+  const Executor executor({.threads = static_cast<int>(state.range(0))});
+  std::vector<Bytes> array(owners);
+  for (auto _ : state) {
+    parallel_for(executor, owners, [&](std::size_t i) { array[i] = make(i); });
+    benchmark::DoNotOptimize(array.data());
+    benchmark::ClobberMemory();
+  }
+  count_items(state, owners);
+}
+
+struct Deferred {
+  std::uint32_t owner, update;
+};
+
+void private_updates(benchmark::State& state) {
+  private_array<Deferred>(state, [](std::size_t i) {
+    return Deferred{owner_of(i), static_cast<std::uint32_t>(i)};
+  });
+}
+BENCHMARK(private_updates)->Apply(thread_counts);
+
+void private_items(benchmark::State& state) { private_array<std::uint32_t>(state, owner_of); }
+BENCHMARK(private_items)->Apply(thread_counts);
+
+/// Without the commit.
+void defer_only(benchmark::State& state, CommitOrder order) {
+  const Executor executor({.threads = static_cast<int>(state.range(0))});
+  DeferredUpdate<std::uint32_t> deferred(executor, {.order = order});
+  for (auto _ : state) {
+    parallel_for(executor, owners, [&](std::size_t i) {
+      deferred.defer(owner_of(i), i, static_cast<std::uint32_t>(i));
+    });
+    deferred.clear();
+  }
+  count_items(state, owners);
+}
+BENCHMARK_CAPTURE(defer_only, any, CommitOrder::any)->Apply(thread_counts);
+BENCHMARK_CAPTURE(defer_only, by_source, CommitOrder::by_source)->Apply(thread_counts);
+
 void deferred_update(benchmark::State& state, CommitOrder order) {
   const Executor executor({.threads = static_cast<int>(state.range(0))});
   DeferredUpdate<std::uint32_t> deferred(executor, {.order = order});
@@ -71,6 +113,18 @@ void worklist(benchmark::State& state, WorkOrder order) {
 }
 BENCHMARK_CAPTURE(worklist, arrival, WorkOrder::arrival)->Apply(thread_counts);
 BENCHMARK_CAPTURE(worklist, by_item, WorkOrder::by_item)->Apply(thread_counts);
+
+/// Without making the items contiguous.
+void publish_only(benchmark::State& state) {
+  const Executor executor({.threads = static_cast<int>(state.range(0))});
+  Worklist<std::uint32_t> list(executor, {.order = WorkOrder::arrival});
+  for (auto _ : state) {
+    parallel_for(executor, owners, [&](std::size_t i) { list.append(owner_of(i)); });
+    list.clear();
+  }
+  count_items(state, owners);
+}
+BENCHMARK(publish_only)->Apply(thread_counts);
 
 void push_back(benchmark::State& state) {
   std::vector<std::uint32_t> list;

@@ -89,6 +89,18 @@ void coloured(benchmark::State& state, const Rows& graph, ColouringMethod method
   report(state, graph, colouring);
 }
 
+/// Recolours vertices scattered at random, `per_mille` of all.
+void recoloured(benchmark::State& state, const Rows& graph, std::uint32_t per_mille) {
+  const Executor executor({.threads = static_cast<int>(state.range(0))});
+  Colouring colouring = colour(executor, graph.view());
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t v = 0; v < colouring.colour_of.size(); ++v)
+    if (mix64(v) % 1000 < per_mille) some.push_back(v);
+  for (auto _ : state) recolour(executor, graph.view(), some, colouring);
+  if (!is_proper(executor, graph.view(), colouring)) state.SkipWithError("not a colouring");
+  report(state, graph, colouring);
+}
+
 /// Reads a byte of every neighbour and writes one: what no colouring can avoid.
 void swept(benchmark::State& state, const Rows& graph) {
   const Executor executor({.threads = static_cast<int>(state.range(0))});
@@ -124,6 +136,10 @@ void register_graph(const std::string& name, Rows made) {
     finish(benchmark::RegisterBenchmark(
         (name + "/" + label).c_str(),
         [&graph, method = method](benchmark::State& s) { coloured(s, graph, method); }));
+  for (const std::uint32_t share : {1U, 10U})
+    finish(benchmark::RegisterBenchmark(
+        (name + "/recolour/per_mille:" + std::to_string(share)).c_str(),
+        [&graph, share](benchmark::State& s) { recoloured(s, graph, share); }));
 }
 
 }  // namespace

@@ -12,9 +12,10 @@
 namespace ductile::runtime {
 namespace {
 
-constexpr ColouringMethod methods[] = {ColouringMethod::automatic,    ColouringMethod::serial,
-                                       ColouringMethod::by_priority,  ColouringMethod::blocked,
-                                       ColouringMethod::detect_again, ColouringMethod::two_phase};
+constexpr ColouringMethod methods[] = {
+    ColouringMethod::automatic,     ColouringMethod::serial,           ColouringMethod::by_priority,
+    ColouringMethod::blocked,       ColouringMethod::detect_again,     ColouringMethod::two_phase,
+    ColouringMethod::largest_first, ColouringMethod::largest_log_first};
 
 std::uint32_t greatest_degree(const test::TestGraph& graph) {
   std::uint32_t greatest = 0;
@@ -39,7 +40,8 @@ TEST(Colouring, GivesNeighboursDifferentColours) {
 TEST(Colouring, IsTheSameAtAnyThreadCountUnlessItSpeculates) {
   for (const auto& graph : test::test_graphs())
     for (const ColouringMethod method :
-         {ColouringMethod::automatic, ColouringMethod::serial, ColouringMethod::by_priority}) {
+         {ColouringMethod::automatic, ColouringMethod::serial, ColouringMethod::by_priority,
+          ColouringMethod::largest_first, ColouringMethod::largest_log_first}) {
       const Colouring first = colour(Executor({.threads = 1}), graph.view(), method);
       for (int threads : {2, 3, 4, 8})
         EXPECT_EQ(colour(Executor({.threads = threads}), graph.view(), method).colour_of,
@@ -68,14 +70,19 @@ TEST(Colouring, NeedsFewColoursOnAMesh) {
 TEST(Colouring, OfTheSquareSeparatesVerticesTwoEdgesApart) {
   const auto mesh = test::shuffled(test::mesh_graph(80), 3);
   const CsrGraph<> rows = mesh.view();
-  const Executor executor({.threads = 3});
-  const Colouring colouring = colour(executor, SquareGraph(rows));
-  for (std::uint32_t v = 0; v < rows.vertex_count(); ++v) {
-    std::vector<std::uint32_t> around{colouring.colour_of[v]};
-    rows.for_each_neighbour(v, [&](std::uint32_t u) { around.push_back(colouring.colour_of[u]); });
-    std::sort(around.begin(), around.end());
-    EXPECT_EQ(std::adjacent_find(around.begin(), around.end()), around.end());
-  }
+  for (const ColouringMethod method : methods)
+    for (int threads : {1, 3}) {
+      const Executor executor({.threads = threads});
+      const Colouring colouring = colour(executor, SquareGraph(rows), method);
+      EXPECT_TRUE(is_proper(executor, SquareGraph(rows), colouring));
+      for (std::uint32_t v = 0; v < rows.vertex_count(); ++v) {
+        std::vector<std::uint32_t> around{colouring.colour_of[v]};
+        rows.for_each_neighbour(v,
+                                [&](std::uint32_t u) { around.push_back(colouring.colour_of[u]); });
+        std::sort(around.begin(), around.end());
+        EXPECT_EQ(std::adjacent_find(around.begin(), around.end()), around.end());
+      }
+    }
 }
 
 /// The vertices of a graph whose hash leaves a remainder below `share` of 16.

@@ -112,6 +112,7 @@ class Bypass {
   }
   /// Three vertices apart at most: what is read or changed for one, and whom it wakes.
   void conflicts(Vertex v, auto&& visit) const {
+    if (gone[v]) return;
     Vertex forward = v, back = v;
     for (int step = 0; step < 3; ++step) {
       if (forward != nobody) forward = next[forward];

@@ -22,15 +22,17 @@
 namespace ductile::runtime {
 
 enum class ColouringMethod {
-  automatic,     ///< the fastest that keeps the executor's promise about determinism
-  serial,        ///< first-fit in vertex order on the calling thread
-  blocked,       ///< strided blocks side by side, clashes repaired by priority; deterministic
-  by_priority,   ///< hashed priority decides who waits for whom; deterministic, a yardstick
-                 ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
-  detect_again,  ///< speculate; detect and recolour at once, one barrier a round
-                 ///< (Rokos, Gorman, Kelly, Euro-Par 2015)
-  two_phase,     ///< speculate; colour, then detect, a barrier after each
-                 ///< (Catalyurek et al., Parallel Computing 38, 2012)
+  automatic,          ///< the fastest that keeps the executor's promise about determinism
+  serial,             ///< first-fit in vertex order on the calling thread
+  blocked,            ///< strided blocks side by side, clashes repaired by priority; deterministic
+  by_priority,        ///< hashed priority decides who waits for whom; deterministic, a yardstick
+                      ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
+  largest_first,      ///< by_priority, but greater degrees go first: fewer colours, longer chains
+  largest_log_first,  ///< by_priority, greater logarithms of degrees first: a compromise
+  detect_again,       ///< speculate; detect and recolour at once, one barrier a round
+                      ///< (Rokos, Gorman, Kelly, Euro-Par 2015)
+  two_phase,          ///< speculate; colour, then detect, a barrier after each
+                      ///< (Catalyurek et al., Parallel Computing 38, 2012)
 };
 
 struct Colouring {
@@ -46,11 +48,12 @@ constexpr std::size_t few_vertices = 4096;  // coloured on the caller, in order
 
 /// Runs a method with colours of one byte or, if there are too many, of four.
 template <class Method, Graph G>
-void colour_all(const Executor& executor, const G& graph, std::vector<std::uint32_t>& colour_of) {
+void colour_all(const Executor& executor, const G& graph, std::vector<std::uint32_t>& colour_of,
+                const std::uint32_t* list = nullptr) {
   const std::size_t n = colour_of.size();
   try {
     std::vector<std::uint8_t> bytes(n, Colours<std::uint8_t>::none);
-    Method::run(executor, graph, VertexSet{n}, Colours(std::span(bytes)));
+    Method::run(executor, graph, VertexSet{n, list}, Colours(std::span(bytes)));
     const auto widen = [&](std::size_t begin, std::size_t end) {
       std::copy(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
                 bytes.begin() + static_cast<std::ptrdiff_t>(end),
@@ -59,7 +62,7 @@ void colour_all(const Executor& executor, const G& graph, std::vector<std::uint3
     parallel_for_ranges(executor, n, widen, {.grain = 8192, .serial_below = 32768});
   } catch (const TooManyColours&) {
     std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
-    Method::run(executor, graph, VertexSet{n}, Colours(std::span(colour_of)));
+    Method::run(executor, graph, VertexSet{n, list}, Colours(std::span(colour_of)));
   }
 }
 
@@ -68,8 +71,8 @@ std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32
 
 }  // namespace detail
 
-/// Colours all vertices. `serial`, `blocked` and `by_priority` give the same colours at any thread
-/// count, the others do not. Throws std::bad_alloc and what the graph throws. Thread safety: any
+/// Colours all vertices. `detect_again` and `two_phase` depend on timing, the others give the same
+/// colours at any thread count. Throws std::bad_alloc and what the graph throws. Thread safety: any
 /// thread.
 template <Graph G>
 Colouring colour(const Executor& executor, const G& graph,
@@ -77,7 +80,9 @@ Colouring colour(const Executor& executor, const G& graph,
   Colouring colouring;
   auto& colour_of = colouring.colour_of;
   colour_of.resize(graph.vertex_count());
-  if (colour_of.size() < detail::few_vertices) method = ColouringMethod::serial;
+  const bool by_degree =
+      method == ColouringMethod::largest_first || method == ColouringMethod::largest_log_first;
+  if (colour_of.size() < detail::few_vertices && !by_degree) method = ColouringMethod::serial;
   switch (method) {
     case ColouringMethod::serial:
       detail::colour_all<detail::Serial>(executor, graph, colour_of);
@@ -88,6 +93,12 @@ Colouring colour(const Executor& executor, const G& graph,
       break;
     case ColouringMethod::by_priority:
       detail::colour_all<detail::ByPriority>(executor, graph, colour_of);
+      break;
+    case ColouringMethod::largest_first:
+      detail::colour_all<detail::ByDegree<false>>(executor, graph, colour_of);
+      break;
+    case ColouringMethod::largest_log_first:
+      detail::colour_all<detail::ByDegree<true>>(executor, graph, colour_of);
       break;
     case ColouringMethod::detect_again:
       detail::colour_all<detail::DetectAgain>(executor, graph, colour_of);

@@ -42,8 +42,13 @@ class DeferredUpdate {
         bucket_count_(
             std::clamp(std::bit_ceil(8U * static_cast<unsigned>(executor.threads())), 64U, 1024U)),
         lanes_(executor) {
-    for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].bucket = std::make_unique<Bucket[]>(bucket_count_);
+    for (std::size_t t = 0; t < lanes_.size(); ++t) {
+      if (by_source()) {
+        lanes_[t].sourced = std::make_unique<ChunkList<Sourced>[]>(bucket_count_);
+      } else {
+        lanes_[t].plain = std::make_unique<ChunkList<Plain>[]>(bucket_count_);
+      }
+    }
   }
 
   /// Keeps `update` for `owner`. `source` is who defers it, for instance the item being applied;
@@ -52,12 +57,11 @@ class DeferredUpdate {
   void defer(std::uint32_t owner, std::uint64_t source, T update) {
     Lane& lane = lanes_.mine();
     const std::uint32_t number = bucket_of(owner);
-    Bucket& bucket = lane.bucket[number];
-    if (bucket.full()) {
-      if (bucket.empty()) lane.touched.push_back(number);
-      bucket.grow();
+    if (by_source()) {
+      append(lane, number, lane.sourced[number], Sourced{source, owner, std::move(update)});
+    } else {
+      append(lane, number, lane.plain[number], Plain{owner, std::move(update)});
     }
-    bucket.append(Entry{source, owner, std::move(update)});
   }
 
   /// Calls f(owner, update) for every update kept, each owner's on one thread, and forgets them.
@@ -68,7 +72,7 @@ class DeferredUpdate {
     const std::vector<std::uint32_t> buckets = touched_buckets();
     const auto commit_one = [&](std::size_t b) {
       const Rewind rewind{*this, buckets[b]};
-      if (options_.order == CommitOrder::by_source) {
+      if (by_source()) {
         commit_sorted(buckets[b], f);
       } else {
         commit_unsorted(buckets[b], f);
@@ -88,7 +92,8 @@ class DeferredUpdate {
   std::size_t size() const {
     std::size_t sum = 0;
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      for (const std::uint32_t number : lanes_[t].touched) sum += lanes_[t].bucket[number].size();
+      for (const std::uint32_t number : lanes_[t].touched)
+        visit_bucket(t, number, [&](const auto& bucket) { sum += bucket.size(); });
     return sum;
   }
 
@@ -102,22 +107,28 @@ class DeferredUpdate {
   void release() {
     clear();
     for (std::size_t t = 0; t < lanes_.size(); ++t) {
-      for (std::uint32_t b = 0; b < bucket_count_; ++b) lanes_[t].bucket[b].release();
+      for (std::uint32_t b = 0; b < bucket_count_; ++b)
+        visit_bucket(t, b, [](auto& bucket) { bucket.release(); });
       lanes_[t].order = {};
     }
   }
 
  private:
-  struct Entry {
+  struct Plain {
+    std::uint32_t owner;
+    T update;
+  };
+  struct Sourced {
     std::uint64_t source;
     std::uint32_t owner;
     T update;
   };
-  using Bucket = ChunkList<Entry>;
+  /// Buckets of one thread, of the kind that the order of commits needs.
   struct Lane {
-    std::unique_ptr<Bucket[]> bucket;
-    std::vector<std::uint32_t> touched;    // buckets with updates, in order of first use
-    RunSort<std::uint64_t, Entry*> order;  // scratch of commit_sorted
+    std::unique_ptr<ChunkList<Plain>[]> plain;
+    std::unique_ptr<ChunkList<Sourced>[]> sourced;
+    std::vector<std::uint32_t> touched;      // buckets with updates, in order of first use
+    RunSort<std::uint64_t, Sourced*> order;  // scratch of commit_sorted
   };
   struct Rewind {
     ~Rewind() { self.rewind_bucket(number); }
@@ -132,10 +143,40 @@ class DeferredUpdate {
     return (owner >> neighbour_bits) & (bucket_count_ - 1);
   }
 
+  bool by_source() const { return options_.order == CommitOrder::by_source; }
+
+  template <class Entry>
+  static void append(Lane& lane, std::uint32_t number, ChunkList<Entry>& bucket, Entry&& entry) {
+    if (bucket.full()) [[unlikely]]
+      make_room(lane, number, bucket);
+    bucket.append(std::forward<Entry>(entry));
+  }
+
+  /// Not inlined, so as to keep the caller's loop tight.
+  template <class Entry>
+  [[gnu::noinline]] static void make_room(Lane& lane, std::uint32_t number,
+                                          ChunkList<Entry>& bucket) {
+    if (bucket.empty()) lane.touched.push_back(number);
+    bucket.grow();
+  }
+
+  template <class Visit>
+  void visit_bucket(std::size_t thread, std::uint32_t number, Visit&& visit) {
+    if (by_source()) {
+      visit(lanes_[thread].sourced[number]);
+    } else {
+      visit(lanes_[thread].plain[number]);
+    }
+  }
+  template <class Visit>
+  void visit_bucket(std::size_t thread, std::uint32_t number, Visit&& visit) const {
+    const_cast<DeferredUpdate*>(this)->visit_bucket(thread, number, visit);
+  }
+
   template <class F>
   void commit_unsorted(std::uint32_t number, F& f) {
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].bucket[number].for_each([&](Entry& entry) { f(entry.owner, entry.update); });
+      lanes_[t].plain[number].for_each([&](Plain& entry) { f(entry.owner, entry.update); });
   }
 
   /// Sorting a bucket by source alone is enough: it puts each of its owners' updates in order.
@@ -144,7 +185,8 @@ class DeferredUpdate {
     auto& order = lanes_.mine().order;
     order.clear();
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].bucket[number].for_each([&](Entry& entry) { order.append(entry.source, &entry); });
+      lanes_[t].sourced[number].for_each(
+          [&](Sourced& entry) { order.append(entry.source, &entry); });
     for (const auto& keyed : order.sorted()) f(keyed.value->owner, keyed.value->update);
   }
 
@@ -158,7 +200,8 @@ class DeferredUpdate {
   }
 
   void rewind_bucket(std::uint32_t number) {
-    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].bucket[number].rewind();
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      visit_bucket(t, number, [](auto& bucket) { bucket.rewind(); });
   }
 
   void forget_touched() {

@@ -8,6 +8,8 @@
 
 namespace ductile::runtime {
 
+class Recording;
+
 namespace detail {
 class Places;
 }
@@ -38,6 +40,8 @@ struct ExecutorOptions {
   Placement placement = Placement::none;
   Schedule schedule = Schedule::automatic;
   bool deterministic = true;  ///< results do not depend on thread count or timing
+  /// Where to record what loops cost; they run on the caller alone then. Outlives the loops.
+  Recording* recording = nullptr;
 };
 
 /// Cheap to copy. Thread safety: any thread; several threads may run loops on one Executor at once.
@@ -52,6 +56,7 @@ class Executor {
   Placement placement() const { return options_.placement; }
   Schedule schedule() const { return options_.schedule; }
   bool deterministic() const { return options_.deterministic; }
+  Recording* recording() const { return options_.recording; }
 
   /// For the runtime's own use; null if threads are not bound.
   const detail::Places* places() const { return places_.get(); }

@@ -21,6 +21,13 @@ namespace ductile::runtime {
 template <class Op>
 class Commit;
 
+namespace detail {
+template <class Op>
+class OperatorCheck;
+template <class Op>
+class OppositeOrder;
+}  // namespace detail
+
 /// What any operator provides. `plan` and the conflict members only read; `apply` writes what the
 /// item owns and defers every other write; `commit` carries one deferred write out, on behalf of
 /// the owner of what it changes. All are called by many threads.
@@ -62,6 +69,16 @@ concept GrowingOperator = requires(Op& op, const Op& reader, const typename Op::
 template <class Op>
 concept RankedOperator = requires(const Op& op, const typename Op::Item item) {
   { op.priority(item) } -> std::convertible_to<std::uint8_t>;
+};
+
+/// An operator that tells a Recording what an item costs, in nanoseconds, instead of having it
+/// timed: plan_cost(item), apply_cost(plan), or both.
+template <class Op>
+concept CostedOperator = requires(const Op& op, const typename Op::Item item) {
+  { op.plan_cost(item) } -> std::convertible_to<double>;
+}
+|| requires(const Op& op, const typename Op::Plan plan) {
+  { op.apply_cost(plan) } -> std::convertible_to<double>;
 };
 
 namespace detail {
@@ -110,8 +127,10 @@ class Commit {
   std::uint32_t fresh(std::size_t kind = 0) { return next_[kind]++; }
 
  private:
-  template <class>
+  template <class, class>
   friend class Rounds;
+  friend class detail::OperatorCheck<Op>;
+  friend class detail::OppositeOrder<Op>;
   DeferredUpdate<Update>* deferred_ = nullptr;
   Worklist<Item>* woken_ = nullptr;
   std::vector<std::uint32_t>* woken_at_ = nullptr;       // [item], the round it was last woken in

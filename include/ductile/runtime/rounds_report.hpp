@@ -16,11 +16,25 @@ struct RoundsOptions {
   double least_won = 0;
 };
 
-/// What a run did. `planned` counts calls of plan, `applied` those that gave a plan, `lost` the
-/// reservations that met a higher priority. Seconds are wall-clock.
+/// What a run did. Seconds are wall-clock; a phase's are those of all its loops and what is
+/// between.
 struct RoundsReport {
-  std::size_t rounds = 0, planned = 0, applied = 0, lost = 0, left = 0;
+  std::size_t rounds = 0;
+  std::size_t batches = 0;    ///< sets of items that ran together: classes, or a round's winners
+  std::size_t planned = 0;    ///< calls of plan
+  std::size_t applied = 0;    ///< plans carried out
+  std::size_t lost = 0;       ///< conflicts: reservations that met a higher priority
+  std::size_t dropped = 0;    ///< conflicts: items that left a round because they were woken in it
+  std::size_t committed = 0;  ///< deferred updates
+  std::size_t woken = 0;      ///< items woken, each once a round
+  std::size_t left = 0;       ///< work that most_rounds cut off
+
   double conflict_seconds = 0, plan_seconds = 0, apply_seconds = 0, commit_seconds = 0;
+  double wake_seconds = 0;  ///< collecting the next round's work
+
+  double seconds() const {
+    return conflict_seconds + plan_seconds + apply_seconds + commit_seconds + wake_seconds;
+  }
 
   RoundsReport& operator+=(const RoundsReport& other);
 };

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/detail/batch.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
@@ -51,9 +52,10 @@ class Worklist {
   /// Adds an item to the calling thread's batch.
   /// Thread safety: any thread of a loop of the executor, or the caller outside of loops.
   void append(const T& item) {
-    std::vector<T>& batch = batches_.mine();
-    batch.push_back(item);
-    if (batch.size() >= options_.batch) place(batch);
+    detail::Batch<T>& batch = batches_.mine();
+    if (batch.full()) [[unlikely]]
+      make_room(batch);
+    batch.append(item);
   }
 
   /// Places the calling thread's batch in the common list. Throws std::bad_alloc; the list can then
@@ -98,7 +100,7 @@ class Worklist {
   /// Forgets all items and gives the memory back. Thread safety: one thread.
   void release() {
     clear();
-    for (std::size_t t = 0; t < batches_.size(); ++t) batches_[t] = {};
+    for (std::size_t t = 0; t < batches_.size(); ++t) batches_[t].release();
     for (unsigned k = 0; k < segment_count; ++k) free_segment(k);
     first_bits_ = initial_bits;
   }
@@ -118,15 +120,24 @@ class Worklist {
   }
   std::span<T> mutable_items() { return {segments_[0].load(std::memory_order_relaxed), size_}; }
 
-  void place(std::vector<T>& batch) {
-    if (batch.empty()) return;
+  [[gnu::noinline]] void make_room(detail::Batch<T>& batch) {
+    if (batch.reserved()) {
+      place(batch);
+    } else {
+      batch.reserve(options_.batch);
+    }
+  }
+
+  void place(detail::Batch<T>& batch) {
+    const std::span<const T> items = batch.items();
+    if (items.empty()) return;
     // Relaxed: it hands out places only; the items are read after the barrier that ends the loop.
-    std::size_t to = length_.fetch_add(batch.size(), std::memory_order_relaxed);
+    std::size_t to = length_.fetch_add(items.size(), std::memory_order_relaxed);
     try {
-      for (std::size_t from = 0; from < batch.size();) {
+      for (std::size_t from = 0; from < items.size();) {
         const unsigned k = segment_of(to);
-        const std::size_t n = std::min(batch.size() - from, segment_end(k) - to);
-        std::copy_n(batch.data() + from, n, provide_segment(k) + (to - segment_begin(k)));
+        const std::size_t n = std::min(items.size() - from, segment_end(k) - to);
+        std::copy_n(items.data() + from, n, provide_segment(k) + (to - segment_begin(k)));
         from += n, to += n;
       }
     } catch (...) {
@@ -175,7 +186,7 @@ class Worklist {
   WorklistOptions options_;
   unsigned first_bits_ = initial_bits;
   std::size_t size_ = 0;  // items collected
-  PerThread<std::vector<T>> batches_;
+  PerThread<detail::Batch<T>> batches_;
   std::array<std::atomic<T*>, segment_count> segments_{};
   alignas(128) std::atomic<std::size_t> length_{0};  // places handed out
   alignas(128) std::atomic<bool> broken_{false};     // a place was handed out and not filled

@@ -49,10 +49,21 @@ struct BlockLayout {
   std::size_t row_count(std::size_t vertex_count) const {
     return (vertex_count >> (block_bits + step_bits)) + 1;
   }
-  /// In different blocks of one step, which are coloured at the same time.
-  bool apart(std::uint32_t u, std::uint32_t v) const {
-    const std::uint32_t blocks = (u ^ v) >> block_bits;
-    return blocks != 0 && ((blocks ^ (blocks >> step_bits)) & (step_count() - 1)) == 0;
+  /// What apart() needs, made once for many calls.
+  struct Apart {
+    std::uint32_t step_bits, block_mask, step_mask;
+
+    /// In different blocks of one step, which are coloured at the same time. A block's step is the
+    /// exclusive-or of two groups of bits of its ids, so that of two ids decides. Without a branch
+    /// for each condition: which one fails is hard to predict in a random order.
+    bool operator()(std::uint32_t u, std::uint32_t v) const {
+      const std::uint32_t bits = u ^ v;
+      return static_cast<unsigned>(((bits ^ (bits >> step_bits)) & step_mask) == 0) &
+             static_cast<unsigned>(bits > block_mask);
+    }
+  };
+  Apart apart() const {
+    return {step_bits, (1U << block_bits) - 1, (step_count() - 1) << block_bits};
   }
 };
 
@@ -76,7 +87,7 @@ class BlockedRun {
                    {.grain = 1});
     find_losers();
     losers_.collect();
-    colour_by_priority(executor_, graph_, losers_.take(), colours_);
+    colour_by_priority(executor_, graph_, losers_.take(), colours_, outranks);
   }
 
  private:
@@ -84,14 +95,18 @@ class BlockedRun {
 
   void colour_block(std::size_t block) {
     const auto [begin, end] = vertices_in(block);
+    // Copies, which the compiler keeps in registers across the calls in the loop.
+    const BlockLayout::Apart apart = layout_.apart();
+    const Colours<Word> colours = colours_;
+    const VertexSet vertices = vertices_;
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t v = vertices_[i];
-      const auto counts = [&](std::uint32_t u) {
-        if (layout_.apart(u, v)) [[unlikely]]
+      const std::uint32_t v = vertices[i];
+      const auto counts = [this, apart, v](std::uint32_t u) {
+        if (apart(u, v)) [[unlikely]]
           return !note_if_blind(u, v);
         return true;
       };
-      colours_.set(v, least_free(graph_, v, colours_, counts));
+      colours.set(v, least_free(graph_, v, colours, counts));
     }
   }
 

@@ -18,7 +18,7 @@
 
 namespace ductile::runtime::detail {
 
-/// Vertices, in ascending order: all below `count`, or those listed.
+/// Vertices: all below `count`, or those listed; in ascending order unless a method takes any.
 struct VertexSet {
   std::size_t count;
   const std::uint32_t* list = nullptr;
@@ -53,8 +53,8 @@ class Colours {
 
 /// least_free() for a vertex whose neighbours have many colours: 64 of them at a time.
 template <class Word, Graph G, class Counts>
-[[gnu::noinline]] Word least_free_of_many(const G& graph, std::uint32_t v,
-                                          const Colours<Word>& colours, Counts& counts) {
+[[gnu::noinline]] Word least_free_of_many(const G& graph, std::uint32_t v, Colours<Word> colours,
+                                          Counts counts) {
   for (std::uint32_t base = 0;; base += 64) {
     std::uint64_t taken = 0;
     graph.for_each_neighbour(v, [&](std::uint32_t u) {
@@ -69,28 +69,45 @@ template <class Word, Graph G, class Counts>
   }
 }
 
-/// The least colour that none of v's neighbours u with counts(u) has; counts may be asked about a
-/// neighbour again. Throws TooManyColours.
-template <class Word, Graph G, class Counts>
-Word least_free(const G& graph, std::uint32_t v, const Colours<Word>& colours, Counts counts) {
-  // Colours below 62 are bits of `taken`; `waiting` and `none` fall on the bits above them. Any
-  // other colour shows in the bits of `high` from 64 up.
+/// What a look at a vertex's neighbours shows.
+/// Colours below 62 are bits of `taken`; `waiting` and `none` fall on the bits above them. Any
+/// other colour shows in the bits of `high` from 64 up.
+template <class Word>
+struct TakenColours {
   std::uint64_t taken = 0;
   Word high = 0;
-  graph.for_each_neighbour(v, [&](std::uint32_t u) {
-    if (!counts(u)) return;
-    const Word colour = colours[u];
+
+  void add(Word colour) {
     taken |= std::uint64_t{1} << (colour & 63U);
     high |= static_cast<Word>(colour + 2);
-  });
-  const auto free = static_cast<std::uint32_t>(std::countr_one(taken));
-  if (free < 62 && high < 64) [[likely]]
+  }
+};
+
+template <class Word, Graph G, class Counts>
+Word least_free(const G& graph, std::uint32_t v, Colours<Word> colours, TakenColours<Word> seen,
+                Counts counts) {
+  const auto free = static_cast<std::uint32_t>(std::countr_one(seen.taken));
+  if (free < 62 && seen.high < 64) [[likely]]
     return static_cast<Word>(free);
   return least_free_of_many(graph, v, colours, counts);
 }
 
+/// The least colour that none of v's neighbours u with counts(u) has; counts may be asked about a
+/// neighbour again. Throws TooManyColours.
+/// Inlined always: the loop over neighbours is what colouring spends its time on, and keeps what it
+/// needs in registers only where the compiler sees all of it.
+template <class Word, Graph G, class Counts>
+[[gnu::always_inline]] inline Word least_free(const G& graph, std::uint32_t v,
+                                              Colours<Word> colours, Counts counts) {
+  TakenColours<Word> seen;
+  graph.for_each_neighbour(v, [&](std::uint32_t u) {
+    if (counts(u)) seen.add(colours[u]);
+  });
+  return least_free(graph, v, colours, seen, counts);
+}
+
 template <class Word, Graph G>
-Word least_free(const G& graph, std::uint32_t v, const Colours<Word>& colours) {
+Word least_free(const G& graph, std::uint32_t v, Colours<Word> colours) {
   return least_free(graph, v, colours, [](std::uint32_t) { return true; });
 }
 

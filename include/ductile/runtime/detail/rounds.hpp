@@ -7,7 +7,6 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,29 +15,21 @@
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/atomic_min.hpp"
 #include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/detail/phase_timer.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime {
 
-/// Adds the time from its construction to its destruction to a counter.
-class PhaseTimer {
- public:
-  explicit PhaseTimer(double& seconds) : seconds_(seconds) {}
-  PhaseTimer(const PhaseTimer&) = delete;
-  PhaseTimer& operator=(const PhaseTimer&) = delete;
-  ~PhaseTimer() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+/// Instead of detail::OperatorCheck: nothing is checked.
+struct NoCheck {
+  static constexpr bool on = false;
 };
 
-template <class Op>
+template <class Op, class Check = NoCheck>
 class Rounds {
  public:
   using Item = typename Op::Item;
@@ -48,6 +39,7 @@ class Rounds {
       : executor_(executor),
         op_(op),
         options_(options),
+        recording_(executor.recording()),
         deferred_(executor, {.order = executor.deterministic() ? options.order : CommitOrder::any}),
         woken_(executor, {.order = WorkOrder::by_item, .unique = true}) {}
 
@@ -55,12 +47,15 @@ class Rounds {
     for (int round = 1; !work.empty() && round <= options_.most_rounds; ++round) {
       round_ = static_cast<std::uint32_t>(round);
       ++report_.rounds;
+      if (recording_ != nullptr) recording_->begin_round();
+      if constexpr (Check::on) check_.begin_round(op_, round_, work);
       if constexpr (ColouredOperator<Op>) {
         work = coloured_round(std::move(work));
       } else {
         work = reserved_round(std::move(work));
       }
     }
+    if (recording_ != nullptr) recording_->end_rounds();
     report_.left = work.size();
     return report_;
   }
@@ -75,13 +70,14 @@ class Rounds {
   std::vector<Item> coloured_round(std::vector<Item> work) requires ColouredOperator<Op> {
     std::vector<std::vector<Item>> classes;
     {
-      const PhaseTimer timer(report_.conflict_seconds);
+      const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
       woken_at_.resize(op_.item_count(), 0);
       classes = independent_classes(work);
     }
     for (turn_ = 0; turn_ < classes.size(); ++turn_) {
       drop_woken(classes[turn_]);
       execute(classes[turn_]);
+      if constexpr (Check::on) check_waiting(classes);
     }
     parallel_for(executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; });
     return take_woken();
@@ -114,7 +110,14 @@ class Rounds {
   /// A colouring is stale where something changed: who was woken comes back in the next round.
   void drop_woken(std::vector<Item>& members) {
     if constexpr (requires { Op::keeps_conflicts; }) return;
-    std::erase_if(members, [&](Item item) { return woken_at_[item] == round_; });
+    const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
+    report_.dropped += std::erase_if(members, [&](Item item) { return woken_at_[item] == round_; });
+  }
+
+  void check_waiting(const std::vector<std::vector<Item>>& classes) {
+    for (std::size_t turn = turn_ + 1; turn < classes.size(); ++turn)
+      for (const Item item : classes[turn])
+        if (woken_at_[item] != round_) check_.expect_kept(op_, item);
   }
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
@@ -122,7 +125,7 @@ class Rounds {
   std::vector<Item> reserved_round(std::vector<Item> work) requires ReservingOperator<Op> {
     std::vector<std::uint8_t> outcome(work.size());
     {
-      const PhaseTimer timer(report_.conflict_seconds);
+      const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
       reserved_.resize(op_.resource_count(), ~std::uint64_t{0});
       if (!executor_.deterministic()) ticket_of_.resize(work.size());
       parallel_for_blocks(
@@ -227,23 +230,30 @@ class Rounds {
 
   void execute(const std::vector<Item>& batch) {
     if (batch.empty()) return;
+    ++report_.batches;
     report_.planned += batch.size();
     plans_.clear();
     plans_.resize(batch.size());
     {
-      const PhaseTimer timer(report_.plan_seconds);
+      const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
       parallel_for_blocks(
           executor_, batch.size(), block,
           [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) plans_[i] = op_.plan(batch[i]);
+            for (std::size_t i = begin; i < end; ++i) {
+              plans_[i] = op_.plan(batch[i]);
+              if (recording_ != nullptr) [[unlikely]]
+                record_plan(batch[i]);
+            }
           },
           by_block);
     }
+    if constexpr (Check::on) return apply_checked(batch);
     {
-      const PhaseTimer timer(report_.apply_seconds);
+      const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
       apply_plans();
     }
-    const PhaseTimer timer(report_.commit_seconds);
+    const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
+    report_.committed += deferred_.size();
     deferred_.commit(
         [&](std::uint32_t owner, const typename Op::Update& update) { op_.commit(owner, update); });
   }
@@ -259,14 +269,35 @@ class Rounds {
           Commit<Op> commit = new_commit();
           commit.next_ = first_of_[b];
           for (std::size_t i = begin; i < end; ++i) {
-            if (!plans_[i]) continue;
-            commit.source_ = i;
-            op_.apply(*plans_[i], commit);
-            ++applied_of_[b];
+            if (plans_[i]) {
+              commit.source_ = i;
+              op_.apply(*plans_[i], commit);
+              ++applied_of_[b];
+            }
+            if (recording_ != nullptr) [[unlikely]]
+              record_apply(plans_[i]);
           }
         },
         by_block);
     for (const std::uint32_t applied : applied_of_) report_.applied += applied;
+  }
+
+  void apply_checked(const std::vector<Item>& batch) {
+    first_of_.assign((batch.size() + block - 1) / block, {});
+    if constexpr (kinds > 0) number_new_things();
+    std::vector<Commit<Op>> commits(batch.size());
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      commits[i] = new_commit();
+      commits[i].source_ = i;
+      commits[i].next_ = first_of_[i / block];
+      if (!plans_[i]) continue;
+      ++report_.applied;
+      if constexpr (kinds > 0) {
+        const auto demand = op_.demand(*plans_[i]);
+        for (std::size_t k = 0; k < kinds; ++k) first_of_[i / block][k] += demand[k];
+      }
+    }
+    check_.run_batch(op_, {batch, plans_, commits}, deferred_, options_.order);
   }
 
   /// Sets first_of_ to the first new number of each kind for each block of the batch.
@@ -302,8 +333,30 @@ class Rounds {
     return commit;
   }
 
+  void record_plan(const Item& item) {
+    if constexpr (requires { op_.plan_cost(item); }) {
+      recording_->end_item(op_.plan_cost(item));
+    } else {
+      recording_->end_item();
+    }
+  }
+
+  void record_apply(const std::optional<Plan>& plan) {
+    if constexpr (requires { op_.apply_cost(*plan); }) {
+      recording_->end_item(plan ? op_.apply_cost(*plan) : 0.0);
+    } else {
+      recording_->end_item();
+    }
+  }
+
   std::vector<Item> take_woken() {
+    const PhaseTimer timer(report_.wake_seconds, executor_, Phase::wake);
     woken_.collect();
+    report_.woken += woken_.size();
+    if constexpr (Check::on) {
+      const auto items = woken_.items();
+      check_.end_round(op_, {items.begin(), items.end()});
+    }
     return woken_.take();
   }
 
@@ -314,7 +367,9 @@ class Rounds {
   const Executor& executor_;
   Op& op_;
   RoundsOptions options_;
+  [[no_unique_address]] Check check_;
   RoundsReport report_;
+  Recording* recording_;  // null but for replays
   DeferredUpdate<typename Op::Update> deferred_;
   Worklist<Item> woken_;
   std::uint32_t round_ = 0;

@@ -1,7 +1,8 @@
 /// @file
 /// Parallel colourings that speculate: every vertex takes the least colour it sees free, without
 /// waiting for anybody; neighbours that did so at the same moment may clash, and one of them is
-/// coloured again. Rounds go on until there is no clash. The colours depend on timing.
+/// coloured again. Rounds go on until there is no clash. The colours depend on timing; a team of
+/// one has no clashes to look for and gives serial first-fit's.
 #pragma once
 
 #include <cstddef>
@@ -43,6 +44,7 @@ struct TwoPhase {
   template <class Word, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
                   Colours<Word> colours) {
+    if (executor.threads() == 1) return Serial::run(executor, graph, vertices, colours);
     Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
     std::vector<std::uint32_t> list;
     while (vertices.count > 0) {
@@ -66,6 +68,7 @@ struct DetectAgain {
   template <class Word, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
                   Colours<Word> colours) {
+    if (executor.threads() == 1) return Serial::run(executor, graph, vertices, colours);
     colour_freely(executor, graph, vertices, colours);
     Worklist<std::uint32_t> recoloured(executor, {.order = WorkOrder::arrival});
     std::vector<std::uint32_t> list;

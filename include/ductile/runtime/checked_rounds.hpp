@@ -1,0 +1,36 @@
+/// @file
+/// run_rounds_checked: run_rounds for those who write an operator: slow, on one thread, and throws
+/// ContractBroken as soon as the operator does something that would be wrong, or would depend on
+/// timing, on many. Every batch is applied item by item, each committed before the next: if the
+/// operator keeps its contract that gives the same as all at once.
+/// It sees what an operator tells and how plans change, not single reads and writes; the more an
+/// operator tells, the more it sees:
+///   Plan has ==            compares plans, not only whether there is one
+///   Op has == and copies   applies each batch in two orders and compares
+///   to_string(Item)        messages name the item, not only its place (numbers name themselves)
+/// An operator that on purpose does not wake all who could plan again has a member `forgoes_wakes`.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/contract.hpp"
+#include "ductile/runtime/detail/operator_check.hpp"
+#include "ductile/runtime/detail/rounds.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace ductile::runtime {
+
+/// As run_rounds(). Plans every waiting item after every batch. Throws ContractBroken, and what the
+/// operator throws; the operator's data are then not to be used. Thread safety: one caller.
+template <class Op>
+requires ColouredOperator<Op> || ReservingOperator<Op> RoundsReport
+run_rounds_checked(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
+                   const RoundsOptions& options = {}) {
+  const Executor alone({.threads = 1, .deterministic = executor.deterministic()});
+  return Rounds<Op, detail::OperatorCheck<Op>>(alone, op, options).run(std::move(work));
+}
+
+}  // namespace ductile::runtime

@@ -1,0 +1,191 @@
+/// @file
+/// OperatorCheck: the rules of an operator's contract, each a function that throws ContractBroken.
+/// Rounds calls them at the beginning and the end of a round and after each class, and leaves
+/// applying a batch to it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/contract.hpp"
+#include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/detail/opposite_order.hpp"
+#include "ductile/runtime/operator.hpp"
+
+namespace ductile::runtime::detail {
+
+template <class Op>
+class OperatorCheck {
+ public:
+  using Item = typename Op::Item;
+  using Plan = typename Op::Plan;
+  using Deferred = DeferredUpdate<typename Op::Update>;
+  static constexpr bool on = true;
+
+  void begin_round(const Op& op, std::uint32_t round, const std::vector<Item>& work) {
+    round_ = round;
+    if constexpr (ColouredOperator<Op>) {
+      note_waiting(op, work);
+    } else {
+      for (std::size_t i = 0; i < work.size(); ++i) expect_in_range(op, work[i], i);
+    }
+  }
+
+  /// After a batch, for an item that waits for its turn and was neither woken nor disturbed.
+  void expect_kept(const Op& op, Item item) requires ColouredOperator<Op> {
+    const std::size_t i = place_of_[item];
+    if (conflicts_of(op, item) != conflicts_[i])
+      refuse(ContractRule::waiting_conflicts_kept, item, i,
+             "its conflicts changed while it waited for its turn, and nobody woke or disturbed it");
+    if constexpr (requires { Op::keeps_conflicts; }) return;
+    if (!same_plan<Op>(op.plan(item), plans_[i]))
+      refuse(ContractRule::waiting_plan_kept, item, i,
+             "its plan changed while it waited for its turn, and nobody woke or disturbed it");
+  }
+
+  /// plans[i] and commits[i] belong to items[i].
+  struct Batch {
+    const std::vector<Item>& items;
+    const std::vector<std::optional<Plan>>& plans;
+    std::vector<Commit<Op>>& commits;
+  };
+
+  /// Applies and commits the plans of a batch one after the other.
+  void run_batch(Op& op, const Batch& run, Deferred& deferred, CommitOrder order) {
+    const auto& [batch, plans, commits] = run;
+    const OppositeOrder<Op> opposite(op, plans, commits, order);
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      expect_plan_only_reads(op, batch[i], i, plans[i]);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (!plans[i]) continue;
+      if (batch.size() > exact) expect_same_plan(op, batch[i], i, plans[i], "others");
+      apply(op, batch[i], i, *plans[i], commits[i]);
+      commit_all(op, deferred);
+      if (batch.size() > exact) continue;
+      for (std::size_t k = i + 1; k < batch.size(); ++k)
+        expect_same_plan(op, batch[k], k, plans[k], "item " + item_name(batch[i], i));
+    }
+    if (!opposite.agrees(op))
+      refuse(ContractRule::order_free, batch.front(), 0,
+             "the batch of " + std::to_string(batch.size()) +
+                 " that begins with it gives something else in the opposite order: items touch " +
+                 "the same, or updates of one owner do not commute (see CommitOrder)");
+    considered_.insert(considered_.end(), batch.begin(), batch.end());
+  }
+
+  /// `woken`, ascending, come back in the next round.
+  void end_round(const Op& op, const std::vector<Item>& woken) {
+    if constexpr (requires { Op::forgoes_wakes; }) return;
+    std::sort(considered_.begin(), considered_.end());
+    std::vector<Item> left;
+    std::set_difference(considered_.begin(), considered_.end(), woken.begin(), woken.end(),
+                        std::back_inserter(left));
+    const auto same_item = [](const Item& a, const Item& b) { return !(a < b) && !(b < a); };
+    left.erase(std::unique(left.begin(), left.end(), same_item), left.end());
+    for (std::size_t i = 0; i < left.size(); ++i)
+      if (!is_void<Op>(op, left[i]) && op.plan(left[i]))
+        refuse(ContractRule::woken_if_plannable, left[i], i,
+               "it had its turn and now has a plan again, but nobody woke it");
+    considered_ = std::move(left);
+  }
+
+ private:
+  static constexpr std::size_t exact = 256;  // in longer batches the other culprit is not named
+
+  [[noreturn]] void refuse(ContractRule rule, const Item& item, std::size_t place,
+                           const std::string& how) const {
+    throw ContractBroken(rule, item_name(item, place), round_, how);
+  }
+
+  std::vector<std::uint32_t> conflicts_of(const Op& op, Item item) const {
+    std::vector<std::uint32_t> all;
+    op.conflicts(item, [&](std::uint32_t other) { all.push_back(other); });
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
+
+  /// Keeps what each item of the round plans and conflicts with at its beginning.
+  void note_waiting(const Op& op, const std::vector<Item>& work) {
+    place_of_.assign(op.item_count(), absent);
+    conflicts_.clear();
+    plans_.clear();
+    for (std::size_t i = 0; i < work.size(); ++i) {
+      place_of_[work[i]] = static_cast<std::uint32_t>(i);
+      conflicts_.push_back(conflicts_of(op, work[i]));
+      plans_.push_back(op.plan(work[i]));
+    }
+    for (std::size_t i = 0; i < work.size(); ++i)
+      for (const std::uint32_t other : conflicts_[i]) expect_symmetric(op, work[i], i, other);
+  }
+
+  void expect_symmetric(const Op& op, Item item, std::size_t i, std::uint32_t other) const {
+    if (other >= op.item_count())
+      refuse(ContractRule::numbers_in_range, item, i,
+             "conflicts() visits " + std::to_string(other) + ", but item_count() is " +
+                 std::to_string(op.item_count()));
+    if (place_of_[other] == absent || other == item) return;
+    const auto& back = conflicts_[place_of_[other]];
+    if (!std::binary_search(back.begin(), back.end(), item))
+      refuse(ContractRule::conflicts_symmetric, item, i,
+             "conflicts() visits item " + std::to_string(other) +
+                 ", but that item's conflicts() do not visit it");
+  }
+
+  void expect_in_range(const Op& op, const Item& item, std::size_t i) const {
+    op.footprint(item, [&](std::uint32_t resource) {
+      if (resource >= op.resource_count())
+        refuse(ContractRule::numbers_in_range, item, i,
+               "footprint() visits " + std::to_string(resource) + ", but resource_count() is " +
+                   std::to_string(op.resource_count()));
+    });
+  }
+
+  void expect_plan_only_reads(const Op& op, const Item& item, std::size_t i,
+                              const std::optional<Plan>& plan) const {
+    if (!same_plan<Op>(op.plan(item), plan))
+      refuse(ContractRule::plan_only_reads, item, i,
+             "plan() called twice gives different plans, but it may only read");
+  }
+
+  void expect_same_plan(const Op& op, const Item& item, std::size_t i,
+                        const std::optional<Plan>& plan, const std::string& others) const {
+    if (plan && (is_void<Op>(op, item) || !same_plan<Op>(op.plan(item), plan)))
+      refuse(ContractRule::touches_announced, item, i,
+             "its plan changed when " + others + " of its batch was applied and committed: one " +
+                 "touches what its " + (ColouredOperator<Op> ? "conflicts()" : "footprint()") +
+                 " did not announce");
+  }
+
+  void apply(Op& op, const Item& item, std::size_t i, const Plan& plan, Commit<Op>& commit) const {
+    if constexpr (Kinds<Op>::count > 0) {
+      const auto demand = op.demand(plan);
+      const auto first = commit.next_;
+      op.apply(plan, commit);
+      for (std::size_t k = 0; k < demand.size(); ++k)
+        if (commit.next_[k] - first[k] > demand[k])
+          refuse(ContractRule::fresh_demanded, item, i,
+                 "apply() took " + std::to_string(commit.next_[k] - first[k]) +
+                     " fresh numbers of kind " + std::to_string(k) + ", demand() asked for " +
+                     std::to_string(demand[k]));
+    } else {
+      op.apply(plan, commit);
+    }
+  }
+
+  static constexpr std::uint32_t absent = 0xffffffffU;
+
+  std::uint32_t round_ = 0;
+  std::vector<std::uint32_t> place_of_;                // [item], in the round's work, or absent
+  std::vector<std::vector<std::uint32_t>> conflicts_;  // [place], ascending
+  std::vector<std::optional<Plan>> plans_;             // [place]
+  std::vector<Item> considered_;                       // had their turn and were not woken since
+};
+
+}  // namespace ductile::runtime::detail

@@ -1,0 +1,84 @@
+/// @file
+/// Recording: what the loops of an executor cost, item by item, so that replay() can tell what they
+/// would need on more threads than there are.
+/// A program makes one and names it in ExecutorOptions. The executor's loops then run on the caller
+/// alone, chunk by chunk, each chunk timed, but cut as for as many threads as the executor has.
+/// What lies between two loops counts as serial. Without a recording a loop pays for one
+/// comparison.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ductile::runtime {
+
+/// What a loop is for, in run_rounds; `other` outside of it.
+enum class Phase : std::uint8_t { conflict, plan, apply, commit, wake, other };
+constexpr std::size_t phase_count = 6;
+
+/// Thread safety: one thread; an executor that records runs one loop at a time.
+class Recording {
+ public:
+  /// Costs of one loop, or of the code between two loops.
+  struct Stretch {
+    enum class Kind : std::uint8_t { serial, chunks, items };
+    std::uint32_t section, round;  ///< round counts all rounds since the start; 0 outside of rounds
+    Phase phase;
+    Kind kind;
+    std::size_t first, count;  ///< its costs
+  };
+
+  Recording();
+
+  /// What follows belongs to this part of the program, for instance a kernel. Resumes a pause.
+  void begin_section(std::string name);
+  /// Leaves out what follows, up to the next begin_section().
+  void pause();
+
+  const std::vector<std::string>& sections() const { return sections_; }  ///< the first is ""
+  const std::vector<Stretch>& stretches() const { return stretches_; }
+  const std::vector<float>& costs() const { return costs_; }  ///< nanoseconds
+  std::uint32_t rounds() const { return rounds_; }
+
+  // ---- For the runtime and for those who record something else than time ----
+
+  void begin_round() { flush(), round_ = ++rounds_; }
+  void end_rounds() { flush(), round_ = 0; }
+  /// Says what follows is for; returns what it was before.
+  Phase set_phase(Phase phase);
+
+  void begin_loop();
+  void end_chunk();
+  void end_loop();
+  /// The time since the last item or the beginning of the chunk was one item's.
+  void end_item();
+  /// As end_item(), with a cost that is given instead of measured. All of a loop's or none are.
+  void end_item(double cost_ns);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// Nanoseconds since the last call, without what the clock itself takes.
+  double lap();
+  void flush();
+  void add(Stretch::Kind kind, std::size_t first);
+
+  std::vector<std::string> sections_{""};
+  std::vector<Stretch> stretches_;
+  std::vector<float> costs_;
+  Clock::time_point last_ = Clock::now();
+  double clock_ns_ = 0;
+  std::uint32_t section_ = 0, round_ = 0, rounds_ = 0;
+  Phase phase_ = Phase::other;
+  bool paused_ = false;
+  bool in_loop_ = false;
+  std::size_t loop_first_ = 0;   // where the costs of the running loop begin
+  std::size_t chunk_first_ = 0;  // and those of the running chunk
+  bool given_ = false;           // costs of the running loop are given, not measured
+  bool items_ = false;           // and are of single items
+};
+
+}  // namespace ductile::runtime

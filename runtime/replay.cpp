@@ -1,0 +1,86 @@
+#include "ductile/runtime/replay.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+
+namespace ductile::runtime {
+
+namespace {
+
+using Kind = Recording::Stretch::Kind;
+
+std::vector<double> chunks_of(std::span<const float> costs, std::size_t block) {
+  std::vector<double> chunks((costs.size() + block - 1) / block);
+  for (std::size_t i = 0; i < costs.size(); ++i) chunks[i / block] += double{costs[i]};
+  return chunks;
+}
+
+/// When the last chunk ends if the thread that is free first takes the next.
+double makespan(const std::vector<double>& chunks, std::size_t threads) {
+  if (chunks.size() <= threads)
+    return chunks.empty() ? 0 : *std::max_element(chunks.begin(), chunks.end());
+  std::vector<double> free_at(chunks.begin(),
+                              chunks.begin() + static_cast<std::ptrdiff_t>(threads));
+  std::make_heap(free_at.begin(), free_at.end(), std::greater<>());
+  for (std::size_t i = threads; i < chunks.size(); ++i) {
+    std::pop_heap(free_at.begin(), free_at.end(), std::greater<>());
+    free_at.back() += chunks[i];
+    std::push_heap(free_at.begin(), free_at.end(), std::greater<>());
+  }
+  return *std::max_element(free_at.begin(), free_at.end());
+}
+
+ReplayTimes times_of(std::span<const float> costs, Kind kind, const ReplayOptions& options) {
+  ReplayTimes times;
+  const std::vector<double> chunks = chunks_of(costs, kind == Kind::items ? options.block : 1);
+  const double sum = std::accumulate(chunks.begin(), chunks.end(), 0.0);
+  if (kind == Kind::serial) {
+    times.serial = times.elapsed = times.critical = sum;
+  } else {
+    times.launches = options.threads > 1 && chunks.size() > 1 ? 1 : 0;
+    const double one = chunks.size() > 1 ? options.launch_ns : 0;
+    times.work = sum;
+    times.elapsed = static_cast<double>(times.launches) * one +
+                    makespan(chunks, static_cast<std::size_t>(options.threads));
+    times.critical = one + makespan(chunks, chunks.size());
+  }
+  for (double* const time : {&times.serial, &times.work, &times.elapsed, &times.critical})
+    *time *= 1e-9;
+  return times;
+}
+
+}  // namespace
+
+ReplayTimes& ReplayTimes::operator+=(const ReplayTimes& other) {
+  serial += other.serial;
+  work += other.work;
+  elapsed += other.elapsed;
+  critical += other.critical;
+  launches += other.launches;
+  return *this;
+}
+
+Replay replay(const Recording& recording, const ReplayOptions& options) {
+  if (options.threads < 1 || options.block < 1)
+    throw std::invalid_argument("replay: expected at least one thread and one item a block");
+  Replay result;
+  result.threads = options.threads;
+  for (const std::string& name : recording.sections()) result.sections.push_back({name, {}, {}});
+  result.rounds.resize(recording.rounds());
+  const std::span costs(recording.costs());
+  for (const Recording::Stretch& stretch : recording.stretches()) {
+    const ReplayTimes times =
+        times_of(costs.subspan(stretch.first, stretch.count), stretch.kind, options);
+    ReplaySection& section = result.sections[stretch.section];
+    result.total += times;
+    section.total += times;
+    section.times_of[static_cast<std::size_t>(stretch.phase)] += times;
+    if (stretch.round > 0) result.rounds[stretch.round - 1] += times;
+  }
+  return result;
+}
+
+}  // namespace ductile::runtime
