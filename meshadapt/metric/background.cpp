@@ -16,13 +16,6 @@ constexpr double tolerance = 1e-9;
 /// A walk that takes longer than this goes in circles or around a hole.
 constexpr int longest_walk = 2000;
 
-double volume(const std::array<Vector<2>, 3>& p) {
-  return (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
-}
-double volume(const std::array<Vector<3>, 4>& p) {
-  return dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0]));
-}
-
 }  // namespace
 
 template <int Dim>
@@ -46,7 +39,7 @@ auto Background<Dim>::weights(ElementId element, const Vector<Dim>& point) const
   double sum = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vector<Dim> corner = std::exchange(p[i], point);
-    weight[i] = volume(p);
+    weight[i] = plain_determinant(p);
     p[i] = corner;
     sum += weight[i];
   }
