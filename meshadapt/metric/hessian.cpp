@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "metric/small_system.hpp"
 #include "metric/surroundings.hpp"
@@ -307,12 +308,7 @@ std::vector<Metric<Dim>> recover_hessian(const Executor& executor, const FixedMe
 
 AnyField recover_hessian(const Executor& executor, const AnyMesh& mesh, const AnyField& field,
                          Recovery recovery) {
-  if (field.dimension != mesh.dimension || field.vertex_count != mesh.vertex_count())
-    throw InputError(field.name + ": expected a field of dimension " +
-                     std::to_string(mesh.dimension) + " at the " +
-                     std::to_string(mesh.vertex_count()) + " vertices of " + mesh.name +
-                     ", found one of dimension " + std::to_string(field.dimension) + " at " +
-                     std::to_string(field.vertex_count));
+  expect_field_of(field, mesh);
   return mesh.dimension == 2 ? hessians_of<2>(executor, mesh, field, recovery)
                              : hessians_of<3>(executor, mesh, field, recovery);
 }
