@@ -44,15 +44,6 @@ TYPED_TEST(ComplexityIn, IsWhatStatisticsSay) {
   EXPECT_NEAR(complexity<Dim>(executor, scene.mesh, scene.metric_of), expected, 1e-9 * expected);
 }
 
-TYPED_TEST(ComplexityIn, CountsElementsOfUnitSize) {
-  constexpr int Dim = TypeParam::value;
-  const Scene<Dim> scene;
-  const std::vector uniform(scene.mesh.vertex_count(), isotropic<Dim>(0.1));
-  const double regular = Dim == 2 ? 0.01 * std::sqrt(3.0) / 4 : 0.001 * std::sqrt(2.0) / 12;
-  EXPECT_NEAR(complexity<Dim>(executor, scene.mesh, uniform),
-              complexity_of_elements(Dim, 1 / regular), 1e-9);
-}
-
 TYPED_TEST(ComplexityIn, IsReachedByScaling) {
   constexpr int Dim = TypeParam::value;
   for (const double wanted : {10.0, 12345.0}) {

@@ -18,8 +18,9 @@ template <int Dim>
 double complexity(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,
                   const std::vector<Metric<Dim>>& metric_of);
 
-/// The complexity of a metric in which this many regular elements with edges of length 1 fit. An
-/// adapted mesh has about as many: its edges are longer and shorter than 1 in equal parts.
+/// The complexity of a metric to which an adapted mesh has about this many elements: 2.35 triangles
+/// or 11 tetrahedra per unit of complexity, give or take 10 %, as measured on metrics that vary.
+/// Regular elements with edges of length 1, which fill no space in 3D, would be 2.31 and 8.49.
 double complexity_of_elements(int dimension, double elements);
 
 struct ComplexityGoal {
