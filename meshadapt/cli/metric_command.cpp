@@ -198,10 +198,7 @@ class Work {
   }
 
   void make() {
-    AnyField field = meshadapt::read_field(job_.fields[0], &warnings_);
-    const auto is_scalar = [](AnyField::Type type) { return type == AnyField::Type::scalar; };
-    if (std::all_of(field.types.begin(), field.types.end(), is_scalar))
-      field.dimension = Dim;  // a flat mesh of dimension 3 has become one of dimension 2
+    const AnyField field = read_fields(job_.fields[0], mesh_, warnings_);
     const auto made =
         meshadapt::solution_metric(executor_, mesh_, field, {goal_, job_.fit.recovery});
     metric_of_ = meshadapt::tensors_of<Dim>(executor_, made.metric);
