@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
@@ -60,22 +61,29 @@ struct Job {
 // ---- The command line ----
 
 void set_files(Job& job, const Arguments& arguments) {
-  constexpr std::array<std::string_view, 5> operations{"make", "intersect", "scale", "bound",
-                                                       "grade"};
+  struct Operation {
+    std::string_view name, takes;
+    std::size_t least, most;  // files
+  };
+  constexpr std::array<Operation, 6> operations{
+      {{"make", "a mesh and a field", 2, 2},
+       {"implied", "a mesh", 1, 1},
+       {"intersect", "a mesh and two metrics or more", 3, std::string::npos},
+       {"scale", "a mesh and a metric", 2, 2},
+       {"bound", "a mesh and a metric", 2, 2},
+       {"grade", "a mesh and a metric", 2, 2}}};
   const auto& words = arguments.operands();
-  if (words.empty() ||
-      std::find(operations.begin(), operations.end(), words[0]) == operations.end())
-    throw UsageError("expected make, intersect, scale, bound or grade, found " +
+  const auto found = std::find_if(operations.begin(), operations.end(), [&](const Operation& one) {
+    return !words.empty() && one.name == words[0];
+  });
+  if (found == operations.end())
+    throw UsageError("expected make, implied, intersect, scale, bound or grade, found " +
                      (words.empty() ? "nothing" : "'" + words[0] + "'"));
   job.operation = words[0];
-  const bool several = job.operation == "intersect";
   const std::size_t files = words.size() - 1;
-  if (several ? files < 3 : files != 2)
-    throw UsageError(job.operation + ": expected a mesh and " +
-                     (several                   ? "two metrics or more"
-                      : job.operation == "make" ? "a field"
-                                                : "a metric") +
-                     ", found " + std::to_string(files) + (files == 1 ? " file" : " files"));
+  if (files < found->least || files > found->most)
+    throw UsageError(job.operation + ": expected " + std::string(found->takes) + ", found " +
+                     std::to_string(files) + (files == 1 ? " file" : " files"));
   job.mesh = words[1];
   job.fields.assign(words.begin() + 2, words.end());
   job.output = arguments.text("-o").value_or("");
@@ -188,6 +196,7 @@ class Work {
  private:
   void start() {
     if (job_.operation == "make") return make();
+    if (job_.operation == "implied") return imply();
     metric_of_ = metrics(job_.fields[0]);
     if (job_.operation == "scale") scale();
     for (std::size_t i = 1; i < job_.fields.size(); ++i) intersect_with(metrics(job_.fields[i]));
@@ -203,6 +212,11 @@ class Work {
         meshadapt::solution_metric(executor_, mesh_, field, {goal_, job_.fit.recovery});
     metric_of_ = meshadapt::tensors_of<Dim>(executor_, made.metric);
     check(made.fit);
+  }
+
+  void imply() {
+    metric_of_ =
+        meshadapt::tensors_of<Dim>(executor_, meshadapt::implied_tensors(executor_, mesh_));
   }
 
   void scale() {
@@ -272,11 +286,12 @@ int run(const Arguments& arguments) {
 
 const Command metric_command{
     "metric",
-    "make|intersect|scale|bound|grade MESH FIELD... -o OUT",
+    "make|implied|intersect|scale|bound|grade MESH FIELD... -o OUT",
     "makes metrics from fields, and changes them",
     "  make MESH FIELD           the metric in which linear interpolation of all that FIELD has "
     "at\n"
     "                            the vertices is best, for a complexity or an error\n"
+    "  implied MESH              the metric that the mesh is adapted to as it is\n"
     "  intersect MESH A B ...    the finest sizes that any of the metrics asks for\n"
     "  scale MESH METRIC         multiplied by one factor, to reach a complexity\n"
     "  bound MESH METRIC         with sizes and anisotropy within bounds\n"

@@ -159,6 +159,13 @@ TEST(MetricCommand, Intersects) {
   EXPECT_GT(scene.complexity<2>("i.sol"), scene.complexity<2>("waves2d.sol"));
 }
 
+TEST(MetricCommand, TakesTheMetricThatTheMeshImplies) {
+  const Scene scene("waves3d");
+  EXPECT_EQ(scene.folder.run("metric implied waves3d.mesh -o i.sol").status, 0);
+  const Outcome info = scene.folder.run("info waves3d.mesh -sol i.sol");
+  EXPECT_TRUE(contains(info.out, "100.00 %")) << info.out;
+}
+
 TEST(MetricCommand, TellsWhatIsWrongWithACommandLine) {
   const Folder folder;
   const auto expect = [&](const char* words, const char* part) {
@@ -166,9 +173,10 @@ TEST(MetricCommand, TellsWhatIsWrongWithACommandLine) {
     EXPECT_EQ(outcome.status, 2) << words;
     EXPECT_TRUE(contains(outcome.err, part)) << words << ": " << outcome.err;
   };
-  expect("", "expected make, intersect, scale, bound or grade, found nothing");
+  expect("", "expected make, implied, intersect, scale, bound or grade, found nothing");
   expect("mak a.mesh a.sol -o b.sol", "found 'mak'");
   expect("make a.mesh -o b.sol --error 1", "expected a mesh and a field, found 1 file");
+  expect("implied a.mesh a.sol -o b.sol", "expected a mesh, found 2 files");
   expect("intersect a.mesh a.sol -o b.sol", "two metrics or more, found 2 files");
   expect("make a.mesh a.sol --error 1", "ending in .sol or .solb");
   expect("make a.mesh a.sol --error 1 -o b.mesh", "found 'b.mesh'");
