@@ -128,15 +128,14 @@ void Projection<Dim>::sum_up_volumes() {
     return runtime::parallel_reduce(executor_, count, 0.0, term,
                                     [](double a, double b) { return a + b; });
   };
-  const auto outside = [&](std::size_t e) { return to_.volume_of[e] * (1 - covered_[e]); };
-  volume_outside_ = sum(to_.element_count(), [&](std::size_t e) {
-    return covered_[e] < 1 - least_share ? outside(e) : 0;
-  });
-  const double covered =
-      sum(to_.element_count(), [&](std::size_t e) { return to_.volume_of[e] * covered_[e]; });
-  const double old =
-      sum(from_.mesh().element_count(), [&](std::size_t e) { return from_.mesh().volume_of[e]; });
-  volume_left_out_ = old - covered > least_share * old ? old - covered : 0;
+  const auto shared = [&](std::size_t e) { return to_.volume_of[e] * std::min(1.0, covered_[e]); };
+  const double covered = sum(to_.element_count(), shared);
+  const auto without = [&](const FixedMesh<Dim>& mesh) {
+    const double all = sum(mesh.element_count(), [&](std::size_t e) { return mesh.volume_of[e]; });
+    return all - covered > least_share * all ? all - covered : 0;
+  };
+  volume_outside_ = without(to_);
+  volume_left_out_ = without(from_.mesh());
 }
 
 template <int Dim>

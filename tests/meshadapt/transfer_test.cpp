@@ -152,6 +152,35 @@ TYPED_TEST(TransferIn, KeepsBounds) {
   EXPECT_GT(*std::max_element(closest.begin(), closest.end()), 1.01);  // so there was work to do
 }
 
+TYPED_TEST(TransferIn, CopesWithSliversAndStretchedMeshes) {
+  constexpr int Dim = TypeParam::value;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    std::array<AnyMesh, 2> mesh;
+    for (std::size_t i = 0; i < 2; ++i) {
+      Random random(seed + 100 * i), same(seed);
+      mesh[i] = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 8 : 5));
+      test::jiggle(mesh[i], random, 0.4);
+      test::make_slivers(mesh[i], random, 5, 1e-6);
+      for (std::size_t v = 0; v < mesh[i].vertex_count(); ++v) mesh[i].coordinates[v * Dim] *= 1e-3;
+      test::place(mesh[i], same, 1000, 0);
+    }
+    const auto scaled = [](std::size_t k, const Vector<Dim>& p) { return linear(k, 1e-3 * p); };
+    const auto sign = [](std::size_t k, const Vector<Dim>& p) {
+      return p[0] + p[1] > 100 * static_cast<double>(k) ? 1.0 : 0.0;
+    };
+    const AnyField steep = field_on<Dim>(mesh[0], sign), smooth = field_on<Dim>(mesh[0], scaled);
+    const auto carried = project_field(executor, {mesh[0], steep}, mesh[1]).field;
+    const double volume = std::pow(1000, Dim) * 1e-3;
+    EXPECT_LT(difference(integrals<Dim>(mesh[1], carried), integrals<Dim>(mesh[0], steep)),
+              1e-12 * volume);
+    EXPECT_GE(*std::min_element(carried.values.begin(), carried.values.end()), 0);
+    EXPECT_LE(*std::max_element(carried.values.begin(), carried.values.end()), 1);
+    EXPECT_LT(difference(project_field(executor, {mesh[0], smooth}, mesh[1]).field.values,
+                         field_on<Dim>(mesh[1], scaled).values),
+              1e-8);
+  }
+}
+
 TYPED_TEST(TransferIn, LeavesAFieldOnTheSameMeshAsItIs) {
   constexpr int Dim = TypeParam::value;
   const AnyMesh mesh = holed_grid<Dim>(6, 7);
