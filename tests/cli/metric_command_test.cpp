@@ -42,12 +42,12 @@ class Scene {
     const AnyField field = meshadapt::read_field(folder.path() / name);
     EXPECT_EQ(field.types, std::vector{AnyField::Type::symmetric});
     EXPECT_EQ(field.vertex_count, mesh.vertex_count());
-    return meshadapt::tensors_of<Dim>(executor, field);
+    return meshadapt::tensors_of<Dim>(executor_, field);
   }
 
   template <int Dim>
   double complexity(const std::string& name) const {
-    return meshadapt::complexity<Dim>(executor, meshadapt::make_fixed_mesh<Dim>(executor, mesh),
+    return meshadapt::complexity<Dim>(executor_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh),
                                       metrics<Dim>(name));
   }
 
@@ -69,7 +69,7 @@ class Scene {
   AnyMesh mesh;
 
  private:
-  runtime::Executor executor{{.threads = 1}};
+  runtime::Executor executor_{{.threads = 1}};
 };
 
 TEST(MetricCommand, MakesAMetricThatAdaptTakes) {

@@ -49,7 +49,7 @@ double interpolation_error(const FixedMesh<Dim>& mesh) {
   for (ElementId e = 0; e < mesh.element_count(); ++e) {
     double mean = 0;
     for (std::size_t i = 0; i <= Dim; ++i)
-      for (std::size_t j = 0; j < i; ++j) mean += squared(e, {i, j}) / (Dim * (Dim + 1) / 2);
+      for (std::size_t j = 0; j < i; ++j) mean += squared(e, {i, j}) / Simplex<Dim>::edges;
     sum += mean * mesh.volume_of[e];
   }
   return std::sqrt(sum);

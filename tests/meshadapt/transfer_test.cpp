@@ -139,7 +139,7 @@ TYPED_TEST(TransferIn, ProjectionKeepsIntegrals) {
 
 TYPED_TEST(TransferIn, KeepsBounds) {
   constexpr int Dim = TypeParam::value;
-  const AnyMesh old_mesh = holed_grid<Dim>(12, 5), new_mesh = holed_grid<Dim>(9, 6);
+  const AnyMesh old_mesh = holed_grid<Dim>(9, 5), new_mesh = holed_grid<Dim>(6, 6);
   const AnyField field = field_on<Dim>(old_mesh, front<Dim>);
   const auto interpolated = interpolate_field(executor, {old_mesh, field}, new_mesh).field.values;
   const auto projected = project_field(executor, {old_mesh, field}, new_mesh).field.values;
@@ -154,7 +154,7 @@ TYPED_TEST(TransferIn, KeepsBounds) {
 
 TYPED_TEST(TransferIn, CopesWithSliversAndStretchedMeshes) {
   constexpr int Dim = TypeParam::value;
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+  for (std::uint64_t seed = 0; seed < (Dim == 2 ? 10 : 4); ++seed) {
     std::array<AnyMesh, 2> mesh;
     for (std::size_t i = 0; i < 2; ++i) {
       Random random(seed + 100 * i), same(seed);
@@ -200,7 +200,7 @@ TYPED_TEST(TransferIn, LeavesAFieldOnTheSameMeshAsItIs) {
 TYPED_TEST(TransferIn, ExtendsTheFieldWhereTheNewMeshReachesBeyond) {
   constexpr int Dim = TypeParam::value;
   const AnyMesh old_mesh = test::make_grid(test::unit_grid(Dim, 5));
-  AnyMesh new_mesh = test::make_grid(test::unit_grid(Dim, 8));
+  AnyMesh new_mesh = test::make_grid(test::unit_grid(Dim, 6));
   scale_about_the_centre<Dim>(new_mesh, 1.1);
   const auto constant = [](std::size_t k, const Vector<Dim>&) { return static_cast<double>(k); };
   const auto inwards = [](std::size_t, const Vector<Dim>& p) { return p[0]; };
@@ -210,8 +210,7 @@ TYPED_TEST(TransferIn, ExtendsTheFieldWhereTheNewMeshReachesBeyond) {
     EXPECT_LT(difference(same.field.values, field_on<Dim>(new_mesh, constant).values), 1e-12);
     EXPECT_NEAR(same.report.volume_outside, std::pow(1.1, Dim) - 1, 1e-10);
     EXPECT_EQ(same.report.volume_left_out, 0);
-    EXPECT_EQ(same.report.vertices_outside,
-              test::point<Dim>(new_mesh, 0).x.size() == 2 ? 32U : 9U * 9U * 9U - 7U * 7U * 7U);
+    EXPECT_EQ(same.report.vertices_outside, std::size_t{Dim == 2 ? 49 - 25 : 343 - 125});
   }
   const auto values =
       interpolate_field(executor, {old_mesh, field_on<Dim>(old_mesh, inwards)}, new_mesh)
@@ -253,7 +252,7 @@ TYPED_TEST(TransferIn, ConvergesInTheSecondOrder) {
 
 TYPED_TEST(TransferIn, DoesNotDependOnThreads) {
   constexpr int Dim = TypeParam::value;
-  const int n = Dim == 2 ? 30 : 9;
+  const int n = Dim == 2 ? 30 : 6;
   const AnyMesh old_mesh = holed_grid<Dim>(n, 11), new_mesh = holed_grid<Dim>(n, 12);
   const AnyField field = field_on<Dim>(old_mesh, front<Dim>);
   const auto run = [&](int threads) {
