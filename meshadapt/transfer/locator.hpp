@@ -55,8 +55,8 @@ class Locator {
   BoxTree<Dim> tree_;
 };
 
-/// The places of points, found one after another in fixed blocks, each from where the last one was.
-/// place_of(i) is called with the index of a point and is to return its place, given one nearby.
+/// Finds points one after another in fixed blocks, so that walks are short and do not depend on
+/// threads: find_next(i, near) returns the element of point i, given the last one's, or none.
 template <class FindNext>
 void walk_in_blocks(const runtime::Executor& executor, std::size_t count, FindNext&& find_next) {
   constexpr std::size_t block_size = 256;
