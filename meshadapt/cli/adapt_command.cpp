@@ -1,7 +1,9 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "adapt_report.hpp"
 #include "command.hpp"
@@ -9,6 +11,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/transfer.hpp"
 #include "ductile/meshadapt/vtu.hpp"
 #include "files.hpp"
 #include "system.hpp"
@@ -24,7 +27,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 19> options{{
+constexpr std::array<Option, 21> options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
@@ -44,17 +47,20 @@ constexpr std::array<Option, 19> options{{
     {"--vtu", "FILE", "writes the adapted mesh for ParaView, too"},
     {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},
     {"--no-metric", "", "writes no metric beside the adapted mesh"},
+    {"--field", "FIELD", "carries fields to the adapted mesh: OUT.FIELD.sol, integrals kept"},
+    {"--interpolate", "", "carries fields by their values, whatever becomes of integrals"},
 }};
 
 /// All that the command line says, checked before any file is read.
 struct Job {
   fs::path input, output;
-  std::optional<fs::path> metric_in, metric_out, json, vtu;
+  std::optional<fs::path> metric_in, metric_out, json, vtu, field_in, field_out;
   std::optional<double> size;
   AdaptOptions adapt;
   int verbosity = 1;
   int threads = 0;
   bool racing = false;
+  bool interpolate = false;
 };
 
 bool is_mesh_name(const fs::path& path) {
@@ -74,6 +80,14 @@ void set_files(Job& job, const Arguments& arguments) {
   job.vtu = arguments.text("--vtu");
   if (job.vtu && job.vtu->extension() != ".vtu")
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
+  job.field_in = arguments.text("--field");
+  job.interpolate = arguments.has("--interpolate");
+  if (job.interpolate && !job.field_in)
+    throw UsageError("option --interpolate: expected --field as well");
+  if (job.field_in)
+    job.field_out = field_beside(job.output)
+                        .replace_extension("." + job.field_in->stem().string() +
+                                           field_beside(job.output).extension().string());
   job.size = arguments.positive("-hsiz");
   job.metric_in = arguments.text("-sol");
   if (job.size && job.metric_in)
@@ -109,7 +123,7 @@ Job read_job(const Arguments& arguments) {
   if (const auto megabytes = arguments.integer("-m", 1, 1 << 30))
     limit_memory(static_cast<std::size_t>(*megabytes) << 20U);
   meshadapt::check_writable(job.output);
-  for (const auto& path : {job.metric_out, job.json, job.vtu})
+  for (const auto& path : {job.metric_out, job.json, job.vtu, job.field_out})
     if (path) meshadapt::check_writable(*path);
   return job;
 }
@@ -157,13 +171,26 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
   return adapted;
 }
 
-void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::string& json) {
+std::optional<AnyField> carry_field(const Executor& executor, const Job& job,
+                                    const meshadapt::FieldOnMesh& from, const AnyMesh& to) {
+  if (!job.field_in) return std::nullopt;
+  return job.interpolate ? meshadapt::interpolate_field(executor, from, to).field
+                         : meshadapt::project_field(executor, from, to).field;
+}
+
+void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::optional<AnyField>& field,
+                   const std::string& json) {
   meshadapt::AtomicOutputs outputs;
   meshadapt::write_mesh(outputs, job.output, adapted.mesh);
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
-  if (job.vtu)
-    meshadapt::write_vtu(outputs, *job.vtu, adapted.mesh,
-                         meshadapt::vtu_fields(adapted.metric, "metric"));
+  if (field) meshadapt::write_field(outputs, *job.field_out, *field);
+  if (job.vtu) {
+    auto fields = meshadapt::vtu_fields(adapted.metric, "metric");
+    if (field)
+      for (auto& carried : meshadapt::vtu_fields(*field, job.field_in->stem().string()))
+        fields.push_back(std::move(carried));
+    meshadapt::write_vtu(outputs, *job.vtu, adapted.mesh, fields);
+  }
   if (job.json) outputs.stage(*job.json).write(json);
   outputs.commit();
 }
@@ -174,19 +201,23 @@ int run(const Arguments& arguments) {
   meshadapt::Warnings warnings;
   const AnyMesh mesh = meshadapt::read_mesh(job.input, &warnings);
   const AnyField metric = choose_metric(job, mesh, warnings);
+  const AnyField field = job.field_in ? read_fields(*job.field_in, mesh, warnings) : AnyField{};
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);
   adapted.mesh.name = job.output.string();
+  const auto carried = carry_field(executor, job, {mesh, field}, adapted.mesh);
   warnings.insert(warnings.end(), adapted.report.warnings.begin(), adapted.report.warnings.end());
   print_warnings(warnings, job.verbosity);
   const AdaptSummary summary =
       summarise(executor, mesh, metric, adapted,
                 {.before = job.json || job.verbosity > 1, .after = job.json || job.verbosity > 0});
-  write_outputs(job, adapted, job.json ? to_json(summary) : std::string());
+  write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string());
   if (job.verbosity > 0) {
     std::printf("%s", to_text(summary, job.verbosity > 1).c_str());
-    std::printf("written: %s%s%s\n", job.output.c_str(), job.metric_out ? ", " : "",
-                job.metric_out ? job.metric_out->c_str() : "");
+    std::printf("written: %s", job.output.c_str());
+    for (const auto& path : {job.metric_out, job.field_out})
+      if (path) std::printf(", %s", path->c_str());
+    std::printf("\n");
   }
   return done;
 }

@@ -1,5 +1,6 @@
 #include "files.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <system_error>
 
@@ -39,6 +40,16 @@ fs::path field_beside(const fs::path& mesh) {
 meshadapt::AnyField read_metric(const fs::path& path, const meshadapt::AnyMesh& mesh,
                                 meshadapt::Warnings& warnings) {
   return meshadapt::metric_of(meshadapt::read_field(path, &warnings), mesh);
+}
+
+meshadapt::AnyField read_fields(const fs::path& path, const meshadapt::AnyMesh& mesh,
+                                meshadapt::Warnings& warnings) {
+  using Type = meshadapt::AnyField::Type;
+  meshadapt::AnyField field = meshadapt::read_field(path, &warnings);
+  if (std::all_of(field.types.begin(), field.types.end(), [](Type t) { return t == Type::scalar; }))
+    field.dimension = mesh.dimension;  // which may be 2 in a file of dimension 3 that is flat
+  meshadapt::expect_field_of(field, mesh);
+  return field;
 }
 
 std::string with_commas(std::size_t number) {

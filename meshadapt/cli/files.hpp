@@ -28,6 +28,10 @@ std::filesystem::path field_beside(const std::filesystem::path& mesh);
 meshadapt::AnyField read_metric(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,
                                 meshadapt::Warnings& warnings);
 
+/// Reads fields at the vertices and checks that they are of this mesh.
+meshadapt::AnyField read_fields(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,
+                                meshadapt::Warnings& warnings);
+
 /// 1234567 as "1,234,567".
 std::string with_commas(std::size_t number);
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "ductile/meshadapt/metric.hpp"
+#include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -131,5 +131,55 @@ AnyField metric_of(const AnyField& field, const AnyMesh& mesh) {
   mesh.dimension == 2 ? append_metrics<2>(result, field) : append_metrics<3>(result, field);
   return result;
 }
+
+void expect_field_of(const AnyField& field, const AnyMesh& mesh) {
+  if (field.dimension != mesh.dimension)
+    fail(field,
+         "dimension " + std::to_string(mesh.dimension) + ", that of " + mesh.name + ", found " +
+             std::to_string(field.dimension),
+         "give a field of this mesh");
+  if (field.vertex_count != mesh.vertex_count())
+    fail(field,
+         std::to_string(mesh.vertex_count()) + " values, one for each vertex of " + mesh.name +
+             ", found " + std::to_string(field.vertex_count),
+         "give a field of this mesh");
+  const std::size_t wanted = field.vertex_count * stride_of(field);
+  if (field.types.empty() || field.values.size() != wanted)
+    fail(field,
+         "numbers for all components at all vertices, " + std::to_string(wanted) +
+             " of them, found " + std::to_string(field.values.size()),
+         "give all of them");
+}
+
+template <int Dim>
+std::vector<Metric<Dim>> tensors_of(const runtime::Executor& executor, const AnyField& field,
+                                    std::size_t component) {
+  const std::size_t stride = stride_of(field);
+  std::vector<Metric<Dim>> tensor_of(field.vertex_count);
+  runtime::parallel_for(executor, tensor_of.size(), [&](std::size_t v) {
+    std::copy_n(&field.values[v * stride + component], Metric<Dim>::size, tensor_of[v].m.begin());
+  });
+  return tensor_of;
+}
+
+template <int Dim>
+AnyField symmetric_field(const runtime::Executor& executor,
+                         const std::vector<Metric<Dim>>& tensor_of, const std::string& name) {
+  AnyField field{Dim, tensor_of.size(), {Type::symmetric}, {}, name};
+  field.values.resize(tensor_of.size() * Metric<Dim>::size);
+  runtime::parallel_for(executor, tensor_of.size(), [&](std::size_t v) {
+    std::copy_n(tensor_of[v].m.begin(), Metric<Dim>::size, &field.values[v * Metric<Dim>::size]);
+  });
+  return field;
+}
+
+template std::vector<Metric<2>> tensors_of<2>(const runtime::Executor&, const AnyField&,
+                                              std::size_t);
+template std::vector<Metric<3>> tensors_of<3>(const runtime::Executor&, const AnyField&,
+                                              std::size_t);
+template AnyField symmetric_field(const runtime::Executor&, const std::vector<Metric<2>>&,
+                                  const std::string&);
+template AnyField symmetric_field(const runtime::Executor&, const std::vector<Metric<3>>&,
+                                  const std::string&);
 
 }  // namespace ductile::meshadapt

@@ -4,23 +4,26 @@
 #include <limits>
 
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/walk.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
 
-/// A point this far outside, as a barycentric weight, still counts as inside: it is on the boundary
-/// up to rounding.
-constexpr double tolerance = 1e-9;
-
-/// A walk that takes longer than this goes in circles or around a hole.
-constexpr int longest_walk = 2000;
-
-double volume(const std::array<Vector<2>, 3>& p) {
-  return (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
-}
-double volume(const std::array<Vector<3>, 4>& p) {
-  return dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0]));
+/// The element that the point is in, or least outside of.
+template <int Dim>
+WalkEnd<Dim> search(const Walkable<Dim>& mesh, const Vector<Dim>& point) {
+  WalkEnd<Dim> best{0, barycentric(mesh, 0, point), true};
+  double best_lowest = -std::numeric_limits<double>::infinity();
+  for (ElementId e = 0; e < mesh.corners_of.size() && best_lowest < -walk_tolerance; ++e) {
+    const Weights<Dim> weight = barycentric(mesh, e, point);
+    const double lowest = *std::min_element(weight.begin(), weight.end());
+    if (lowest > best_lowest) {
+      best_lowest = lowest;
+      best = {e, weight, true};
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -39,67 +42,12 @@ Background<Dim>::Background(const runtime::Executor& executor, const Mesh<Dim>& 
 }
 
 template <int Dim>
-auto Background<Dim>::weights(ElementId element, const Vector<Dim>& point) const -> Weights {
-  std::array<Vector<Dim>, Dim + 1> p;
-  for (std::size_t i = 0; i < p.size(); ++i) p[i] = position_of_[corners_of_[element][i]];
-  Weights weight;
-  double sum = 0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const Vector<Dim> corner = std::exchange(p[i], point);
-    weight[i] = volume(p);
-    p[i] = corner;
-    sum += weight[i];
-  }
-  for (double& w : weight) w /= sum;
-  return weight;
-}
-
-/// Steps over the facet that the point is farthest behind, until it is behind none.
-template <int Dim>
-auto Background<Dim>::walk(const Vector<Dim>& point, ElementId near) const -> Walk {
-  Walk at{near, {}, false};
-  for (int step = 0; step < longest_walk; ++step) {
-    at.weight = weights(at.element, point);
-    ElementId next = none;
-    double lowest = -tolerance;
-    bool inside = true;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      if (at.weight[i] >= -tolerance) continue;
-      inside = false;
-      if (at.weight[i] < lowest && neighbours_[at.element][i] != none) {
-        lowest = at.weight[i];
-        next = neighbours_[at.element][i];
-      }
-    }
-    at.inside = inside;
-    if (next == none) break;
-    at.element = next;
-  }
-  return at;
-}
-
-/// The element that the point is in, or least outside of.
-template <int Dim>
-auto Background<Dim>::search(const Vector<Dim>& point) const -> Walk {
-  Walk best{0, weights(0, point), true};
-  double best_lowest = -std::numeric_limits<double>::infinity();
-  for (ElementId e = 0; e < corners_of_.size() && best_lowest < -tolerance; ++e) {
-    const Weights weight = weights(e, point);
-    const double lowest = *std::min_element(weight.begin(), weight.end());
-    if (lowest > best_lowest) {
-      best_lowest = lowest;
-      best = {e, weight, true};
-    }
-  }
-  return best;
-}
-
-template <int Dim>
 auto Background<Dim>::sample(const Vector<Dim>& point, ElementId near) const -> Sample {
-  Walk at = walk(point, near);
+  const Walkable<Dim> mesh{corners_of_, neighbours_, position_of_};
+  WalkEnd<Dim> at = walk(mesh, point, near);
   if (!at.inside) {
     const double lowest = *std::min_element(at.weight.begin(), at.weight.end());
-    if (lowest < -1e-5) at = search(point);
+    if (lowest < -1e-5) at = search(mesh, point);
   }
   double sum = 0;
   for (double& w : at.weight) sum += w = std::max(w, 0.0);

@@ -3,6 +3,10 @@
 #include <cmath>
 #include <vector>
 
+#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
 namespace ductile::meshadapt {
 
 namespace {
@@ -56,6 +60,41 @@ void add_cells(LogLengths& logs, const AnyMesh& mesh, const Cells<Corners>& cell
   }
 }
 
+/// The metric in which all edges of an element have length 1: over those of a regular one, the sum
+/// of e e' is (d + 1)/2 times the identity, and both sides change alike under linear maps.
+template <int Dim>
+Metric<Dim> metric_of_element(const std::array<Vector<Dim>, Dim + 1>& corner) {
+  Metric<Dim> sum;
+  for (std::size_t i = 0; i <= Dim; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vector<Dim> edge = corner[i] - corner[j];
+      for (std::size_t column = 0, at = 0; column < Dim; ++column)
+        for (std::size_t row = 0; row <= column; ++row, ++at)
+          sum.m[at] += edge.x[row] * edge.x[column];
+    }
+  Eigen<Dim> axes = eigen(sum);
+  for (double& value : axes.value) value = (Dim + 1) / (2 * value);
+  return compose(axes);
+}
+
+template <int Dim>
+AnyField implied_tensors_in(const runtime::Executor& executor, const AnyMesh& any) {
+  const auto mesh = make_fixed_mesh<Dim>(executor, any);
+  std::vector<Metric<Dim>> weighted(mesh.element_count());  // logarithms, times the volume
+  runtime::parallel_for(executor, weighted.size(), [&](std::size_t e) {
+    const auto metric = metric_of_element<Dim>(mesh.points(static_cast<ElementId>(e)));
+    weighted[e] = mesh.volume_of[e] * logarithm(metric);
+  });
+  std::vector<Metric<Dim>> metric_of(mesh.vertex_count(), isotropic<Dim>(1));
+  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
+    if (!(mesh.share_of[v] > 0)) return;
+    Metric<Dim> sum;
+    for (const ElementId e : mesh.elements_of(static_cast<VertexId>(v))) sum += weighted[e];
+    metric_of[v] = exponential(1 / ((Dim + 1) * mesh.share_of[v]) * sum);
+  });
+  return symmetric_field(executor, metric_of, any.name);
+}
+
 }  // namespace
 
 AnyField constant_metric(const AnyMesh& mesh, double size) {
@@ -78,6 +117,11 @@ AnyField implied_metric(const AnyMesh& mesh) {
   for (std::size_t v = 0; v < size_of.size(); ++v)
     if (logs.count[v] > 0) size_of[v] = std::exp(logs.sum[v] / logs.count[v]);
   return isotropic_field(mesh, size_of);
+}
+
+AnyField implied_tensors(const runtime::Executor& executor, const AnyMesh& mesh) {
+  return mesh.dimension == 2 ? implied_tensors_in<2>(executor, mesh)
+                             : implied_tensors_in<3>(executor, mesh);
 }
 
 }  // namespace ductile::meshadapt

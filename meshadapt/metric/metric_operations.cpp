@@ -15,6 +15,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
 
@@ -251,6 +252,18 @@ class Gradation {
 
 }  // namespace
 
+void expect_bounds(const SizeBounds& bounds) {
+  const auto [smallest, largest, anisotropy] = bounds;
+  if (!(smallest >= 0) || !(largest >= 0) || (largest > 0 && smallest > largest))
+    throw InputError(
+        "bounds on sizes: expected 0 (none) or more, and the smallest not above the "
+        "largest, found " +
+        number(smallest) + " and " + number(largest));
+  if (!(anisotropy == 0 || anisotropy >= 1))
+    throw InputError("bound on the anisotropy: expected 0 (none) or 1 or more, found " +
+                     number(anisotropy));
+}
+
 template <int Dim>
 Metric<Dim> intersect(const Metric<Dim>& a, const Metric<Dim>& b) {
   // One that is finer everywhere has the larger trace, so it is the base, and nothing is added.
@@ -263,24 +276,13 @@ Metric<Dim> intersect(const Metric<Dim>& a, const Metric<Dim>& b) {
 template <int Dim>
 void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds) {
-  const auto [smallest, largest] = bounds;
-  if (!(smallest >= 0) || !(largest >= 0) || (largest > 0 && smallest > largest))
-    throw InputError(
-        "bounds on sizes: expected 0 (none) or more, and the smallest not above the "
-        "largest, found " +
-        number(smallest) + " and " + number(largest));
-  if (smallest == 0 && largest == 0) return;
-  const double low = largest > 0 ? 1 / (largest * largest) : 0;
-  const double high =
-      smallest > 0 ? 1 / (smallest * smallest) : std::numeric_limits<double>::infinity();
-  runtime::parallel_for(executor, metric_of.size(), [&, low, high](std::size_t v) {
+  expect_bounds(bounds);
+  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     Eigen<Dim> axes = eigen(metric_of[v]);
-    bool within = true;
-    for (double& value : axes.value) {
-      within = within && value >= low && value <= high;
-      value = std::clamp(value, low, high);
-    }
-    if (!within) metric_of[v] = compose(axes);
+    const auto within = bounded(axes.value, bounds);
+    if (within == axes.value) return;
+    axes.value = within;
+    metric_of[v] = compose(axes);
   });
 }
 

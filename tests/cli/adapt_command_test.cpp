@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "ductile/meshadapt/gmf.hpp"
 #include "program.hpp"
 
 namespace ductile::cli {
@@ -88,6 +89,51 @@ TEST(AdaptCommand, ReportsAsJsonAndForParaView) {
                            "\"peak_memory_bytes\"", "\"deterministic\": false", "\"quality\""})
     EXPECT_TRUE(contains(json, part)) << part;
   EXPECT_TRUE(contains(folder.read("r.vtu"), "UnstructuredGrid"));
+}
+
+/// Writes u.sol, a scalar x + y and a vector, at the vertices of a mesh there.
+void add_field(const Folder& folder, const std::string& mesh_name) {
+  const auto mesh = meshadapt::read_mesh(folder.path() / mesh_name);
+  const auto dimension = static_cast<std::size_t>(mesh.dimension);
+  meshadapt::AnyField field{mesh.dimension, mesh.vertex_count(), {}, {}, {}};
+  field.types = {meshadapt::AnyField::Type::scalar, meshadapt::AnyField::Type::vector};
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    const double* const x = &mesh.coordinates[v * dimension];
+    field.values.push_back(x[0] + x[1]);
+    field.values.insert(field.values.end(), x, x + dimension);
+  }
+  meshadapt::write_field(folder.path() / "u.sol", field);
+}
+
+TEST(AdaptCommand, CarriesFieldsAlong) {
+  for (const std::string name : {"waves2d", "waves3d"})
+    for (const char* how : {"", " --interpolate"}) {
+      const Folder folder;
+      folder.add_example(name);
+      add_field(folder, name + ".mesh");
+      const Outcome outcome = folder.run("adapt " + name + ".mesh --iterations 1 --field u.sol" +
+                                         " --vtu a.vtu -o a.mesh" + how);
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      EXPECT_TRUE(contains(outcome.out, "written: a.mesh, a.sol, a.u.sol")) << outcome.out;
+      EXPECT_TRUE(contains(folder.read("a.vtu"), "u_2"));
+      const auto carried = meshadapt::read_field(folder.path() / "a.u.sol").values;
+      add_field(folder, "a.mesh");
+      const auto exact = meshadapt::read_field(folder.path() / "u.sol").values;
+      ASSERT_EQ(carried.size(), exact.size());
+      for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(carried[i], exact[i], 1e-9);
+    }
+}
+
+TEST(AdaptCommand, RefusesAFieldOfAnotherMesh) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  folder.write("u.sol",
+               "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n3\n1 1\n1\n1\n1\nEnd\n");
+  const Outcome outcome = folder.run("adapt waves2d.mesh --field u.sol");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(contains(outcome.err, "u.sol: expected 625 values")) << outcome.err;
+  EXPECT_EQ(folder.run("adapt waves2d.mesh --interpolate").status, 2);
+  EXPECT_EQ(folder.file_count(), 3U);
 }
 
 TEST(AdaptCommand, SaysNothingOfProgressInAPipe) {

@@ -34,17 +34,6 @@ class Background {
   std::size_t bytes() const;
 
  private:
-  using Weights = std::array<double, Dim + 1>;
-  struct Walk {
-    ElementId element;
-    Weights weight;  // barycentric, of the element's corners
-    bool inside;
-  };
-
-  Weights weights(ElementId element, const Vector<Dim>& point) const;
-  Walk walk(const Vector<Dim>& point, ElementId near) const;
-  Walk search(const Vector<Dim>& point) const;
-
   std::vector<Corners<Dim>> corners_of_;    // [element]
   Neighbours<Dim> neighbours_;              // [element][facet]
   std::vector<Vector<Dim>> position_of_;    // [vertex]

@@ -1,9 +1,15 @@
 /// @file
-/// A field of a file as the metric of a mesh: sizes or tensors at its vertices, checked.
+/// A field of a file as the metric of a mesh: sizes or tensors at its vertices, checked; and the
+/// tensors of a field as those that the functions on metrics work on, and back.
 #pragma once
+
+#include <string>
+#include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {
 
@@ -17,5 +23,29 @@ inline constexpr double largest_anisotropy = 1e8;
 /// vertex, sizes are positive, tensors positive definite, and no size or anisotropy is beyond
 /// reason. Thread safety: any thread.
 AnyField metric_of(const AnyField& field, const AnyMesh& mesh);
+
+/// Throws InputError unless the field has the dimension of the mesh, a value for each vertex, and
+/// as many components as its types say. Thread safety: any thread.
+void expect_field_of(const AnyField& field, const AnyMesh& mesh);
+
+/// The tensors [vertex] of a field of which the first component starts at `component`, by default
+/// the only one. Nothing is checked. Thread safety: one caller; runs on the executor.
+template <int Dim>
+std::vector<Metric<Dim>> tensors_of(const runtime::Executor& executor, const AnyField& field,
+                                    std::size_t component = 0);
+
+/// One symmetric field. Thread safety: one caller; runs on the executor.
+template <int Dim>
+AnyField symmetric_field(const runtime::Executor& executor,
+                         const std::vector<Metric<Dim>>& tensor_of, const std::string& name);
+
+extern template std::vector<Metric<2>> tensors_of<2>(const runtime::Executor&, const AnyField&,
+                                                     std::size_t);
+extern template std::vector<Metric<3>> tensors_of<3>(const runtime::Executor&, const AnyField&,
+                                                     std::size_t);
+extern template AnyField symmetric_field(const runtime::Executor&, const std::vector<Metric<2>>&,
+                                         const std::string&);
+extern template AnyField symmetric_field(const runtime::Executor&, const std::vector<Metric<3>>&,
+                                         const std::string&);
 
 }  // namespace ductile::meshadapt

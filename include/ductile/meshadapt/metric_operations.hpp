@@ -25,11 +25,13 @@ Metric<Dim> intersect(const Metric<Dim>& a, const Metric<Dim>& b);
 struct SizeBounds {
   double smallest = 0;
   double largest = 0;
+  double anisotropy = 0;  ///< the longest size at a vertex over the shortest, at least 1
 };
 
-/// Clamps the sizes 1/sqrt(eigenvalue) of every metric between the bounds; one that is within them
-/// keeps its bits. Throws InputError if a bound is negative or not a number, or the smallest is
-/// above the largest. Thread safety: one caller; runs on the executor.
+/// Clamps the sizes 1/sqrt(eigenvalue) of every metric between the bounds, then shortens those that
+/// are too long beside the shortest; one that is within the bounds keeps its bits. Throws
+/// InputError if a bound is negative or not a number, the smallest is above the largest or the
+/// anisotropy below 1. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void bound_sizes(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds);

@@ -78,6 +78,15 @@ double certain_determinant(const std::array<Vector<Dim>, Dim + 1>& p) {
     return certain_determinant(p[0], p[1], p[2], p[3]);
 }
 
+/// Twice the signed area, six times the signed volume, as rounding leaves it.
+inline double plain_determinant(const std::array<Vector<2>, 3>& p) {
+  const Vector<2> u = p[1] - p[0], v = p[2] - p[0];
+  return u[0] * v[1] - u[1] * v[0];
+}
+inline double plain_determinant(const std::array<Vector<3>, 4>& p) {
+  return dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0]));
+}
+
 /// Normal of a facet, as long as the facet is large.
 inline Vector<2> facet_normal(const std::array<Vector<2>, 2>& p) {
   return {{p[1][1] - p[0][1], p[0][0] - p[1][0]}};

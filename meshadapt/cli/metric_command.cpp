@@ -1,0 +1,303 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "files.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using meshadapt::Metric;
+using runtime::Executor;
+
+constexpr std::array<Option, 12> options{{
+    {"-o", "OUT", "where the metric goes, a .sol or .solb", "--out"},
+    {"--complexity", "X", "make, scale: the integral of sqrt(det metric) to reach"},
+    {"--elements", "N", "make, scale: the complexity of about N elements instead"},
+    {"--error", "X", "make: the interpolation error to reach instead"},
+    {"--norm", "P", "make: the L^P norm that the error is measured in, or inf (default: 2)"},
+    {"--recovery", "HOW", "make: second derivatives by least-squares (default) or projection"},
+    {"-hmin", "X", "asks for no edge shorter than X"},
+    {"-hmax", "X", "asks for no edge longer than X"},
+    {"--anisotropy", "X", "lets sizes differ by a factor of X at most between directions"},
+    {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length, in the end"},
+    {"--threads", "N", "threads to use (default: the cores this process may use)"},
+    {"-v", "N", "0 says nothing, 1 (default) sums up", "--verbose"},
+}};
+
+/// All that the command line says, checked before any file is read.
+struct Job {
+  std::string operation;
+  fs::path mesh, output;
+  std::vector<fs::path> fields;
+  meshadapt::SolutionMetricOptions fit;  // fit.goal.bounds hold for all operations
+  double elements = 0;
+  double gradation = 0;
+  int threads = 0, verbosity = 1;
+
+  bool bounded() const {
+    const meshadapt::SizeBounds& bounds = fit.goal.bounds;
+    return bounds.smallest > 0 || bounds.largest > 0 || bounds.anisotropy > 0;
+  }
+};
+
+// ---- The command line ----
+
+void set_files(Job& job, const Arguments& arguments) {
+  struct Operation {
+    std::string_view name, takes;
+    std::size_t least, most;  // files
+  };
+  constexpr std::array<Operation, 6> operations{
+      {{"make", "a mesh and a field", 2, 2},
+       {"implied", "a mesh", 1, 1},
+       {"intersect", "a mesh and two metrics or more", 3, std::string::npos},
+       {"scale", "a mesh and a metric", 2, 2},
+       {"bound", "a mesh and a metric", 2, 2},
+       {"grade", "a mesh and a metric", 2, 2}}};
+  const auto& words = arguments.operands();
+  const auto found = std::find_if(operations.begin(), operations.end(), [&](const Operation& one) {
+    return !words.empty() && one.name == words[0];
+  });
+  if (found == operations.end())
+    throw UsageError("expected make, implied, intersect, scale, bound or grade, found " +
+                     (words.empty() ? "nothing" : "'" + words[0] + "'"));
+  job.operation = words[0];
+  const std::size_t files = words.size() - 1;
+  if (files < found->least || files > found->most)
+    throw UsageError(job.operation + ": expected " + std::string(found->takes) + ", found " +
+                     std::to_string(files) + (files == 1 ? " file" : " files"));
+  job.mesh = words[1];
+  job.fields.assign(words.begin() + 2, words.end());
+  job.output = arguments.text("-o").value_or("");
+  if (job.output.extension() != ".sol" && job.output.extension() != ".solb")
+    throw UsageError("option -o: expected a name ending in .sol or .solb, found '" +
+                     job.output.string() + "'");
+}
+
+void refuse(const Job& job, const Arguments& arguments,
+            std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names)
+    if (arguments.has(name))
+      throw UsageError("option " + std::string(name) + ": " + job.operation + " takes none");
+}
+
+double norm_of(const Arguments& arguments) {
+  if (arguments.text("--norm") == "inf") return std::numeric_limits<double>::infinity();
+  const double norm = arguments.positive("--norm").value_or(2);
+  if (norm < 1)
+    throw UsageError("option --norm: expected 1 or more, or inf, found '" +
+                     *arguments.text("--norm") + "'");
+  return norm;
+}
+
+void set_goal(Job& job, const Arguments& arguments) {
+  const bool makes = job.operation == "make", scales = job.operation == "scale";
+  if (!makes) refuse(job, arguments, {"--error", "--norm", "--recovery"});
+  if (!makes && !scales) refuse(job, arguments, {"--complexity", "--elements"});
+  auto& goal = job.fit.goal;
+  goal.complexity = arguments.positive("--complexity").value_or(0);
+  goal.error = arguments.positive("--error").value_or(0);
+  goal.norm = norm_of(arguments);
+  job.elements = arguments.positive("--elements").value_or(0);
+  if ((makes || scales) && (goal.complexity > 0) + (goal.error > 0) + (job.elements > 0) != 1)
+    throw UsageError(job.operation + ": expected one of --complexity, --elements" +
+                     (makes ? " and --error" : ""));
+  const std::string recovery = arguments.text("--recovery").value_or("least-squares");
+  if (recovery != "least-squares" && recovery != "projection")
+    throw UsageError("option --recovery: expected least-squares or projection, found '" + recovery +
+                     "'");
+  if (recovery == "projection") job.fit.recovery = meshadapt::Recovery::double_projection;
+}
+
+void set_limits(Job& job, const Arguments& arguments) {
+  auto& bounds = job.fit.goal.bounds;
+  bounds.smallest = arguments.positive("-hmin").value_or(0);
+  bounds.largest = arguments.positive("-hmax").value_or(0);
+  bounds.anisotropy = arguments.positive("--anisotropy").value_or(0);
+  if (bounds.largest > 0 && bounds.smallest > bounds.largest)
+    throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
+  if (bounds.anisotropy > 0 && bounds.anisotropy < 1)
+    throw UsageError("option --anisotropy: expected 1 or more, found '" +
+                     *arguments.text("--anisotropy") + "'");
+  job.gradation = std::max(0.0, arguments.number("-hgrad").value_or(0));  // 0 or less: none
+  if (job.gradation > 0 && job.gradation < 1)
+    throw UsageError("option -hgrad: expected a factor of 1 or more, found '" +
+                     *arguments.text("-hgrad") + "'");
+  if (job.operation == "bound" && !job.bounded())
+    throw UsageError("bound: expected some of -hmin, -hmax and --anisotropy");
+  if (job.operation == "grade" && job.gradation == 0) throw UsageError("grade: expected -hgrad");
+}
+
+Job read_job(const Arguments& arguments) {
+  Job job;
+  set_files(job, arguments);
+  set_goal(job, arguments);
+  set_limits(job, arguments);
+  job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
+  job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
+  meshadapt::check_writable(job.output);
+  return job;
+}
+
+// ---- The work ----
+
+template <int Dim>
+class Work {
+ public:
+  Work(const Executor& executor, const Job& job, const AnyMesh& mesh, meshadapt::Warnings& warnings)
+      : executor_(executor), job_(job), mesh_(mesh), warnings_(warnings) {
+    goal_ = job.fit.goal;
+    if (job.elements > 0) goal_.complexity = meshadapt::complexity_of_elements(Dim, job.elements);
+  }
+
+  AnyField run() {
+    start();
+    meshadapt::bound_sizes(executor_, metric_of_, goal_.bounds);
+    if (job_.gradation > 0) grade();
+    return meshadapt::symmetric_field(executor_, metric_of_, job_.output.string());
+  }
+
+  std::string summary() const {
+    double finest = 0, coarsest = std::numeric_limits<double>::infinity();
+    for (const Metric<Dim>& metric : metric_of_)
+      for (const double value : meshadapt::eigen(metric).value) {
+        finest = std::max(finest, value);
+        coarsest = std::min(coarsest, value);
+      }
+    const double complexity = meshadapt::complexity<Dim>(
+        executor_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh_), metric_of_);
+    const double elements = complexity / meshadapt::complexity_of_elements(Dim, 1);
+    char text[200];
+    std::snprintf(
+        text, sizeof text, "complexity %.6g, for about %s %s; sizes from %.3g to %.3g", complexity,
+        with_commas(static_cast<std::size_t>(std::min(elements, 1e18))).c_str(),
+        Dim == 2 ? "triangles" : "tetrahedra", 1 / std::sqrt(finest), 1 / std::sqrt(coarsest));
+    return text;
+  }
+
+ private:
+  void start() {
+    if (job_.operation == "make") return make();
+    if (job_.operation == "implied") return imply();
+    metric_of_ = metrics(job_.fields[0]);
+    if (job_.operation == "scale") scale();
+    for (std::size_t i = 1; i < job_.fields.size(); ++i) intersect_with(metrics(job_.fields[i]));
+  }
+
+  std::vector<Metric<Dim>> metrics(const fs::path& path) {
+    return meshadapt::tensors_of<Dim>(executor_, read_metric(path, mesh_, warnings_));
+  }
+
+  void make() {
+    const AnyField field = read_fields(job_.fields[0], mesh_, warnings_);
+    const auto made =
+        meshadapt::solution_metric(executor_, mesh_, field, {goal_, job_.fit.recovery});
+    metric_of_ = meshadapt::tensors_of<Dim>(executor_, made.metric);
+    check(made.fit);
+  }
+
+  void imply() {
+    metric_of_ =
+        meshadapt::tensors_of<Dim>(executor_, meshadapt::implied_tensors(executor_, mesh_));
+  }
+
+  void scale() {
+    check(meshadapt::scale_to_complexity<Dim>(executor_, metric_of_,
+                                              meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
+                                              {goal_.complexity, goal_.bounds}));
+  }
+
+  void intersect_with(const std::vector<Metric<Dim>>& other_of) {
+    runtime::parallel_for(executor_, metric_of_.size(), [&](std::size_t v) {
+      metric_of_[v] = meshadapt::intersect(metric_of_[v], other_of[v]);
+    });
+  }
+
+  void grade() {
+    meshadapt::Neighbours<Dim> neighbours;
+    const auto mesh = meshadapt::make_mesh<Dim>(executor_, mesh_, {.complete_boundary = true},
+                                                neighbours, warnings_);
+    const auto report =
+        meshadapt::limit_gradation(executor_, metric_of_, mesh, {.factor = job_.gradation});
+    if (!report.converged)
+      warnings_.push_back("sizes still grow faster than asked for in places, after " +
+                          std::to_string(report.sweeps) + " sweeps over the edges");
+    meshadapt::bound_sizes(executor_, metric_of_, goal_.bounds);
+  }
+
+  void check(const meshadapt::MetricFit& fit) {
+    if (fit.reached) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "the bounds on sizes leave no metric with the %s asked for; the nearest has %.6g",
+                  goal_.error > 0 ? "error" : "complexity",
+                  goal_.error > 0 ? fit.error : fit.complexity);
+    warnings_.push_back(text);
+  }
+
+  const Executor& executor_;
+  const Job& job_;
+  const AnyMesh& mesh_;
+  meshadapt::Warnings& warnings_;
+  meshadapt::HessianMetricOptions goal_;
+  std::vector<Metric<Dim>> metric_of_;  // [vertex]
+};
+
+template <int Dim>
+void work(const Executor& executor, const Job& job, const AnyMesh& mesh,
+          meshadapt::Warnings& warnings) {
+  Work<Dim> work(executor, job, mesh, warnings);
+  const AnyField metric = work.run();
+  print_warnings(warnings, job.verbosity);
+  meshadapt::write_field(job.output, metric);
+  if (job.verbosity > 0)
+    std::printf("%s\nwritten: %s\n", work.summary().c_str(), job.output.c_str());
+}
+
+int run(const Arguments& arguments) {
+  const Job job = read_job(arguments);
+  const Executor executor({.threads = job.threads});
+  meshadapt::Warnings warnings;
+  const AnyMesh mesh = meshadapt::read_mesh(job.mesh, &warnings);
+  mesh.dimension == 2 ? work<2>(executor, job, mesh, warnings)
+                      : work<3>(executor, job, mesh, warnings);
+  return done;
+}
+
+}  // namespace
+
+const Command metric_command{
+    "metric",
+    "make|implied|intersect|scale|bound|grade MESH FIELD... -o OUT",
+    "makes metrics from fields, and changes them",
+    "  make MESH FIELD           the metric in which linear interpolation of all that FIELD has "
+    "at\n"
+    "                            the vertices is best, for a complexity or an error\n"
+    "  implied MESH              the metric that the mesh is adapted to as it is\n"
+    "  intersect MESH A B ...    the finest sizes that any of the metrics asks for\n"
+    "  scale MESH METRIC         multiplied by one factor, to reach a complexity\n"
+    "  bound MESH METRIC         with sizes and anisotropy within bounds\n"
+    "  grade MESH METRIC         with sizes that grow no faster than -hgrad says\n"
+    "Bounds and -hgrad go with all of them; make and scale reach the complexity within the bounds.",
+    options,
+    run};
+
+}  // namespace ductile::cli

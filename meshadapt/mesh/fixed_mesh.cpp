@@ -1,0 +1,199 @@
+#include "ductile/meshadapt/fixed_mesh.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/atomic_count.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_for;
+
+namespace {
+
+constexpr std::size_t no_index = static_cast<std::size_t>(-1);
+
+template <int Dim>
+const std::vector<Corners<Dim>>& elements_in(const AnyMesh& any) {
+  if constexpr (Dim == 2)
+    return any.triangles.vertices;
+  else
+    return any.tetrahedra.vertices;
+}
+
+template <int Dim>
+class FixedMeshMaker {
+ public:
+  FixedMeshMaker(const Executor& executor, const AnyMesh& any) : executor_(executor), any_(any) {}
+
+  FixedMesh<Dim> make() {
+    check();
+    place_vertices();
+    measure_elements();
+    list_elements();
+    find_neighbours();
+    describe_vertices();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(any_.name + ": " + what);
+  }
+
+  std::string element_name(std::size_t element) const {
+    return (Dim == 2 ? "triangle " : "tetrahedron ") + std::to_string(element + 1);
+  }
+
+  template <class Bad>
+  std::size_t first_bad(Bad&& bad) const {
+    return runtime::parallel_reduce(
+        executor_, elements_in<Dim>(any_).size(), no_index,
+        [&](std::size_t e) { return bad(e) ? e : no_index; },
+        [](std::size_t a, std::size_t b) { return std::min(a, b); });
+  }
+
+  void check() const {
+    const auto& elements = elements_in<Dim>(any_);
+    if (any_.dimension != Dim)
+      fail("expected dimension " + std::to_string(Dim) + ", found " +
+           std::to_string(any_.dimension));
+    if (any_.coordinates.size() != any_.vertex_count() * Dim)
+      fail("expected " + std::to_string(Dim) + " coordinates for each of the " +
+           std::to_string(any_.vertex_count()) + " vertices, found " +
+           std::to_string(any_.coordinates.size()) + " numbers");
+    if (elements.empty())
+      fail(std::string("expected ") + (Dim == 2 ? "triangles" : "tetrahedra") + ", found none");
+    if (any_.vertex_count() >= none || elements.size() >= none / 4)
+      fail("too many entities for 32-bit numbers");
+    const std::size_t bad = first_bad([&](std::size_t e) {
+      for (const VertexId v : elements[e])
+        if (v >= any_.vertex_count()) return true;
+      return false;
+    });
+    if (bad != no_index)
+      fail(element_name(bad) + " names a vertex beyond the " + std::to_string(any_.vertex_count()) +
+           " that there are");
+  }
+
+  void place_vertices() {
+    mesh_.position_of.resize(any_.vertex_count());
+    parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
+      for (std::size_t axis = 0; axis < Dim; ++axis)
+        mesh_.position_of[v].x[axis] = any_.coordinates[v * Dim + axis];
+    });
+  }
+
+  void measure_elements() {
+    mesh_.corners_of = elements_in<Dim>(any_);
+    mesh_.volume_of.resize(mesh_.element_count());
+    parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
+      const double determinant = plain_determinant(mesh_.points(static_cast<ElementId>(e)));
+      if (determinant < 0) std::swap(mesh_.corners_of[e][0], mesh_.corners_of[e][1]);
+      mesh_.volume_of[e] = std::abs(determinant) / (Dim == 2 ? 2 : 6);
+    });
+    const std::size_t bad = first_bad([&](std::size_t e) { return !(mesh_.volume_of[e] > 0); });
+    if (bad != no_index) fail(element_name(bad) + " has no volume; remove or repair it");
+  }
+
+  void list_elements() {
+    auto& first = mesh_.first_around;
+    std::vector<std::uint32_t> count(mesh_.vertex_count() + 1);
+    const auto each_corner = [&](auto&& visit) {
+      parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
+        for (const VertexId v : mesh_.corners_of[e]) visit(v, static_cast<ElementId>(e));
+      });
+    };
+    each_corner([&](VertexId v, ElementId) { runtime::atomic_count(count[v]); });
+    runtime::exclusive_scan<std::uint32_t>(executor_, count);
+    first = count;
+    mesh_.around.resize(std::size_t{first.back()} + 1);
+    each_corner([&](VertexId v, ElementId element) {
+      mesh_.around[runtime::atomic_count(count[v])] = element;
+    });
+    parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
+      std::sort(&mesh_.around[first[v]], &mesh_.around[first[v + 1]]);
+    });
+  }
+
+  void find_neighbours() {
+    mesh_.neighbour_of.resize(mesh_.element_count());
+    parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
+      for (int i = 0; i <= Dim; ++i)
+        mesh_.neighbour_of[e][static_cast<std::size_t>(i)] = across(static_cast<ElementId>(e), i);
+    });
+  }
+
+  ElementId across(ElementId element, int facet) const {
+    const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
+    for (const ElementId other : mesh_.elements_of(corners[0])) {
+      if (other == element) continue;
+      bool all = true;
+      for (const VertexId corner : corners) all = all && contains(mesh_.corners_of[other], corner);
+      if (all) return other;
+    }
+    return none;
+  }
+
+  void describe_vertices() {
+    mesh_.share_of.resize(mesh_.vertex_count());
+    mesh_.on_boundary.resize(mesh_.vertex_count());
+    parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
+      const auto vertex = static_cast<VertexId>(v);
+      double volume = 0;
+      for (const ElementId element : mesh_.elements_of(vertex)) {
+        volume += mesh_.volume_of[element];
+        for (std::size_t i = 0; i <= Dim; ++i)
+          if (mesh_.corners_of[element][i] != vertex && mesh_.neighbour_of[element][i] == none)
+            mesh_.on_boundary[v] = 1;
+      }
+      mesh_.share_of[v] = volume / (Dim + 1);
+    });
+  }
+
+  const Executor& executor_;
+  const AnyMesh& any_;
+  FixedMesh<Dim> mesh_;
+};
+
+}  // namespace
+
+template <int Dim>
+FixedMesh<Dim> make_fixed_mesh(const Executor& executor, const AnyMesh& mesh) {
+  return FixedMeshMaker<Dim>(executor, mesh).make();
+}
+
+template <int Dim>
+std::array<Vector<Dim>, Dim + 1> hat_gradients(const std::array<Vector<Dim>, Dim + 1>& points) {
+  std::array<Vector<Dim>, Dim + 1> gradient;
+  const double scale = -1 / plain_determinant(points);
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    std::array<Vector<Dim>, Dim> facet;
+    for (std::size_t k = 0; k < Dim; ++k)
+      facet[k] = points[static_cast<std::size_t>(Simplex<Dim>::facet[i][k])];
+    gradient[i] = scale * facet_normal(facet);
+  }
+  return gradient;
+}
+
+template <int Dim>
+double integral(const Executor& executor, const FixedMesh<Dim>& mesh,
+                std::span<const double> value_of) {
+  return runtime::parallel_reduce(
+      executor, mesh.vertex_count(), 0.0,
+      [&](std::size_t v) { return mesh.share_of[v] * value_of[v]; },
+      [](double a, double b) { return a + b; });
+}
+
+template FixedMesh<2> make_fixed_mesh(const Executor&, const AnyMesh&);
+template FixedMesh<3> make_fixed_mesh(const Executor&, const AnyMesh&);
+template std::array<Vector<2>, 3> hat_gradients<2>(const std::array<Vector<2>, 3>&);
+template std::array<Vector<3>, 4> hat_gradients<3>(const std::array<Vector<3>, 4>&);
+template double integral(const Executor&, const FixedMesh<2>&, std::span<const double>);
+template double integral(const Executor&, const FixedMesh<3>&, std::span<const double>);
+
+}  // namespace ductile::meshadapt

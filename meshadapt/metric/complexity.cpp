@@ -1,0 +1,70 @@
+#include "ductile/meshadapt/complexity.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "ductile/meshadapt/error.hpp"
+#include "metric/spectrum.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+
+namespace {
+
+template <int Dim>
+void expect_metrics(const FixedMesh<Dim>& mesh, const std::vector<Metric<Dim>>& metric_of) {
+  if (metric_of.size() != mesh.vertex_count())
+    throw InputError("complexity: expected a metric for each of the " +
+                     std::to_string(mesh.vertex_count()) + " vertices, found " +
+                     std::to_string(metric_of.size()));
+}
+
+}  // namespace
+
+double complexity_of_elements(int dimension, double elements) {
+  return elements / (dimension == 2 ? 2.35 : 11);
+}
+
+template <int Dim>
+double complexity(const Executor& executor, const FixedMesh<Dim>& mesh,
+                  const std::vector<Metric<Dim>>& metric_of) {
+  expect_metrics(mesh, metric_of);
+  return runtime::parallel_reduce(
+      executor, metric_of.size(), 0.0,
+      [&](std::size_t v) {
+        return mesh.share_of[v] * std::sqrt(std::max(0.0, determinant(metric_of[v])));
+      },
+      [](double a, double b) { return a + b; });
+}
+
+template <int Dim>
+MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
+                              const FixedMesh<Dim>& mesh, const ComplexityGoal& goal) {
+  expect_metrics(mesh, metric_of);
+  expect_bounds(goal.bounds);
+  if (!(goal.complexity > 0) || !std::isfinite(goal.complexity))
+    throw InputError("complexity: expected a number above 0, found " +
+                     std::to_string(goal.complexity));
+  Spectrum<Dim> spectrum{std::vector<Eigen<Dim>>(metric_of.size()), goal.bounds};
+  runtime::parallel_for(executor, metric_of.size(),
+                        [&](std::size_t v) { spectrum.axes_of[v] = eigen(metric_of[v]); });
+  const double now = complexity(executor, mesh, metric_of);
+  const double factor =
+      fitting_factor([&](double f) { return spectrum.complexity(executor, mesh, f); },
+                     goal.complexity, now > 0 ? std::pow(goal.complexity / now, 2.0 / Dim) : 1);
+  metric_of = spectrum.metrics(executor, factor);
+  MetricFit fit;
+  fit.complexity = spectrum.complexity(executor, mesh, factor);
+  fit.reached = std::abs(fit.complexity / goal.complexity - 1) < 1e-6;
+  return fit;
+}
+
+template double complexity(const Executor&, const FixedMesh<2>&, const std::vector<Metric<2>>&);
+template double complexity(const Executor&, const FixedMesh<3>&, const std::vector<Metric<3>>&);
+template MetricFit scale_to_complexity(const Executor&, std::vector<Metric<2>>&,
+                                       const FixedMesh<2>&, const ComplexityGoal&);
+template MetricFit scale_to_complexity(const Executor&, std::vector<Metric<3>>&,
+                                       const FixedMesh<3>&, const ComplexityGoal&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,202 @@
+#include "ductile/meshadapt/hessian_metric.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "metric/spectrum.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_for;
+using runtime::parallel_reduce;
+
+namespace {
+
+/// Eigenvalues below this share of the largest anywhere count as this share.
+constexpr double least_curvature = 1e-12;
+
+constexpr double default_anisotropy = 1e6;
+
+double largest_of(double a, double b) { return std::max(a, b); }
+
+void expect_options(const HessianMetricOptions& options) {
+  if (!(options.norm >= 1))
+    throw InputError("metric of a Hessian: expected an L^p norm with p of 1 or more, found " +
+                     std::to_string(options.norm));
+  const auto sensible = [](double goal) { return goal >= 0 && std::isfinite(goal); };
+  if (!sensible(options.complexity) || !sensible(options.error) ||
+      (options.complexity > 0) == (options.error > 0))
+    throw InputError("metric of a Hessian: expected either a complexity or an error above 0");
+  expect_bounds(options.bounds);
+}
+
+/// Length of the diagonal of the box around the mesh.
+template <int Dim>
+double extent(const Executor& executor, const FixedMesh<Dim>& mesh) {
+  Vector<Dim> diagonal;
+  for (int axis = 0; axis < Dim; ++axis) {
+    const auto furthest = [&](double sign) {
+      return parallel_reduce(
+          executor, mesh.vertex_count(), -std::numeric_limits<double>::infinity(),
+          [&](std::size_t v) { return sign * mesh.position_of[v][axis]; }, largest_of);
+    };
+    diagonal[axis] = furthest(1) + furthest(-1);
+  }
+  return norm(diagonal);
+}
+
+template <int Dim>
+class HessianMetric {
+ public:
+  HessianMetric(const Executor& executor, const FixedMesh<Dim>& mesh,
+                const HessianMetricOptions& options)
+      : executor_(executor), mesh_(mesh), options_(options) {
+    expect_options(options_);
+    if (options_.bounds.anisotropy == 0) options_.bounds.anisotropy = default_anisotropy;
+    if (options_.bounds.largest == 0)
+      options_.bounds.largest = std::max(extent(executor, mesh), options_.bounds.smallest);
+  }
+
+  FittedMetric<Dim> fit(const std::vector<Metric<Dim>>& hessian_of) {
+    take_curvatures(hessian_of);
+    normalise();
+    const double wanted = options_.complexity;
+    const double plain = spectrum_.complexity(executor_, mesh_, 1);
+    spectrum_.bounds = options_.bounds;
+    double factor = 0;
+    if (wanted > 0)
+      factor = fitting_factor([&](double f) { return spectrum_.complexity(executor_, mesh_, f); },
+                              wanted, std::pow(wanted / plain, 2.0 / Dim));
+    else
+      factor = fitting_factor([&](double f) { return 1 / error(f); }, 1 / options_.error, 1);
+    FittedMetric<Dim> result{spectrum_.metrics(executor_, factor), {}};
+    result.fit.complexity = spectrum_.complexity(executor_, mesh_, factor);
+    result.fit.error = error(factor);
+    result.fit.reached = wanted > 0 ? std::abs(result.fit.complexity / wanted - 1) < 1e-6
+                                    : result.fit.error <= options_.error * (1 + 1e-6);
+    return result;
+  }
+
+ private:
+  void take_curvatures(const std::vector<Metric<Dim>>& hessian_of) {
+    if (hessian_of.size() != mesh_.vertex_count())
+      throw InputError("metric of a Hessian: expected a tensor for each of the " +
+                       std::to_string(mesh_.vertex_count()) + " vertices, found " +
+                       std::to_string(hessian_of.size()));
+    spectrum_.axes_of.resize(hessian_of.size());
+    curvature_of_.resize(hessian_of.size());
+    parallel_for(executor_, hessian_of.size(), [&](std::size_t v) {
+      for (const double component : hessian_of[v].m)
+        if (!std::isfinite(component))
+          throw InputError("metric of a Hessian: expected finite numbers, found none at vertex " +
+                           std::to_string(v + 1));
+      spectrum_.axes_of[v] = eigen(hessian_of[v]);
+      for (std::size_t i = 0; i < Dim; ++i)
+        curvature_of_[v][i] = std::abs(spectrum_.axes_of[v].value[i]);
+    });
+  }
+
+  /// Eigenvalues of det|H|^(-1/(2p+d)) |H|, of an H that is scaled to 1 and nowhere singular.
+  void normalise() {
+    const double largest = parallel_reduce(
+        executor_, curvature_of_.size(), 0.0,
+        [&](std::size_t v) {
+          return *std::max_element(curvature_of_[v].begin(), curvature_of_[v].end());
+        },
+        largest_of);
+    const double exponent = -1 / (2 * options_.norm + Dim);
+    const SizeBounds only_anisotropy{.anisotropy = options_.bounds.anisotropy};
+    parallel_for(executor_, curvature_of_.size(), [&](std::size_t v) {
+      auto& value = spectrum_.axes_of[v].value;
+      for (std::size_t i = 0; i < Dim; ++i)
+        value[i] = largest > 0 ? std::max(curvature_of_[v][i] / largest, least_curvature) : 1;
+      value = bounded(value, only_anisotropy);
+      double determinant = 1;
+      for (const double h : value) determinant *= h;
+      const double density = std::pow(determinant, exponent);
+      for (double& h : value) h *= density;
+    });
+  }
+
+  /// The L^p norm of trace(M^-1 |H|) / (4 (d + 2)), over the largest value so that no power of it
+  /// leaves the range of numbers.
+  double error(double factor) const {
+    const auto at = [&](std::size_t v) {
+      if (!(mesh_.share_of[v] > 0)) return 0.0;
+      const auto value = spectrum_.scaled(v, factor);
+      double trace = 0;
+      for (std::size_t i = 0; i < Dim; ++i) trace += curvature_of_[v][i] / value[i];
+      return trace / (4 * (Dim + 2));
+    };
+    const double most = parallel_reduce(executor_, curvature_of_.size(), 0.0, at, largest_of);
+    if (most == 0 || std::isinf(options_.norm)) return most;
+    const double sum = parallel_reduce(
+        executor_, curvature_of_.size(), 0.0,
+        [&](std::size_t v) { return mesh_.share_of[v] * std::pow(at(v) / most, options_.norm); },
+        [](double a, double b) { return a + b; });
+    return most * std::pow(sum, 1 / options_.norm);
+  }
+
+  const Executor& executor_;
+  const FixedMesh<Dim>& mesh_;
+  HessianMetricOptions options_;
+  std::vector<std::array<double, Dim>> curvature_of_;  // [vertex], |eigenvalues| of the Hessian
+  Spectrum<Dim> spectrum_;
+};
+
+template <int Dim>
+SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
+                                  const AnyField& field, const SolutionMetricOptions& options) {
+  const auto mesh = make_fixed_mesh<Dim>(executor, any);
+  const std::size_t stride = stride_of(field);
+  FittedMetric<Dim> all;
+  std::vector<double> value_of(field.vertex_count);
+  for (std::size_t component = 0; component < stride; ++component) {
+    parallel_for(executor, value_of.size(),
+                 [&](std::size_t v) { value_of[v] = field.values[v * stride + component]; });
+    const auto hessian_of = recover_hessian<Dim>(executor, mesh, value_of, options.recovery);
+    FittedMetric<Dim> one = hessian_metric<Dim>(executor, mesh, hessian_of, options.goal);
+    if (component == 0) {
+      all = std::move(one);
+      continue;
+    }
+    parallel_for(executor, all.metric_of.size(), [&](std::size_t v) {
+      all.metric_of[v] = intersect(all.metric_of[v], one.metric_of[v]);
+    });
+    all.fit.error = std::max(all.fit.error, one.fit.error);
+    all.fit.reached = all.fit.reached && one.fit.reached;
+  }
+  if (stride > 1 && options.goal.complexity > 0)
+    all.fit = scale_to_complexity<Dim>(executor, all.metric_of, mesh,
+                                       {options.goal.complexity, options.goal.bounds});
+  all.fit.complexity = complexity<Dim>(executor, mesh, all.metric_of);
+  return {symmetric_field(executor, all.metric_of, field.name), all.fit};
+}
+
+}  // namespace
+
+template <int Dim>
+FittedMetric<Dim> hessian_metric(const Executor& executor, const FixedMesh<Dim>& mesh,
+                                 const std::vector<Metric<Dim>>& hessian_of,
+                                 const HessianMetricOptions& options) {
+  return HessianMetric<Dim>(executor, mesh, options).fit(hessian_of);
+}
+
+SolutionMetric solution_metric(const Executor& executor, const AnyMesh& mesh, const AnyField& field,
+                               const SolutionMetricOptions& options) {
+  expect_field_of(field, mesh);
+  return mesh.dimension == 2 ? solution_metric_in<2>(executor, mesh, field, options)
+                             : solution_metric_in<3>(executor, mesh, field, options);
+}
+
+template FittedMetric<2> hessian_metric(const Executor&, const FixedMesh<2>&,
+                                        const std::vector<Metric<2>>&, const HessianMetricOptions&);
+template FittedMetric<3> hessian_metric(const Executor&, const FixedMesh<3>&,
+                                        const std::vector<Metric<3>>&, const HessianMetricOptions&);
+
+}  // namespace ductile::meshadapt

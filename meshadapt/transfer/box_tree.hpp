@@ -1,0 +1,42 @@
+/// @file
+/// BoxTree<Dim>: finds the point of a mesh that is closest to a given one, by a tree of boxes over
+/// its elements. For what a walk does not find: points outside, or behind a hole.
+#pragma once
+
+#include <vector>
+
+#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "mesh/hilbert.hpp"
+#include "mesh/walk.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+struct ClosestPoint {
+  ElementId element = none;
+  Weights<Dim> weight{};  // of the point, none below 0
+  double squared_distance = 0;
+};
+
+template <int Dim>
+class BoxTree {
+ public:
+  /// Refers to the mesh. Throws std::bad_alloc.
+  BoxTree(const runtime::Executor& executor, const FixedMesh<Dim>& mesh);
+
+  /// Thread safety: any thread.
+  ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
+
+ private:
+  void look_into(std::size_t level, std::size_t index, const Vector<Dim>& point,
+                 ClosestPoint<Dim>& best) const;
+
+  const FixedMesh<Dim>& mesh_;
+  std::vector<ElementId> order_;                 // along a space-filling curve
+  std::vector<std::vector<Box<Dim>>> boxes_of_;  // [level][index]: of `width` boxes a level below
+};
+
+extern template class BoxTree<2>;
+extern template class BoxTree<3>;
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,232 @@
+#include "transfer/projection.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_for;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Less of an element than this is outside by rounding only.
+constexpr double least_share = 1e-9;
+
+}  // namespace
+
+template <int Dim>
+Projection<Dim>::Projection(const Executor& executor, const Locator<Dim>& from,
+                            const Components& field, const FixedMesh<Dim>& to)
+    : executor_(executor),
+      from_(from),
+      field_(field),
+      to_(to),
+      mass_(executor, to, field.stride),
+      moments_(to.element_count() * (Dim + 1) * field.stride),
+      seen_(to.element_count() * field.stride, {infinity, -infinity}),
+      covered_(to.element_count()) {}
+
+template <int Dim>
+std::vector<double> Projection<Dim>::run(const ProjectionOptions& options) {
+  integrate();
+  sum_up_volumes();
+  const std::vector<double> integrals = gather();
+  std::vector<double> lumped(integrals.size());
+  parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
+    for (std::size_t i = v * stride(); i < (v + 1) * stride(); ++i)
+      lumped[i] = to_.share_of[v] > 0 ? integrals[i] / to_.share_of[v] : 0;
+  });
+  return blend(lumped, mass_.solve(integrals, lumped), options.keep_bounds);
+}
+
+// ---- Integrals over the supermesh ----
+
+template <int Dim>
+void Projection<Dim>::integrate() {
+  runtime::PerThread<OverlapFinder<Dim>> finder(executor_);
+  walk_in_blocks(executor_, to_.element_count(), [&](std::size_t e, ElementId near) {
+    Vector<Dim> centroid;
+    for (const Vector<Dim>& corner : to_.points(static_cast<ElementId>(e)))
+      centroid += (1.0 / (Dim + 1)) * corner;
+    const Place<Dim> centre = from_.find(centroid, near);
+    integrate(e, centre, finder.mine());
+    return centre.element;
+  });
+}
+
+template <int Dim>
+void Projection<Dim>::integrate(std::size_t element, const Place<Dim>& centre,
+                                OverlapFinder<Dim>& finder) {
+  const auto& old = from_.mesh();
+  const auto add = [&](ElementId other, const Overlap<Dim>& overlap) {
+    for (std::size_t j = 0; j <= Dim; ++j) {
+      const double* const value = &field_.values[old.corners_of[other][j] * stride()];
+      widen(element, value);
+      for (std::size_t i = 0; i <= Dim; ++i)
+        for (std::size_t k = 0; k < stride(); ++k)
+          moments_[(element * (Dim + 1) + i) * stride() + k] += overlap.product[i][j] * value[k];
+    }
+  };
+  const Cell<Dim> cell{to_.points(static_cast<ElementId>(element)), to_.volume_of[element]};
+  covered_[element] = finder.visit(from_, cell, centre, add);
+  if (covered_[element] < 1 - least_share) fill(element, centre, finder);
+}
+
+/// Lets the interpolated field count where no old element covers the new one.
+template <int Dim>
+void Projection<Dim>::fill(std::size_t element, const Place<Dim>& centre,
+                           OverlapFinder<Dim>& finder) {
+  const auto mass = mass_outside(element, centre, finder);
+  std::vector<double> value(stride());
+  for (std::size_t j = 0; j <= Dim; ++j) {
+    const Vector<Dim>& corner = to_.position_of[to_.corners_of[element][j]];
+    evaluate(from_.mesh(), field_, from_.find(corner, none), value.data());
+    widen(element, value.data());
+    for (std::size_t i = 0; i <= Dim; ++i)
+      for (std::size_t k = 0; k < stride(); ++k)
+        moments_[(element * (Dim + 1) + i) * stride() + k] += mass[i][j] * value[k];
+  }
+}
+
+/// The mass matrix of the part of a new element that no old one covers: all of it less the rest,
+/// where the new hat functions are linear in each old element.
+template <int Dim>
+auto Projection<Dim>::mass_outside(std::size_t element, const Place<Dim>& centre,
+                                   OverlapFinder<Dim>& finder) const -> Square {
+  const auto corner = to_.points(static_cast<ElementId>(element));
+  Square mass;
+  for (std::size_t i = 0; i <= Dim; ++i)
+    for (std::size_t j = 0; j <= Dim; ++j) mass[i][j] = mass_.between(element) * (i == j ? 2 : 1);
+  const auto subtract = [&](ElementId other, const Overlap<Dim>& overlap) {
+    const auto old_corner = from_.mesh().points(other);
+    for (std::size_t l = 0; l <= Dim; ++l) {
+      const Weights<Dim> hat = barycentric<Dim>(corner, old_corner[l]);
+      for (std::size_t i = 0; i <= Dim; ++i)
+        for (std::size_t j = 0; j <= Dim; ++j) mass[i][j] -= overlap.product[i][l] * hat[j];
+    }
+  };
+  finder.visit(from_, {corner, to_.volume_of[element]}, centre, subtract);
+  for (auto& row : mass)
+    for (double& product : row) product = std::max(product, 0.0);  // rounding
+  return mass;
+}
+
+template <int Dim>
+void Projection<Dim>::widen(std::size_t element, const double* values) {
+  for (std::size_t k = 0; k < stride(); ++k) {
+    Range& range = seen_[element * stride() + k];
+    range = {std::min(range.low, values[k]), std::max(range.high, values[k])};
+  }
+}
+
+template <int Dim>
+void Projection<Dim>::sum_up_volumes() {
+  const auto sum = [&](std::size_t count, auto&& term) {
+    return runtime::parallel_reduce(executor_, count, 0.0, term,
+                                    [](double a, double b) { return a + b; });
+  };
+  const auto shared = [&](std::size_t e) { return to_.volume_of[e] * std::min(1.0, covered_[e]); };
+  const double covered = sum(to_.element_count(), shared);
+  const auto without = [&](const FixedMesh<Dim>& mesh) {
+    const double all = sum(mesh.element_count(), [&](std::size_t e) { return mesh.volume_of[e]; });
+    return all - covered > least_share * all ? all - covered : 0;
+  };
+  volume_outside_ = without(to_);
+  volume_left_out_ = without(from_.mesh());
+}
+
+template <int Dim>
+std::vector<double> Projection<Dim>::gather() const {
+  std::vector<double> result(to_.vertex_count() * stride());
+  parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
+    for (const ElementId e : to_.elements_of(static_cast<VertexId>(v))) {
+      const auto i =
+          static_cast<std::size_t>(corner_of(to_.corners_of[e], static_cast<VertexId>(v)));
+      for (std::size_t k = 0; k < stride(); ++k)
+        result[v * stride() + k] += moments_[(e * (Dim + 1) + i) * stride() + k];
+    }
+  });
+  return result;
+}
+
+// ---- From the lumped projection towards the closest ----
+
+/// What old values each new vertex may lie between.
+template <int Dim>
+auto Projection<Dim>::ranges() const -> std::vector<Range> {
+  std::vector<Range> range_of(to_.vertex_count() * stride(), {infinity, -infinity});
+  parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
+    for (const ElementId e : to_.elements_of(static_cast<VertexId>(v)))
+      for (std::size_t k = 0; k < stride(); ++k) {
+        Range& range = range_of[v * stride() + k];
+        const Range& seen = seen_[e * stride() + k];
+        range = {std::min(range.low, seen.low), std::max(range.high, seen.high)};
+      }
+  });
+  return range_of;
+}
+
+/// How much of what would flow to a vertex, and of what would flow from it, leaves it in its range:
+/// Zalesak's ratios, as {of the outflow, of the inflow}.
+template <int Dim>
+auto Projection<Dim>::permitted_shares(const std::vector<double>& lumped,
+                                       const std::vector<double>& closest,
+                                       const std::vector<Range>& range_of) const
+    -> std::vector<Range> {
+  std::vector<Range> flow_of(lumped.size());
+  parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
+    for (const ElementId e : to_.elements_of(static_cast<VertexId>(v)))
+      mass_.excess(e, closest, [&](std::size_t i, std::size_t k, double amount) {
+        if (to_.corners_of[e][i] != v) return;
+        Range& flow = flow_of[v * stride() + k];
+        (amount < 0 ? flow.low : flow.high) += amount;
+      });
+    for (std::size_t i = v * stride(); i < (v + 1) * stride(); ++i) {
+      const double down = std::min(0.0, to_.share_of[v] * (range_of[i].low - lumped[i]));
+      const double up = std::max(0.0, to_.share_of[v] * (range_of[i].high - lumped[i]));
+      flow_of[i] = {flow_of[i].low < down ? down / flow_of[i].low : 1,
+                    flow_of[i].high > up ? up / flow_of[i].high : 1};
+    }
+  });
+  return flow_of;
+}
+
+template <int Dim>
+std::vector<double> Projection<Dim>::blend(const std::vector<double>& lumped,
+                                           const std::vector<double>& closest,
+                                           bool keep_bounds) const {
+  std::vector<Range> range_of, permitted_of;
+  if (keep_bounds) {
+    range_of = ranges();
+    permitted_of = permitted_shares(lumped, closest, range_of);
+  }
+  std::vector<double> share_of(to_.element_count() * stride(), 1.0);
+  if (keep_bounds)
+    parallel_for(executor_, to_.element_count(), [&](std::size_t e) {
+      mass_.excess(e, closest, [&](std::size_t i, std::size_t k, double amount) {
+        const Range& permitted = permitted_of[to_.corners_of[e][i] * stride() + k];
+        double& share = share_of[e * stride() + k];
+        share = std::min(share, amount < 0 ? permitted.low : permitted.high);
+      });
+    });
+  std::vector<double> result = lumped;
+  parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
+    for (const ElementId e : to_.elements_of(static_cast<VertexId>(v)))
+      mass_.excess(e, closest, [&](std::size_t i, std::size_t k, double amount) {
+        if (to_.corners_of[e][i] == v)
+          result[v * stride() + k] += share_of[e * stride() + k] * amount / to_.share_of[v];
+      });
+    if (!keep_bounds || !(to_.share_of[v] > 0)) return;
+    for (std::size_t i = v * stride(); i < (v + 1) * stride(); ++i)  // rounding
+      result[i] = std::clamp(result[i], range_of[i].low, range_of[i].high);
+  });
+  return result;
+}
+
+template class Projection<2>;
+template class Projection<3>;
+
+}  // namespace ductile::meshadapt

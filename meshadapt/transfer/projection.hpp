@@ -1,0 +1,66 @@
+/// @file
+/// Projection<Dim>: carries a field to another mesh by integrals over the elements of both meshes
+/// cut by each other. In order: integrals of the old field times the new hat functions, the lumped
+/// projection, which keeps bounds, the consistent one, which is closer, and a blend of both that
+/// keeps bounds and moves nothing but between neighbours, so that the integral stays.
+#pragma once
+
+#include <vector>
+
+#include "ductile/meshadapt/transfer.hpp"
+#include "transfer/evaluate.hpp"
+#include "transfer/mass.hpp"
+#include "transfer/overlaps.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+class Projection {
+ public:
+  /// Refers to all.
+  Projection(const runtime::Executor& executor, const Locator<Dim>& from, const Components& field,
+             const FixedMesh<Dim>& to);
+
+  std::vector<double> run(const ProjectionOptions& options);
+
+  double volume_outside() const { return volume_outside_; }
+  double volume_left_out() const { return volume_left_out_; }
+
+ private:
+  struct Range {
+    double low, high;
+  };
+  using Square = std::array<std::array<double, Dim + 1>, Dim + 1>;
+
+  void integrate();
+  void integrate(std::size_t element, const Place<Dim>& centre, OverlapFinder<Dim>& finder);
+  void fill(std::size_t element, const Place<Dim>& centre, OverlapFinder<Dim>& finder);
+  Square mass_outside(std::size_t element, const Place<Dim>& centre,
+                      OverlapFinder<Dim>& finder) const;
+  void widen(std::size_t element, const double* values);
+  void sum_up_volumes();
+  std::vector<double> gather() const;
+  std::vector<Range> ranges() const;
+  std::vector<double> blend(const std::vector<double>& lumped, const std::vector<double>& closest,
+                            bool keep_bounds) const;
+  std::vector<Range> permitted_shares(const std::vector<double>& lumped,
+                                      const std::vector<double>& closest,
+                                      const std::vector<Range>& range_of) const;
+
+  std::size_t stride() const { return field_.stride; }
+
+  const runtime::Executor& executor_;
+  const Locator<Dim>& from_;
+  Components field_;
+  const FixedMesh<Dim>& to_;
+  Mass<Dim> mass_;
+  std::vector<double> moments_;  // [(element * corners + corner) * stride + component]
+  std::vector<Range> seen_;      // [element * stride + component], of old values around
+  std::vector<double> covered_;  // [element], share of its volume
+  double volume_outside_ = 0, volume_left_out_ = 0;
+};
+
+extern template class Projection<2>;
+extern template class Projection<3>;
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,216 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "ductile/meshadapt/complexity.hpp"
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "program.hpp"
+
+namespace ductile::cli {
+namespace {
+
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using meshadapt::Metric;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// A folder with an example and a field of two components on it, a front and a wave.
+class Scene {
+ public:
+  explicit Scene(const std::string& name) {
+    folder.add_example(name);
+    mesh = meshadapt::read_mesh(folder.path() / (name + ".mesh"));
+    const auto dimension = static_cast<std::size_t>(mesh.dimension);
+    AnyField field{mesh.dimension, mesh.vertex_count(), {}, {}, {}};
+    field.types = {AnyField::Type::scalar, AnyField::Type::scalar};
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+      field.values.push_back(std::tanh(10 * (mesh.coordinates[v * dimension] - 0.5)));
+      field.values.push_back(std::sin(4 * mesh.coordinates[v * dimension + 1]));
+    }
+    meshadapt::write_field(folder.path() / "f.sol", field);
+  }
+
+  template <int Dim>
+  std::vector<Metric<Dim>> metrics(const std::string& name) const {
+    const AnyField field = meshadapt::read_field(folder.path() / name);
+    EXPECT_EQ(field.types, std::vector{AnyField::Type::symmetric});
+    EXPECT_EQ(field.vertex_count, mesh.vertex_count());
+    return meshadapt::tensors_of<Dim>(executor_, field);
+  }
+
+  template <int Dim>
+  double complexity(const std::string& name) const {
+    return meshadapt::complexity<Dim>(executor_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh),
+                                      metrics<Dim>(name));
+  }
+
+  /// Shortest and longest size, and the largest ratio of both at one vertex.
+  template <int Dim>
+  std::array<double, 3> sizes(const std::string& name) const {
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0, ratio = 1;
+    for (const Metric<Dim>& metric : metrics<Dim>(name)) {
+      const auto value = meshadapt::eigen(metric).value;
+      const auto [low, high] = std::minmax_element(value.begin(), value.end());
+      shortest = std::min(shortest, 1 / std::sqrt(*high));
+      longest = std::max(longest, 1 / std::sqrt(*low));
+      ratio = std::max(ratio, std::sqrt(*high / *low));
+    }
+    return {shortest, longest, ratio};
+  }
+
+  Folder folder;
+  AnyMesh mesh;
+
+ private:
+  runtime::Executor executor_{{.threads = 1}};
+};
+
+TEST(MetricCommand, MakesAMetricThatAdaptTakes) {
+  for (const std::string name : {"waves2d", "waves3d"}) {
+    const Scene scene(name);
+    const std::string make = "metric make " + name + ".mesh f.sol -o m.sol ";
+    for (const char* recovery : {"least-squares", "projection"}) {
+      const Outcome made = scene.folder.run(make + "--complexity 500 --recovery " + recovery);
+      EXPECT_EQ(made.status, 0) << made.err;
+      EXPECT_EQ(made.err, "");
+      EXPECT_TRUE(contains(made.out, "complexity 500, for about")) << made.out;
+      const double reached =
+          name == "waves2d" ? scene.complexity<2>("m.sol") : scene.complexity<3>("m.sol");
+      EXPECT_NEAR(reached, 500, 1e-3);
+    }
+    const Outcome adapted = scene.folder.run("adapt " + name + ".mesh -sol m.sol -o a.mesh");
+    EXPECT_EQ(adapted.status, 0) << adapted.err;
+  }
+}
+
+TEST(MetricCommand, MakesAMetricForElementsOrAnError) {
+  const Scene scene("waves2d");
+  const std::string make = "metric make waves2d.mesh f.sol ";
+  EXPECT_EQ(scene.folder.run(make + "-o m.solb --elements 5000 --norm 1").status, 0);
+  EXPECT_NEAR(scene.complexity<2>("m.solb"), meshadapt::complexity_of_elements(2, 5000), 1e-2);
+  EXPECT_EQ(scene.folder.run(make + "-o coarse.sol --error 0.02 --norm inf").status, 0);
+  EXPECT_EQ(scene.folder.run(make + "-o fine.sol --error 0.005 --norm inf").status, 0);
+  // Four times the error is twice the size, but for what the extent of the mesh bounds.
+  EXPECT_NEAR(scene.complexity<2>("fine.sol") / scene.complexity<2>("coarse.sol"), 4, 0.2);
+}
+
+TEST(MetricCommand, DoesNotDependOnThreads) {
+  const Scene scene("waves3d");
+  for (const char* threads : {"1", "2", "4"})
+    EXPECT_EQ(scene.folder
+                  .run(std::string("metric make waves3d.mesh f.sol --complexity 900 -hgrad 1.3 "
+                                   "-hmax 0.3 --threads ") +
+                       threads + " -o " + threads + ".sol")
+                  .status,
+              0);
+  EXPECT_EQ(scene.folder.read("1.sol"), scene.folder.read("2.sol"));
+  EXPECT_EQ(scene.folder.read("1.sol"), scene.folder.read("4.sol"));
+}
+
+TEST(MetricCommand, ScalesWithinBounds) {
+  const Scene scene("waves3d");
+  const Outcome scaled = scene.folder.run(
+      "metric scale waves3d.mesh waves3d.sol --complexity 2000 -hmin 0.04 --anisotropy 3 -o s.sol");
+  EXPECT_EQ(scaled.status, 0) << scaled.err;
+  EXPECT_NEAR(scene.complexity<3>("s.sol"), 2000, 1e-2);
+  const auto [shortest, longest, ratio] = scene.sizes<3>("s.sol");
+  EXPECT_GE(shortest, 0.04 * (1 - 1e-6));
+  EXPECT_LE(ratio, 3 * (1 + 1e-6));
+  const Outcome beyond = scene.folder.run(
+      "metric scale waves3d.mesh waves3d.sol --complexity 1e9 -hmin 0.04 -o s.sol");
+  EXPECT_EQ(beyond.status, 0);
+  EXPECT_TRUE(contains(beyond.err, "leave no metric with the complexity asked for")) << beyond.err;
+}
+
+TEST(MetricCommand, BoundsAndGrades) {
+  const Scene scene("waves2d");
+  EXPECT_EQ(scene.folder
+                .run("metric bound waves2d.mesh waves2d.sol -hmin 0.02 -hmax 0.05 --anisotropy 2 "
+                     "-o b.sol")
+                .status,
+            0);
+  const auto [shortest, longest, ratio] = scene.sizes<2>("b.sol");
+  EXPECT_NEAR(shortest, 0.02, 1e-6);
+  EXPECT_NEAR(longest, 0.05, 1e-6);
+  EXPECT_NEAR(ratio, 2, 1e-6);
+  EXPECT_EQ(scene.folder.run("metric grade waves2d.mesh waves2d.sol -hgrad 1.1 -o g.sol").status,
+            0);
+  EXPECT_GT(scene.complexity<2>("g.sol"), 1.02 * scene.complexity<2>("waves2d.sol"));
+}
+
+TEST(MetricCommand, Intersects) {
+  const Scene scene("waves2d");
+  std::string sizes = "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n" +
+                      std::to_string(scene.mesh.vertex_count()) + "\n1 1\n";
+  for (std::size_t v = 0; v < scene.mesh.vertex_count(); ++v) sizes += "0.05\n";
+  scene.folder.write("h.sol", sizes + "End\n");
+  const Outcome outcome =
+      scene.folder.run("metric intersect waves2d.mesh h.sol waves2d.sol -v 0 -o i.sol");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_LE(scene.sizes<2>("i.sol")[1], 0.05 * (1 + 1e-6));
+  EXPECT_GT(scene.complexity<2>("i.sol"), scene.complexity<2>("waves2d.sol"));
+}
+
+TEST(MetricCommand, TakesTheMetricThatTheMeshImplies) {
+  const Scene scene("waves3d");
+  EXPECT_EQ(scene.folder.run("metric implied waves3d.mesh -o i.sol").status, 0);
+  const Outcome info = scene.folder.run("info waves3d.mesh -sol i.sol");
+  EXPECT_TRUE(contains(info.out, "100.00 %")) << info.out;
+}
+
+TEST(MetricCommand, TellsWhatIsWrongWithACommandLine) {
+  const Folder folder;
+  const auto expect = [&](const char* words, const char* part) {
+    const Outcome outcome = folder.run(std::string("metric ") + words);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, part)) << words << ": " << outcome.err;
+  };
+  expect("", "expected make, implied, intersect, scale, bound or grade, found nothing");
+  expect("mak a.mesh a.sol -o b.sol", "found 'mak'");
+  expect("make a.mesh -o b.sol --error 1", "expected a mesh and a field, found 1 file");
+  expect("implied a.mesh a.sol -o b.sol", "expected a mesh, found 2 files");
+  expect("intersect a.mesh a.sol -o b.sol", "two metrics or more, found 2 files");
+  expect("make a.mesh a.sol --error 1", "ending in .sol or .solb");
+  expect("make a.mesh a.sol --error 1 -o b.mesh", "found 'b.mesh'");
+  expect("make a.mesh a.sol -o b.sol", "expected one of --complexity, --elements and --error");
+  expect("make a.mesh a.sol -o b.sol --error 1 --elements 2", "expected one of");
+  expect("make a.mesh a.sol -o b.sol --error 1 --norm 0.5", "expected 1 or more, or inf");
+  expect("make a.mesh a.sol -o b.sol --error 1 --recovery none", "least-squares or projection");
+  expect("scale a.mesh a.sol -o b.sol", "expected one of --complexity, --elements");
+  expect("scale a.mesh a.sol -o b.sol --error 1", "option --error: scale takes none");
+  expect("bound a.mesh a.sol -o b.sol", "expected some of -hmin, -hmax and --anisotropy");
+  expect("bound a.mesh a.sol -o b.sol -hmin 2 -hmax 1", "-hmin to be the smaller");
+  expect("bound a.mesh a.sol -o b.sol --anisotropy 0.1", "expected 1 or more");
+  expect("grade a.mesh a.sol -o b.sol", "grade: expected -hgrad");
+  expect("grade a.mesh a.sol -o b.sol -hgrad 0.9", "a factor of 1 or more");
+  expect("grade a.mesh a.sol -o nowhere/b.sol -hgrad 2", "nowhere");
+  expect("grade a.mesh a.sol -o b.sol -hgrad 2", "a.mesh");
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
+TEST(MetricCommand, TellsWhatIsWrongWithAFieldAndLeavesOldOutput) {
+  const Scene scene("waves2d");
+  scene.folder.write("old.sol", "old metric");
+  scene.folder.write("short.sol",
+                     "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n3\n1 1\n1\n1\n1\nEnd\n");
+  for (const char* words : {"make waves2d.mesh short.sol --error 1 -o old.sol",
+                            "scale waves2d.mesh short.sol --complexity 10 -o old.sol",
+                            "intersect waves2d.mesh waves2d.sol f.sol -o old.sol"}) {
+    const Outcome outcome = scene.folder.run(std::string("metric ") + words);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, contains(words, "short") ? "short.sol" : "f.sol"))
+        << outcome.err;
+  }
+  EXPECT_EQ(scene.folder.read("old.sol"), "old metric");
+}
+
+}  // namespace
+}  // namespace ductile::cli

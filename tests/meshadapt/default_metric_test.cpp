@@ -1,0 +1,68 @@
+#include "ductile/meshadapt/default_metric.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "support/meshes.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+
+template <class Dimension>
+class DefaultMetricIn : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(DefaultMetricIn, Dimensions, );
+
+const Executor executor({.threads = 2});
+
+TYPED_TEST(DefaultMetricIn, IsTheSizeAskedForEverywhere) {
+  constexpr int Dim = TypeParam::value;
+  const AnyField field = constant_metric(test::make_grid(test::unit_grid(Dim, 3)), 0.5);
+  for (const Metric<Dim>& metric : tensors_of<Dim>(executor, field))
+    EXPECT_EQ(metric, isotropic<Dim>(0.5));
+}
+
+TYPED_TEST(DefaultMetricIn, OfRegularElementsIsTheIdentity) {
+  constexpr int Dim = TypeParam::value;
+  AnyMesh one;
+  one.dimension = Dim;
+  one.vertex_reference.assign(Dim + 1, 0);
+  if constexpr (Dim == 2) {
+    one.coordinates = {0, 0, 1, 0, 0.5, std::sqrt(0.75)};
+    one.triangles.add({0, 1, 2}, 1);
+  } else {
+    const double s = std::sqrt(0.5);
+    one.coordinates = {0, 0, 0, s, s, 0, s, 0, s, 0, s, s};
+    one.tetrahedra.add({0, 1, 2, 3}, 1);
+  }
+  for (const Metric<Dim>& metric : tensors_of<Dim>(executor, implied_tensors(executor, one)))
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j <= i; ++j) EXPECT_NEAR(metric(i, j), i == j ? 1 : 0, 1e-12);
+}
+
+TYPED_TEST(DefaultMetricIn, KeepsTheStretchOfTheMesh) {
+  constexpr int Dim = TypeParam::value;
+  AnyMesh any = test::make_grid(test::unit_grid(Dim, 8));
+  for (std::size_t v = 0; v < any.vertex_count(); ++v) any.coordinates[v * Dim] *= 1e-3;
+  const AnyField stretched = implied_tensors(executor, any), alike = implied_metric(any);
+  EXPECT_EQ(measure(executor, any, &stretched).share_in_range(), 1);
+  EXPECT_LT(measure(executor, any, &alike).share_in_range(), 0.5);
+}
+
+TYPED_TEST(DefaultMetricIn, DoesNotDependOnThreads) {
+  constexpr int Dim = TypeParam::value;
+  AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 40 : 9));
+  test::Random random(2);
+  test::jiggle(any, random, 0.3);
+  const auto expected = implied_tensors(Executor({.threads = 1}), any).values;
+  for (const int threads : {2, 3, 8})
+    EXPECT_EQ(expected, implied_tensors(Executor({.threads = threads}), any).values) << threads;
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt

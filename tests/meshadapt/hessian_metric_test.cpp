@@ -1,0 +1,187 @@
+#include "ductile/meshadapt/hessian_metric.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+using test::Random;
+using test::uniform;
+
+template <class Dimension>
+class HessianMetricIn : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(HessianMetricIn, Dimensions, );
+
+const Executor executor({.threads = 2});
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Indefinite tensors with curvatures that differ by up to 100 times.
+template <int Dim>
+struct Scene {
+  AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 12 : 6));
+  FixedMesh<Dim> mesh = make_fixed_mesh<Dim>(executor, any);
+  std::vector<Metric<Dim>> hessian_of, absolute_of;
+
+  Scene() {
+    Random random(6);
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+      std::array<double, Dim> sizes;
+      for (double& h : sizes) h = uniform(random, 0.1, 1);
+      absolute_of.push_back(test::random_metric<Dim>(random, sizes));
+      Eigen<Dim> axes = eigen(absolute_of.back());
+      for (double& value : axes.value)
+        if (test::chance(random, 0.5)) value = -value;
+      hessian_of.push_back(compose(axes));
+    }
+  }
+};
+
+template <int Dim>
+double difference(const Metric<Dim>& a, const Metric<Dim>& b) {
+  double most = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j <= i; ++j)
+      most = std::max(most, std::abs(a(i, j) - b(i, j)) / std::sqrt(b(i, i) * b(j, j)));
+  return most;
+}
+
+TYPED_TEST(HessianMetricIn, IsTheFormulaOfLoseilleAndAlauzet) {
+  constexpr int Dim = TypeParam::value;
+  const Scene<Dim> scene;
+  const double wanted = 500;
+  for (const double norm : {1.0, 2.0, 4.0, infinity}) {
+    // N^(2/d) (integral of det|H|^(p/(2p+d)))^(-2/d) det|H|^(-1/(2p+d)) |H|
+    const double power = std::isinf(norm) ? 0.5 : norm / (2 * norm + Dim);
+    double integral = 0;
+    for (std::size_t v = 0; v < scene.mesh.vertex_count(); ++v)
+      integral += scene.mesh.share_of[v] * std::pow(determinant(scene.absolute_of[v]), power);
+    const auto result = hessian_metric<Dim>(executor, scene.mesh, scene.hessian_of,
+                                            {.norm = norm, .complexity = wanted});
+    for (std::size_t v = 0; v < scene.mesh.vertex_count(); ++v) {
+      const double factor = std::pow(wanted / integral, 2.0 / Dim) *
+                            std::pow(determinant(scene.absolute_of[v]), -1 / (2 * norm + Dim));
+      EXPECT_LT(difference(result.metric_of[v], factor * scene.absolute_of[v]), 1e-7);
+    }
+    EXPECT_TRUE(result.fit.reached);
+    EXPECT_NEAR(result.fit.complexity, wanted, 1e-5);
+    if (std::isinf(norm)) continue;
+    const double error = Dim / (4.0 * (Dim + 2)) * std::pow(wanted, -2.0 / Dim) *
+                         std::pow(integral, (2 * norm + Dim) / (Dim * norm));
+    EXPECT_NEAR(result.fit.error, error, 1e-7 * error);
+  }
+}
+
+TYPED_TEST(HessianMetricIn, ReachesAnError) {
+  constexpr int Dim = TypeParam::value;
+  const Scene<Dim> scene;
+  for (const double norm : {1.0, 2.0, infinity}) {
+    const auto result =
+        hessian_metric<Dim>(executor, scene.mesh, scene.hessian_of, {.norm = norm, .error = 0.01});
+    EXPECT_TRUE(result.fit.reached);
+    EXPECT_NEAR(result.fit.error, 0.01, 1e-8);
+  }
+}
+
+TYPED_TEST(HessianMetricIn, KeepsToBoundsAndReachesTheComplexityAllTheSame) {
+  constexpr int Dim = TypeParam::value;
+  const Scene<Dim> scene;
+  const double wanted = Dim == 2 ? 800 : 10000;
+  const auto result = hessian_metric<Dim>(
+      executor, scene.mesh, scene.hessian_of,
+      {.complexity = wanted, .bounds = {.smallest = 0.02, .largest = 0.08, .anisotropy = 2}});
+  EXPECT_TRUE(result.fit.reached);
+  EXPECT_NEAR(complexity<Dim>(executor, scene.mesh, result.metric_of), wanted, 1e-6 * wanted);
+  for (const Metric<Dim>& metric : result.metric_of) {
+    const auto value = eigen(metric).value;
+    const auto [low, high] = std::minmax_element(value.begin(), value.end());
+    EXPECT_LE(*high, (1 + 1e-9) / (0.02 * 0.02));
+    EXPECT_GE(*low, (1 - 1e-9) / (0.08 * 0.08));
+    EXPECT_GE(*low, *high / 4 * (1 - 1e-9));
+  }
+}
+
+TYPED_TEST(HessianMetricIn, IsUniformForAFunctionWithoutCurvature) {
+  constexpr int Dim = TypeParam::value;
+  const Scene<Dim> scene;
+  const std::vector<Metric<Dim>> nothing(scene.mesh.vertex_count());
+  const auto result = hessian_metric<Dim>(executor, scene.mesh, nothing, {.complexity = 1000});
+  EXPECT_TRUE(result.fit.reached);
+  EXPECT_EQ(result.fit.error, 0);
+  for (const Metric<Dim>& metric : result.metric_of)
+    EXPECT_LT(difference(metric, isotropic<Dim>(std::pow(1000, -1.0 / Dim))), 1e-7);
+  const auto coarsest = hessian_metric<Dim>(executor, scene.mesh, nothing, {.error = 1e-3});
+  EXPECT_TRUE(coarsest.fit.reached);
+  EXPECT_LT(difference(coarsest.metric_of[0], isotropic<Dim>(std::sqrt(Dim))), 1e-7);
+}
+
+TYPED_TEST(HessianMetricIn, RefusesWhatMakesNoSense) {
+  constexpr int Dim = TypeParam::value;
+  Scene<Dim> scene;
+  const auto fit = [&](const HessianMetricOptions& options) {
+    hessian_metric<Dim>(executor, scene.mesh, scene.hessian_of, options);
+  };
+  EXPECT_THROW(fit({}), InputError);
+  EXPECT_THROW(fit({.complexity = 10, .error = 0.1}), InputError);
+  EXPECT_THROW(fit({.complexity = -1}), InputError);
+  EXPECT_THROW(fit({.norm = 0.5, .complexity = 10}), InputError);
+  EXPECT_THROW(fit({.complexity = 10, .bounds = {.smallest = 2, .largest = 1}}), InputError);
+  scene.hessian_of[7].m[0] = std::nan("");
+  EXPECT_THROW(fit({.complexity = 10}), InputError);
+  scene.hessian_of.pop_back();
+  EXPECT_THROW(fit({.complexity = 10}), InputError);
+}
+
+/// Two fronts that cross, and their metric.
+template <int Dim>
+AnyField fronts(const AnyMesh& any) {
+  AnyField field{
+      Dim, any.vertex_count(), {AnyField::Type::scalar, AnyField::Type::scalar}, {}, "f"};
+  for (std::size_t v = 0; v < any.vertex_count(); ++v)
+    for (const std::size_t axis : {0, 1})
+      field.values.push_back(std::tanh(10 * (any.coordinates[v * Dim + axis] - 0.5)));
+  return field;
+}
+
+TYPED_TEST(HessianMetricIn, OfSeveralFieldsSuitsAll) {
+  constexpr int Dim = TypeParam::value;
+  const Scene<Dim> scene;
+  const auto result =
+      solution_metric(executor, scene.any, fronts<Dim>(scene.any), {.goal = {.complexity = 2000}});
+  EXPECT_TRUE(result.fit.reached);
+  const auto metric_of = tensors_of<Dim>(executor, result.metric);
+  EXPECT_NEAR(complexity<Dim>(executor, scene.mesh, metric_of), 2000, 1e-3);
+  const auto error =
+      solution_metric(executor, scene.any, fronts<Dim>(scene.any), {.goal = {.error = 0.01}});
+  EXPECT_TRUE(error.fit.reached);
+  EXPECT_NEAR(error.fit.error, 0.01, 1e-7);
+  AnyField other = fronts<Dim>(scene.any);
+  other.values.pop_back();
+  EXPECT_THROW(solution_metric(executor, scene.any, other, {.goal = {.error = 0.01}}), InputError);
+}
+
+TYPED_TEST(HessianMetricIn, DoesNotDependOnThreads) {
+  constexpr int Dim = TypeParam::value;
+  const AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 50 : 14));
+  const auto run = [&](int threads) {
+    return solution_metric(Executor({.threads = threads}), any, fronts<Dim>(any),
+                           {.goal = {.complexity = 3000, .bounds = {.smallest = 0.01}},
+                            .recovery = Recovery::double_projection})
+        .metric.values;
+  };
+  const auto expected = run(1);
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(expected, run(threads)) << threads;
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
