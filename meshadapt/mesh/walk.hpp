@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "ductile/meshadapt/simplex.hpp"
@@ -22,17 +21,19 @@ template <int Dim>
 using Weights = std::array<double, Dim + 1>;  // barycentric, of an element's corners
 
 template <int Dim>
-Weights<Dim> barycentric(std::array<Vector<Dim>, Dim + 1> corner, const Vector<Dim>& point) {
-  Weights<Dim> weight;
-  double sum = 0;
-  for (std::size_t i = 0; i < corner.size(); ++i) {
-    const Vector<Dim> at = std::exchange(corner[i], point);
-    weight[i] = plain_determinant(corner);
-    corner[i] = at;
-    sum += weight[i];
+Weights<Dim> barycentric(const std::array<Vector<Dim>, Dim + 1>& corner, const Vector<Dim>& point) {
+  const Vector<Dim> u = corner[1] - corner[0], v = corner[2] - corner[0], p = point - corner[0];
+  if constexpr (Dim == 2) {
+    const double scale = 1 / (u[0] * v[1] - u[1] * v[0]);
+    const double at_u = scale * (p[0] * v[1] - p[1] * v[0]);
+    const double at_v = scale * (u[0] * p[1] - u[1] * p[0]);
+    return {1 - at_u - at_v, at_u, at_v};
+  } else {
+    const Vector<3> w = corner[3] - corner[0], vw = cross(v, w), up = cross(u, p);
+    const double scale = 1 / dot(u, vw);
+    const double at_u = scale * dot(p, vw), at_v = scale * dot(w, up), at_w = -scale * dot(v, up);
+    return {1 - at_u - at_v - at_w, at_u, at_v, at_w};
   }
-  for (double& w : weight) w /= sum;
-  return weight;
 }
 
 template <int Dim>

@@ -14,6 +14,7 @@
 
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring.hpp"
 #include "ductile/runtime/detail/phase_timer.hpp"
 #include "ductile/runtime/hash.hpp"
@@ -62,16 +63,30 @@ class Rounds {
 
  private:
   static constexpr std::size_t kinds = detail::Kinds<Op>::count;
-  static constexpr std::size_t block = 128;
+  static constexpr std::size_t block = 32;
   static constexpr LoopOptions by_block{.grain = 1, .serial_below = 3};
 
   // ---- Colouring: cut the round into classes of items that do not conflict ----
 
+  /// Goes over the work window by window, so that what one window's classes touch stays in cache.
   std::vector<Item> coloured_round(std::vector<Item> work) requires ColouredOperator<Op> {
+    woken_at_.resize(op_.item_count(), 0);
+    const std::size_t window = Check::on ? work.size() : options_.window;
+    for (std::size_t begin = 0; begin < work.size(); begin += window) {
+      ++window_;
+      run_window(std::span(work).subspan(begin, std::min(window, work.size() - begin)));
+    }
+    const std::vector<Item> woken = take_woken();
+    // Who was woken by one window and planned in a later one has been considered again.
+    return parallel_collect<Item>(executor_, woken.size(), [&](std::size_t i, auto&& append) {
+      if (woken_at_[woken[i]] != 0) append(woken[i]);
+    });
+  }
+
+  void run_window(std::span<const Item> work) {
     std::vector<std::vector<Item>> classes;
     {
       const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
-      woken_at_.resize(op_.item_count(), 0);
       classes = independent_classes(work);
     }
     for (turn_ = 0; turn_ < classes.size(); ++turn_) {
@@ -80,10 +95,9 @@ class Rounds {
       if constexpr (Check::on) check_waiting(classes);
     }
     parallel_for(executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; });
-    return take_woken();
   }
 
-  std::vector<std::vector<Item>> independent_classes(const std::vector<Item>& work) {
+  std::vector<std::vector<Item>> independent_classes(std::span<const Item> work) {
     turn_of_.resize(op_.item_count(), absent);
     parallel_for(executor_, work.size(),
                  [&](std::size_t i) { turn_of_[work[i]] = static_cast<std::uint32_t>(i); });
@@ -111,13 +125,14 @@ class Rounds {
   void drop_woken(std::vector<Item>& members) {
     if constexpr (requires { Op::keeps_conflicts; }) return;
     const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
-    report_.dropped += std::erase_if(members, [&](Item item) { return woken_at_[item] == round_; });
+    report_.dropped +=
+        std::erase_if(members, [&](Item item) { return woken_at_[item] == window_; });
   }
 
   void check_waiting(const std::vector<std::vector<Item>>& classes) {
     for (std::size_t turn = turn_ + 1; turn < classes.size(); ++turn)
       for (const Item item : classes[turn])
-        if (woken_at_[item] != round_) check_.expect_kept(op_, item);
+        if (woken_at_[item] != window_) check_.expect_kept(op_, item);
   }
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
@@ -240,6 +255,7 @@ class Rounds {
           executor_, batch.size(), block,
           [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
+              if constexpr (ColouredOperator<Op>) woken_at_[batch[i]] = 0;
               plans_[i] = op_.plan(batch[i]);
               if (recording_ != nullptr) [[unlikely]]
                 record_plan(batch[i]);
@@ -329,7 +345,7 @@ class Rounds {
       commit.turn_of_ = &turn_of_;
       commit.turn_ = static_cast<std::uint32_t>(turn_);
     }
-    commit.round_ = round_;
+    commit.window_ = window_;
     return commit;
   }
 
@@ -373,7 +389,8 @@ class Rounds {
   DeferredUpdate<typename Op::Update> deferred_;
   Worklist<Item> woken_;
   std::uint32_t round_ = 0;
-  std::vector<std::uint32_t> woken_at_;  // [item], colouring only
+  std::uint32_t window_ = 0;             // the window being run, colouring only
+  std::vector<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
   std::vector<std::uint32_t> turn_of_;   // [item], its place in the work, then its class, or absent
   std::size_t turn_ = 0;                 // class being executed, colouring only
   std::vector<std::uint64_t> reserved_;  // [resource], the lowest key that asked
