@@ -162,7 +162,7 @@ TEST(Recording, TakesCostsFromTheOperator) {
   std::vector<std::uint32_t> work(12800);
   std::iota(work.begin(), work.end(), 0U);
   recording.begin_section("countdown");
-  const RoundsReport report = run_rounds(executor, countdown, work);
+  const RoundsReport report = run_rounds(executor, countdown, work, {.window = 12800});
   EXPECT_EQ(report.rounds, 2U);
   EXPECT_EQ(report.batches, 2U);
   EXPECT_EQ(report.woken, 12800U);

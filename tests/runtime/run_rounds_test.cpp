@@ -163,6 +163,25 @@ TEST(RunRounds, WhoIsWokenLeavesTheRound) {
   }
 }
 
+TEST(RunRounds, WindowsDoNotChangeWhatIsReached) {
+  for (const std::size_t window : {1, 37, 1000, 100000}) {
+    SCOPED_TRACE(window);
+    IndependentSet set(5000);
+    const RoundsReport report =
+        run_rounds(Executor({.threads = 3}), set, all_items(5000), {.window = window});
+    expect_maximal_independent(set);
+    EXPECT_EQ(report.planned, 5000U);
+    std::vector<Vertex> first;
+    for (const int threads : thread_counts) {
+      Bypass lines(20000);
+      run_rounds(Executor({.threads = threads}), lines, all_items(20000), {.window = window});
+      expect_all_bypassed(lines);
+      if (first.empty()) first = lines.previous;
+      EXPECT_EQ(lines.previous, first) << threads << " threads";
+    }
+  }
+}
+
 TEST(RunRounds, StaleColoursDoNoHarmInArrivalOrder) {
   for (int run = 0; run < 5; ++run) {
     Bypass lines(20000);
