@@ -160,7 +160,8 @@ class Show {
     titled.title = "saturation at time " + text("%.2f", run.time());
     const std::string count = std::to_string(run.mesh().triangles.size());
     write_png(experiment_.file("frames/" + number + ".png"),
-              {titled, {.mesh = run.mesh(), .lines = true, .title = count + " triangles"}});
+              {titled, {.mesh = run.mesh(), .lines = true, .title = count + " triangles"}},
+              {.panel_width = 560});
     series_.add(run.time(), run.mesh(),
                 {{"saturation", meshadapt::AnyField::Type::scalar, run.saturation()},
                  {"pressure", meshadapt::AnyField::Type::scalar, run.pressure()}});
