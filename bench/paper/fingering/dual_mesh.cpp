@@ -1,6 +1,7 @@
 #include "fingering/dual_mesh.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "ductile/runtime/parallel_for.hpp"
 #include "shared/box_mesh.hpp"

@@ -43,8 +43,7 @@ struct DualMesh {
 /// Expects the sides of rectangle_mesh().
 DualMesh make_dual_mesh(const runtime::Executor& executor, const AnyMesh& mesh);
 
-/// The values at an edge's two ends are those of its vertices; what flows out of a vertex along
-/// all its edges is the sum of signed fluxes.
+/// 1 if a positive flux along the edge leaves the vertex, -1 if it enters.
 inline double outflow_sign(const Edge& edge, VertexId vertex) {
   return edge.from == vertex ? 1.0 : -1.0;
 }

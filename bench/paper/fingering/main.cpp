@@ -4,7 +4,9 @@
 /// an early time with a much finer run; then one adapted run goes on until the fingers arrive.
 
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 
