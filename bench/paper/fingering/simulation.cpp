@@ -134,13 +134,13 @@ std::vector<Metric> Simulation::wanted_metric(const AdaptGoal& goal) {
 AnyMesh Simulation::adapted_mesh(const AdaptGoal& goal) {
   const std::vector<Metric> metric_of = wanted_metric(goal);
   const Stopwatch stopwatch(timings_.adaptation);
-  meshadapt::AdaptOptions options;
-  options.iterations = 3;  // the mesh was good a moment ago
-  options.smallest_size = goal.smallest_size;
-  options.largest_size = goal.largest_size;
-  options.gradation = 1.5;
   const meshadapt::AnyField metric = meshadapt::symmetric_field<2>(executor_, metric_of, "metric");
-  return meshadapt::adapt(executor_, mesh_, metric, options).mesh;
+  return meshadapt::adapt(executor_, mesh_, metric,
+                          {.iterations = 3,  // the mesh was good a moment ago
+                           .smallest_size = goal.smallest_size,
+                           .largest_size = goal.largest_size,
+                           .gradation = 1.5})
+      .mesh;
 }
 
 void Simulation::adapt_to_start(const AdaptGoal& goal, Start start) {
