@@ -1,0 +1,46 @@
+/// @file
+/// Darcy's law: div u = 0, u = -grad(p) / viscosity, by linear finite elements and CHOLMOD. What
+/// enters on the left is given, p = 0 on the right, nothing passes above and below.
+/// The fluxes between the cells of a DualMesh that come out balance at every vertex.
+#pragma once
+
+#include <Eigen/CholmodSupport>
+#include <vector>
+
+#include "fingering/dual_mesh.hpp"
+
+namespace ductile::paper {
+
+/// Viscosity e^(R (1 - saturation)): 1 for the fluid that comes in, e^R for the one that is there.
+struct Fluids {
+  double log_viscosity_ratio = 2;  ///< R
+  double diffusivity = 0.0004;     ///< of one in the other; width and speed of inflow are 1
+};
+
+/// Rates of flow; those through the left side are DualMesh::inflow_of.
+struct Flow {
+  std::vector<double> pressure_of;  // [vertex]
+  std::vector<double> flux_of;      // [edge], from its first vertex to its second
+  std::vector<double> outflow_of;   // [index into outlet], through the right side
+};
+
+class PressureSolver {
+ public:
+  /// Finds the order of elimination, once for a mesh. Keeps a reference to it.
+  explicit PressureSolver(const DualMesh& dual);
+
+  /// Throws Error if the system has no solution. Thread safety: one caller.
+  Flow solve(const Fluids& fluids, const std::vector<double>& saturation_of);
+
+ private:
+  using Matrix = Eigen::SparseMatrix<double>;
+  Matrix assemble(const std::vector<double>& mobility_of) const;
+  void add_velocity(Flow& flow, const std::vector<double>& mobility_of) const;
+
+  const DualMesh& dual_;
+  std::vector<int> unknown_of_;  // [vertex], -1 at the outlet
+  int unknown_count_ = 0;
+  Eigen::CholmodSupernodalLLT<Matrix> factors_;
+};
+
+}  // namespace ductile::paper
