@@ -1,0 +1,57 @@
+/// @file
+/// The main() of an experiment: what all of them are told on the command line, the folder that
+/// everything is written to, and the claims that they check. An experiment is one function:
+///   void run(Experiment& experiment);
+///   int main(int count, char** word) { return run_experiment(count, word, {"title", run}); }
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::paper {
+
+class Experiment {
+ public:
+  struct Setup {
+    std::filesystem::path folder;
+    bool small = false;
+    int threads = 0;
+  };
+
+  /// Makes the folder. Throws Error if that cannot be done.
+  explicit Experiment(const Setup& setup);
+
+  const runtime::Executor& executor() const { return executor_; }
+
+  /// A test that takes seconds, not minutes, is wanted.
+  bool small() const { return setup_.small; }
+
+  /// Where an output file goes; folders in the name are made.
+  std::filesystem::path file(const std::string& name) const;
+
+  /// Prints a line, and keeps it for the file report.txt. `format` is as in printf.
+  [[gnu::format(printf, 2, 3)]] void say(const char* format, ...);
+
+  /// Says the claim and whether it held; one that did not makes the program fail at its end.
+  void claim(bool holds, const std::string& what);
+
+  bool all_claims_held() const { return failed_claims_ == 0; }
+
+ private:
+  Setup setup_;
+  runtime::Executor executor_;
+  int failed_claims_ = 0;
+};
+
+struct ExperimentEntry {
+  const char* title;  ///< one line for help
+  void (*run)(Experiment&);
+};
+
+/// Returns the exit status: 0 if the experiment ran to its end and all its claims held.
+int run_experiment(int word_count, char** word, const ExperimentEntry& entry);
+
+}  // namespace ductile::paper

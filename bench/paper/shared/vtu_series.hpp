@@ -1,0 +1,30 @@
+/// @file
+/// VtuSeries: meshes and fields at several times for ParaView: NAME/NAME_0000.vtu, ... and
+/// NAME.pvd, which names them all with their times and is the file to open.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/vtu.hpp"
+
+namespace ductile::paper {
+
+class VtuSeries {
+ public:
+  /// `index` is where NAME.pvd goes; the folder beside it is made.
+  explicit VtuSeries(std::filesystem::path index);
+
+  /// Writes one file and the index anew, so that a run can be looked at while it goes on.
+  void add(double time, const meshadapt::AnyMesh& mesh,
+           const std::vector<meshadapt::VtuField>& fields);
+
+ private:
+  void write_index() const;
+
+  std::filesystem::path index_;
+  std::vector<double> times_;
+};
+
+}  // namespace ductile::paper
