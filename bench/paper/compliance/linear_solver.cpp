@@ -17,7 +17,7 @@ Values LinearSolver<2>::solve(const Values& right, const Values& /*guess*/) cons
 }
 
 void LinearSolver<3>::factorise(const SparseMatrix& lower) {
-  solver_.setTolerance(1e-8);
+  solver_.setTolerance(1e-6);
   solver_.setMaxIterations(10000);
   matrix_ = lower;
   solver_.compute(matrix_);

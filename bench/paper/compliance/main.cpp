@@ -3,6 +3,7 @@
 /// follow the design, beside the same on a fine uniform mesh. Both structures are judged on one
 /// mesh that is finer still.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -19,9 +20,9 @@ using paper::Settings;
 constexpr std::array<cli::Option, 5> options{{
     {"--dimension", "2|3", "of the cantilever (default: 2)"},
     {"--length", "X", "minimum length of bars and holes (default: 0.01; 3D: 0.08)"},
-    {"--elements", "N", "of adapted meshes, before gradation (default: 8000; 3D: 15000)"},
+    {"--elements", "N", "of adapted meshes, before gradation (default: 8000)"},
     {"--cells", "N", "of the uniform mesh across the height, a multiple of 10"},
-    {"--iterations", "N", "of the optimisation (default: 120; 3D: 60)"},
+    {"--iterations", "N", "of the optimisation (default: 120; 3D: 40)"},
 }};
 
 /// The two optimisations, and the cells across the height of the mesh that judges both.
@@ -30,38 +31,38 @@ struct Study {
   int judge_cells = 0;
 };
 
-Settings settings_of(const Experiment& experiment, int dimension) {
-  const bool plane = dimension == 2, small = experiment.small();
-  const cli::Arguments& given = experiment.arguments();
-  Settings settings;
-  settings.problem.minimum_length = given.positive("--length")
-                                        .value_or(small   ? (plane ? 0.05 : 0.15)
-                                                  : plane ? 0.01
-                                                          : 0.08);
-  settings.problem.void_stiffness = plane ? 1e-6 : 1e-4;  // conjugate gradients mind the contrast
-  settings.path.iterations = given.integer("--iterations", 10, 10000)
-                                 .value_or(small   ? 30
-                                           : plane ? 120
-                                                   : 60);
-  settings.adaptation.elements = given.positive("--elements")
-                                     .value_or(small   ? (plane ? 1000 : 3000)
-                                               : plane ? 8000
-                                                       : 15000);
-  return settings;
+/// Defaults: in the plane, in space, and of the test in the plane.
+struct Defaults {
+  double length = 0, elements = 0;
+  int iterations = 0, start_cells = 0, uniform_cells = 0, judge_cells = 0;
+};
+constexpr Defaults plane{0.01, 8000, 120, 50, 200, 400};
+constexpr Defaults space{0.08, 8000, 40, 10, 20, 30};
+constexpr Defaults test{0.05, 1000, 30, 10, 40, 80};
+
+/// The contrast and the number of elements that conjugate gradients and a cube's third dimension
+/// leave room for.
+void fit_to_space(Settings& settings) {
+  settings.problem.void_stiffness = 1e-4;
+  settings.adaptation.smallest = 0.2;
+  settings.adaptation.anisotropy = 5;
+  settings.adaptation.gradation = 2;
 }
 
 Study study_of(const Experiment& experiment, int dimension) {
-  const bool plane = dimension == 2, small = experiment.small();
+  const Defaults& usual = dimension == 3 ? space : experiment.small() ? test : plane;
+  const cli::Arguments& given = experiment.arguments();
   Study study;
-  study.adapted = study.uniform = settings_of(experiment, dimension);
-  study.adapted.cells = plane && !small ? 50 : 10;
+  Settings& settings = study.adapted;
+  settings.problem.minimum_length = given.positive("--length").value_or(usual.length);
+  settings.path.iterations = given.integer("--iterations", 10, 10000).value_or(usual.iterations);
+  settings.adaptation.elements = given.positive("--elements").value_or(usual.elements);
+  settings.cells = usual.start_cells;
+  if (dimension == 3) fit_to_space(settings);
+  study.uniform = settings;
   study.uniform.adaptation.elements = 0;
-  study.uniform.cells = experiment.arguments()
-                            .integer("--cells", 10, 1000)
-                            .value_or(small   ? (plane ? 40 : 10)
-                                      : plane ? 200
-                                              : 20);
-  study.judge_cells = study.uniform.cells * (plane ? 2 : 1);
+  study.uniform.cells = given.integer("--cells", 10, 1000).value_or(usual.uniform_cells);
+  study.judge_cells = std::max(usual.judge_cells, study.uniform.cells);
   return study;
 }
 

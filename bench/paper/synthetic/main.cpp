@@ -58,6 +58,7 @@ paper::MeshGoal goal_of(int dimension, double elements) {
 /// A mesh of the march, kept until the picture is drawn.
 struct Frame {
   int step = 0;
+  double phase = 0;
   AnyMesh mesh;
   std::vector<double> value_of;
 };
@@ -67,6 +68,15 @@ std::string title_of(const Frame& frame) {
          std::to_string(paper::element_count(frame.mesh)) + " elements";
 }
 
+/// A small square on the jump, at x = 0.15.
+paper::Window window_on_jump(double phase) {
+  constexpr double x = 0.15, step = 0.01, half = 0.08;
+  double y = half;
+  while (y < 1 - half && paper::jump_level(x, y, phase) * paper::jump_level(x, y + step, phase) > 0)
+    y += step;
+  return {x - half, y - half, x + half, y + half};
+}
+
 void draw_plane(Experiment& experiment, const std::vector<Frame>& frames) {
   std::vector<paper::FieldPanel> panels;
   panels.reserve(3 * frames.size());
@@ -74,8 +84,10 @@ void draw_plane(Experiment& experiment, const std::vector<Frame>& frames) {
     panels.push_back({frame.mesh, frame.value_of, -1.6, 1.6, false, title_of(frame)});
   for (const Frame& frame : frames) panels.push_back({.mesh = frame.mesh, .lines = true});
   for (const Frame& frame : frames)
-    panels.push_back(
-        {.mesh = frame.mesh, .lines = true, .title = "close", .window = {0.3, 0.1, 0.5, 0.3}});
+    panels.push_back({.mesh = frame.mesh,
+                      .lines = true,
+                      .title = "close",
+                      .window = window_on_jump(frame.phase)});
   write_png(experiment.file("frames_2d.png"), panels,
             {.columns = static_cast<int>(frames.size()), .panel_width = 330});
 }
@@ -102,7 +114,7 @@ class Watcher {
     if (step % std::max(1, steps_ / 10) == 0)
       series_.add(phase, mesh, {{"psi", meshadapt::AnyField::Type::scalar, value_of}});
     if ((step + 1) * 3 / steps_ > step * 3 / steps_) {
-      frames_.push_back({step, mesh, std::move(value_of)});
+      frames_.push_back({step, phase, mesh, std::move(value_of)});
       frames_.back().mesh.name = name_ + ", step " + std::to_string(step + 1);
     }
   }

@@ -11,26 +11,25 @@ do for [d in "2d 3d"] {
     set xrange [0.9:*]
     set yrange [0:*]
     set ylabel "seconds per step"
-    set key top right
+    set key outside below horizontal
     plot for [k=2:5] "seconds_".d.".csv" using 1:k with linespoints lw 2 pt 7 title columnheader(k)
     set yrange [0:1.4]
     set ylabel "parallel efficiency"
-    set key bottom left
     plot for [k=2:5] "efficiency_".d.".csv" using 1:k with linespoints lw 2 pt 7 title columnheader(k)
     unset multiplot
     set autoscale
   }
   if (present("errors_".d.".csv")) {
     set output "errors_".d.".svg"
-    stats "errors_".d.".csv" skip 1 using 1:2 every ::0::0 nooutput
+    first(column) = real(system("sed -n 2p errors_".d.".csv | cut -d, -f".column))
     rate = d eq "2d" ? -1.0 : -2.0 / 3
     set logscale xy
     set xlabel "elements"
     set ylabel "interpolation error"
-    set key bottom left
+    set key inside vertical bottom left
     plot "errors_".d.".csv" skip 1 using 1:2 with linespoints lw 2 pt 7 title "L2 beside the jump", \
          "" skip 1 using 1:4 with linespoints lw 2 pt 7 title "L1 everywhere", \
-         STATS_max_y * (x / STATS_max_x)**rate with lines dt 2 lc rgb "black" title "elements^{-2/d}"
+         first(2) * (x / first(1))**rate with lines dt 2 lc rgb "black" title "elements^{-2/d}"
     unset logscale
   }
 }
