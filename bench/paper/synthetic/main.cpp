@@ -157,7 +157,7 @@ void time_kernels(Experiment& experiment, int dimension) {
   }
   say_kernels(experiment, name, rows);
   experiment.claim(rows.front().report.mean_elements == rows.back().report.mean_elements,
-                   name + ": meshes have the same elements on every number of threads");
+                   name + ": as many elements on every number of threads");
   if (dimension == 2)
     draw_plane(experiment, watcher.frames());
   else
