@@ -101,9 +101,8 @@ void Optimiser<Dim>::adapt_mesh() {
       executor_, any_, features,
       {.goal = {.complexity = meshadapt::complexity_of_elements(Dim, wanted.elements),
                 .bounds = {wanted.smallest * unit, wanted.largest * unit, wanted.anisotropy}}});
-  meshadapt::AdaptOptions options;
-  options.gradation = wanted.gradation;
-  AnyMesh adapted = meshadapt::adapt(executor_, any_, metric.metric, options).mesh;
+  AnyMesh adapted =
+      meshadapt::adapt(executor_, any_, metric.metric, {.gradation = wanted.gradation}).mesh;
   const AnyField moved = meshadapt::project_field(executor_, {any_, carried}, adapted).field;
   use(std::move(adapted));
   design_of_.resize(any_.vertex_count());

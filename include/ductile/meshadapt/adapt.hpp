@@ -31,9 +31,9 @@ struct AdaptOptions {
   bool move = true;          ///< smooth vertices
   bool swap = true;          ///< swap edges and faces
   bool insert = true;        ///< split and collapse edges
-  Rules rules;
-  MakeMeshOptions make;
-  std::function<void(const AdaptProgress&)> progress;  ///< called on the calling thread
+  Rules rules = {};
+  MakeMeshOptions make = {};
+  std::function<void(const AdaptProgress&)> progress = {};  ///< called on the calling thread
 };
 
 /// Seconds and work of one kernel over the whole run.
