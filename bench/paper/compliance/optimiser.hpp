@@ -65,7 +65,7 @@ class Optimiser {
   Derivatives derivatives_;
 };
 
-/// The compliance of densities on another mesh of the cantilever, for instance a finer one.
+/// Densities and the mesh that they live on. It refers to both, so it is for passing them only.
 template <int Dim>
 struct DensityOnMesh {
   const meshadapt::AnyMesh& mesh;
@@ -75,6 +75,7 @@ struct Judgement {
   double compliance = 0;
   double volume_fraction = 0;
 };
+/// The compliance of the densities on another mesh of the cantilever, for instance a finer one.
 template <int Dim>
 Judgement judge(const runtime::Executor& executor, const DensityOnMesh<Dim>& found,
                 const meshadapt::AnyMesh& fine, const Problem& problem);
