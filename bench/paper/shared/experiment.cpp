@@ -17,11 +17,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<cli::Option, 3> options{{
+constexpr std::array<cli::Option, 3> common_options{{
     {"-o", "FOLDER", "where everything is written (default: the folder 'out')", "--output"},
     {"--small", "", "runs the test of a few seconds"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
 }};
+
+std::vector<cli::Option> all_options(const ExperimentEntry& entry) {
+  std::vector<cli::Option> options(common_options.begin(), common_options.end());
+  options.insert(options.end(), entry.options.begin(), entry.options.end());
+  return options;
+}
 
 bool asks_for_help(const std::vector<std::string>& words) {
   return words.size() == 1 && (words[0] == "-h" || words[0] == "--help");
@@ -29,18 +35,19 @@ bool asks_for_help(const std::vector<std::string>& words) {
 
 void print_help(const ExperimentEntry& entry) {
   std::printf("%s\n\nOptions:\n", entry.title);
-  for (const cli::Option& option : options)
+  for (const cli::Option& option : all_options(entry))
     std::printf("  %s %s\n      %s\n", std::string(option.name).c_str(),
                 std::string(option.value).c_str(), std::string(option.help).c_str());
 }
 
-Experiment::Setup setup_from(const std::vector<std::string>& words) {
-  const cli::Arguments arguments(options, words);
+Experiment::Setup setup_from(const ExperimentEntry& entry, const std::vector<std::string>& words) {
+  const cli::Arguments arguments(all_options(entry), words);
   if (!arguments.operands().empty())
     throw cli::UsageError("expected options only, found '" + arguments.operands()[0] + "'");
   return {.folder = arguments.text("-o").value_or("out"),
           .small = arguments.has("--small"),
-          .threads = arguments.integer("--threads", 1, 4096).value_or(0)};
+          .threads = arguments.integer("--threads", 1, 4096).value_or(0),
+          .arguments = arguments};
 }
 
 }  // namespace
@@ -81,7 +88,7 @@ int run_experiment(int word_count, char** word, const ExperimentEntry& entry) {
       print_help(entry);
       return 0;
     }
-    Experiment experiment(setup_from(words));
+    Experiment experiment(setup_from(entry, words));
     experiment.say("%s; %d threads", entry.title, experiment.executor().threads());
     const auto start = std::chrono::steady_clock::now();
     entry.run(experiment);

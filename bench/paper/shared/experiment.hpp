@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "arguments.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::paper {
@@ -19,6 +20,7 @@ class Experiment {
     std::filesystem::path folder;
     bool small = false;
     int threads = 0;
+    cli::Arguments arguments{{}, {}};
   };
 
   /// Makes the folder. Throws Error if that cannot be done.
@@ -28,6 +30,9 @@ class Experiment {
 
   /// A test that takes seconds, not minutes, is wanted.
   bool small() const { return setup_.small; }
+
+  /// What was typed, for options of the experiment's own (ExperimentEntry::options).
+  const cli::Arguments& arguments() const { return setup_.arguments; }
 
   /// Where an output file goes; folders in the name are made.
   std::filesystem::path file(const std::string& name) const;
@@ -49,6 +54,7 @@ class Experiment {
 struct ExperimentEntry {
   const char* title;  ///< one line for help
   void (*run)(Experiment&);
+  std::span<const cli::Option> options = {};  ///< beside those that all experiments have
 };
 
 /// Returns the exit status: 0 if the experiment ran to its end and all its claims held.

@@ -1,0 +1,30 @@
+/// @file
+/// The cantilever: its regular start mesh, and which parts of the boundary are held and pulled.
+/// They are told apart by the references of boundary facets, which adaptation keeps.
+#pragma once
+
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "shared/box_mesh.hpp"
+
+namespace ductile::paper {
+
+inline constexpr int held_reference = Side::left;
+inline constexpr int pulled_reference = 7;
+
+/// Cells of equal sides, `cells` across the height, a multiple of 10.
+template <int Dim>
+meshadapt::AnyMesh cantilever_mesh(int cells);
+
+/// The boundary facets with this reference.
+template <int Dim>
+std::vector<meshadapt::Facet<Dim>> facets_with(const meshadapt::AnyMesh& mesh, int reference);
+
+extern template meshadapt::AnyMesh cantilever_mesh<2>(int);
+extern template meshadapt::AnyMesh cantilever_mesh<3>(int);
+extern template std::vector<meshadapt::Facet<2>> facets_with<2>(const meshadapt::AnyMesh&, int);
+extern template std::vector<meshadapt::Facet<3>> facets_with<3>(const meshadapt::AnyMesh&, int);
+
+}  // namespace ductile::paper

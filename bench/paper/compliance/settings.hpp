@@ -1,0 +1,45 @@
+/// @file
+/// What is optimised and how: the problem, the path to its solution, and the meshes on the way.
+/// Lengths are in units of the cantilever's length, stiffness in units of the solid's.
+#pragma once
+
+namespace ductile::paper {
+
+/// The cantilever is 1 long, `height` high and, in 3D, `width` wide. It is clamped at x = 0; a
+/// force of 1 pulls down the middle fifth of the other end.
+struct Problem {
+  double volume_fraction = 0.5;
+  double minimum_length = 0.01;  ///< of bars and holes
+  double penalty = 3;            ///< stiffness is density^penalty (SIMP)
+  double void_stiffness = 1e-6;  ///< what is left of stiffness where there is no material
+  double poisson = 0.3;
+};
+
+inline constexpr double height = 0.5;
+inline constexpr double width = 0.25;
+
+struct Path {
+  int iterations = 120;
+  double move_limit = 0.2;     ///< most that a density changes in an iteration
+  double last_sharpness = 16;  ///< of the projection; doubles from 1 on, see sharpness_at
+};
+
+/// Sharpness doubles in equal steps; the last third of the iterations has the last one.
+double sharpness_at(const Path& path, int iteration);
+
+struct Adaptation {
+  double elements = 0;                  ///< of the adapted meshes, about; 0: the start mesh is kept
+  int interval = 5;                     ///< iterations from one mesh to the next
+  double smallest = 0.1, largest = 10;  ///< sizes, in units of the minimum length
+  double anisotropy = 10;
+  double gradation = 1.5;
+};
+
+struct Settings {
+  int cells = 50;  ///< of the start mesh, across the height; a multiple of 10
+  Problem problem;
+  Path path;
+  Adaptation adaptation;
+};
+
+}  // namespace ductile::paper

@@ -1,0 +1,62 @@
+/// @file
+/// March: a mesh that follows the solution from time step to time step. At each, the solution is
+/// sampled on the mesh as it is, its Hessian recovered, the metric scaled to a complexity, and the
+/// mesh adapted.
+#pragma once
+
+#include <functional>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::paper {
+
+/// What meshes are asked for.
+struct MeshGoal {
+  double elements = 0;       ///< about as many
+  double smallest = 1e-5;    ///< size; the jump would ask for 0
+  double largest = 0.2;      ///< size
+  double anisotropy = 1000;  ///< the longest size over the shortest
+};
+
+/// One adaptation and the time for its metric.
+struct FollowedMesh {
+  meshadapt::AdaptedMesh adapted;
+  double metric_seconds = 0;
+};
+FollowedMesh follow(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
+                    const MeshGoal& goal, double phase);
+
+/// Seconds, summed over time steps.
+struct KernelSeconds {
+  double coarsen = 0, swap = 0, refine = 0, smooth = 0;
+  double other = 0;   ///< of adapt(): set-up, renumbering
+  double metric = 0;  ///< recovery of the Hessian, scaling
+  double adapt() const { return coarsen + swap + refine + smooth + other; }
+};
+
+struct March {
+  MeshGoal goal;
+  int steps = 50;
+  /// Called with what each step left.
+  std::function<void(int step, double phase, const meshadapt::AnyMesh& mesh)> look{};
+};
+
+struct MarchReport {
+  int steps = 0;
+  double mean_elements = 0;
+  KernelSeconds seconds;
+};
+
+/// Marches once through the period. The first mesh is adapted to the first solution before, three
+/// times; that is not counted.
+MarchReport march(const runtime::Executor& executor, meshadapt::AnyMesh mesh, const March& march);
+
+/// Triangles or tetrahedra.
+std::size_t element_count(const meshadapt::AnyMesh& mesh);
+
+/// The unit square or cube to start from, with about as many elements.
+meshadapt::AnyMesh start_mesh(int dimension, double elements);
+
+}  // namespace ductile::paper

@@ -1,0 +1,45 @@
+/// @file
+/// The solution that the meshes of the synthetic benchmark follow, as a formula: short waves along
+/// x, and a front that moves and has a jump in its middle; the same for all z. And how far linear
+/// elements are from it.
+#pragma once
+
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/vector.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::paper {
+
+/// Where this changes sign, the solution has its jump.
+double jump_level(double x, double y, double phase);
+
+/// 0.1 sin(50 x + phase) + atan(-0.1 / (2 x - sin(5 y + phase))), phase = 2 pi t / T.
+double solution(double x, double y, double phase);
+
+/// Its values at the vertices.
+meshadapt::AnyField sampled_solution(const meshadapt::AnyMesh& mesh, double phase);
+
+/// Norms of the difference between the solution and its interpolant. No linear element can follow
+/// the jump: in the elements that it cuts, the error does not shrink, only their volume does. L1
+/// has the optimal rate even so, as long as that volume shrinks fast enough; L2 has it beside the
+/// jump.
+struct InterpolationError {
+  double everywhere = 0;   ///< L1
+  double beside_jump = 0;  ///< L2 over the elements that the jump does not cut
+};
+
+/// Measured at about 50 points in each element, so elements cut by the jump count with an accuracy
+/// of some per cent of their own share.
+template <int Dim>
+InterpolationError interpolation_error(const runtime::Executor& executor,
+                                       const meshadapt::AnyMesh& mesh, double phase);
+
+extern template InterpolationError interpolation_error<2>(const runtime::Executor&,
+                                                          const meshadapt::AnyMesh&, double);
+extern template InterpolationError interpolation_error<3>(const runtime::Executor&,
+                                                          const meshadapt::AnyMesh&, double);
+
+}  // namespace ductile::paper

@@ -1,0 +1,80 @@
+#include "tables.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "shared/table.hpp"
+
+namespace ductile::paper {
+
+namespace {
+
+const std::vector<std::string> kernel_names{"coarsen", "swap",   "refine", "smooth",
+                                            "other",   "metric", "adapt"};
+
+/// Seconds per step, in the order of kernel_names.
+std::vector<double> seconds_per_step(const MarchReport& report) {
+  const KernelSeconds& sum = report.seconds;
+  std::vector<double> seconds{sum.coarsen, sum.swap,   sum.refine, sum.smooth,
+                              sum.other,   sum.metric, sum.adapt()};
+  for (double& value : seconds) value /= report.steps;
+  return seconds;
+}
+
+std::vector<std::string> columns(const std::string& first) {
+  std::vector<std::string> names{first};
+  names.insert(names.end(), kernel_names.begin(), kernel_names.end());
+  return names;
+}
+
+double rate_between(const ErrorRow& coarse, const ErrorRow& fine,
+                    double InterpolationError::*norm) {
+  return std::log(coarse.error.*norm / (fine.error.*norm)) /
+         std::log(fine.elements / coarse.elements);
+}
+
+}  // namespace
+
+void say_kernels(Experiment& experiment, const std::string& name,
+                 const std::vector<ThreadRow>& rows) {
+  Table seconds(columns("threads")), efficiency(columns("threads"));
+  const std::vector<double> alone = seconds_per_step(rows.front().report);
+  for (const ThreadRow& row : rows) {
+    std::vector<double> taken = seconds_per_step(row.report), share = taken;
+    for (std::size_t k = 0; k < share.size(); ++k)
+      share[k] = alone[k] * rows.front().threads / (taken[k] * row.threads);
+    taken.insert(taken.begin(), row.threads);
+    share.insert(share.begin(), row.threads);
+    seconds.add(taken);
+    efficiency.add(share);
+  }
+  seconds.write_csv(experiment.file("seconds_" + name + ".csv"));
+  efficiency.write_csv(experiment.file("efficiency_" + name + ".csv"));
+  experiment.say("\n%s, %d steps, %.0f elements on average; seconds per step:\n%s", name.c_str(),
+                 rows.front().report.steps, rows.front().report.mean_elements,
+                 seconds.text().c_str());
+  experiment.say("parallel efficiency:\n%s", efficiency.text().c_str());
+}
+
+void say_errors(Experiment& experiment, const std::string& name,
+                const std::vector<ErrorRow>& rows) {
+  Table table({"elements", "L2_beside_jump", "rate", "L1_everywhere", "rate"});
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const InterpolationError& error = rows[i].error;
+    const ErrorRow& before = rows[i == 0 ? 0 : i - 1];
+    const auto rate = [&](double InterpolationError::*norm) {
+      return i == 0 ? 0.0 : rate_between(before, rows[i], norm);
+    };
+    table.add({rows[i].elements, error.beside_jump, rate(&InterpolationError::beside_jump),
+               error.everywhere, rate(&InterpolationError::everywhere)});
+  }
+  table.write_csv(experiment.file("errors_" + name + ".csv"));
+  experiment.say("\n%s, interpolation error, and rates r of error ~ elements^-r:\n%s", name.c_str(),
+                 table.text().c_str());
+}
+
+double convergence_rate(const std::vector<ErrorRow>& rows) {
+  return rate_between(rows.front(), rows.back(), &InterpolationError::beside_jump);
+}
+
+}  // namespace ductile::paper
