@@ -1,8 +1,8 @@
 #include "operators/adapter.hpp"
 
 #include <chrono>
-#include <iterator>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "ductile/runtime/parallel_for.hpp"
@@ -18,11 +18,24 @@ using runtime::RoundsReport;
 
 namespace {
 
-/// How much longer than the rules want edges must be to be split, by stage: coarsening and swapping
-/// shorten many long edges, so the first stage splits none, and each after it what is left of the
-/// longest.
-constexpr double longer_than_wanted[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25,
-                                         1};
+/// How much longer than the rules want edges must be to be split, by stage. In 3D, coarsening and
+/// swapping shorten many long edges, so the first stage splits none, and each after it what is left
+/// of the longest.
+constexpr double stages_2d[] = {1.4, 1.13, 1};
+constexpr double stages_3d[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25, 1};
+
+template <int Dim>
+constexpr std::span<const double> refinement_stages() {
+  if constexpr (Dim == 2)
+    return stages_2d;
+  else
+    return stages_3d;
+}
+
+/// When few changes are left to make, this many iterations also collapse edges that are too short
+/// if that makes some too long: splits and swaps then find a better way to fill the same place.
+/// Doing so from the start costs more than it gains.
+constexpr int eager_iterations = 3;
 
 class Stopwatch {
  public:
@@ -55,9 +68,14 @@ Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& opt
 
 template <int Dim>
 void Adapter<Dim>::run() {
-  for (int i = 1; i <= options_.iterations && !report_.converged; ++i) {
-    report_.iterations = i;
-    report_.converged = few(iterate());
+  for (int eager = 0; report_.iterations < options_.iterations && eager <= eager_iterations;) {
+    ++report_.iterations;
+    const bool calm = few(iterate());
+    report_.converged = report_.converged || calm;
+    // A mesh that comes adapted stays as it is.
+    if (calm && (eager_ || report_.iterations == 1)) break;
+    eager_ = report_.converged;
+    eager += eager_ ? 1 : 0;
   }
   polish();
   renumber_mesh();
@@ -66,12 +84,12 @@ void Adapter<Dim>::run() {
 /// So few that another iteration is not worth it?
 template <int Dim>
 bool Adapter<Dim>::few(std::size_t changes) const {
-  return static_cast<double>(changes) < 0.01 * static_cast<double>(element_count());
+  return static_cast<double>(changes) < 0.02 * static_cast<double>(element_count());
 }
 
 template <int Dim>
 bool Adapter<Dim>::next_stage() {
-  if (!options_.insert || stage_ + 1 == std::size(longer_than_wanted)) return false;
+  if (!options_.insert || stage_ + 1 == refinement_stages<Dim>().size()) return false;
   ++stage_;
   return true;
 }
@@ -88,7 +106,7 @@ std::size_t Adapter<Dim>::iterate() {
   while (few(changes) && next_stage()) changes += refine();
   next_stage();
   renumber_mesh();
-  if (options_.swap) changes += swap(8, 0.9);
+  if (options_.swap) changes += swap(8, Dim == 2 ? 0.9 : 0.8);
   if (options_.move) smooth(1, 0.3, true);
   return changes;
 }
@@ -96,7 +114,7 @@ std::size_t Adapter<Dim>::iterate() {
 /// Raises quality without aiming at lengths any more.
 template <int Dim>
 void Adapter<Dim>::polish() {
-  for (int pass = 0; pass < 3; ++pass) {
+  for (int pass = 0; pass < 2; ++pass) {
     if (options_.move) smooth(3, 0.5, true);
     if (options_.swap) swap(4, 0.95);
   }
@@ -116,7 +134,9 @@ std::size_t Adapter<Dim>::coarsen() {
   for (int sweep = 0; sweep < 8; ++sweep) {
     auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, options_.rules.short_edge,
                                                end_epoch(seen_by_coarsen_));
-    Coarsen<Dim> op(mesh_, options_.rules);
+    Rules rules = options_.rules;
+    if (!eager_) rules.stretched_edge = rules.long_edge;
+    Coarsen<Dim> op(mesh_, rules);
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
     add(report_.coarsen, rounds, 0);
     changes += rounds.applied;
@@ -130,7 +150,7 @@ std::size_t Adapter<Dim>::coarsen() {
 template <int Dim>
 std::size_t Adapter<Dim>::refine() {
   const Stopwatch watch;
-  const double limit = options_.rules.long_edge * longer_than_wanted[stage_];
+  const double limit = options_.rules.long_edge * refinement_stages<Dim>()[stage_];
   auto work = Refine<Dim>::long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
   Refine<Dim> op(mesh_, background_, options_.rules);

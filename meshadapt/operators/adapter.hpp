@@ -43,6 +43,7 @@ class Adapter {
   Mesh<Dim> mesh_;
   Background<Dim> background_;
   AdaptReport report_;
+  bool eager_ = false;     // see eager_iterations
   std::size_t stage_ = 0;  // of refinement
   // The epoch up to which each kernel has seen all changes.
   std::uint32_t seen_by_coarsen_ = 0, seen_by_refine_ = 0, seen_by_swap_ = 0, seen_by_smooth_ = 0;

@@ -30,7 +30,7 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   const VertexBuffer ring = neighbours_of(mesh_, gone);
   const auto choices = candidates(gone, ring);
   if (choices.empty()) return {};
-  const double longest = longest_allowed(gone, ring);
+  const double longest = longest_before(gone, ring);
   double worst = 1;
   for (const ElementId e : ball) {
     if (mesh_.required_element(e)) return {};
@@ -38,7 +38,10 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   }
   for (const Candidate& choice : choices) {
     const Plan plan{gone, choice.kept};
-    if (keeps_edges_short(plan, ring, longest) && keeps_shapes(plan, worst)) return plan;
+    const double limit =
+        choice.length < rules_.too_short ? rules_.stretched_edge : rules_.long_edge;
+    if (keeps_edges_short(plan, ring, std::max(limit, longest)) && keeps_shapes(plan, worst))
+      return plan;
   }
   return {};
 }
@@ -76,9 +79,9 @@ bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
   return false;
 }
 
-/// No new edge may be too long; where edges are too long already, none may get much longer.
+/// Where edges are too long already, new ones may be as long as the longest of them, nearly.
 template <int Dim>
-double Coarsen<Dim>::longest_allowed(VertexId gone, const VertexBuffer& ring) const {
+double Coarsen<Dim>::longest_before(VertexId gone, const VertexBuffer& ring) const {
   double longest = rules_.long_edge / 1.02;
   for (const VertexId v : ring)
     if (!shorter_than(mesh_.site_of[v], mesh_.site_of[gone], longest))

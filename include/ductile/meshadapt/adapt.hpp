@@ -23,7 +23,7 @@ struct AdaptProgress {
 };
 
 struct AdaptOptions {
-  int iterations = 12;       ///< at most this many rounds of the four kernels
+  int iterations = 16;       ///< at most this many rounds of the four kernels
   double smallest_size = 0;  ///< no edge length below this is asked for; 0: no bound
   double largest_size = 0;   ///< no edge length above this is asked for; 0: no bound
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
