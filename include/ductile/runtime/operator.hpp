@@ -107,8 +107,9 @@ class Commit {
     deferred_->defer(owner, source_, std::move(update));
   }
 
-  /// Considers an item again: its plan or its conflicts may have changed. If it is in this round
-  /// and not yet applied, it leaves the round and comes back in the next one.
+  /// Considers an item again: its plan or its conflicts may have changed. If it is in this window
+  /// of the round and not yet applied, it leaves and comes back in the next round; in a later
+  /// window it is planned there.
   void wake(Item item) {
     // Relaxed: read after the barrier that ends the phase.
     if constexpr (ColouredOperator<Op>)
