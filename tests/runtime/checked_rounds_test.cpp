@@ -93,9 +93,12 @@ class Bypass {
          ++step, near = previous[near])
       commit.wake(near);
     commit.wake(plan.gone);
+    // Whose plan has changed: three ahead. What the last of them bypasses may change meanwhile.
     near = plan.next;
-    for (int step = 0; step < 3 && near != nobody && faults_.wakes_ahead; ++step, near = next[near])
+    for (int left = 3; left > 0 && near != nobody && faults_.wakes_ahead; --left) {
       commit.wake(near);
+      if (left > 1) near = next[near];
+    }
   }
   void commit(std::uint32_t owner, const Update& update) { previous[owner] = update.previous; }
 
