@@ -1,8 +1,9 @@
 #include "operators/adapter.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "ductile/runtime/parallel_for.hpp"
@@ -18,26 +19,30 @@ using runtime::RoundsReport;
 
 namespace {
 
-/// How much longer than the rules want edges must be to be split, by stage. In 3D, coarsening and
-/// swapping shorten many long edges, so the first stage splits none, and each after it what is left
-/// of the longest.
-constexpr double stages_2d[] = {1.4, 1.13, 1};
-constexpr double stages_3d[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25, 1};
-
+/// What differs between the dimensions. Shares are of the number of elements.
 template <int Dim>
-constexpr std::span<const double> refinement_stages() {
-  if constexpr (Dim == 2)
-    return stages_2d;
-  else
-    return stages_3d;
-}
+struct Tuning;
 
-/// When few changes are left to make, this many iterations also collapse edges that are too short
-/// if that makes some too long: splits and swaps then find a better way to fill the same place.
-/// Doing so from the start costs more than it gains.
-/// In 2D it gains too little even at the end.
-template <int Dim>
-constexpr int eager_iterations = Dim == 2 ? 0 : 3;
+template <>
+struct Tuning<2> {
+  /// How much longer than the rules want edges must be to be split, by stage.
+  static constexpr double stages[] = {1};
+  static constexpr double calm = 0.03;           ///< share of changes below which it is near
+  static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
+  static constexpr double swap_below = 0.9;      ///< mean ratio of elements that are swapped
+  static constexpr double optimise_below = 0.8;  ///< of those that are optimised in the end
+};
+
+template <>
+struct Tuning<3> {
+  /// Coarsening and swapping shorten many long edges, so the first stage splits none, and each
+  /// after it what is left of the longest.
+  static constexpr double stages[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25, 1};
+  static constexpr double calm = 0.05;
+  static constexpr double stretched_edge = 1.55;
+  static constexpr double swap_below = 0.8;
+  static constexpr double optimise_below = 0.6;
+};
 
 class Stopwatch {
  public:
@@ -70,34 +75,80 @@ Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& opt
 
 template <int Dim>
 void Adapter<Dim>::run() {
-  for (int eager = 0; report_.iterations < options_.iterations && eager <= eager_iterations<Dim>;) {
+  constexpr double nothing = 2e-4, little = 5e-3;
+  const double wanted = share_to_change();
+  report_.converged = wanted < little;
+  if (wanted < nothing) return;
+  while (!report_.converged && report_.iterations < options_.iterations) {
     ++report_.iterations;
-    const bool calm = few(iterate());
-    report_.converged = report_.converged || calm;
-    // A mesh that comes adapted stays as it is.
-    if (calm && (eager_ || report_.iterations == 1)) break;
-    eager_ = report_.converged;
-    eager += eager_ ? 1 : 0;
+    report_.converged = share(iterate()) < Tuning<Dim>::calm && !next_stage();
   }
-  polish();
+  if (wanted >= little) {
+    rearrange();
+    polish();
+  }
+  finish();
   renumber_mesh();
 }
 
-/// So few that another iteration is not worth it?
+/// Share of the elements next to which something would be done: a sample of the edges that are too
+/// short or too long is tried. A mesh that comes adapted shall stay as it is.
 template <int Dim>
-bool Adapter<Dim>::few(std::size_t changes) const {
-  return static_cast<double>(changes) < 0.02 * static_cast<double>(element_count());
+double Adapter<Dim>::share_to_change() {
+  if (!options_.insert) return 1;
+  aim_ = Aim::finish;
+  const Coarsen<Dim> coarsening(mesh_, rules());
+  const Refine<Dim> refinement(mesh_, background_, rules());
+  aim_ = Aim::approach;
+  const auto crowded = Coarsen<Dim>::crowded_vertices(executor_, mesh_, rules().short_edge, 0);
+  const auto edges = Refine<Dim>::long_edges(executor_, mesh_, rules().long_edge, 0);
+  const auto swaps = Swap<Dim>::improvements(executor_, mesh_, 0, Tuning<Dim>::swap_below);
+  const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
+  const auto sum = [](std::size_t a, std::size_t b) { return a + b; };
+  const std::size_t feasible = runtime::parallel_reduce(
+      executor_, all / step, std::size_t{0},
+      [&](std::size_t i) -> std::size_t {
+        const std::size_t k = i * step;
+        return k < crowded.size() ? coarsening.plan(crowded[k]).has_value()
+                                  : refinement.plan(edges[k - crowded.size()]).has_value();
+      },
+      sum);
+  const auto poor = shape_of_mean_ratio<Dim>(0.3);
+  const std::size_t bad = runtime::parallel_reduce(
+      executor_, mesh_.element_slots(), std::size_t{0},
+      [&](std::size_t e) -> std::size_t {
+        return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < poor;
+      },
+      sum);
+  return share(feasible * step + swaps.size() + bad);
+}
+
+template <int Dim>
+double Adapter<Dim>::share(std::size_t changes) const {
+  return static_cast<double>(changes) /
+         static_cast<double>(std::max<std::size_t>(1, element_count()));
+}
+
+template <int Dim>
+Rules Adapter<Dim>::rules() const {
+  Rules rules = options_.rules;
+  if (aim_ == Aim::rearrange) rules.stretched_edge = Tuning<Dim>::stretched_edge;
+  if (aim_ == Aim::finish) {
+    rules.extends_long_edges = false;
+    rules.shortest_split = rules.short_edge;
+  }
+  return rules;
 }
 
 template <int Dim>
 bool Adapter<Dim>::next_stage() {
-  if (!options_.insert || stage_ + 1 == refinement_stages<Dim>().size()) return false;
+  if (!options_.insert || stage_ + 1 == std::size(Tuning<Dim>::stages)) return false;
   ++stage_;
   return true;
 }
 
-/// One round of the kernels that change the number of vertices. Refinement is one stage further in
-/// each, or more if there is little else to do.
+/// One round of all kernels. Refinement is one stage further in each, or more if there is little
+/// else to do.
 template <int Dim>
 std::size_t Adapter<Dim>::iterate() {
   std::size_t changes = 0;
@@ -105,23 +156,56 @@ std::size_t Adapter<Dim>::iterate() {
     changes += coarsen();
     changes += refine();
   }
-  while (few(changes) && next_stage()) changes += refine();
-  next_stage();
+  while (share(changes) < 0.02 && next_stage()) changes += refine();
   // In 2D order matters less than the time to restore it, unless much has changed.
-  if (Dim == 3 || changes > element_count() / 20) renumber_mesh();
-  if (options_.swap) changes += swap(8, Dim == 2 ? 0.9 : 0.8);
-  if (options_.move) smooth(1, 0.3, true);
+  if (Dim == 3 || share(changes) > 0.05) renumber_mesh();
+  changes += swap(8, Tuning<Dim>::swap_below);
+  smooth(1, 0.3, true);
   return changes;
 }
 
-/// Raises quality without aiming at lengths any more.
+/// Collapses what is left of short edges, swaps and smooths, and only then splits what has become
+/// too long. Smooths next to changes alone.
+template <int Dim>
+void Adapter<Dim>::rearrange() {
+  if (!options_.insert) return;
+  aim_ = Aim::rearrange;
+  seen_by_coarsen_ = 0;
+  for (int pass = 0; pass < (Dim == 2 ? 3 : 2); ++pass) {
+    seen_by_smooth_ = mesh_.epoch - 1;
+    coarsen();
+    swap(4, Tuning<Dim>::swap_below);
+    smooth(1, Tuning<Dim>::optimise_below, true);
+    refine();
+    swap(4, Tuning<Dim>::swap_below);
+    smooth(1, Tuning<Dim>::optimise_below, true);
+  }
+}
+
+/// Raises quality without aiming at lengths.
 template <int Dim>
 void Adapter<Dim>::polish() {
   for (int pass = 0; pass < 2; ++pass) {
-    if (options_.move) smooth(3, 0.5, true);
-    if (options_.swap) swap(4, 0.95);
+    smooth(3, 0.5, true);
+    swap(4, 0.95);
   }
-  if (options_.move) smooth(2, 0.6, false);
+  smooth(2, Tuning<Dim>::optimise_below, false);
+}
+
+/// Until there is nothing to do: adapting the result again shall change nothing.
+template <int Dim>
+void Adapter<Dim>::finish() {
+  if (!options_.insert) return;
+  aim_ = Aim::finish;
+  seen_by_coarsen_ = seen_by_refine_ = seen_by_swap_ = 0;
+  for (int pass = 0; pass < 5; ++pass) {
+    std::size_t changes = coarsen();
+    changes += swap(4, Tuning<Dim>::swap_below);
+    changes += refine();
+    changes += swap(4, Tuning<Dim>::swap_below);
+    smooth(1, Tuning<Dim>::optimise_below, false);
+    if (share(changes) < 1e-4) break;
+  }
 }
 
 /// Ends the mesh's epoch for a scan that starts now; returns when the same kernel's last one ended.
@@ -137,13 +221,11 @@ std::size_t Adapter<Dim>::coarsen() {
   for (int sweep = 0; sweep < 8; ++sweep) {
     auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, options_.rules.short_edge,
                                                end_epoch(seen_by_coarsen_));
-    Rules rules = options_.rules;
-    if (!eager_) rules.stretched_edge = rules.long_edge;
-    Coarsen<Dim> op(mesh_, rules);
+    Coarsen<Dim> op(mesh_, rules());
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
     add(report_.coarsen, rounds, 0);
     changes += rounds.applied;
-    if (rounds.applied < element_count() / 200) break;
+    if (share(rounds.applied) < 5e-3) break;
   }
   report_.coarsen.seconds += watch.seconds();
   tell("coarsen", changes);
@@ -153,10 +235,10 @@ std::size_t Adapter<Dim>::coarsen() {
 template <int Dim>
 std::size_t Adapter<Dim>::refine() {
   const Stopwatch watch;
-  const double limit = options_.rules.long_edge * refinement_stages<Dim>()[stage_];
+  const double limit = options_.rules.long_edge * Tuning<Dim>::stages[stage_];
   auto work = Refine<Dim>::long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
-  Refine<Dim> op(mesh_, background_, options_.rules);
+  Refine<Dim> op(mesh_, background_, rules());
   const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
   add(report_.refine, rounds, watch.seconds());
   tell("refine", rounds.applied);
@@ -165,6 +247,7 @@ std::size_t Adapter<Dim>::refine() {
 
 template <int Dim>
 std::size_t Adapter<Dim>::swap(int sweeps, double below) {
+  if (!options_.swap) return 0;
   const Stopwatch watch;
   std::size_t changes = 0;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -174,7 +257,7 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
     add(report_.swap, rounds, 0);
     changes += rounds.applied;
-    if (rounds.applied < element_count() / 500) break;
+    if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 2e-3)) break;
   }
   report_.swap.seconds += watch.seconds();
   tell("swap", changes);
@@ -183,10 +266,13 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
 
 template <int Dim>
 std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplacian) {
+  if (!options_.move) return 0;
   const Stopwatch watch;
   Smooth<Dim> op(mesh_, background_,
                  {.laplacian = laplacian, .optimise_below = optimise_below, .again = sweeps > 1});
-  auto work = Smooth<Dim>::movable_vertices(executor_, mesh_, end_epoch(seen_by_smooth_));
+  auto work = laplacian
+                  ? Smooth<Dim>::movable_vertices(executor_, mesh_, end_epoch(seen_by_smooth_))
+                  : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below);
   const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = sweeps});
   add(report_.smooth, rounds, watch.seconds());
   tell("smooth", rounds.applied);

@@ -22,16 +22,27 @@ class Adapter {
   AdaptReport& report() { return report_; }
 
  private:
+  /// What the kernels that change lengths go for. The input is brought near the metric; then edges
+  /// that are still too short are collapsed even if that makes some too long, for splits and swaps
+  /// find a better way to fill the same place; in the end no edge leaves its range any more.
+  enum class Aim : std::uint8_t { approach, rearrange, finish };
+
   // ---- Kernels: each returns how many changes it made ----
   std::size_t coarsen();
   std::size_t refine();
   std::size_t swap(int sweeps, double below);
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
 
+  // ---- Steps, in the order of a run ----
+  double share_to_change();
   std::size_t iterate();
-  bool next_stage();
-  bool few(std::size_t changes) const;
+  void rearrange();
   void polish();
+  void finish();
+
+  Rules rules() const;
+  bool next_stage();
+  double share(std::size_t changes) const;
   std::uint32_t end_epoch(std::uint32_t& seen);
   void renumber_mesh();
   std::size_t element_count() const;
@@ -43,7 +54,7 @@ class Adapter {
   Mesh<Dim> mesh_;
   Background<Dim> background_;
   AdaptReport report_;
-  bool eager_ = false;     // see eager_iterations
+  Aim aim_ = Aim::approach;
   std::size_t stage_ = 0;  // of refinement
   // The epoch up to which each kernel has seen all changes.
   std::uint32_t seen_by_coarsen_ = 0, seen_by_refine_ = 0, seen_by_swap_ = 0, seen_by_smooth_ = 0;

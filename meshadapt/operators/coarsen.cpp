@@ -30,7 +30,7 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   const VertexBuffer ring = neighbours_of(mesh_, gone);
   const auto choices = candidates(gone, ring);
   if (choices.empty()) return {};
-  const double longest = longest_before(gone, ring);
+  const double longest = longest_allowed(gone, ring);
   double worst = 1;
   for (const ElementId e : ball) {
     if (mesh_.required_element(e)) return {};
@@ -38,10 +38,7 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   }
   for (const Candidate& choice : choices) {
     const Plan plan{gone, choice.kept};
-    const double limit =
-        choice.length < rules_.too_short ? rules_.stretched_edge : rules_.long_edge;
-    if (keeps_edges_short(plan, ring, std::max(limit, longest)) && keeps_shapes(plan, worst))
-      return plan;
+    if (keeps_edges_short(plan, ring, longest) && keeps_shapes(plan, worst)) return plan;
   }
   return {};
 }
@@ -81,12 +78,13 @@ bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
 
 /// Where edges are too long already, new ones may be as long as the longest of them, nearly.
 template <int Dim>
-double Coarsen<Dim>::longest_before(VertexId gone, const VertexBuffer& ring) const {
+double Coarsen<Dim>::longest_allowed(VertexId gone, const VertexBuffer& ring) const {
+  if (!rules_.extends_long_edges) return rules_.stretched_edge;
   double longest = rules_.long_edge / 1.02;
   for (const VertexId v : ring)
     if (!shorter_than(mesh_.site_of[v], mesh_.site_of[gone], longest))
       longest = mesh_.length(v, gone);
-  return 1.02 * longest;
+  return std::max(rules_.stretched_edge, 1.02 * longest);
 }
 
 template <int Dim>

@@ -59,7 +59,7 @@ class Coarsen {
 
   // ---- Rules: each one reason to refuse a collapse, named for what it protects ----
   bool keeps_geometry(const Plan& plan) const;
-  double longest_before(VertexId gone, const VertexBuffer& ring) const;
+  double longest_allowed(VertexId gone, const VertexBuffer& ring) const;
   bool keeps_edges_short(const Plan& plan, const VertexBuffer& ring, double longest) const;
   bool keeps_shapes(const Plan& plan, double worst_before) const;
 

@@ -42,6 +42,20 @@ std::vector<VertexId> Smooth<Dim>::movable_vertices(const runtime::Executor& exe
 }
 
 template <int Dim>
+std::vector<VertexId> Smooth<Dim>::movable_vertices_of_poor(const runtime::Executor& executor,
+                                                            const Mesh<Dim>& mesh,
+                                                            double mean_ratio) {
+  const double bound = shape_of_mean_ratio<Dim>(mean_ratio);
+  return runtime::parallel_collect<VertexId>(
+      executor, mesh.vertex_slots(), [&](std::size_t i, auto&& append) {
+        const auto v = static_cast<VertexId>(i);
+        const auto ball = mesh.elements_of.of(v);
+        const auto poor = [&](ElementId e) { return mesh.shape_of[e] < bound; };
+        if (mesh.kind_of[v].freedom != 0 && std::any_of(ball.begin(), ball.end(), poor)) append(v);
+      });
+}
+
+template <int Dim>
 auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
   const auto ball = mesh_.elements_of.of(vertex);
   if (ball.empty() || ball.size() > mesh_.largest_ball) return {};

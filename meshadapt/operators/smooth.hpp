@@ -27,7 +27,7 @@ struct VertexMove {
 struct SmoothOptions {
   bool laplacian = true;
   double optimise_below = 0.4;  ///< optimise where the worst mean ratio around is below this
-  double far = 0.02;            ///< metric length of a move that neighbours take notice of
+  double far = 0.08;            ///< metric length of a move that neighbours take notice of
   bool again = true;            ///< wake whoever has a neighbour that moved far
 };
 
@@ -46,6 +46,9 @@ class Smooth {
   /// All vertices that may move, next to elements changed after an epoch.
   static std::vector<VertexId> movable_vertices(const runtime::Executor& executor,
                                                 const Mesh<Dim>& mesh, std::uint32_t after);
+  /// All vertices that may move, next to elements of a mean ratio below a bound.
+  static std::vector<VertexId> movable_vertices_of_poor(const runtime::Executor& executor,
+                                                        const Mesh<Dim>& mesh, double mean_ratio);
 
   // ---- Plan: a better place, if there is one. Reads only. ----
   std::optional<Plan> plan(VertexId vertex) const;
