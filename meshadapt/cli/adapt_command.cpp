@@ -164,7 +164,8 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
   AdaptOptions adapt = job.adapt;
   adapt.progress = [&line](const meshadapt::AdaptProgress& progress) { line.show(progress); };
   AdaptedMesh adapted = meshadapt::adapt(executor, mesh, metric, adapt);
-  const auto faults = meshadapt::check_mesh(executor, adapted.mesh);
+  auto faults = meshadapt::check_mesh(executor, adapted.mesh);
+  if (faults.empty()) faults = meshadapt::check_domain(mesh, adapted.mesh);
   if (!faults.empty())
     throw meshadapt::Error("the adapted mesh is not valid (" + faults.front() +
                            "); nothing was written; please report this with its input");

@@ -81,7 +81,11 @@ void Adapter<Dim>::run() {
   if (wanted < nothing) return;
   while (!report_.converged && report_.iterations < options_.iterations) {
     ++report_.iterations;
-    report_.converged = share(iterate()) < Tuning<Dim>::calm && !next_stage();
+    const double changed = share(iterate());
+    // Few changes may be the beginning of many, where a thin layer is split in halves.
+    const bool calm =
+        changed < Tuning<Dim>::calm && (changed < 5e-3 || share(splits_to_come()) < 0.1);
+    report_.converged = calm && !next_stage();
   }
   if (wanted >= little) {
     rearrange();
@@ -109,8 +113,9 @@ double Adapter<Dim>::share_to_change() {
       executor_, all / step, std::size_t{0},
       [&](std::size_t i) -> std::size_t {
         const std::size_t k = i * step;
-        return k < crowded.size() ? coarsening.plan(crowded[k]).has_value()
-                                  : refinement.plan(edges[k - crowded.size()]).has_value();
+        if (k < crowded.size()) return coarsening.plan(crowded[k]).has_value();
+        const LongEdge& edge = edges[k - crowded.size()];
+        return refinement.plan(edge) ? splits_of(edge) : 0;
       },
       sum);
   const auto poor = shape_of_mean_ratio<Dim>(0.3);
@@ -121,6 +126,20 @@ double Adapter<Dim>::share_to_change() {
       },
       sum);
   return share(feasible * step + swaps.size() + bad);
+}
+
+/// About how many times an edge will be split.
+template <int Dim>
+std::size_t Adapter<Dim>::splits_of(const LongEdge& edge) const {
+  return static_cast<std::size_t>(edge.length / options_.rules.long_edge);
+}
+
+template <int Dim>
+std::size_t Adapter<Dim>::splits_to_come() const {
+  const auto edges = Refine<Dim>::long_edges(executor_, mesh_, options_.rules.long_edge, 0);
+  return runtime::parallel_reduce(
+      executor_, edges.size(), std::size_t{0}, [&](std::size_t i) { return splits_of(edges[i]); },
+      [](std::size_t a, std::size_t b) { return a + b; });
 }
 
 template <int Dim>

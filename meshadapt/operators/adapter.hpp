@@ -6,6 +6,7 @@
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "operators/refine.hpp"
 
 namespace ductile::meshadapt {
 
@@ -42,6 +43,8 @@ class Adapter {
 
   Rules rules() const;
   bool next_stage();
+  std::size_t splits_of(const LongEdge& edge) const;
+  std::size_t splits_to_come() const;
   double share(std::size_t changes) const;
   std::uint32_t end_epoch(std::uint32_t& seen);
   void renumber_mesh();

@@ -241,7 +241,9 @@ bool Smooth<Dim>::optimise(VertexId vertex, const Bases& bases, Place& best) con
     if (!(length > 0) || !std::isfinite(length)) break;
     bool better = false;
     for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
-      const Vector<Dim> position = best.site.position + (reach / length) * direction;
+      // What is left of a direction that was nearly normal to its patch is rounding, still normal.
+      const Vector<Dim> step = allowed(vertex, (reach / length) * direction);
+      const Vector<Dim> position = best.site.position + step;
       const auto trial = place(vertex, bases, position, best, {best.score.worst * 1.001, 0});
       if (!trial) continue;
       best = *trial;

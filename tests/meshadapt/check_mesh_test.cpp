@@ -143,5 +143,20 @@ TEST(CheckMesh, FindsWhatIsWrongWithTheDataStructure) {
   EXPECT_FINDS(mesh, "links are not sorted, not mutual, or not along edges");
 }
 
+TEST(CheckDomain, FindsWhatLeftItsPlace) {
+  for (const int dimension : {2, 3}) {
+    const AnyMesh before = box(dimension);
+    EXPECT_EQ(test::joined(check_domain(before, before)), "");
+    AnyMesh after = before;
+    after.coordinates[0] -= 1e-6;  // the corner of the box
+    EXPECT_NE(test::joined(check_domain(before, after)).find("the domain measures"),
+              std::string::npos);
+    after = before;
+    (dimension == 2 ? after.edges.reference : after.triangles.reference)[0] += 100;
+    EXPECT_NE(test::joined(check_domain(before, after)).find("facets of reference"),
+              std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace ductile::meshadapt

@@ -19,6 +19,12 @@ namespace ductile::meshadapt {
 /// Linear in the mesh. Thread safety: one caller; runs on the executor.
 std::vector<std::string> check_mesh(const runtime::Executor& executor, const AnyMesh& mesh);
 
+/// How the domain of `after` differs from that of `before`, a line each; empty if it does not: the
+/// measure (area or volume) of the whole, and of the listed boundary facets and interfaces by
+/// reference (length or area), to 1e-9 of the total. What adaptation must never change.
+/// Linear in the meshes. Thread safety: any thread.
+std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after);
+
 /// As above for a mesh that is being adapted, entities numbered from 0 as in memory. Checked as
 /// well: the lists of vertices agree with the corners of elements, shapes are up to date, facets
 /// carry the same patch on both sides, patches are flat, curves straight, and what vertices may do
