@@ -7,7 +7,7 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 
-namespace ductile::paper {
+namespace ductile::bench {
 
 /// References of the sides: of boundary edges in 2D, of boundary triangles in 3D.
 enum Side : int { left = 1, right = 2, bottom = 3, top = 4, front = 5, back = 6 };
@@ -20,4 +20,4 @@ meshadapt::AnyMesh rectangle_mesh(const std::array<double, 2>& extent,
 /// Six tetrahedra a cell (Kuhn). z runs from front to back.
 meshadapt::AnyMesh box_mesh(const std::array<double, 3>& extent, const std::array<int, 3>& cells);
 
-}  // namespace ductile::paper
+}  // namespace ductile::bench

@@ -1,10 +1,10 @@
-#include "shared/box_mesh.hpp"
+#include "cases/box_mesh.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
-namespace ductile::paper {
+namespace ductile::bench {
 
 namespace {
 
@@ -114,4 +114,4 @@ AnyMesh box_mesh(const std::array<double, 3>& extent, const std::array<int, 3>& 
   return mesh;
 }
 
-}  // namespace ductile::paper
+}  // namespace ductile::bench
