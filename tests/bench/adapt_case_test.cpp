@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "cases/box_mesh.hpp"
 #include "cases/formulas.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -39,6 +40,7 @@ TEST(AdaptCase, StartsFromAValidMeshWithAPositiveDefiniteMetric) {
     const AdaptCase made = make_case(executor, small(info));
     EXPECT_EQ(made.dimension, info.dimension);
     EXPECT_EQ(meshadapt::check_mesh(executor, made.start), std::vector<std::string>{});
+    EXPECT_TRUE(fills_unit_box(made.start));
     const AnyField metric = made.metric_on(executor, made.start);
     EXPECT_EQ(metric.vertex_count, made.start.vertex_count());
     EXPECT_GT(info.dimension == 2 ? least_eigenvalue<2>(executor, metric)
@@ -124,6 +126,18 @@ TEST(AdaptCase, RefusesUnknownNamesAndFactors) {
   const Executor executor({.threads = 1});
   for (const char* name : {"psi4d", "psi2d@", "psi2d@0", "psi2d@-1", "psi2d@2x", "psi2d@inf", ""})
     EXPECT_THROW(make_case(executor, name), meshadapt::InputError) << name;
+}
+
+TEST(BoxMesh, IsNotedToLeaveTheBox) {
+  for (const auto& whole : {rectangle_mesh({1, 1}, {3, 3}), box_mesh({1, 1, 1}, {3, 3, 3})}) {
+    const auto dim = static_cast<std::size_t>(whole.dimension);
+    EXPECT_TRUE(fills_unit_box(whole));
+    meshadapt::AnyMesh moved = whole;  // (1/3, 0, ...) sinks below the bottom
+    moved.coordinates[dim + 1] = -1e-6;
+    EXPECT_FALSE(fills_unit_box(moved));
+    moved.coordinates[dim + 1] = 1e-6;  // rises: no longer all of the box
+    EXPECT_FALSE(fills_unit_box(moved));
+  }
 }
 
 // ---- Values that were worked out by hand ----
