@@ -35,6 +35,7 @@ std::size_t peak_of(pid_t process) {
 /// Starts a process that prints nowhere; none if the system refuses.
 std::optional<pid_t> start(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

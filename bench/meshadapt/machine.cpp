@@ -1,5 +1,8 @@
 #include "machine.hpp"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sched.h>
 #include <sys/resource.h>
 
@@ -96,7 +99,8 @@ std::string value_in(const char* file, const std::string& key) {
 
 CoreDistance core_distance(int threads) {
   const std::vector<int> units = usable_units();
-  const std::size_t count = std::min({units.size(), static_cast<std::size_t>(threads), {16}});
+  constexpr std::size_t most = 16;
+  const std::size_t count = std::min({units.size(), static_cast<std::size_t>(threads), most});
   CoreDistance distance;
   for (std::size_t i = 1; i < count; ++i) {
     const double ns = round_trip_ns(units[0], units[i]);
@@ -112,8 +116,13 @@ std::string placement_of(const CoreDistance& distance) {
   return nearest == farthest ? nearest : nearest + " to " + farthest;
 }
 
-/// "5" makes Linux set VmHWM to what is held now (proc(5)).
-void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+/// "5" makes Linux set VmHWM to what is held now (proc(5)); that shall not be what was freed.
+void reset_peak_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
 
 std::size_t peak_memory() {
   const std::string kilobytes = value_in("/proc/self/status", "VmHWM");

@@ -43,7 +43,7 @@ do for [name in names("measured_seconds_*.csv", "measured_seconds")] {
   set autoscale
 }
 
-set linetype 6 lc rgb "#e51e10"
+set linetype 6 lc rgb "#0072b2"
 set style data histograms
 set style histogram rowstacked
 set boxwidth 0.75
@@ -53,9 +53,9 @@ set yrange [0:*]
 if (present("shares.csv")) {
   set output "kernels.svg"
   set ylabel "% of the time"
-  set xtics font ",9"
+  set xtics rotate by 20 right font ",9"
   plot for [k=2:8] "shares.csv" using k:xtic(1) title columnheader(k)
-  set xtics font ",12"
+  set xtics norotate autojustify font ",12"
 }
 do for [name in names("phases_*.csv", "phases")] {
   set output "phases_".name.".svg"

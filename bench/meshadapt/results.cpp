@@ -194,12 +194,12 @@ bool Results::sound() const {
 
 Table time_table(std::span<const Summary> summaries) {
   Table table({"case", "threads", "mode", "elements", "seconds", "processor seconds",
-               "elements a second", "efficiency", "cores", "samples"});
+               "M elements a second", "efficiency", "cores", "samples"});
   for (const Summary& s : summaries) {
     const Summary* alone = fewest_threads(summaries, s.case_name, s.settings.deterministic);
     table.add({s.case_name, s.settings.threads, mode(s.settings), std::to_string(s.median.elements),
                s.median.wall_seconds, s.median.processor_seconds,
-               static_cast<double>(s.median.elements) / s.median.wall_seconds,
+               1e-6 * static_cast<double>(s.median.elements) / s.median.wall_seconds,
                efficiency(*alone, s), s.placement,
                std::to_string(s.used) + " of " + std::to_string(s.taken)});
   }
