@@ -31,7 +31,7 @@ constexpr std::array<CaseInfo, 8> cases{{
     {"ani2d_circle", 2, 386.8, 4, false, "a thin circle, 1 : 100; 2,048 triangles"},
     {"cube-linear", 3, 4651.7, 5, false, "a plane layer in a cube, 1 : 100; 162 tetrahedra"},
     {"layer3d", 3, 100000, 1, false,
-     "a curved layer, 1 : 100; about 11,000 to 1,100,000 tetrahedra"},
+     "a curved layer, 1 : 100; about 14,000 to 1,000,000 tetrahedra"},
 }};
 
 /// Along an axis.
