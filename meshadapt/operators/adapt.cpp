@@ -7,6 +7,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/recording.hpp"
 #include "operators/adapter.hpp"
 
 namespace ductile::meshadapt {
@@ -41,6 +42,7 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
+  if (auto* recording = executor.recording()) recording->begin_section("setup");
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
@@ -48,6 +50,7 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
                        std::exchange(metric_of, {}));
   adapter.report().setup_seconds = seconds();
+  if (auto* recording = executor.recording()) recording->begin_section("other");
   adapter.run();
   AdaptedMesh result{to_any_mesh(adapter.mesh()), to_any_field(adapter.mesh()), adapter.report()};
   result.report.warnings = std::move(warnings);

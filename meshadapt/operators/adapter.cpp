@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/recording.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/refine.hpp"
 #include "operators/smooth.hpp"
@@ -44,13 +45,23 @@ struct Tuning<3> {
   static constexpr double optimise_below = 0.6;
 };
 
-class Stopwatch {
+/// Adds the time of a scope to a kernel's, and makes it a section of the executor's recording.
+class KernelTimer {
  public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  KernelTimer(const runtime::Executor& executor, const char* kernel, double& seconds)
+      : recording_(executor.recording()), seconds_(seconds) {
+    if (recording_ != nullptr) recording_->begin_section(kernel);
+  }
+  KernelTimer(const KernelTimer&) = delete;
+  KernelTimer& operator=(const KernelTimer&) = delete;
+  ~KernelTimer() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    if (recording_ != nullptr) recording_->begin_section("other");
   }
 
  private:
+  runtime::Recording* recording_;
+  double& seconds_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -235,31 +246,30 @@ std::uint32_t Adapter<Dim>::end_epoch(std::uint32_t& seen) {
 
 template <int Dim>
 std::size_t Adapter<Dim>::coarsen() {
-  const Stopwatch watch;
+  const KernelTimer timer(executor_, "coarsen", report_.coarsen.seconds);
   std::size_t changes = 0;
   for (int sweep = 0; sweep < 8; ++sweep) {
     auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, options_.rules.short_edge,
                                                end_epoch(seen_by_coarsen_));
     Coarsen<Dim> op(mesh_, rules());
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
-    add(report_.coarsen, rounds, 0);
+    add(report_.coarsen, rounds);
     changes += rounds.applied;
     if (share(rounds.applied) < 5e-3) break;
   }
-  report_.coarsen.seconds += watch.seconds();
   tell("coarsen", changes);
   return changes;
 }
 
 template <int Dim>
 std::size_t Adapter<Dim>::refine() {
-  const Stopwatch watch;
+  const KernelTimer timer(executor_, "refine", report_.refine.seconds);
   const double limit = options_.rules.long_edge * Tuning<Dim>::stages[stage_];
   auto work = Refine<Dim>::long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
   Refine<Dim> op(mesh_, background_, rules());
   const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
-  add(report_.refine, rounds, watch.seconds());
+  add(report_.refine, rounds);
   tell("refine", rounds.applied);
   return rounds.applied;
 }
@@ -267,18 +277,17 @@ std::size_t Adapter<Dim>::refine() {
 template <int Dim>
 std::size_t Adapter<Dim>::swap(int sweeps, double below) {
   if (!options_.swap) return 0;
-  const Stopwatch watch;
+  const KernelTimer timer(executor_, "swap", report_.swap.seconds);
   std::size_t changes = 0;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below);
     if (work.empty()) break;
     Swap<Dim> op(mesh_);
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
-    add(report_.swap, rounds, 0);
+    add(report_.swap, rounds);
     changes += rounds.applied;
     if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 2e-3)) break;
   }
-  report_.swap.seconds += watch.seconds();
   tell("swap", changes);
   return changes;
 }
@@ -286,23 +295,22 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
 template <int Dim>
 std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplacian) {
   if (!options_.move) return 0;
-  const Stopwatch watch;
+  const KernelTimer timer(executor_, "smooth", report_.smooth.seconds);
   Smooth<Dim> op(mesh_, background_,
                  {.laplacian = laplacian, .optimise_below = optimise_below, .again = sweeps > 1});
   auto work = laplacian
                   ? Smooth<Dim>::movable_vertices(executor_, mesh_, end_epoch(seen_by_smooth_))
                   : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below);
   const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = sweeps});
-  add(report_.smooth, rounds, watch.seconds());
+  add(report_.smooth, rounds);
   tell("smooth", rounds.applied);
   return rounds.applied;
 }
 
 template <int Dim>
 void Adapter<Dim>::renumber_mesh() {
-  const Stopwatch watch;
+  const KernelTimer timer(executor_, "renumber", report_.renumber_seconds);
   renumber(executor_, mesh_);
-  report_.renumber_seconds += watch.seconds();
 }
 
 template <int Dim>
@@ -319,11 +327,15 @@ void Adapter<Dim>::tell(const char* step, std::size_t changes) const {
 }
 
 template <int Dim>
-void Adapter<Dim>::add(KernelReport& kernel, const RoundsReport& rounds, double seconds) {
-  kernel.seconds += seconds;
+void Adapter<Dim>::add(KernelReport& kernel, const RoundsReport& rounds) {
   kernel.considered += rounds.planned;
   kernel.applied += rounds.applied;
   kernel.rounds += rounds.rounds;
+  kernel.conflict_seconds += rounds.conflict_seconds;
+  kernel.plan_seconds += rounds.plan_seconds;
+  kernel.apply_seconds += rounds.apply_seconds;
+  kernel.commit_seconds += rounds.commit_seconds;
+  kernel.wake_seconds += rounds.wake_seconds;
 }
 
 template class Adapter<2>;

@@ -50,7 +50,7 @@ class Adapter {
   void renumber_mesh();
   std::size_t element_count() const;
   void tell(const char* step, std::size_t changes) const;
-  void add(KernelReport& kernel, const runtime::RoundsReport& rounds, double seconds);
+  void add(KernelReport& kernel, const runtime::RoundsReport& rounds);
 
   const runtime::Executor& executor_;
   const AdaptOptions& options_;

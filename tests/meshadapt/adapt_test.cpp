@@ -10,6 +10,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/replay.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
@@ -76,6 +77,35 @@ void expect_identical(const AdaptedMesh& a, const AdaptedMesh& b) {
   EXPECT_EQ(a.mesh.required_edges, b.mesh.required_edges);
   EXPECT_EQ(a.mesh.required_triangles, b.mesh.required_triangles);
   EXPECT_EQ(a.mesh.required_tetrahedra, b.mesh.required_tetrahedra);
+}
+
+TEST_P(Adapt, TellsWhereItsTimeWent) {
+  const AnyMesh mesh = rich_mesh();
+  const AdaptReport report = adapt(Executor({.threads = 2}), mesh, layered(mesh, 400)).report;
+  double kernels = 0;
+  for (const KernelReport& kernel : {report.coarsen, report.refine, report.swap, report.smooth}) {
+    const double rounds = kernel.conflict_seconds + kernel.plan_seconds + kernel.apply_seconds +
+                          kernel.commit_seconds + kernel.wake_seconds;
+    EXPECT_GT(rounds, 0);
+    EXPECT_LE(rounds, kernel.seconds);
+    kernels += kernel.seconds;
+  }
+  EXPECT_LE(kernels + report.setup_seconds + report.renumber_seconds, report.total_seconds);
+}
+
+TEST_P(Adapt, GivesEachKernelASectionOfARecording) {
+  const AnyMesh mesh = rich_mesh();
+  const AnyField metric = layered(mesh, 400);
+  runtime::Recording recording;
+  const auto recorded = adapt(Executor({.threads = 8, .recording = &recording}), mesh, metric);
+  expect_identical(recorded, adapt(Executor({.threads = 1}), mesh, metric));
+  const runtime::Replay replayed = runtime::replay(recording, {.threads = 4});
+  for (const char* name : {"setup", "coarsen", "refine", "swap", "smooth", "renumber", "other"}) {
+    const auto section = std::find_if(replayed.sections.begin(), replayed.sections.end(),
+                                      [&](const auto& one) { return one.name == name; });
+    ASSERT_NE(section, replayed.sections.end()) << name;
+    EXPECT_GT(section->total.elapsed, 0) << name;
+  }
 }
 
 TEST_P(Adapt, KeepsRegionsInterfacesReferencesAndWhatIsRequired) {

@@ -21,10 +21,10 @@ auto& facets_in(auto& mesh) {
 }
 
 AnyMesh box(std::integral_constant<int, 2> /*dimension*/, int cells) {
-  return rectangle_mesh({1, height}, {2 * cells, cells});
+  return bench::rectangle_mesh({1, height}, {2 * cells, cells});
 }
 AnyMesh box(std::integral_constant<int, 3> /*dimension*/, int cells) {
-  return box_mesh({1, height, width}, {2 * cells, cells, cells / 2});
+  return bench::box_mesh({1, height, width}, {2 * cells, cells, cells / 2});
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ AnyMesh cantilever_mesh(int cells) {
   for (std::size_t f = 0; f < facets.size(); ++f) {
     double middle = 0;
     for (const VertexId v : facets.vertices[f]) middle += mesh.coordinates[v * Dim + 1] / Dim;
-    if (facets.reference[f] == Side::right && std::abs(middle - height / 2) < height / 10)
+    if (facets.reference[f] == bench::Side::right && std::abs(middle - height / 2) < height / 10)
       facets.reference[f] = pulled_reference;
   }
   return mesh;

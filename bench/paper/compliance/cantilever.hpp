@@ -5,13 +5,13 @@
 
 #include <vector>
 
+#include "cases/box_mesh.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "shared/box_mesh.hpp"
 
 namespace ductile::paper {
 
-inline constexpr int held_reference = Side::left;
+inline constexpr int held_reference = bench::Side::left;
 inline constexpr int pulled_reference = 7;
 
 /// Cells of equal sides, `cells` across the height, a multiple of 10.

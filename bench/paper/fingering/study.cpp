@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/box_mesh.hpp"
 #include "ductile/meshadapt/transfer.hpp"
-#include "shared/box_mesh.hpp"
 
 namespace ductile::paper {
 
@@ -24,7 +24,7 @@ double saturation_at_start(const meshadapt::Vector<2>& point) {
 std::unique_ptr<Simulation> run_case(const runtime::Executor& executor, const RunOptions& options,
                                      const Watch& watch) {
   auto run = std::make_unique<Simulation>(
-      executor, Fluids{}, rectangle_mesh({2, 1}, {2 * options.cells, options.cells}),
+      executor, Fluids{}, bench::rectangle_mesh({2, 1}, {2 * options.cells, options.cells}),
       saturation_at_start);
   const bool adapts = options.adapt_every > 0;
   if (adapts) run->adapt_to_start(options.goal, saturation_at_start);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "cases/psi.hpp"
 #include "ductile/meshadapt/atomic_file.hpp"
 #include "picture/draw.hpp"
 #include "shared/picture.hpp"
@@ -71,7 +72,8 @@ std::string title_of(const Frame& frame) {
 paper::Window window_on_jump(double phase) {
   constexpr double x = 0.15, step = 0.01, half = 0.08;
   double y = half;
-  while (y < 1 - half && paper::jump_level(x, y, phase) * paper::jump_level(x, y + step, phase) > 0)
+  while (y < 1 - half &&
+         bench::psi_jump_level(x, y, phase) * bench::psi_jump_level(x, y + step, phase) > 0)
     y += step;
   return {x - half, y - half, x + half, y + half};
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "cases/box_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
-#include "shared/box_mesh.hpp"
 #include "solution.hpp"
 
 namespace ductile::paper {
@@ -62,10 +62,10 @@ std::size_t element_count(const AnyMesh& mesh) {
 AnyMesh start_mesh(int dimension, double elements) {
   if (dimension == 2) {
     const int cells = std::max(2, static_cast<int>(std::sqrt(elements / 2)));
-    return rectangle_mesh({1, 1}, {cells, cells});
+    return bench::rectangle_mesh({1, 1}, {cells, cells});
   }
   const int cells = std::max(2, static_cast<int>(std::cbrt(elements / 6)));
-  return box_mesh({1, 1, 1}, {cells, cells, cells});
+  return bench::box_mesh({1, 1, 1}, {cells, cells, cells});
 }
 
 }  // namespace ductile::paper

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "cases/psi.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::paper {
@@ -45,19 +46,13 @@ InterpolationError sum(InterpolationError a, const InterpolationError& b) {
 
 }  // namespace
 
-double jump_level(double x, double y, double phase) { return 2 * x - std::sin(5 * y + phase); }
-
-double solution(double x, double y, double phase) {
-  return 0.1 * std::sin(50 * x + phase) + std::atan(-0.1 / jump_level(x, y, phase));
-}
-
 AnyField sampled_solution(const AnyMesh& mesh, double phase) {
   AnyField field{mesh.dimension, mesh.vertex_count(), {AnyField::Type::scalar}, {}, "solution"};
   field.values.reserve(mesh.vertex_count());
   const auto stride = static_cast<std::size_t>(mesh.dimension);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
     field.values.push_back(
-        solution(mesh.coordinates[stride * v], mesh.coordinates[stride * v + 1], phase));
+        bench::psi(mesh.coordinates[stride * v], mesh.coordinates[stride * v + 1], phase));
   return field;
 }
 
@@ -78,13 +73,13 @@ InterpolationError interpolation_error(const runtime::Executor& executor, const 
         place += weight[i] * corner[i];
         interpolated += weight[i] * at_vertices.values[mesh.corners_of[element][i]];
       }
-      const double difference = interpolated - solution(place[0], place[1], phase);
+      const double difference = interpolated - bench::psi(place[0], place[1], phase);
       mean += std::abs(difference);
       mean_square += difference * difference;
-      behind += jump_level(place[0], place[1], phase) < 0 ? 1 : 0;
+      behind += bench::psi_jump_level(place[0], place[1], phase) < 0 ? 1 : 0;
     }
     for (const Vector<Dim>& place : corner)
-      behind += jump_level(place[0], place[1], phase) < 0 ? 1 : 0;
+      behind += bench::psi_jump_level(place[0], place[1], phase) < 0 ? 1 : 0;
     const bool cut = behind > 0 && behind < points.size() + corner.size();
     const double share = mesh.volume_of[element] / static_cast<double>(points.size());
     return InterpolationError{share * mean, cut ? 0 : share * mean_square};

@@ -1,7 +1,6 @@
 /// @file
-/// The solution that the meshes of the synthetic benchmark follow, as a formula: short waves along
-/// x, and a front that moves and has a jump in its middle; the same for all z. And how far linear
-/// elements are from it.
+/// psi (cases/psi.hpp) on a mesh: its values at the vertices, and how far linear elements are from
+/// it.
 #pragma once
 
 #include <vector>
@@ -13,16 +12,10 @@
 
 namespace ductile::paper {
 
-/// Where this changes sign, the solution has its jump.
-double jump_level(double x, double y, double phase);
-
-/// 0.1 sin(50 x + phase) + atan(-0.1 / (2 x - sin(5 y + phase))), phase = 2 pi t / T.
-double solution(double x, double y, double phase);
-
-/// Its values at the vertices.
+/// psi's values at the vertices.
 meshadapt::AnyField sampled_solution(const meshadapt::AnyMesh& mesh, double phase);
 
-/// Norms of the difference between the solution and its interpolant. No linear element can follow
+/// Norms of the difference between psi and its interpolant. No linear element can follow
 /// the jump: in the elements that it cuts, the error does not shrink, only their volume does. L1
 /// has the optimal rate even so, as long as that volume shrinks fast enough; L2 has it beside the
 /// jump.

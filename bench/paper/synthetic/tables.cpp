@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "shared/table.hpp"
+#include "report/table.hpp"
 
 namespace ductile::paper {
 
@@ -37,7 +37,7 @@ double rate_between(const ErrorRow& coarse, const ErrorRow& fine,
 
 void say_kernels(Experiment& experiment, const std::string& name,
                  const std::vector<ThreadRow>& rows) {
-  Table seconds(columns("threads")), efficiency(columns("threads"));
+  bench::Table seconds(columns("threads")), efficiency(columns("threads"));
   const std::vector<double> alone = seconds_per_step(rows.front().report);
   for (const ThreadRow& row : rows) {
     std::vector<double> taken = seconds_per_step(row.report), share = taken;
@@ -45,8 +45,8 @@ void say_kernels(Experiment& experiment, const std::string& name,
       share[k] = alone[k] * rows.front().threads / (taken[k] * row.threads);
     taken.insert(taken.begin(), row.threads);
     share.insert(share.begin(), row.threads);
-    seconds.add(taken);
-    efficiency.add(share);
+    seconds.add_numbers(taken);
+    efficiency.add_numbers(share);
   }
   seconds.write_csv(experiment.file("seconds_" + name + ".csv"));
   efficiency.write_csv(experiment.file("efficiency_" + name + ".csv"));
@@ -58,7 +58,7 @@ void say_kernels(Experiment& experiment, const std::string& name,
 
 void say_errors(Experiment& experiment, const std::string& name,
                 const std::vector<ErrorRow>& rows) {
-  Table table({"elements", "L2_beside_jump", "rate", "L1_everywhere", "rate"});
+  bench::Table table({"elements", "L2_beside_jump", "rate", "L1_everywhere", "rate"});
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const InterpolationError& error = rows[i].error;
     const ErrorRow& before = rows[i == 0 ? 0 : i - 1];

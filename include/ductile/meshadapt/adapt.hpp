@@ -40,6 +40,9 @@ struct AdaptOptions {
 struct KernelReport {
   double seconds = 0;
   std::size_t considered = 0, applied = 0, rounds = 0;
+  /// Of `seconds`, those of its rounds (see RoundsReport); the rest went into looking for work.
+  double conflict_seconds = 0, plan_seconds = 0, apply_seconds = 0, commit_seconds = 0;
+  double wake_seconds = 0;
 };
 
 struct AdaptReport {
@@ -60,7 +63,9 @@ struct AdaptedMesh {
 /// Adapts `mesh` to `metric`, which has one symmetric positive definite tensor per vertex (see
 /// metric_field.hpp to get one from a file). With a deterministic executor the result depends on
 /// nothing but the input. Throws InputError for input that is not a valid mesh, Error if
-/// memory runs out. Thread safety: any thread; the work runs on the executor.
+/// memory runs out. If the executor has a recording, each kernel gets a section of it: "setup",
+/// "coarsen", "refine", "swap", "smooth", "renumber", and "other" for what is between them.
+/// Thread safety: any thread; the work runs on the executor.
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options = {});
 

@@ -1,4 +1,4 @@
-#include "shared/table.hpp"
+#include "report/table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,20 +6,18 @@
 
 #include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "report/page.hpp"
 
-namespace ductile::paper {
+namespace ductile::bench {
 
-namespace {
-
-std::string number(double value, int digits) {
+std::string Cell::text(int digits) const {
+  if (!is_number) return words;
   std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
   return text.data();
 }
 
-}  // namespace
-
-void Table::add(std::vector<double> row) {
+void Table::add(std::vector<Cell> row) {
   if (row.size() != columns_.size())
     throw meshadapt::Error("a table of " + std::to_string(columns_.size()) +
                            " columns was given a row of " + std::to_string(row.size()));
@@ -30,7 +28,7 @@ std::string Table::text() const {
   std::vector<std::size_t> width_of;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     width_of.push_back(columns_[c].size());
-    for (const auto& row : rows_) width_of[c] = std::max(width_of[c], number(row[c], 6).size());
+    for (const auto& row : rows_) width_of[c] = std::max(width_of[c], row[c].text(6).size());
   }
   std::string text;
   const auto append = [&](std::size_t column, const std::string& word) {
@@ -39,8 +37,21 @@ std::string Table::text() const {
   };
   for (std::size_t c = 0; c < columns_.size(); ++c) append(c, columns_[c]);
   for (const auto& row : rows_)
-    for (std::size_t c = 0; c < columns_.size(); ++c) append(c, number(row[c], 6));
+    for (std::size_t c = 0; c < columns_.size(); ++c) append(c, row[c].text(6));
   return text;
+}
+
+std::string Table::html() const {
+  std::string text = "<table>\n<tr>";
+  for (const std::string& column : columns_) text += "<th>" + escaped(column) + "</th>";
+  text += "</tr>\n";
+  for (const auto& row : rows_) {
+    text += "<tr>";
+    for (const Cell& cell : row)
+      text += (cell.is_number ? "<td>" : "<td class=\"words\">") + escaped(cell.text(4)) + "</td>";
+    text += "</tr>\n";
+  }
+  return text + "</table>\n";
 }
 
 void Table::write_csv(const std::filesystem::path& path) const {
@@ -49,11 +60,15 @@ void Table::write_csv(const std::filesystem::path& path) const {
   for (std::size_t c = 0; c < columns_.size(); ++c) file.write((c > 0 ? "," : "") + columns_[c]);
   file.write("\n");
   for (const auto& row : rows_) {
-    for (std::size_t c = 0; c < columns_.size(); ++c)
-      file.write((c > 0 ? "," : "") + number(row[c], 12));
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      if (row[c].words.find_first_of(",\n") != std::string::npos)
+        throw meshadapt::Error(path.string() + ": expected words without commas, found '" +
+                               row[c].words + "'");
+      file.write((c > 0 ? "," : "") + row[c].text(12));
+    }
     file.write("\n");
   }
   outputs.commit();
 }
 
-}  // namespace ductile::paper
+}  // namespace ductile::bench

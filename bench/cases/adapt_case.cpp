@@ -1,0 +1,153 @@
+#include "cases/adapt_case.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "cases/box_mesh.hpp"
+#include "cases/formulas.hpp"
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/error.hpp"
+
+namespace ductile::bench {
+
+using meshadapt::AnyMesh;
+using meshadapt::InputError;
+
+namespace {
+
+/// What is known, and what it takes to make it. `start_cells` are those along an axis; the metric
+/// of the last case needs a mesh that knows where the layer is, so it starts from one adapted to a
+/// hundredth of the complexity.
+constexpr double layer_coarser = 100;
+constexpr std::array<CaseInfo, 8> cases{{
+    {"psi2d", 2, 238157, 1, true, "waves and a front; 20,000 to about 520,000 triangles"},
+    {"psi3d", 3, 24748.7, 1, true, "the same along z; 750,000 to about 280,000 tetrahedra"},
+    {"uni2d", 2, 10000, 1, true, "edges of 0.01; 2,048 to about 24,000 triangles"},
+    {"uni3d", 3, 8000, 1, true, "edges of 0.05; 6,000 to about 95,000 tetrahedra"},
+    {"ani2d_boundary", 2, 12954, 4, false, "a boundary layer, 1 : 1000; 2,048 triangles"},
+    {"ani2d_circle", 2, 386.8, 4, false, "a thin circle, 1 : 100; 2,048 triangles"},
+    {"cube-linear", 3, 4651.7, 5, false, "a plane layer in a cube, 1 : 100; 162 tetrahedra"},
+    {"layer3d", 3, 100000, 1, false,
+     "a curved layer, 1 : 100; about 14,000 to 1,000,000 tetrahedra"},
+}};
+
+/// Along an axis.
+int start_cells(std::string_view name) {
+  if (name == "psi2d") return 100;
+  if (name == "psi3d") return 50;
+  if (name == "uni3d") return 10;
+  if (name == "cube-linear") return 3;
+  return name == "layer3d" ? 6 : 32;
+}
+
+struct SizedName {
+  std::string name;
+  double factor = 1;
+};
+
+SizedName take_apart(const std::string& text) {
+  const std::size_t at = text.find('@');
+  SizedName sized{text.substr(0, at), 1};
+  if (at == std::string::npos) return sized;
+  const char *first = text.data() + at + 1, *last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, sized.factor);
+  if (error != std::errc{} || end != last || !(sized.factor > 0) || !std::isfinite(sized.factor))
+    throw InputError(text + ": expected a positive number after @");
+  return sized;
+}
+
+const CaseInfo& find_case(const std::string& name) {
+  const auto* const found = std::find_if(cases.begin(), cases.end(),
+                                         [&](const CaseInfo& info) { return info.name == name; });
+  if (found != cases.end()) return *found;
+  std::string names;
+  for (const CaseInfo& info : cases) names += " " + std::string(info.name);
+  throw InputError("expected one of the cases" + names + ", found '" + name + "'");
+}
+
+/// Those of the working group have a metric as published; its complexity is only told.
+template <int Dim>
+Formula<Dim> formula_of(const runtime::Executor& executor, const CaseInfo& info, double factor);
+
+template <>
+Formula<2> formula_of(const runtime::Executor& executor, const CaseInfo& info, double factor) {
+  if (info.name == "psi2d") return psi_metric<2>(executor, factor * info.complexity);
+  if (info.name == "uni2d") return scaled(uniform_metric<2>(0.01), factor);
+  return scaled(Formula<2>(info.name == "ani2d_circle" ? circle_metric : boundary_metric), factor);
+}
+
+template <>
+Formula<3> formula_of(const runtime::Executor& executor, const CaseInfo& info, double factor) {
+  if (info.name == "psi3d") return psi_metric<3>(executor, factor * info.complexity);
+  if (info.name == "layer3d") return curved_layer_metric(executor, factor * info.complexity);
+  const double growth = std::pow(factor, 2.0 / 3);
+  return scaled(info.name == "uni3d" ? uniform_metric<3>(0.05) : Formula<3>(cube_linear_metric),
+                growth);
+}
+
+AnyMesh regular_mesh(int dimension, int cells) {
+  AnyMesh mesh = dimension == 2 ? rectangle_mesh({1, 1}, {cells, cells})
+                                : box_mesh({1, 1, 1}, {cells, cells, cells});
+  mesh.name = "start";
+  return mesh;
+}
+
+/// The start mesh adapted to a hundredth of the complexity. On one thread: it is a small one.
+template <int Dim>
+AnyMesh layer_mesh(AnyMesh mesh, const Formula<Dim>& formula) {
+  const runtime::Executor alone({.threads = 1});
+  const Formula<Dim> coarse = scaled(formula, std::pow(layer_coarser, -2.0 / Dim));
+  for (int call = 0; call < 5; ++call)
+    mesh = adapt(alone, mesh, sampled_metric<Dim>(alone, mesh, coarse)).mesh;
+  mesh.name = "start";
+  return mesh;
+}
+
+template <int Dim>
+AdaptCase make_case_in(const runtime::Executor& executor, const CaseInfo& info, double factor) {
+  const Formula<Dim> formula = formula_of<Dim>(executor, info, factor);
+  const int cells =
+      static_cast<int>(std::lround(start_cells(info.name) * std::pow(factor, 1.0 / Dim)));
+  AdaptCase made;
+  made.dimension = Dim;
+  made.complexity = factor * info.complexity;
+  made.calls = info.calls;
+  made.has_peers = info.has_peers;
+  made.start = regular_mesh(Dim, std::max(2, cells));
+  if (info.name == "layer3d") made.start = layer_mesh<Dim>(made.start, formula);
+  made.metric_on = [formula](const runtime::Executor& on, const AnyMesh& mesh) {
+    return sampled_metric<Dim>(on, mesh, formula);
+  };
+  return made;
+}
+
+}  // namespace
+
+std::span<const CaseInfo> known_cases() { return cases; }
+
+AdaptCase make_case(const runtime::Executor& given, const std::string& name) {
+  const SizedName sized = take_apart(name);
+  const CaseInfo& info = find_case(sized.name);
+  const runtime::Executor executor({.threads = given.threads()});  // always deterministic
+  AdaptCase made = info.dimension == 2 ? make_case_in<2>(executor, info, sized.factor)
+                                       : make_case_in<3>(executor, info, sized.factor);
+  made.name = name;
+  return made;
+}
+
+std::string times(const std::string& name, double factor) {
+  const SizedName sized = take_apart(name);
+  if (factor == 1) return name;
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), sized.factor * factor).ptr;
+  return sized.name + "@" + std::string(text.data(), end);
+}
+
+std::size_t element_count(const AnyMesh& mesh) {
+  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+}
+
+}  // namespace ductile::bench

@@ -1,0 +1,52 @@
+/// @file
+/// AdaptCase: something to adapt: a mesh to start from, a metric, and how often the metric is
+/// evaluated anew and the mesh adapted to it. Made by name, at any size.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::bench {
+
+/// What there is to choose from.
+struct CaseInfo {
+  std::string_view name;
+  int dimension = 0;
+  double complexity = 0;   ///< at factor 1
+  int calls = 1;           ///< of adapt, each to the formula on the mesh that the last one left
+  bool has_peers = false;  ///< others can be run on it in reasonable time: one call, not too large
+  std::string_view what;   ///< one line
+};
+
+std::span<const CaseInfo> known_cases();
+
+struct AdaptCase {
+  std::string name;
+  int dimension = 0;
+  double complexity = 0;
+  int calls = 1;
+  bool has_peers = false;
+  meshadapt::AnyMesh start;
+  /// The formula at the vertices of a mesh: one symmetric field.
+  std::function<meshadapt::AnyField(const runtime::Executor&, const meshadapt::AnyMesh&)> metric_on;
+};
+
+/// Makes the case NAME, or NAME@FACTOR: with a metric of FACTOR times the complexity, and about as
+/// many times the elements to start from. The result does not depend on the executor. Throws
+/// InputError for an unknown name or a factor that is no positive number.
+/// Thread safety: one caller; runs on the executor.
+AdaptCase make_case(const runtime::Executor& executor, const std::string& name);
+
+/// The name with a factor (or another factor, the two multiplied).
+std::string times(const std::string& name, double factor);
+
+/// Triangles or tetrahedra.
+std::size_t element_count(const meshadapt::AnyMesh& mesh);
+
+}  // namespace ductile::bench

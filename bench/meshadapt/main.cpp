@@ -1,0 +1,138 @@
+/// @file
+/// The whole adaptation, measured: time by kernel and phase on 1, 2, ... threads, what determinism
+/// costs, quality and memory; a replay on up to 64 threads; and Mmg on the same files, if it is
+/// there. Leaves a page, plots, and every sample in a folder.
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "child.hpp"
+#include "forecast.hpp"
+#include "peer.hpp"
+#include "plan.hpp"
+#include "results.hpp"
+#include "sample.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace ductile::bench;
+using ductile::cli::Arguments;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void say(const Sample& sample) {
+  std::printf(
+      "%-16s %3d threads %-13s %8.3f s %9zu elements, cores %s%s%s\n", sample.case_name.c_str(),
+      sample.settings.threads, sample.settings.deterministic ? "deterministic" : "racing",
+      sample.wall_seconds, sample.elements, sample.placement().c_str(),
+      sample.steady() ? "" : ", which moved meanwhile", sample.figures.valid ? "" : ", NOT VALID");
+  std::fflush(stdout);
+}
+
+/// All settings in turn, again and again, so that whatever else the machine does meets all alike.
+void measure_case(Results& results, const Plan& plan, const AdaptCase& made) {
+  Sampler sampler(made);
+  const auto start = std::chrono::steady_clock::now();
+  const int repetitions = is_large(made.name) ? 1 : plan.repetitions;
+  for (int i = 0; i < repetitions && (i == 0 || seconds_since(start) < plan.seconds); ++i)
+    for (const RunSettings& settings : settings_for(plan, made.name)) {
+      results.samples.push_back(sampler.take(settings, i));
+      say(results.samples.back());
+    }
+  if (!plan.replays || is_large(made.name)) return;
+  results.forecasts.push_back(forecast(sampler, made.name));
+  std::printf("%-16s recorded and replayed\n", made.name.c_str());
+}
+
+void measure_peer(Results& results, const Plan& plan, const AdaptCase& made) {
+  if (!plan.peers || !made.has_peers || is_large(made.name)) return;
+  const auto mmg = find_mmg(made.dimension);
+  if (!mmg) {
+    results.notes.push_back(made.name + " was not run with Mmg, which is not on the PATH.");
+    return;
+  }
+  for (const Pair& pair :
+       run_pairs(made, *mmg, {plan.folder / "pairs", plan.pairs, plan.seconds / 2})) {
+    std::printf("%-16s as programs: Ductile %.2f s, Mmg %.2f s (status %d)\n", made.name.c_str(),
+                pair.ductile.child.processor_seconds, pair.mmg.child.processor_seconds,
+                pair.mmg.child.status);
+    results.pairs.push_back(pair);
+    if (pair.ductile.child.status != 0 || pair.mmg.child.status != 0)
+      results.notes.push_back(made.name + ": a program failed, see pairs.csv.");
+  }
+}
+
+void draw(Results& results, const fs::path& folder) {
+  const auto gnuplot = find_program("gnuplot");
+  if (!gnuplot) {
+    results.notes.emplace_back("There are no plots, because gnuplot is not on the PATH.");
+    return;
+  }
+  if (run_child({*gnuplot, "-e", "cd '" + folder.string() + "'", DUCTILE_PLOTS}).status != 0)
+    results.notes.emplace_back("gnuplot failed; some plots are missing.");
+}
+
+/// What an earlier run left would end up in the page of this one.
+void clear_folder(const fs::path& folder) {
+  fs::create_directories(folder);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".csv" || entry.path().extension() == ".svg")
+      fs::remove(entry.path());
+}
+
+/// Tables are written after each case, so that a run that is cut short leaves what it has.
+int run(const Plan& plan) {
+  const auto start = std::chrono::steady_clock::now();
+  Results results;
+  clear_folder(plan.folder);
+  for (const std::string& name : plan.cases) {
+    const AdaptCase made = make_case(ductile::runtime::Executor(), name);
+    measure_case(results, plan, made);
+    measure_peer(results, plan, made);
+    write_tables(results, plan.folder);
+  }
+  results.notes.push_back("Measured in " + std::to_string(static_cast<int>(seconds_since(start))) +
+                          " s.");
+  draw(results, plan.folder);
+  write_page(results, plan.folder);
+  const std::vector<Summary> summaries = summarise(results.samples);
+  std::printf("\n%s", time_table(summaries).text().c_str());
+  if (!results.pairs.empty()) std::printf("\n%s", ratio_table(results.pairs).text().c_str());
+  std::printf("\n%s\n", fs::absolute(plan.folder / "report.html").c_str());
+  if (!results.sound()) std::fprintf(stderr, "adapt_bench: results are not sound, see the page\n");
+  return results.sound() ? 0 : 1;
+}
+
+void print_help() {
+  std::printf("Measures mesh adaptation.\n\nOptions:\n");
+  for (const auto& option : plan_options())
+    std::printf("  %s %s\n      %s\n", std::string(option.name).c_str(),
+                std::string(option.value).c_str(), std::string(option.help).c_str());
+  std::printf("\nCases:\n");
+  for (const CaseInfo& info : known_cases())
+    std::printf("  %-16s %s\n", std::string(info.name).c_str(), std::string(info.what).c_str());
+}
+
+}  // namespace
+
+int main(int word_count, char** word) {
+  try {
+    const std::vector<std::string> words(word + 1, word + word_count);
+    const Arguments arguments(plan_options(), words);
+    if (arguments.has("--help")) {
+      print_help();
+      return 0;
+    }
+    return run(plan_from(arguments));
+  } catch (const ductile::cli::UsageError& error) {
+    std::fprintf(stderr, "adapt_bench: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "adapt_bench: %s\n", error.what());
+    return 1;
+  }
+}

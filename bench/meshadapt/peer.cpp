@@ -1,0 +1,118 @@
+#include "peer.hpp"
+
+#include <chrono>
+
+#include "cases/box_mesh.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "ductile/meshadapt/transfer.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using meshadapt::Metric;
+using runtime::Executor;
+
+/// A tensor field with each tensor replaced by its matrix logarithm or exponential.
+template <int Dim>
+AnyField each(const Executor& executor, const AnyField& field,
+              Metric<Dim> (*function)(const Metric<Dim>&)) {
+  auto tensor_of = meshadapt::tensors_of<Dim>(executor, field);
+  runtime::parallel_for(executor, tensor_of.size(),
+                        [&](std::size_t v) { tensor_of[v] = function(tensor_of[v]); });
+  return meshadapt::symmetric_field<Dim>(executor, tensor_of, field.name);
+}
+
+/// The start mesh's metric at the vertices of another mesh, log-Euclidean.
+template <int Dim>
+AnyField interpolated(const Executor& executor, const AdaptCase& made, const AnyMesh& mesh) {
+  const AnyField logarithms =
+      each<Dim>(executor, made.metric_on(executor, made.start), meshadapt::logarithm<Dim>);
+  return each<Dim>(executor, interpolate_field(executor, {made.start, logarithms}, mesh).field,
+                   meshadapt::exponential<Dim>);
+}
+
+/// Runs one program, which writes `output`, and judges that.
+ProgramRun run(const AdaptCase& made, const std::vector<std::string>& words,
+               const fs::path& output) {
+  ProgramRun result;
+  fs::remove(output);
+  result.child = run_child(words);
+  if (result.child.status != 0 || !fs::exists(output)) return result;
+  const Executor executor;
+  const AnyMesh mesh = meshadapt::read_mesh(output);
+  const AnyField metric = made.dimension == 2 ? interpolated<2>(executor, made, mesh)
+                                              : interpolated<3>(executor, made, mesh);
+  const auto statistics = measure(executor, mesh, &metric);
+  result.elements = element_count(mesh);
+  result.figures = {statistics.share_in_range(), statistics.quality.mean, statistics.quality.min,
+                    check_mesh(executor, mesh).empty() && fills_unit_box(mesh)};
+  return result;
+}
+
+}  // namespace
+
+std::optional<fs::path> find_mmg(int dimension) {
+  return find_program(dimension == 2 ? "mmg2d_O3" : "mmg3d_O3");
+}
+
+std::vector<Pair> run_pairs(const AdaptCase& made, const fs::path& mmg,
+                            const PairSettings& settings) {
+  const fs::path mesh = settings.folder / "start.meshb", metric = settings.folder / "start.solb";
+  const fs::path ours = settings.folder / "ductile.meshb", theirs = settings.folder / "mmg.meshb";
+  fs::create_directories(settings.folder);
+  {
+    const Executor executor;
+    write_mesh(mesh, made.start);
+    write_field(metric, made.metric_on(executor, made.start));
+  }
+  const std::vector<std::string> ductile_words{
+      DUCTILE_PROGRAM, "adapt", mesh,          "-sol", metric, "-o", ours,
+      "--threads",     "1",     "--no-metric", "-v",   "0"};
+  const std::vector<std::string> mmg_words{mmg,    "-in",    mesh, "-sol", metric, "-out",
+                                           theirs, "-hgrad", "-1", "-v",   "0"};
+  std::vector<Pair> pairs;
+  const auto clock = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  };
+  for (int i = 0; i < settings.most_pairs && (i == 0 || seconds() < settings.seconds); ++i) {
+    Pair pair{.case_name = made.name};
+    if (i % 2 == 1) pair.mmg = run(made, mmg_words, theirs);
+    pair.ductile = run(made, ductile_words, ours);
+    if (i % 2 == 0) pair.mmg = run(made, mmg_words, theirs);
+    pairs.push_back(pair);
+  }
+  fs::remove_all(settings.folder);
+  return pairs;
+}
+
+Table pair_table(const std::vector<Pair>& pairs) {
+  std::vector<std::string> columns{"case", "pair"};
+  for (const char* program : {"ductile", "mmg"})
+    for (const char* figure : {"status", "processor_s", "wall_s", "peak_bytes", "elements",
+                               "in_range", "mean_quality", "least_quality", "valid"})
+      columns.push_back(std::string(program) + "_" + figure);
+  Table table(columns);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    std::vector<Cell> row{pairs[i].case_name, i + 1};
+    for (const ProgramRun* run : {&pairs[i].ductile, &pairs[i].mmg})
+      for (const Cell& cell :
+           {Cell(run->child.status), Cell(run->child.processor_seconds),
+            Cell(run->child.wall_seconds), Cell(run->child.peak_memory), Cell(run->elements),
+            Cell(run->figures.share_in_range), Cell(run->figures.mean_quality),
+            Cell(run->figures.least_quality), Cell(run->figures.valid)})
+        row.push_back(cell);
+    table.add(row);
+  }
+  return table;
+}
+
+}  // namespace ductile::bench

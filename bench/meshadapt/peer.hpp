@@ -1,0 +1,46 @@
+/// @file
+/// Peer: Mmg on the same files as the program ductile, one run of each in turn, on one thread.
+/// Both are measured as whole processes, files included.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cases/adapt_case.hpp"
+#include "child.hpp"
+#include "report/table.hpp"
+#include "sample.hpp"
+
+namespace ductile::bench {
+
+/// One program's run on a case. The mesh is judged in the start mesh's metric, interpolated.
+struct ProgramRun {
+  ChildReport child;
+  std::size_t elements = 0;
+  MeshFigures figures;
+};
+
+struct Pair {
+  std::string case_name;
+  ProgramRun ductile{}, mmg{};
+};
+
+struct PairSettings {
+  std::filesystem::path folder;  ///< where the files go
+  int most_pairs = 3;
+  double seconds = 60;  ///< no further pair is begun after so long
+};
+
+/// Mmg for this dimension (mmg2d_O3, mmg3d_O3), if it is on the PATH.
+std::optional<std::filesystem::path> find_mmg(int dimension);
+
+/// Who goes first alternates. A program that fails leaves its status in the pair.
+std::vector<Pair> run_pairs(const AdaptCase& adapt_case, const std::filesystem::path& mmg,
+                            const PairSettings& settings);
+
+/// All pairs, a row each.
+Table pair_table(const std::vector<Pair>& pairs);
+
+}  // namespace ductile::bench

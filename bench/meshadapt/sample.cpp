@@ -1,0 +1,186 @@
+#include "sample.hpp"
+
+#include <bit>
+#include <chrono>
+#include <utility>
+
+#include "cases/box_mesh.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "ductile/runtime/recording.hpp"
+
+namespace ductile::bench {
+
+using meshadapt::AdaptedMesh;
+using meshadapt::AdaptReport;
+using meshadapt::KernelReport;
+using runtime::Executor;
+
+namespace {
+
+class Hash {
+ public:
+  void add(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001b3U; }
+  void add(const std::vector<double>& values) {
+    add(values.size());
+    for (const double value : values) add(std::bit_cast<std::uint64_t>(value));
+  }
+  template <class Integer>
+  void add(const std::vector<Integer>& values) {
+    add(values.size());
+    for (const Integer value : values) add(static_cast<std::uint64_t>(value));
+  }
+  template <int Corners>
+  void add(const meshadapt::Cells<Corners>& cells) {
+    add(cells.reference);
+    for (const auto& corners : cells.vertices)
+      for (const std::uint32_t corner : corners) add(corner);
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+std::array<const KernelReport*, kernel_count> kernels_of(const AdaptReport& report) {
+  return {&report.coarsen, &report.refine, &report.swap, &report.smooth};
+}
+
+PhaseSeconds phases_of(const KernelReport& kernel) {
+  PhaseSeconds phases{0,
+                      kernel.conflict_seconds,
+                      kernel.plan_seconds,
+                      kernel.apply_seconds,
+                      kernel.commit_seconds,
+                      kernel.wake_seconds};
+  phases[0] = kernel.seconds;
+  for (std::size_t i = 1; i < phases.size(); ++i) phases[0] -= phases[i];
+  return phases;
+}
+
+/// Adds the seconds of one call.
+void add(Sample& sample, const AdaptReport& report) {
+  PartSeconds parts{};
+  for (std::size_t k = 0; k < kernel_count; ++k) {
+    const KernelReport& kernel = *kernels_of(report)[k];
+    parts[k] = kernel.seconds;
+    const PhaseSeconds phases = phases_of(kernel);
+    for (std::size_t i = 0; i < phases.size(); ++i) sample.phase_seconds[k][i] += phases[i];
+  }
+  parts[4] = report.setup_seconds;
+  parts[5] = report.renumber_seconds;
+  parts[7] = report.total_seconds;
+  parts[6] = parts[7];
+  for (std::size_t i = 0; i < 6; ++i) parts[6] -= parts[i];
+  for (std::size_t i = 0; i < parts.size(); ++i) sample.part_seconds[i] += parts[i];
+}
+
+}  // namespace
+
+std::uint64_t fingerprint(const AdaptedMesh& result) {
+  Hash hash;
+  const meshadapt::AnyMesh& mesh = result.mesh;
+  hash.add(mesh.coordinates);
+  hash.add(mesh.vertex_reference);
+  hash.add(mesh.edges);
+  hash.add(mesh.triangles);
+  hash.add(mesh.tetrahedra);
+  hash.add(mesh.corners);
+  hash.add(mesh.ridges);
+  hash.add(result.metric.values);
+  return hash.value();
+}
+
+Sampler::Sampler(const AdaptCase& adapt_case)
+    : case_(adapt_case), start_metric_(case_.metric_on(judges_, case_.start)) {}
+
+AdaptedMesh Sampler::adapt_on(const Executor& executor) const {
+  AdaptedMesh result;
+  timed(executor, result);
+  return result;
+}
+
+/// The metric of the next call is evaluated while no clock runs.
+Sample Sampler::timed(const Executor& executor, AdaptedMesh& result) const {
+  Sample sample;
+  meshadapt::AnyMesh last;
+  meshadapt::AnyField metric;
+  for (int call = 0; call < case_.calls; ++call) {
+    const bool first = call == 0;
+    if (!first) last = std::move(result.mesh);
+    if (!first) metric = case_.metric_on(judges_, last);
+    const double processor = processor_seconds();
+    const auto clock = std::chrono::steady_clock::now();
+    result = adapt(executor, first ? case_.start : last, first ? start_metric_ : metric);
+    sample.wall_seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    sample.processor_seconds += processor_seconds() - processor;
+    if (executor.recording() != nullptr) executor.recording()->pause();
+    add(sample, result.report);
+  }
+  return sample;
+}
+
+MeshFigures Sampler::judge(const AdaptedMesh& result) const {
+  const auto metric = case_.calls == 1 ? result.metric : case_.metric_on(judges_, result.mesh);
+  const auto statistics = measure(judges_, result.mesh, &metric);
+  return {statistics.share_in_range(), statistics.quality.mean, statistics.quality.min,
+          check_mesh(judges_, result.mesh).empty() && fills_unit_box(result.mesh)};
+}
+
+Sample Sampler::take(const RunSettings& settings, int repetition) {
+  const Executor executor({.threads = settings.threads, .deterministic = settings.deterministic});
+  AdaptedMesh result;
+  const CoreDistance before = core_distance(settings.threads);
+  reset_peak_memory();
+  Sample sample = timed(executor, result);
+  sample.peak_memory = peak_memory();
+  sample.before = before;
+  sample.after = core_distance(settings.threads);
+  sample.case_name = case_.name;
+  sample.settings = settings;
+  sample.repetition = repetition;
+  sample.start_elements = element_count(case_.start);
+  sample.elements = element_count(result.mesh);
+  sample.fingerprint = fingerprint(result);
+  const auto known = known_.find(sample.fingerprint);
+  sample.figures = known != known_.end() ? known->second : judge(result);
+  known_[sample.fingerprint] = sample.figures;
+  return sample;
+}
+
+// ---- The table of all samples ----
+
+Table sample_table(const std::vector<Sample>& samples) {
+  std::vector<std::string> columns{"case",       "threads", "mode",
+                                   "repetition", "wall_s",  "processor_s"};
+  for (const char* part : part_names) columns.push_back(std::string(part) + "_s");
+  for (std::size_t k = 0; k < kernel_count; ++k)
+    for (const char* phase : phase_names)
+      columns.push_back(std::string(part_names[k]) + "_" + phase + "_s");
+  for (const char* name :
+       {"start_elements", "elements", "in_range", "mean_quality", "least_quality", "valid",
+        "peak_bytes", "fingerprint", "nearest_before_ns", "farthest_before_ns", "nearest_after_ns",
+        "farthest_after_ns"})
+    columns.emplace_back(name);
+  Table table(columns);
+  for (const Sample& s : samples) {
+    std::vector<Cell> row{
+        s.case_name,  s.settings.threads, s.settings.deterministic ? "deterministic" : "racing",
+        s.repetition, s.wall_seconds,     s.processor_seconds};
+    row.insert(row.end(), s.part_seconds.begin(), s.part_seconds.end());
+    for (const PhaseSeconds& phases : s.phase_seconds)
+      row.insert(row.end(), phases.begin(), phases.end());
+    const MeshFigures& figures = s.figures;
+    for (const Cell& cell :
+         {Cell(s.start_elements), Cell(s.elements), Cell(figures.share_in_range),
+          Cell(figures.mean_quality), Cell(figures.least_quality), Cell(figures.valid),
+          Cell(s.peak_memory), Cell(std::to_string(s.fingerprint)), Cell(s.before.nearest_ns),
+          Cell(s.before.farthest_ns), Cell(s.after.nearest_ns), Cell(s.after.farthest_ns)})
+      row.push_back(cell);
+    table.add(row);
+  }
+  return table;
+}
+
+}  // namespace ductile::bench

@@ -1,0 +1,87 @@
+/// @file
+/// Sample: one measured adaptation: its time by kernel and phase, its memory, what came out, and
+/// how far apart the cores were before and after.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cases/adapt_case.hpp"
+#include "ductile/meshadapt/adapt.hpp"
+#include "machine.hpp"
+#include "report/table.hpp"
+
+namespace ductile::bench {
+
+struct RunSettings {
+  int threads = 1;
+  bool deterministic = true;
+};
+
+/// How good a mesh is in the metric that it was made for: the start mesh's, interpolated, for one
+/// call; the formula's for several.
+struct MeshFigures {
+  double share_in_range = 0, mean_quality = 0, least_quality = 0;
+  bool valid = false;  ///< it is a mesh, and one of the unit square or cube
+};
+
+/// Parts of the time of adapt(), in the order of all tables.
+constexpr std::array<const char*, 8> part_names{"coarsen", "refine",   "swap",  "smooth",
+                                                "setup",   "renumber", "other", "total"};
+constexpr std::size_t kernel_count = 4;  ///< the first ones
+using PartSeconds = std::array<double, part_names.size()>;
+
+/// Parts of a kernel's time.
+constexpr std::array<const char*, 6> phase_names{"looking", "conflict", "plan",
+                                                 "apply",   "commit",   "wake"};
+using PhaseSeconds = std::array<double, phase_names.size()>;
+
+struct Sample {
+  std::string case_name;
+  RunSettings settings;
+  int repetition = 0;
+  double wall_seconds = 0, processor_seconds = 0;  ///< of all calls of adapt()
+  PartSeconds part_seconds{};
+  std::array<PhaseSeconds, kernel_count> phase_seconds{};
+  std::size_t start_elements = 0, elements = 0;
+  std::size_t peak_memory = 0;    ///< bytes, with the case in memory
+  std::uint64_t fingerprint = 0;  ///< of all bytes of the result
+  MeshFigures figures;
+  CoreDistance before, after;
+
+  std::string placement() const { return placement_of(before); }
+  bool steady() const { return placement_of(before) == placement_of(after); }
+};
+
+/// Adapts cases and judges what comes out; the same bytes are judged once.
+/// Thread safety: one thread.
+class Sampler {
+ public:
+  explicit Sampler(const AdaptCase& adapt_case);
+
+  /// Times all calls of adapt() on an executor of its own.
+  Sample take(const RunSettings& settings, int repetition);
+
+  /// The same calls on any executor, not judged.
+  meshadapt::AdaptedMesh adapt_on(const runtime::Executor& executor) const;
+
+ private:
+  Sample timed(const runtime::Executor& executor, meshadapt::AdaptedMesh& result) const;
+  MeshFigures judge(const meshadapt::AdaptedMesh& result) const;
+
+  const AdaptCase& case_;
+  runtime::Executor judges_;  // runs what is not timed
+  meshadapt::AnyField start_metric_;
+  std::map<std::uint64_t, MeshFigures> known_;
+};
+
+/// A hash of everything in the mesh and the metric (FNV-1a over 64-bit words).
+std::uint64_t fingerprint(const meshadapt::AdaptedMesh& result);
+
+/// All samples, a row each.
+Table sample_table(const std::vector<Sample>& samples);
+
+}  // namespace ductile::bench
