@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -45,6 +46,9 @@ struct Tuning<3> {
   static constexpr double optimise_below = 0.6;
 };
 
+/// A mesh of which a smaller share would change is left alone, or only finished.
+constexpr double nothing = 2e-4, little = 5e-3;
+
 /// Adds the time of a scope to a kernel's, and makes it a section of the executor's recording.
 class KernelTimer {
  public:
@@ -86,7 +90,6 @@ Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& opt
 
 template <int Dim>
 void Adapter<Dim>::run() {
-  constexpr double nothing = 2e-4, little = 5e-3;
   const double wanted = share_to_change();
   report_.converged = wanted < little;
   if (wanted < nothing) return;
@@ -106,37 +109,42 @@ void Adapter<Dim>::run() {
   renumber_mesh();
 }
 
-/// Share of the elements next to which something would be done: a sample of the edges that are too
-/// short or too long is tried. A mesh that comes adapted shall stay as it is.
+/// Share of the elements next to which something would be done, or what it is at least where that
+/// is not little. A mesh that comes adapted shall stay as it is.
 template <int Dim>
 double Adapter<Dim>::share_to_change() {
   if (!options_.insert) return 1;
+  const double lengths = share(feasible_changes());
+  if (lengths >= little) return lengths;
+  const auto swaps = Swap<Dim>::improvements(executor_, mesh_, 0, Tuning<Dim>::swap_below);
+  const double poor = shape_of_mean_ratio<Dim>(0.3);
+  const auto is_poor = [&](std::size_t e) -> std::size_t {
+    return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < poor;
+  };
+  const std::size_t bad = runtime::parallel_reduce(executor_, mesh_.element_slots(), std::size_t{0},
+                                                   is_poor, std::plus<>());
+  return lengths + share(swaps.size() + bad);
+}
+
+/// About how many collapses and splits finishing would make, from a sample of those that lengths
+/// call for.
+template <int Dim>
+std::size_t Adapter<Dim>::feasible_changes() {
   aim_ = Aim::finish;
   const Coarsen<Dim> coarsening(mesh_, rules());
   const Refine<Dim> refinement(mesh_, background_, rules());
   aim_ = Aim::approach;
   const auto crowded = Coarsen<Dim>::crowded_vertices(executor_, mesh_, rules().short_edge, 0);
   const auto edges = Refine<Dim>::long_edges(executor_, mesh_, rules().long_edge, 0);
-  const auto swaps = Swap<Dim>::improvements(executor_, mesh_, 0, Tuning<Dim>::swap_below);
   const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
-  const auto sum = [](std::size_t a, std::size_t b) { return a + b; };
-  const std::size_t feasible = runtime::parallel_reduce(
-      executor_, all / step, std::size_t{0},
-      [&](std::size_t i) -> std::size_t {
-        const std::size_t k = i * step;
-        if (k < crowded.size()) return coarsening.plan(crowded[k]).has_value();
-        const LongEdge& edge = edges[k - crowded.size()];
-        return refinement.plan(edge) ? splits_of(edge) : 0;
-      },
-      sum);
-  const auto poor = shape_of_mean_ratio<Dim>(0.3);
-  const std::size_t bad = runtime::parallel_reduce(
-      executor_, mesh_.element_slots(), std::size_t{0},
-      [&](std::size_t e) -> std::size_t {
-        return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < poor;
-      },
-      sum);
-  return share(feasible * step + swaps.size() + bad);
+  const auto changes = [&](std::size_t i) -> std::size_t {
+    const std::size_t k = i * step;
+    if (k < crowded.size()) return coarsening.plan(crowded[k]).has_value();
+    const LongEdge& edge = edges[k - crowded.size()];
+    return refinement.plan(edge) ? splits_of(edge) : 0;
+  };
+  return step *
+         runtime::parallel_reduce(executor_, all / step, std::size_t{0}, changes, std::plus<>());
 }
 
 /// About how many times an edge will be split.
@@ -150,7 +158,7 @@ std::size_t Adapter<Dim>::splits_to_come() const {
   const auto edges = Refine<Dim>::long_edges(executor_, mesh_, options_.rules.long_edge, 0);
   return runtime::parallel_reduce(
       executor_, edges.size(), std::size_t{0}, [&](std::size_t i) { return splits_of(edges[i]); },
-      [](std::size_t a, std::size_t b) { return a + b; });
+      std::plus<>());
 }
 
 template <int Dim>

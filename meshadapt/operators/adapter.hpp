@@ -36,6 +36,7 @@ class Adapter {
 
   // ---- Steps, in the order of a run ----
   double share_to_change();
+  std::size_t feasible_changes();
   std::size_t iterate();
   void rearrange();
   void polish();
