@@ -112,7 +112,7 @@ std::optional<Contest> contest_of(const Measured& measured, int threads) {
   for (Figure& figure : contest.figures) {
     figure.over_best = figure.median_ns / best.median_ns;
     if (contest.floor) figure.over_floor = figure.median_ns / contest.floor->median_ns;
-    figure.on_par = figure.low_ns <= best.high_ns;
+    figure.on_par = figure.low_ns <= best.high_ns || figure.over_best <= 1.03;
   }
   return contest;
 }

@@ -34,7 +34,8 @@ struct Figure {
   std::map<std::string, double> counters;  ///< medians
   double over_best = 1;                    ///< ratio of medians
   std::optional<double> over_floor;        ///< nothing if there is no floor
-  bool on_par = false;  ///< with the best: its lower quartile is not above the best's upper one
+  /// With the best: at most 3 % slower, or the lower quartile is not above the best's upper one.
+  bool on_par = false;
 };
 
 struct Contest {

@@ -152,12 +152,25 @@ void write_words(std::ostream& to, const std::vector<Section>& all) {
 void write_reading_aid(std::ostream& to, const Contests& contests) {
   to << "<h2>How to read it</h2><p>A time is the median of the samples of a run, each a mean over "
         "many repetitions. A filled star marks who was fastest alone, open stars those on a par: "
-        "the lower quartile is not above the upper one of the fastest. The floor is what nobody "
-        "can be faster than, or nearly; what it is stands in docs/benchmarks.md. Candidates that "
-        "use one thread only take part at every number of threads.</p>\n<p>Of samples on several "
-        "threads those count that were taken while the threads were "
+        "at most 3 % slower, or with a lower quartile not above the upper one of the fastest. The "
+        "floor is what nobody can be faster than, or nearly; what it is stands in "
+        "docs/benchmarks.md. Candidates that use one thread only take part at every number of "
+        "threads.</p>\n<p>Of samples on several threads those count that were taken while the "
+        "threads were "
      << words_for(contests.usual)
      << ", by a cache line going back and forth before and after each.</p>\n";
+}
+
+/// Quartiles of two samples say nothing.
+void write_doubts(std::ostream& to, const std::vector<Contest>& contests) {
+  const auto doubtful = std::count_if(contests.begin(), contests.end(), [](const Contest& contest) {
+    return std::any_of(contest.figures.begin(), contest.figures.end(),
+                       [](const Figure& f) { return f.samples < 3 || f.mixed; });
+  });
+  if (doubtful > 0)
+    to << "<p><b>In " << doubtful << " of " << contests.size()
+       << " comparisons somebody has fewer than three samples, or samples at mixed distances: "
+          "what is said of these is a guess.</b></p>\n";
 }
 
 void write_end(std::ostream& to, const Samples& samples) {
@@ -196,6 +209,7 @@ std::string page(const Samples& samples, const Contests& contests) {
   std::ostringstream html;
   html << head;
   const std::vector<Section> all = sections(contests);
+  write_doubts(html, contests.contests);
   write_words(html, all);
   write_reading_aid(html, contests);
   for (const Section& section : all) write_section(html, section);

@@ -170,6 +170,23 @@ TEST(Report, UsesSamplesAtOtherDistancesIfThereAreNoOthers) {
   EXPECT_EQ(x.samples, 5U);
 }
 
+TEST(Report, WarnsOfFewSamples) {
+  const std::string warning = "fewer than three samples";
+  Samples all;
+  all.samples = samples({sample("a.x", 2, 100), sample("b.y", 2, 200)});
+  EXPECT_EQ(page(all, hold_contests(all.samples)).find(warning), std::string::npos);
+  all.samples = {sample("a.x", 2, 100), sample("b.y", 2, 200)};
+  EXPECT_NE(page(all, hold_contests(all.samples)).find(warning), std::string::npos);
+}
+
+TEST(Report, CallsThreePercentAPar) {
+  const Contests held =
+      hold_contests({sample("a.x", 2, 100), sample("b.y", 2, 102.9), sample("c.z", 2, 103.1)});
+  const auto& figures = held.contests.front().figures;
+  EXPECT_TRUE(figures[1].on_par);
+  EXPECT_FALSE(figures[2].on_par);
+}
+
 TEST(Report, SaysInWordsWhoWonWhere) {
   std::vector<Sample> medians = {sample("a.x", 2, 100), sample("b.y", 2, 200),
                                  sample("floor", 2, 50)};
