@@ -56,6 +56,9 @@ int run(int argc, char** argv, void (*add_all)()) try {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::AddCustomContext("extent", by_extent("quick", "standard", "full"));
+  const std::string waiting = environment("OMP_WAIT_POLICY");  // decides what a launch costs
+  benchmark::AddCustomContext("OMP_WAIT_POLICY", waiting.empty() ? "not set" : waiting);
+  benchmark::AddCustomContext("compiler", __VERSION__);
   add_all();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
