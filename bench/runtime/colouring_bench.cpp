@@ -57,8 +57,7 @@ void add_ductile(const std::string& name, ColouringMethod method,
       takes_part);
 }
 
-/// By priority, a hub waits for its neighbours one after the other: half a minute, where others
-/// take a tenth of a second.
+/// By priority, many neighbours of a hub wait for one another, and it takes far longer than others.
 bool unless_long(const GraphCase& graph_case) {
   return extent() != Extent::standard || graph_case.name != "rmat_skewed";
 }
