@@ -1,164 +1,205 @@
 /// @file
-/// What it costs to hand an item from the thread that found it to the one that owns it
-/// (DeferredUpdate), or to the next round (Worklist, parallel_sort), beside doing the same on one
-/// thread with plain containers.
-
-#include <benchmark/benchmark.h>
+/// What it costs to carry out a write for data that another thread may own: kept and committed
+/// (DeferredUpdate), or at once under a lock or by an atomic, or kept in other containers.
+/// Item i of a loop adds i to the sum of an owner. Floor: it writes both into an array of its own.
 
 #include <atomic>
-#include <cstdint>
-#include <vector>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <utility>
+#ifdef DUCTILE_BENCH_TBB
+#include <tbb/concurrent_vector.h>
+#endif
+
+#include "support/add.hpp"
+#include "support/extent.hpp"
 
 #include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/worklist.hpp"
 
+namespace ductile::bench {
 namespace {
 
-using namespace ductile::runtime;
+using runtime::CommitOrder;
+using runtime::Executor;
+using runtime::mix32;
 
-constexpr std::uint32_t owners = 1 << 20;
-
-/// Item i touches an owner near i, as it does on a renumbered mesh.
-std::uint32_t owner_of(std::size_t i) {
-  return static_cast<std::uint32_t>(i + mix32(static_cast<std::uint32_t>(i)) % 64) % owners;
-}
-
-void thread_counts(benchmark::internal::Benchmark* b) {
-  b->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime();
-}
-
-void count_items(benchmark::State& state, std::size_t items) {
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(items));
-}
-
-/// Writes what an item brings to a place of its own: what no buffer can avoid.
-template <class Bytes, class Make>
-void private_array(benchmark::State& state, Make&& make) {
-  const Executor executor({.threads = static_cast<int>(state.range(0))});
-  std::vector<Bytes> array(owners);
-  for (auto _ : state) {
-    parallel_for(executor, owners, [&](std::size_t i) { array[i] = make(i); });
-    benchmark::DoNotOptimize(array.data());
-    benchmark::ClobberMemory();
-  }
-  count_items(state, owners);
-}
-
-struct Deferred {
-  std::uint32_t owner, update;
+using Sums = std::vector<std::uint32_t>;  // [owner]
+struct Update {
+  std::uint32_t owner, value;
 };
 
-void private_updates(benchmark::State& state) {
-  private_array<Deferred>(state, [](std::size_t i) {
-    return Deferred{owner_of(i), static_cast<std::uint32_t>(i)};
+struct Case {
+  std::string name;
+  std::uint32_t count;                      // of updates, and of owners
+  std::uint32_t (*owner)(std::uint32_t i);  // to be taken modulo the owners
+
+  Update update(std::size_t i) const {
+    const auto item = static_cast<std::uint32_t>(i);
+    return {owner(item) % count, item};
+  }
+};
+
+std::vector<Case> cases() {
+  // Near by as on a renumbered mesh, or anywhere.
+  constexpr auto near = [](std::uint32_t i) { return i + mix32(i) % 64; };
+  constexpr auto anywhere = [](std::uint32_t i) { return mix32(i); };
+  const auto many = by_extent<std::uint32_t>(10000, 1000000, 10000000);
+  const std::string size = by_extent("1e4", "1e6", "1e7");
+  return {
+      {"near_" + size, many, near}, {"anywhere_" + size, many, anywhere}, {"few_300", 300, near}};
+}
+
+/// `make(executor, case)` returns a function that carries out all updates of a case on sums.
+template <class Make>
+void add_buffers(const std::string& candidate, Make make) {
+  for (const Case& c : cases())
+    add("buffers/" + c.name + '/' + candidate, thread_counts(),
+        [c, make](benchmark::State& state, int threads) {
+          const Executor executor({.threads = threads});
+          Sums sums(c.count);
+          auto carry_out = make(executor, c);
+          for (auto _ : state) carry_out(sums);
+          const auto sum = std::accumulate(sums.begin(), sums.end(), 0U);  // all of these wrap
+          const std::uint32_t once =
+              c.count % 2 == 0 ? c.count / 2 * (c.count - 1) : (c.count - 1) / 2 * c.count;
+          if (sum != once * static_cast<std::uint32_t>(state.iterations()))
+            state.SkipWithError("updates were lost");
+        });
+}
+
+void add_floor() {
+  for (const Case& c : cases())
+    add("buffers/" + c.name + "/floor", thread_counts(), [c](benchmark::State& state, int threads) {
+      const Executor executor({.threads = threads});
+      std::vector<Update> own(c.count);
+      for (auto _ : state) {
+        parallel_for(executor, c.count, [&](std::size_t i) { own[i] = c.update(i); });
+        benchmark::ClobberMemory();
+      }
+    });
+}
+
+void add_deferred(const std::string& name, CommitOrder order) {
+  add_buffers(name, [order](const Executor& executor, const Case& c) {
+    using Deferred = runtime::DeferredUpdate<std::uint32_t>;
+    return [&executor, &c,
+            deferred = std::make_unique<Deferred>(
+                executor, runtime::DeferredUpdateOptions{.order = order})](Sums& sums) {
+      parallel_for(executor, c.count, [&](std::size_t i) {
+        const Update update = c.update(i);
+        deferred->defer(update.owner, i, update.value);
+      });
+      deferred->commit([&](std::uint32_t owner, std::uint32_t value) { sums[owner] += value; });
+    };
   });
 }
-BENCHMARK(private_updates)->Apply(thread_counts);
 
-void private_items(benchmark::State& state) { private_array<std::uint32_t>(state, owner_of); }
-BENCHMARK(private_items)->Apply(thread_counts);
+void add_atomic() {
+  add_buffers("atomic.fetch_add", [](const Executor& executor, const Case& c) {
+    return [&](Sums& sums) {
+      parallel_for(executor, c.count, [&](std::size_t i) {
+        const Update update = c.update(i);
+        std::atomic_ref(sums[update.owner]).fetch_add(update.value, std::memory_order_relaxed);
+      });
+    };
+  });
+}
 
-/// Without the commit.
-void defer_only(benchmark::State& state, CommitOrder order) {
-  const Executor executor({.threads = static_cast<int>(state.range(0))});
-  DeferredUpdate<std::uint32_t> deferred(executor, {.order = order});
-  for (auto _ : state) {
-    parallel_for(executor, owners, [&](std::size_t i) {
-      deferred.defer(owner_of(i), i, static_cast<std::uint32_t>(i));
-    });
-    deferred.clear();
+/// Locks shared among the owners in turn.
+void add_mutexes(const std::string& name, std::size_t lock_count) {
+  add_buffers(name, [lock_count](const Executor& executor, const Case& c) {
+    struct alignas(64) Lock {
+      std::mutex mutex;
+    };
+    return [&, locks = std::make_shared<std::vector<Lock>>(lock_count)](Sums& sums) {
+      parallel_for(executor, c.count, [&](std::size_t i) {
+        const Update update = c.update(i);
+        const std::lock_guard lock((*locks)[update.owner % locks->size()].mutex);
+        sums[update.owner] += update.value;
+      });
+    };
+  });
+}
+
+#ifdef DUCTILE_BENCH_TBB
+/// One list for all owners, so that one thread commits it.
+void add_concurrent_vector() {
+  add_buffers("tbb.concurrent_vector", [](const Executor& executor, const Case& c) {
+    return [&, list = std::make_shared<tbb::concurrent_vector<Update>>()](Sums& sums) {
+      list->clear();
+      parallel_for(executor, c.count, [&](std::size_t i) { list->push_back(c.update(i)); });
+      for (const Update& update : *list) sums[update.owner] += update.value;
+    };
+  });
+}
+#endif
+
+/// Two passes: blocks of items count what goes to which group of owners, a prefix sum over blocks
+/// within groups says where, and then they write it there. Deterministic, as blocks do not depend
+/// on threads; decides everything twice.
+class TwoPasses {
+ public:
+  TwoPasses(const Executor& executor, const Case& c)
+      : executor_(&executor), case_(&c), place_of_(group_count * block_count()), list_(c.count) {}
+
+  void operator()(Sums& sums) {
+    std::fill(place_of_.begin(), place_of_.end(), 0U);
+    for_each_update([&](std::size_t place, const Update&) { ++place_of_[place]; });
+    exclusive_scan(*executor_, std::span(place_of_));
+    for_each_update([&](std::size_t place, const Update& u) { list_[place_of_[place]++] = u; });
+    parallel_for(*executor_, group_count, [&](std::size_t group) { commit(group, sums); },
+                 {.grain = 1});
   }
-  count_items(state, owners);
-}
-BENCHMARK_CAPTURE(defer_only, any, CommitOrder::any)->Apply(thread_counts);
-BENCHMARK_CAPTURE(defer_only, by_source, CommitOrder::by_source)->Apply(thread_counts);
 
-void deferred_update(benchmark::State& state, CommitOrder order) {
-  const Executor executor({.threads = static_cast<int>(state.range(0))});
-  DeferredUpdate<std::uint32_t> deferred(executor, {.order = order});
-  std::vector<std::uint32_t> sum(owners);
-  for (auto _ : state) {
-    parallel_for(executor, owners, [&](std::size_t i) {
-      deferred.defer(owner_of(i), i, static_cast<std::uint32_t>(i));
-    });
-    deferred.commit([&](std::uint32_t owner, std::uint32_t update) { sum[owner] += update; });
+ private:
+  static constexpr std::size_t group_count = 64;
+  static constexpr std::size_t block_size = 4096;
+
+  std::size_t block_count() const { return (case_->count + block_size - 1) / block_size; }
+
+  /// visit(place in the table of groups and blocks, update)
+  template <class Visit>
+  void for_each_update(Visit&& visit) const {
+    parallel_for_blocks(*executor_, case_->count, block_size,
+                        [&](std::size_t block, std::size_t begin, std::size_t end) {
+                          for (std::size_t i = begin; i < end; ++i) {
+                            const Update update = case_->update(i);
+                            const std::size_t group = update.owner / 256 % group_count;
+                            visit(group * block_count() + block, update);
+                          }
+                        });
   }
-  count_items(state, owners);
-}
-BENCHMARK_CAPTURE(deferred_update, any, CommitOrder::any)->Apply(thread_counts);
-BENCHMARK_CAPTURE(deferred_update, by_source, CommitOrder::by_source)->Apply(thread_counts);
 
-void fetch_and_add(benchmark::State& state) {
-  const Executor executor({.threads = static_cast<int>(state.range(0))});
-  std::vector<std::uint32_t> sum(owners);
-  for (auto _ : state)
-    parallel_for(executor, owners, [&](std::size_t i) {
-      std::atomic_ref(sum[owner_of(i)])
-          .fetch_add(static_cast<std::uint32_t>(i), std::memory_order_relaxed);
-    });
-  count_items(state, owners);
-}
-BENCHMARK(fetch_and_add)->Apply(thread_counts);
-
-void worklist(benchmark::State& state, WorkOrder order) {
-  const Executor executor({.threads = static_cast<int>(state.range(0))});
-  Worklist<std::uint32_t> list(executor, {.order = order});
-  for (auto _ : state) {
-    parallel_for(executor, owners, [&](std::size_t i) { list.append(owner_of(i)); });
-    list.collect();
-    list.clear();
+  void commit(std::size_t group, Sums& sums) const {
+    // After the second pass a place is where the one after it began.
+    const std::size_t first = group * block_count(), last = first + block_count() - 1;
+    const std::size_t begin = first == 0 ? 0 : place_of_[first - 1];
+    for (std::size_t i = begin; i < place_of_[last]; ++i) sums[list_[i].owner] += list_[i].value;
   }
-  count_items(state, owners);
-}
-BENCHMARK_CAPTURE(worklist, arrival, WorkOrder::arrival)->Apply(thread_counts);
-BENCHMARK_CAPTURE(worklist, by_item, WorkOrder::by_item)->Apply(thread_counts);
 
-/// Without making the items contiguous.
-void publish_only(benchmark::State& state) {
-  const Executor executor({.threads = static_cast<int>(state.range(0))});
-  Worklist<std::uint32_t> list(executor, {.order = WorkOrder::arrival});
-  for (auto _ : state) {
-    parallel_for(executor, owners, [&](std::size_t i) { list.append(owner_of(i)); });
-    list.clear();
-  }
-  count_items(state, owners);
-}
-BENCHMARK(publish_only)->Apply(thread_counts);
+  const Executor* executor_;
+  const Case* case_;
+  std::vector<std::uint32_t> place_of_;  // [group, block]
+  std::vector<Update> list_;             // by group, then block
+};
 
-void push_back(benchmark::State& state) {
-  std::vector<std::uint32_t> list;
-  for (auto _ : state) {
-    list.clear();
-    for (std::size_t i = 0; i < owners; ++i) list.push_back(owner_of(i));
-    benchmark::DoNotOptimize(list.data());
-  }
-  count_items(state, owners);
+void add_all() {
+  add_floor();
+  add_deferred("ductile.any_order", CommitOrder::any);
+  add_deferred("ductile.by_source", CommitOrder::by_source);
+  add_atomic();
+  add_mutexes("mutex.one", 1);
+  add_mutexes("mutex.striped", 1024);
+#ifdef DUCTILE_BENCH_TBB
+  add_concurrent_vector();
+#endif
+  add_buffers("prefix_sum.two_passes",
+              [](const Executor& executor, const Case& c) { return TwoPasses(executor, c); });
 }
-BENCHMARK(push_back)->UseRealTime();
-
-void sort_random(benchmark::State& state) {
-  const Executor executor({.threads = static_cast<int>(state.range(0))});
-  std::vector<std::uint32_t> values(owners), sorted;
-  for (std::uint32_t i = 0; i < owners; ++i) values[i] = mix32(i);
-  for (auto _ : state) {
-    sorted = values;
-    parallel_sort(executor, std::span(sorted));
-  }
-  count_items(state, owners);
-}
-BENCHMARK(sort_random)->Apply(thread_counts);
-
-void commit_few(benchmark::State& state) {
-  const Executor executor({.threads = static_cast<int>(state.range(0))});
-  DeferredUpdate<std::uint32_t> deferred(executor, {.order = CommitOrder::by_source});
-  std::vector<std::uint32_t> sum(owners);
-  for (auto _ : state) {
-    for (std::uint32_t i = 0; i < 300; ++i) deferred.defer(i * 13, i, i);
-    deferred.commit([&](std::uint32_t owner, std::uint32_t update) { sum[owner] += update; });
-  }
-  count_items(state, 300);
-}
-BENCHMARK(commit_few)->Apply(thread_counts);
 
 }  // namespace
+}  // namespace ductile::bench
+
+int main(int argc, char** argv) { return ductile::bench::run(argc, argv, ductile::bench::add_all); }

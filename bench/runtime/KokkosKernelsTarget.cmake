@@ -1,0 +1,25 @@
+# runtime_bench_kokkos: the target of Kokkos Kernels as it is installed, by itself or by Trilinos, if
+# a program can be linked with it. Sets DUCTILE_KOKKOS_KERNELS.
+include(CheckCXXSourceCompiles)
+
+set(DUCTILE_KOKKOS_KERNELS OFF)
+if(NOT KokkosKernels_FOUND)
+  return()
+endif()
+if(TARGET Kokkos::kokkoskernels)
+  set(kokkos_libraries Kokkos::kokkoskernels)
+else()
+  set(kokkos_libraries ${KokkosKernels_LIBRARIES})
+endif()
+set(CMAKE_REQUIRED_LIBRARIES ${kokkos_libraries})
+set(CMAKE_REQUIRED_INCLUDES ${KokkosKernels_INCLUDE_DIRS})
+check_cxx_source_compiles("#include <Kokkos_Core.hpp>
+int main() { Kokkos::initialize(); Kokkos::finalize(); }" ductile_links_kokkos)
+unset(CMAKE_REQUIRED_LIBRARIES)
+unset(CMAKE_REQUIRED_INCLUDES)
+if(ductile_links_kokkos)
+  set(DUCTILE_KOKKOS_KERNELS ON)
+  add_library(runtime_bench_kokkos INTERFACE)
+  target_link_libraries(runtime_bench_kokkos INTERFACE ${kokkos_libraries})
+  target_include_directories(runtime_bench_kokkos SYSTEM INTERFACE ${KokkosKernels_INCLUDE_DIRS})
+endif()

@@ -1,0 +1,18 @@
+/// @file
+/// plot: the contests of one subject and number of threads as an SVG picture: a row for each case,
+/// a mark for each candidate at the ratio of its median to the floor (to the best, where there is
+/// no floor). A library has a colour, its candidates have shapes.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "contests.hpp"
+
+namespace ductile::bench::report {
+
+/// `contests` are those of one subject and number of threads, at least one; `all` those of the
+/// whole report, which decide the colours. Thread safety: pure function.
+std::string plot(std::span<const Contest> contests, std::span<const Contest> all);
+
+}  // namespace ductile::bench::report

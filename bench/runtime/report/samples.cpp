@@ -1,0 +1,135 @@
+#include "samples.hpp"
+
+#include <charconv>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include <boost/property_tree/json_parser.hpp>
+#include <boost/property_tree/ptree.hpp>
+
+namespace ductile::bench::report {
+namespace {
+
+using Tree = boost::property_tree::ptree;
+
+/// Nanoseconds of Google Benchmark's units.
+double ns_of(const std::string& unit) {
+  static const std::map<std::string, double> ns = {{"ns", 1}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
+  const auto found = ns.find(unit);
+  if (found == ns.end()) throw std::runtime_error("expected a unit of time, found " + unit);
+  return found->second;
+}
+
+/// Members of a benchmark that are not counters.
+bool is_known(const std::string& key) {
+  static const std::set<std::string> known = {"name",
+                                              "family_index",
+                                              "per_family_instance_index",
+                                              "run_name",
+                                              "run_type",
+                                              "repetitions",
+                                              "repetition_index",
+                                              "threads",
+                                              "iterations",
+                                              "real_time",
+                                              "cpu_time",
+                                              "time_unit",
+                                              "items_per_second",
+                                              "bytes_per_second",
+                                              "label"};
+  return known.count(key) > 0;
+}
+
+void add_counters(const Tree& benchmark, Sample& sample) {
+  for (const auto& [key, value] : benchmark) {
+    const auto number = value.get_value_optional<double>();
+    if (is_known(key) || !number) continue;
+    if (key == "ping_before_ns") {
+      sample.ping_before_ns = *number;
+    } else if (key == "ping_after_ns") {
+      sample.ping_after_ns = *number;
+    } else {
+      sample.counters[key] = *number;
+    }
+  }
+}
+
+void add_benchmark(const Tree& benchmark, Samples& to) {
+  const auto full_name = benchmark.get<std::string>("name");
+  if (benchmark.get<std::string>("run_type", "iteration") != "iteration") return;
+  const auto name = parse_name(benchmark.get<std::string>("run_name", full_name));
+  if (!name) {
+    to.failures.push_back({full_name, "its name is not SUBJECT/CASE/CANDIDATE/threads:N"});
+  } else if (benchmark.get<bool>("error_occurred", false)) {
+    to.failures.push_back({full_name, benchmark.get<std::string>("error_message", "failed")});
+  } else {
+    Sample sample;
+    sample.name = *name;
+    sample.ns = benchmark.get<double>("real_time") * ns_of(benchmark.get<std::string>("time_unit"));
+    add_counters(benchmark, sample);
+    to.samples.push_back(std::move(sample));
+  }
+}
+
+std::string cache_words(const Tree& caches) {
+  std::ostringstream words;
+  for (const auto& [unused, cache] : caches)
+    words << (words.tellp() > 0 ? ", " : "") << 'L' << cache.get<int>("level", 0) << ' '
+          << cache.get<std::string>("type", "") << ' ' << cache.get<long>("size", 0) / 1024
+          << " KiB";
+  return words.str();
+}
+
+void add_machine(const Tree& context, std::map<std::string, std::string>& to) {
+  static const std::set<std::string> left_out = {"host_name", "executable", "load_avg"};
+  for (const auto& [key, value] : context)
+    if (key == "caches") {
+      to.emplace(key, cache_words(value));
+    } else if (left_out.count(key) == 0 && !value.data().empty()) {
+      to.emplace(key, value.data());
+    }
+}
+
+void read_file(const std::filesystem::path& file, Samples& to) {
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error("cannot be read");
+  Tree tree;
+  read_json(in, tree);
+  for (const auto& [unused, benchmark] : tree.get_child("benchmarks")) add_benchmark(benchmark, to);
+  add_machine(tree.get_child("context"), to.machine);
+}
+
+}  // namespace
+
+std::optional<Name> parse_name(const std::string& name) {
+  std::vector<std::string> words;
+  std::istringstream in(name);
+  for (std::string word; std::getline(in, word, '/');) words.push_back(word);
+  const std::string prefix = "threads:";
+  if (words.size() < 4 || words[3].compare(0, prefix.size(), prefix) != 0) return {};
+  Name parsed{words[0], words[1], words[2]};
+  const char* const begin = words[3].data() + prefix.size();
+  const char* const end = words[3].data() + words[3].size();
+  const auto [stopped, error] = std::from_chars(begin, end, parsed.threads);
+  if (error != std::errc() || stopped != end || parsed.threads < 1) return {};
+  return parsed;
+}
+
+std::string library_of(const std::string& candidate) {
+  return candidate.substr(0, candidate.find('.'));
+}
+
+Samples read_samples(const std::vector<std::filesystem::path>& files) {
+  Samples samples;
+  for (const std::filesystem::path& file : files) try {
+      read_file(file, samples);
+    } catch (const std::exception& error) {
+      throw std::runtime_error(file.string() +
+                               ": expected Google Benchmark's JSON: " + error.what());
+    }
+  return samples;
+}
+
+}  // namespace ductile::bench::report

@@ -1,0 +1,40 @@
+/// @file
+/// How much a run measures: its extent, its numbers of threads, and the main function of every
+/// benchmark program. The environment decides, so that one command drives many programs:
+/// DUCTILE_BENCH is `quick`, `standard` (if unset) or `full`; DUCTILE_BENCH_THREADS lists numbers
+/// of threads, "1 2 4"; without it they double up to the cores of the machine.
+#pragma once
+
+#include <vector>
+
+namespace ductile::bench {
+
+enum class Extent {
+  quick,     ///< tiny sizes: does everything work?
+  standard,  ///< representative sizes: minutes
+  full,      ///< the whole grid: hours, and some gigabytes
+};
+
+/// Throws std::runtime_error for an unknown DUCTILE_BENCH. Thread safety: while nobody changes the
+/// environment.
+Extent extent();
+
+/// One of three values, by the extent of this run.
+template <class T>
+T by_extent(T quick, T standard, T full) {
+  const Extent e = extent();
+  return e == Extent::quick ? quick : e == Extent::standard ? standard : full;
+}
+
+/// Ascending, from 1 unless the environment says otherwise. Throws std::runtime_error if that is
+/// not a list of positive numbers. Thread safety: as extent().
+std::vector<int> thread_counts();
+
+/// Those above 1; 1 itself if there are no others.
+std::vector<int> team_sizes();
+
+/// The main function of a program that registers its benchmarks in `add_all`: Google Benchmark's
+/// options, an exit code, and a message on stderr instead of an exception.
+int run(int argc, char** argv, void (*add_all)());
+
+}  // namespace ductile::bench
