@@ -23,10 +23,11 @@ Folder::~Folder() {
   fs::remove_all(path_, ignored);
 }
 
-Outcome Folder::run(const std::string& words) const {
+Outcome Folder::run(const std::string& words, const std::string& environment) const {
   const fs::path out = path_.string() + ".out", err = path_.string() + ".err";
-  const std::string command = "cd '" + path_.string() + "' && '" DUCTILE_PROGRAM "' " + words +
-                              " > '" + out.string() + "' 2> '" + err.string() + "'";
+  const std::string command = "cd '" + path_.string() + "' && " + environment +
+                              " '" DUCTILE_PROGRAM "' " + words + " > '" + out.string() + "' 2> '" +
+                              err.string() + "'";
   const int status = std::system(command.c_str());
   Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out.string()),
                   read(err.string())};

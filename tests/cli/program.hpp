@@ -20,8 +20,8 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  /// Runs `ductile WORDS` here; the words are the shell's.
-  Outcome run(const std::string& words) const;
+  /// Runs `ENVIRONMENT ductile WORDS` here; all words are the shell's.
+  Outcome run(const std::string& words, const std::string& environment = "") const;
 
   void write(const std::string& name, const std::string& text) const;
   std::string read(const std::string& name) const;
