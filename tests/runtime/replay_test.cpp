@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <numeric>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "ductile/runtime/hash.hpp"
@@ -105,7 +107,22 @@ TEST(Replay, BooksSectionsPhasesAndRounds) {
 
 TEST(Replay, RefusesNoThreads) {
   EXPECT_THROW(replay(Recording(), {.threads = 0}), std::invalid_argument);
-  EXPECT_THROW(replay(Recording(), {.block = 0}), std::invalid_argument);
+}
+
+TEST(Replay, HandsItemsOutAsTheLoopDid) {
+  Recording recording;
+  recording.begin_loop();
+  for (int chunk = 0; chunk < 3; ++chunk) {
+    for (int item = 0; item < (chunk < 2 ? 4 : 2); ++item) recording.end_item(second);
+    recording.end_chunk();
+  }
+  recording.end_loop();
+  const auto elapsed = [&](std::size_t block) {
+    return replay(recording, {.threads = 16, .launch_ns = 0, .block = block}).total.elapsed;
+  };
+  EXPECT_NEAR(elapsed(0), 4, 0.1);
+  EXPECT_NEAR(elapsed(1), 1, 0.1);
+  EXPECT_NEAR(elapsed(10), 10, 0.1);
 }
 
 TEST(Recording, TimesTheChunksOfALoop) {
@@ -117,6 +134,16 @@ TEST(Recording, TimesTheChunksOfALoop) {
   const auto& last = recording.stretches().back();
   EXPECT_EQ(last.kind, Recording::Stretch::Kind::chunks);
   EXPECT_EQ(last.count, 100U);
+}
+
+TEST(Recording, LeavesOutTheTimeInWhichTheThreadDoesNotRun) {
+  Recording recording;
+  const Executor executor({.threads = 2, .recording = &recording});
+  const auto sleep = [](std::size_t) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  };
+  parallel_for(executor, 4, sleep, {.grain = 1});
+  EXPECT_LT(replay(recording, {.threads = 1}).total.work, 0.02);
 }
 
 TEST(Recording, SurvivesAnExceptionInALoop) {
