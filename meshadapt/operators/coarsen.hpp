@@ -13,6 +13,7 @@ namespace ductile::meshadapt {
 
 struct EdgeCollapse {
   VertexId gone, kept;
+  friend bool operator==(const EdgeCollapse&, const EdgeCollapse&) = default;
 };
 
 template <int Dim>
@@ -22,6 +23,7 @@ class Coarsen {
   using Item = VertexId;
   using Plan = EdgeCollapse;
   using Update = ListChange;
+  static constexpr bool forgoes_wakes = true;  // the next sweep finds who is not worth it at once
 
   Coarsen(Mesh<Dim>& mesh, const Rules& rules) : mesh_(mesh), rules_(rules) {}
 

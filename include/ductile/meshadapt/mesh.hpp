@@ -56,6 +56,7 @@ struct VertexKind {
   std::uint8_t freedom = 0;
   bool corner = false;    ///< listed as a corner
   bool required = false;  ///< listed as required
+  friend bool operator==(const VertexKind&, const VertexKind&) = default;
 };
 
 /// An element reference, and whether elements that carry it may not change.
