@@ -43,6 +43,7 @@ class Coarsen {
         if (other != vertex) visit(other);
   }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
+  void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
   // ---- Apply: stretch or remove own elements, defer their vertices' lists, wake the whole ball
   // ----

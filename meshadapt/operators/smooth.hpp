@@ -59,6 +59,7 @@ class Smooth {
         if (other != vertex) visit(other);
   }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
+  void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
   // ---- Apply: move it, renew the shapes around it, wake whom it concerns ----
   void apply(const Plan& plan, runtime::Commit<Smooth>& commit);

@@ -275,6 +275,7 @@ class Rounds {
           executor_, size_, block_size_,
           [&](std::size_t b, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
+              if constexpr (PrefetchingOperator<Op>) prefetch_after(batch, i);
               planned_of_[b] += plan(batch[i], plans_[i]);
             }
           },
@@ -294,6 +295,14 @@ class Rounds {
     if (updates == 0) return;
     deferred_.commit(
         [&](std::uint32_t owner, const typename Op::Update& update) { op_.commit(owner, update); });
+  }
+
+  /// What memory takes to answer is about as long as planning two items.
+  void prefetch_after(std::span<const Item> batch, std::size_t i) const {
+    for (const int stage : {2, 1, 0}) {
+      const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
+      if (ahead < batch.size()) op_.prefetch(batch[ahead], stage);
+    }
   }
 
   /// Plans an item, unless it left the round; false then.
