@@ -8,7 +8,7 @@ namespace ductile::runtime {
 namespace detail {
 
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of) {
-  constexpr std::size_t block = 65536;
+  constexpr std::size_t block = 4096;
   std::vector<std::uint32_t> most((colour_of.size() + block - 1) / block);
   parallel_for_blocks(executor, colour_of.size(), block,
                       [&](std::size_t b, std::size_t begin, std::size_t end) {
@@ -26,7 +26,7 @@ ColourClasses colour_classes(const Executor& executor, const Colouring& colourin
   const std::vector<std::uint32_t>& colour_of = colouring.colour_of;
   const std::size_t n = colour_of.size(), colours = colouring.count;
   // Blocks long enough that their counters do not outweigh the vertices.
-  const std::size_t block = std::max<std::size_t>({16384, 4 * colours, n / 256});
+  const std::size_t block = std::max<std::size_t>({1024, 16 * colours, n / 256});
   const std::size_t blocks = (n + block - 1) / block;
   std::vector<std::size_t> place(blocks * colours);  // [block][colour]
   parallel_for_blocks(executor, n, block, [&](std::size_t b, std::size_t begin, std::size_t end) {

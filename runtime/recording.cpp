@@ -1,32 +1,53 @@
 #include "ductile/runtime/recording.hpp"
 
 #include <algorithm>
+#include <ctime>
 #include <utility>
 
 namespace ductile::runtime {
 
 Recording::Recording() {
+  away();
   double least = 1e9;
   for (int i = 0; i < 100; ++i) least = std::min(least, lap());
   clock_ns_ = least;
 }
 
 double Recording::lap() {
+  constexpr double suspicious = 2e5;  // shorter than the system takes the core away for
   const Clock::time_point now = Clock::now();
   const double ns =
-      std::chrono::duration<double, std::nano>(now - std::exchange(last_, now)).count();
-  return std::max(0.0, ns - clock_ns_);
+      std::chrono::duration<double, std::nano>(now - std::exchange(last_, now)).count() - clock_ns_;
+  return std::max(0.0, ns > suspicious ? ns - away() : ns);
 }
 
-void Recording::add(Stretch::Kind kind, std::size_t first) {
-  stretches_.push_back({section_, round_, phase_, kind, first, costs_.size() - first});
+/// Nanoseconds since the last call in which this thread did not run, because others had its core or
+/// because it was stopped. Reading its time takes longer than reading the clock.
+double Recording::away() {
+  std::timespec time{};
+  if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time) != 0) return 0;
+  const double ran = 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
+  const double wall = std::chrono::duration<double, std::nano>(Clock::now() - start_).count();
+  const double gone = wall - ran;
+  return std::max(0.0, gone - std::exchange(gone_, gone));
+}
+
+void Recording::add(Stretch::Kind kind, std::size_t first, std::size_t block) {
+  stretches_.push_back({section_, round_, phase_, kind, first, costs_.size() - first, block});
+}
+
+/// Keeps a cost. The time that it takes to make room for it is nobody's.
+void Recording::note(double cost_ns) {
+  const bool full = costs_.size() == costs_.capacity();
+  costs_.push_back(static_cast<float>(cost_ns));
+  if (full) lap();
 }
 
 /// Books the time since the last loop as serial.
 void Recording::flush() {
   const double ns = lap();
   if (paused_ || ns == 0) return;
-  costs_.push_back(static_cast<float>(ns));
+  note(ns);
   add(Stretch::Kind::serial, costs_.size() - 1);
 }
 
@@ -53,17 +74,18 @@ void Recording::begin_loop() {
   flush();
   loop_first_ = chunk_first_ = costs_.size();
   items_ = given_ = false;
+  block_ = 0;
   in_loop_ = true;
   lap();
 }
 
 void Recording::end_item() {
-  if (in_loop_ && !paused_) costs_.push_back(static_cast<float>(lap()));
+  if (in_loop_ && !paused_) note(lap());
 }
 
 void Recording::end_item(double cost_ns) {
   if (paused_) return;
-  costs_.push_back(static_cast<float>(cost_ns));
+  note(cost_ns);
   given_ = true;
   if (in_loop_) return;
   add(Stretch::Kind::serial, costs_.size() - 1);  // of a loop too short to share
@@ -73,9 +95,10 @@ void Recording::end_item(double cost_ns) {
 void Recording::end_chunk() {
   const double ns = lap();
   if (costs_.size() == chunk_first_) {
-    costs_.push_back(static_cast<float>(ns));
+    note(ns);
   } else {
     items_ = true;
+    if (block_ == 0) block_ = costs_.size() - chunk_first_;
     if (!given_) costs_.back() += static_cast<float>(ns);  // what followed the last item
   }
   chunk_first_ = costs_.size();
@@ -86,7 +109,7 @@ void Recording::end_loop() {
   if (paused_) {
     costs_.resize(loop_first_);
   } else {
-    add(items_ ? Stretch::Kind::items : Stretch::Kind::chunks, loop_first_);
+    add(items_ ? Stretch::Kind::items : Stretch::Kind::chunks, loop_first_, items_ ? block_ : 1);
   }
   lap();
 }

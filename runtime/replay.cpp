@@ -33,9 +33,12 @@ double makespan(const std::vector<double>& chunks, std::size_t threads) {
   return *std::max_element(free_at.begin(), free_at.end());
 }
 
-ReplayTimes times_of(std::span<const float> costs, Kind kind, const ReplayOptions& options) {
+ReplayTimes times_of(std::span<const float> costs, const Recording::Stretch& stretch,
+                     const ReplayOptions& options) {
   ReplayTimes times;
-  const std::vector<double> chunks = chunks_of(costs, kind == Kind::items ? options.block : 1);
+  const Kind kind = stretch.kind;
+  const bool recut = kind == Kind::items && options.block > 0;
+  const std::vector<double> chunks = chunks_of(costs, recut ? options.block : stretch.block);
   const double sum = std::accumulate(chunks.begin(), chunks.end(), 0.0);
   if (kind == Kind::serial) {
     times.serial = times.elapsed = times.critical = sum;
@@ -64,8 +67,7 @@ ReplayTimes& ReplayTimes::operator+=(const ReplayTimes& other) {
 }
 
 Replay replay(const Recording& recording, const ReplayOptions& options) {
-  if (options.threads < 1 || options.block < 1)
-    throw std::invalid_argument("replay: expected at least one thread and one item a block");
+  if (options.threads < 1) throw std::invalid_argument("replay: expected at least one thread");
   Replay result;
   result.threads = options.threads;
   for (const std::string& name : recording.sections()) result.sections.push_back({name, {}, {}});
@@ -73,7 +75,7 @@ Replay replay(const Recording& recording, const ReplayOptions& options) {
   const std::span costs(recording.costs());
   for (const Recording::Stretch& stretch : recording.stretches()) {
     const ReplayTimes times =
-        times_of(costs.subspan(stretch.first, stretch.count), stretch.kind, options);
+        times_of(costs.subspan(stretch.first, stretch.count), stretch, options);
     ReplaySection& section = result.sections[stretch.section];
     result.total += times;
     section.total += times;

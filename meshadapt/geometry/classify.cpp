@@ -1,9 +1,12 @@
 #include "geometry/classify.hpp"
 
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
+
+#include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
 
@@ -35,23 +38,27 @@ Vector<Dim> normal_of(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
 }
 
 template <int Dim>
-double extent(const Mesh<Dim>& mesh) {
-  double largest = 0;
-  const Vector<Dim>* first = nullptr;
-  for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
-    if (!mesh.vertex_alive(v)) continue;
-    if (first == nullptr) first = &mesh.site_of[v].position;
-    largest = std::max(largest, norm(mesh.site_of[v].position - *first));
-  }
-  return largest;
+double extent(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
+  VertexId first = 0;
+  while (first < mesh.vertex_slots() && !mesh.vertex_alive(first)) ++first;
+  const auto distance = [&](std::size_t v) {
+    if (!mesh.vertex_alive(static_cast<VertexId>(v))) return 0.0;
+    return norm(mesh.site_of[v].position - mesh.site_of[first].position);
+  };
+  return runtime::parallel_reduce(executor, mesh.vertex_slots(), 0.0, distance,
+                                  [](double a, double b) { return std::max(a, b); });
 }
 
 template <int Dim>
 class Classifier {
  public:
-  Classifier(Mesh<Dim>& mesh, std::vector<TaggedFacet<Dim>> facets,
-             const std::vector<ListedEdge>& edges)
-      : mesh_(mesh), facets_(std::move(facets)), tolerance_(flatness * extent(mesh)) {
+  Classifier(const runtime::Executor& executor, Mesh<Dim>& mesh,
+             std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges)
+      : executor_(executor),
+        mesh_(mesh),
+        facets_(std::move(facets)),
+        tolerance_(flatness * extent(executor, mesh)) {
+    at_side_.reserve(Dim * facets_.size() / 2);
     for (std::uint32_t f = 0; f < facets_.size(); ++f)
       each_side<Dim>(facets_[f].corners, [&](Key key) { at_side_[key].push_back(f); });
     if constexpr (Dim == 3)
@@ -255,13 +262,13 @@ class Classifier {
     std::vector<std::vector<PatchId>> patches_at_vertex(mesh_.vertex_slots());
     for (const TaggedFacet<Dim>& f : facets_)
       for (const VertexId v : f.corners) patches_at_vertex[v].push_back(f.patch);
-    for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v) {
+    runtime::parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t v) {
       auto& patches = patches_at_vertex[v];
       const std::size_t facet_count = patches.size();
       std::sort(patches.begin(), patches.end());
       patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
       classify_vertex(static_cast<VertexId>(v), patches, facet_count);
-    }
+    });
   }
 
   void classify_vertex(VertexId v, const std::vector<PatchId>& patches, std::size_t facet_count) {
@@ -302,11 +309,14 @@ class Classifier {
     return false;
   }
 
+  using FacetsAtSide = boost::container::small_vector<std::uint32_t, 2>;
+
+  const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
   std::vector<TaggedFacet<Dim>> facets_;
   double tolerance_;
-  std::unordered_map<Key, std::vector<std::uint32_t>> at_side_;  // side -> facets
-  std::unordered_map<Key, ListedEdge> listed_;                   // 3D
+  std::unordered_map<Key, FacetsAtSide> at_side_;  // side -> facets
+  std::unordered_map<Key, ListedEdge> listed_;     // 3D
   std::vector<CurveEdge> curve_edges_;
   std::unordered_map<VertexId, std::vector<std::uint32_t>> edges_at_;
 };
@@ -314,12 +324,14 @@ class Classifier {
 }  // namespace
 
 template <int Dim>
-void classify(Mesh<Dim>& mesh, std::vector<TaggedFacet<Dim>> facets,
-              const std::vector<ListedEdge>& edges) {
-  Classifier<Dim>(mesh, std::move(facets), edges).run();
+void classify(const runtime::Executor& executor, Mesh<Dim>& mesh,
+              std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges) {
+  Classifier<Dim>(executor, mesh, std::move(facets), edges).run();
 }
 
-template void classify(Mesh<2>&, std::vector<TaggedFacet<2>>, const std::vector<ListedEdge>&);
-template void classify(Mesh<3>&, std::vector<TaggedFacet<3>>, const std::vector<ListedEdge>&);
+template void classify(const runtime::Executor&, Mesh<2>&, std::vector<TaggedFacet<2>>,
+                       const std::vector<ListedEdge>&);
+template void classify(const runtime::Executor&, Mesh<3>&, std::vector<TaggedFacet<3>>,
+                       const std::vector<ListedEdge>&);
 
 }  // namespace ductile::meshadapt

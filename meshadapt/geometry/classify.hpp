@@ -28,8 +28,9 @@ struct ListedEdge {
 
 /// Sets mesh.patches, curves, links_of, patches_of, kind_of.freedom and entity_of from the facets
 /// (and, in 3D, the listed edges). kind_of.corner and .required and the regions are already set.
+/// Thread safety: one caller; runs on the executor.
 template <int Dim>
-void classify(Mesh<Dim>& mesh, std::vector<TaggedFacet<Dim>> facets,
-              const std::vector<ListedEdge>& edges);
+void classify(const runtime::Executor& executor, Mesh<Dim>& mesh,
+              std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges);
 
 }  // namespace ductile::meshadapt

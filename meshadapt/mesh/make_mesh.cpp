@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/orientation.hpp"
+#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/classify.hpp"
 
@@ -69,7 +71,7 @@ class MeshMaker {
     find_neighbours();
     auto facets = listed_facets();
     add_unlisted_facets(facets);
-    classify(mesh_, std::move(facets), listed_edges());
+    classify(executor_, mesh_, std::move(facets), listed_edges());
     return std::move(mesh_);
   }
 
@@ -135,13 +137,30 @@ class MeshMaker {
     mesh_.corners_of = cells.vertices;
     const auto& required = Dim == 2 ? any_.required_triangles : any_.required_tetrahedra;
     const auto locked = marked(cells.size(), required, element_name<Dim>());
-    std::map<std::pair<std::int32_t, bool>, std::uint32_t> number;
-    for (std::size_t e = 0; e < cells.size(); ++e) {
-      const std::pair key{cells.reference[e], locked[e]};
-      const auto [at, fresh] = number.try_emplace(key, static_cast<std::uint32_t>(number.size()));
-      if (fresh) mesh_.regions.push_back({key.first, key.second});
-      mesh_.region_of[e] = at->second;
-    }
+    number_regions(cells.reference, locked);
+  }
+
+  /// Regions are numbered in the order of their first elements.
+  void number_regions(const std::vector<std::int32_t>& reference_of,
+                      const std::vector<bool>& locked) {
+    using Key = std::pair<std::int32_t, bool>;
+    constexpr std::size_t block = 8192;
+    const std::size_t n = reference_of.size();
+    std::vector<std::vector<Key>> found((n + block - 1) / block);  // [block], each once
+    const auto key_of = [&](std::size_t e) { return Key{reference_of[e], locked[e]}; };
+    const auto find = [&](std::size_t b, std::size_t begin, std::size_t end) {
+      std::set<Key> known;
+      for (std::size_t e = begin; e < end; ++e)
+        if ((e == begin || key_of(e) != key_of(e - 1)) && known.insert(key_of(e)).second)
+          found[b].push_back(key_of(e));
+    };
+    runtime::parallel_for_blocks(executor_, n, block, find);
+    std::map<Key, std::uint32_t> number;
+    for (const std::vector<Key>& keys : found)
+      for (const Key& key : keys)
+        if (number.try_emplace(key, static_cast<std::uint32_t>(number.size())).second)
+          mesh_.regions.push_back({key.first, key.second});
+    parallel_for(executor_, n, [&](std::size_t e) { mesh_.region_of[e] = number.at(key_of(e)); });
   }
 
   std::uint32_t checked_vertex(std::uint32_t v, const char* what) const {
@@ -314,26 +333,35 @@ class MeshMaker {
     if (facet.other != none) facet.other_facet = facet_number(facet.other, facet.corners);
   }
 
+  /// Elements, and which of their facets is on the boundary or an interface and has no patch yet.
+  std::vector<std::pair<ElementId, int>> unlisted_facets() const {
+    return runtime::parallel_collect<std::pair<ElementId, int>>(
+        executor_, mesh_.element_slots(), [&](std::size_t e, auto&& append) {
+          for (std::size_t i = 0; i <= Dim; ++i) {
+            const ElementId other = neighbours_[e][i];
+            const bool interface =
+                other != none && other > e && mesh_.region_of[e] != mesh_.region_of[other];
+            if ((other == none || interface) && mesh_.patches_of[e][i] == 0)
+              append({static_cast<ElementId>(e), static_cast<int>(i)});
+          }
+        });
+  }
+
   /// Boundary facets the file does not list are refused or completed; interfaces between regions
   /// need no listing, but are kept all the same.
   void add_unlisted_facets(std::vector<TaggedFacet<Dim>>& facets) {
     const std::size_t listed = facets.size();
     std::size_t unlisted_boundary = 0;
-    for (ElementId e = 0; e < mesh_.element_slots(); ++e)
-      for (std::size_t i = 0; i <= Dim; ++i) {
-        const ElementId other = neighbours_[e][i];
-        const bool boundary = other == none;
-        const bool interface =
-            !boundary && other > e && mesh_.region_of[e] != mesh_.region_of[other];
-        if ((!boundary && !interface) || mesh_.patches_of[e][i] != 0) continue;
-        if (boundary && !options_.complete_boundary) fail_unlisted(e, static_cast<int>(i));
-        unlisted_boundary += boundary;
-        TaggedFacet<Dim> facet;
-        facet.corners = facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i));
-        facet.data = {{}, 0, boundary, options_.lock_boundary, false};
-        attach(facet);
-        facets.push_back(facet);
-      }
+    for (const auto& [e, i] : unlisted_facets()) {
+      const bool boundary = neighbours_[e][static_cast<std::size_t>(i)] == none;
+      if (boundary && !options_.complete_boundary) fail_unlisted(e, i);
+      unlisted_boundary += boundary;
+      TaggedFacet<Dim> facet;
+      facet.corners = facet_of<Dim>(mesh_.corners_of[e], i);
+      facet.data = {{}, 0, boundary, options_.lock_boundary, false};
+      attach(facet);
+      facets.push_back(facet);
+    }
     if (unlisted_boundary != 0)
       warnings_.push_back(any_.name + ": " + std::to_string(unlisted_boundary) + " boundary " +
                           facet_name<Dim>() + "s were not listed (" + std::to_string(listed) +

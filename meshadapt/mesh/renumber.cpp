@@ -1,7 +1,11 @@
 /// @file
 /// Renumbering: vertices are sorted along a Hilbert curve through the bounding box, elements by
 /// their lowest vertex; whatever is gone sorts to the end and is cut off.
+#include <algorithm>
+#include <memory>
+
 #include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "mesh/hilbert.hpp"
@@ -35,15 +39,12 @@ Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh) {
 template <int Dim>
 std::vector<Keyed<std::uint64_t>> sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
   const Box<Dim> box = bounding_box(executor, mesh);
-  std::vector<Keyed<std::uint64_t>> order(mesh.vertex_slots());
-  parallel_for(executor, order.size(), [&](std::size_t v) {
-    const auto vertex = static_cast<VertexId>(v);
-    order[v] = {
-        mesh.vertex_alive(vertex) ? hilbert_key(mesh.site_of[v].position, box) : ~std::uint64_t{0},
-        vertex};
-  });
+  auto order = runtime::parallel_collect<Keyed<std::uint64_t>>(
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        const auto vertex = static_cast<VertexId>(v);
+        if (mesh.vertex_alive(vertex)) append({hilbert_key(mesh.site_of[v].position, box), vertex});
+      });
   runtime::parallel_sort(executor, std::span(order));
-  while (!order.empty() && order.back().key == ~std::uint64_t{0}) order.pop_back();
   return order;
 }
 
@@ -51,34 +52,39 @@ std::vector<Keyed<std::uint64_t>> sorted_vertices(const Executor& executor, cons
 template <int Dim>
 std::vector<Keyed<VertexId>> sorted_elements(const Executor& executor, const Mesh<Dim>& mesh,
                                              const std::vector<VertexId>& new_id) {
-  std::vector<Keyed<VertexId>> order(mesh.element_slots());
-  parallel_for(executor, order.size(), [&](std::size_t e) {
-    const auto element = static_cast<ElementId>(e);
-    VertexId lowest = none;
-    if (mesh.alive(element))
-      for (const VertexId v : mesh.corners_of[e]) lowest = std::min(lowest, new_id[v]);
-    order[e] = {lowest, element};
-  });
+  auto order = runtime::parallel_collect<Keyed<VertexId>>(
+      executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
+        const auto element = static_cast<ElementId>(e);
+        if (!mesh.alive(element)) return;
+        VertexId lowest = none;
+        for (const VertexId v : mesh.corners_of[e]) lowest = std::min(lowest, new_id[v]);
+        append({lowest, element});
+      });
   runtime::parallel_sort(executor, std::span(order));
-  while (!order.empty() && order.back().key == none) order.pop_back();
   return order;
 }
 
-/// values[i] becomes the old values[order[i].id].
+/// values[i] becomes the old values[order[i].id]. There and back again: a new vector would be set
+/// to zero, and a full one copied when it grows, by one thread; this one keeps room to grow.
 template <class T, class Order>
 void permute(const Executor& executor, std::vector<T>& values, const Order& order) {
-  std::vector<T> moved(order.size());
+  const auto moved = std::make_unique_for_overwrite<T[]>(order.size());
   parallel_for(executor, order.size(), [&](std::size_t i) { moved[i] = values[order[i].id]; });
-  values.swap(moved);
+  values.resize(order.size());
+  runtime::parallel_for_ranges(executor, order.size(), [&](std::size_t begin, std::size_t end) {
+    std::copy(&moved[begin], &moved[0] + end, &values[begin]);
+  });
 }
 
 template <class Order>
-void renumber_links(Mesh<3>& mesh, const Order& order, const std::vector<VertexId>& new_id) {
+void renumber_links(const Executor& executor, Mesh<3>& mesh, const Order& order,
+                    const std::vector<VertexId>& new_id) {
   ListPool<CurveLink> moved;
   moved.reset(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
+  parallel_for(executor, order.size(), [&](std::size_t i) {
     for (const CurveLink& link : mesh.links_of.of(order[i].id))
       moved.insert(static_cast<VertexId>(i), {new_id[link.to], link.curve});
+  });
   std::swap(mesh.links_of, moved);
 }
 
@@ -104,7 +110,7 @@ void renumber(const Executor& executor, Mesh<Dim>& mesh) {
   permute(executor, mesh.entity_of, vertices);
   permute(executor, mesh.reference_of, vertices);
   permute(executor, mesh.host_of, vertices);
-  if constexpr (Dim == 3) renumber_links(mesh, vertices, new_id);
+  if constexpr (Dim == 3) renumber_links(executor, mesh, vertices, new_id);
   rebuild_elements_of(executor, mesh);
 }
 

@@ -140,6 +140,7 @@ struct Replacement {
   boost::container::static_vector<Corners<Dim>, most_new> new_elements;
   boost::container::static_vector<Facet<Dim>, 2> new_facets;  ///< new boundary facets ...
   PatchId new_patch = 0;                                      ///< ... and the patch they lie on
+  friend bool operator==(const Replacement&, const Replacement&) = default;
 };
 
 template <std::size_t N>

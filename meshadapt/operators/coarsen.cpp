@@ -137,7 +137,7 @@ void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
     else
       commit.disturb(v);
   }
-  commit.wake(plan.kept);
+  if (mesh_.kind_of[plan.kept].freedom != 0) commit.wake(plan.kept);
 }
 
 /// An element on the collapsing edge folds flat: what lies on the patch of its facet at `kept` is

@@ -13,6 +13,7 @@ namespace ductile::meshadapt {
 
 struct EdgeCollapse {
   VertexId gone, kept;
+  friend bool operator==(const EdgeCollapse&, const EdgeCollapse&) = default;
 };
 
 template <int Dim>
@@ -22,6 +23,7 @@ class Coarsen {
   using Item = VertexId;
   using Plan = EdgeCollapse;
   using Update = ListChange;
+  static constexpr bool forgoes_wakes = true;  // the next sweep finds who is not worth it at once
 
   Coarsen(Mesh<Dim>& mesh, const Rules& rules) : mesh_(mesh), rules_(rules) {}
 
@@ -41,6 +43,7 @@ class Coarsen {
         if (other != vertex) visit(other);
   }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
+  void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
   // ---- Apply: stretch or remove own elements, defer their vertices' lists, wake the whole ball
   // ----

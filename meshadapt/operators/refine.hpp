@@ -28,6 +28,7 @@ struct EdgeSplit {
   std::uint32_t entity = 0;  // patch or curve that the edge lies on, or 0
   std::int32_t reference = 0;
   Shell shell;  // the elements to be halved
+  friend bool operator==(const EdgeSplit&, const EdgeSplit&) = default;
 };
 
 template <int Dim>
@@ -37,6 +38,7 @@ class Refine {
   using Item = LongEdge;
   using Plan = EdgeSplit<Dim>;
   using Update = ListChange;
+  static constexpr bool forgoes_wakes = true;  // the next stage looks at what has changed
 
   Refine(Mesh<Dim>& mesh, const Background<Dim>& background, const Rules& rules)
       : mesh_(mesh), background_(background), rules_(rules) {}

@@ -22,6 +22,7 @@ struct VertexMove {
   ElementId host;
   Site<Dim> site;
   bool far;  // far enough for the neighbours to be worth another look
+  friend bool operator==(const VertexMove&, const VertexMove&) = default;
 };
 
 struct SmoothOptions {
@@ -39,6 +40,7 @@ class Smooth {
   using Plan = VertexMove<Dim>;
   struct Update {};                              // every write is the item's own
   static constexpr bool keeps_conflicts = true;  // moving changes no adjacency
+  static constexpr bool forgoes_wakes = true;    // who moves a little wakes nobody
 
   Smooth(Mesh<Dim>& mesh, const Background<Dim>& background, const SmoothOptions& options)
       : mesh_(mesh), background_(background), options_(options) {}
@@ -60,6 +62,7 @@ class Smooth {
         if (other != vertex) visit(other);
   }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
+  void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
   // ---- Apply: move it, renew the shapes around it, wake whom it concerns ----
   void apply(const Plan& plan, runtime::Commit<Smooth>& commit);

@@ -28,6 +28,7 @@ class Swap {
   using Item = Swappable;
   using Plan = Replacement<Dim>;
   using Update = ListChange;
+  static constexpr bool forgoes_wakes = true;  // the next sweep looks at what has changed
 
   explicit Swap(Mesh<Dim>& mesh) : mesh_(mesh) {}
 

@@ -149,7 +149,8 @@ TEST_P(ParallelFor, ServesSeveralCallersAtOnce) {
 }
 
 TEST(StealBySignal, GivesItsSignalBackAndLeavesHandlersOfOthersAlone) {
-  static std::atomic<int> heard{0};
+  static std::atomic<int> heard;
+  heard = 0;
   std::vector<struct sigaction> before;
   for (int number = SIGRTMIN; number <= SIGRTMAX; ++number) {
     struct sigaction mine = {}, old = {};

@@ -164,22 +164,50 @@ TEST(RunRounds, WhoIsWokenLeavesTheRound) {
 }
 
 TEST(RunRounds, WindowsDoNotChangeWhatIsReached) {
-  for (const std::size_t window : {1, 37, 1000, 100000}) {
-    SCOPED_TRACE(window);
+  for (const RoundsOptions options :
+       {RoundsOptions{.windows = 100000, .window = 1},
+        RoundsOptions{.windows = 100000, .window = 37},
+        RoundsOptions{.windows = 100000, .window = 1000},
+        RoundsOptions{.windows = 1, .window = 1000}, RoundsOptions{.windows = 3, .window = 1000},
+        RoundsOptions{.windows = 8, .window = 2000}, RoundsOptions{.windows = 0, .window = 0}}) {
+    SCOPED_TRACE(std::to_string(options.windows) + " x " + std::to_string(options.window));
     IndependentSet set(5000);
-    const RoundsReport report =
-        run_rounds(Executor({.threads = 3}), set, all_items(5000), {.window = window});
+    const RoundsReport report = run_rounds(Executor({.threads = 3}), set, all_items(5000), options);
     expect_maximal_independent(set);
     EXPECT_EQ(report.planned, 5000U);
     std::vector<Vertex> first;
     for (const int threads : thread_counts) {
       Bypass lines(20000);
-      run_rounds(Executor({.threads = threads}), lines, all_items(20000), {.window = window});
+      run_rounds(Executor({.threads = threads}), lines, all_items(20000), options);
       expect_all_bypassed(lines);
       if (first.empty()) first = lines.previous;
       EXPECT_EQ(lines.previous, first) << threads << " threads";
     }
   }
+}
+
+/// Items that neither conflict nor act: a window is one batch.
+struct Idle {
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+  std::optional<Plan> plan(Vertex) const { return {}; }
+  void conflicts(Vertex, auto&&) const {}
+  std::size_t item_count() const { return 100000; }
+  void apply(const Plan&, Commit<Idle>&) {}
+  void commit(std::uint32_t, const Update&) {}
+};
+
+TEST(RunRounds, WindowsGrowWithTheWork) {
+  const auto windows = [](std::size_t items, const RoundsOptions& options) {
+    Idle idle;
+    return run_rounds(Executor({.threads = 2}), idle, all_items(items), options).batches;
+  };
+  EXPECT_EQ(windows(999, {.windows = 8, .window = 1000}), 1U);
+  EXPECT_EQ(windows(1999, {.windows = 8, .window = 1000}), 1U);
+  EXPECT_EQ(windows(2000, {.windows = 8, .window = 1000}), 2U);
+  EXPECT_EQ(windows(8000, {.windows = 8, .window = 1000}), 8U);
+  EXPECT_EQ(windows(100000, {.windows = 8, .window = 1000}), 8U);
 }
 
 TEST(RunRounds, StaleColoursDoNoHarmInArrivalOrder) {

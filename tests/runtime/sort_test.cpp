@@ -34,6 +34,16 @@ TYPED_TEST(ParallelSort, AgreesWithTheStandardOne) {
   }
 }
 
+TEST(ParallelSort, SeesWhatIsOutOfOrderBetweenBlocks) {
+  for (std::size_t at : {1U, 8191U, 8192U, 8193U, 16384U, 19999U}) {
+    std::vector<std::uint32_t> values(20000);
+    std::iota(values.begin(), values.end(), 0U);
+    std::swap(values[at - 1], values[at]);
+    parallel_sort(Executor({.threads = 3}), std::span(values));
+    EXPECT_TRUE(std::is_sorted(values.begin(), values.end())) << at;
+  }
+}
+
 TEST(ParallelUnique, AgreesWithTheStandardOne) {
   for (std::size_t n : {0, 1, 1000, 32768, 32769, 200000})
     for (std::uint32_t repeat : {1U, 3U, 100000U}) {

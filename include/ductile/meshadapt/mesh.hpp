@@ -56,6 +56,7 @@ struct VertexKind {
   std::uint8_t freedom = 0;
   bool corner = false;    ///< listed as a corner
   bool required = false;  ///< listed as required
+  friend bool operator==(const VertexKind&, const VertexKind&) = default;
 };
 
 /// An element reference, and whether elements that carry it may not change.
@@ -137,6 +138,27 @@ void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh);
 template <int Dim>
 std::vector<VertexId> vertices_changed(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                        std::uint32_t after);
+
+/// Starts to bring what is around a vertex into the cache, in stages that build on each other: 2,
+/// its list of elements; 1, those elements; 0, the sites of their corners. A stage is of use if
+/// some time passes before the next one. Reads only.
+template <int Dim>
+void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
+  if (stage == 2) return mesh.elements_of.prefetch(vertex);
+  for (const ElementId e : mesh.elements_of.of(vertex)) {
+    if (stage == 1) {
+      __builtin_prefetch(&mesh.corners_of[e]);
+      __builtin_prefetch(&mesh.patches_of[e]);
+      __builtin_prefetch(&mesh.shape_of[e]);
+      continue;
+    }
+    for (const VertexId v : mesh.corners_of[e]) {
+      const auto* const site = reinterpret_cast<const char*>(&mesh.site_of[v]);
+      __builtin_prefetch(site);
+      __builtin_prefetch(site + sizeof(Site<Dim>) - 1);
+    }
+  }
+}
 
 /// Visits the elements around the edge a-b in order: what two sorted lists have in common. Steps
 /// without branches, as which list is ahead cannot be foreseen.

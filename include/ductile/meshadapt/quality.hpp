@@ -17,6 +17,7 @@ struct Site {
   Vector<Dim> position;
   Metric<Dim> metric;
   double density = 0;  ///< sqrt(det metric), metric volume of a unit volume
+  friend bool operator==(const Site&, const Site&) = default;
 };
 
 template <int Dim>

@@ -3,6 +3,7 @@
 /// so the result does not depend on threads or timing.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace ductile::runtime {
 /// i come first. Thread safety: one caller; runs on the executor.
 template <class Item, class Find>
 std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find) {
-  constexpr std::size_t block_size = 1024;
+  const std::size_t block_size = std::clamp<std::size_t>(n / 4096, 16, 1024);
   std::vector<std::vector<Item>> found((n + block_size - 1) / block_size);
   parallel_for_blocks(executor, n, block_size,
                       [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -34,7 +35,7 @@ std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find
                  std::copy(found[b].begin(), found[b].end(),
                            all.begin() + static_cast<std::ptrdiff_t>(offset[b]));
                },
-               {.grain = 16});
+               {.grain = 16, .serial_below = 64});
   return all;
 }
 

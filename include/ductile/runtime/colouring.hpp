@@ -44,7 +44,7 @@ struct Colouring {
 
 namespace detail {
 
-constexpr std::size_t few_vertices = 4096;  // coloured on the caller, in order
+constexpr std::size_t few_vertices = 256;  // coloured on the caller, in order
 
 /// Runs a method with colours of one byte or, if there are too many, of four.
 template <class Method, Graph G>
@@ -59,7 +59,7 @@ void colour_all(const Executor& executor, const G& graph, std::vector<std::uint3
                 bytes.begin() + static_cast<std::ptrdiff_t>(end),
                 colour_of.begin() + static_cast<std::ptrdiff_t>(begin));
     };
-    parallel_for_ranges(executor, n, widen, {.grain = 8192, .serial_below = 32768});
+    parallel_for_ranges(executor, n, widen, {.grain = 4096, .serial_below = 16384});
   } catch (const TooManyColours&) {
     std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
     Method::run(executor, graph, VertexSet{n, list}, Colours(std::span(colour_of)));

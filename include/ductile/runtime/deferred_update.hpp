@@ -41,21 +41,15 @@ class DeferredUpdate {
         options_(options),
         bucket_count_(
             std::clamp(std::bit_ceil(8U * static_cast<unsigned>(executor.threads())), 64U, 1024U)),
-        lanes_(executor) {
-    for (std::size_t t = 0; t < lanes_.size(); ++t) {
-      if (by_source()) {
-        lanes_[t].sourced = std::make_unique<ChunkList<Sourced>[]>(bucket_count_);
-      } else {
-        lanes_[t].plain = std::make_unique<ChunkList<Plain>[]>(bucket_count_);
-      }
-    }
-  }
+        lanes_(executor) {}
 
   /// Keeps `update` for `owner`. `source` is who defers it, for instance the item being applied;
   /// under by_source one source defers from one thread only between two commits.
   /// Thread safety: any thread of a loop of the executor, or the caller outside of loops.
   void defer(std::uint32_t owner, std::uint64_t source, T update) {
     Lane& lane = lanes_.mine();
+    if (!lane.plain && !lane.sourced) [[unlikely]]
+      make_buckets(lane);
     const std::uint32_t number = bucket_of(owner);
     if (by_source()) {
       append(lane, number, lane.sourced[number], Sourced{source, owner, std::move(update)});
@@ -123,7 +117,8 @@ class DeferredUpdate {
     std::uint32_t owner;
     T update;
   };
-  /// Buckets of one thread, of the kind that the order of commits needs.
+  /// Buckets of one thread, of the kind that the order of commits needs; none before its first
+  /// update.
   struct Lane {
     std::unique_ptr<ChunkList<Plain>[]> plain;
     std::unique_ptr<ChunkList<Sourced>[]> sourced;
@@ -136,7 +131,7 @@ class DeferredUpdate {
     std::uint32_t number;
   };
 
-  static constexpr std::size_t small = 1024;     // updates not worth waking a team for
+  static constexpr std::size_t small = 256;      // updates not worth waking a team for
   static constexpr unsigned neighbour_bits = 8;  // owners in a row that share a bucket
 
   std::uint32_t bucket_of(std::uint32_t owner) const {
@@ -152,6 +147,15 @@ class DeferredUpdate {
     bucket.append(std::forward<Entry>(entry));
   }
 
+  /// Only the lanes of threads that defer something get any.
+  [[gnu::noinline]] void make_buckets(Lane& lane) const {
+    if (by_source()) {
+      lane.sourced = std::make_unique<ChunkList<Sourced>[]>(bucket_count_);
+    } else {
+      lane.plain = std::make_unique<ChunkList<Plain>[]>(bucket_count_);
+    }
+  }
+
   /// Not inlined, so as to keep the caller's loop tight.
   template <class Entry>
   [[gnu::noinline]] static void make_room(Lane& lane, std::uint32_t number,
@@ -162,11 +166,9 @@ class DeferredUpdate {
 
   template <class Visit>
   void visit_bucket(std::size_t thread, std::uint32_t number, Visit&& visit) {
-    if (by_source()) {
-      visit(lanes_[thread].sourced[number]);
-    } else {
-      visit(lanes_[thread].plain[number]);
-    }
+    Lane& lane = lanes_[thread];
+    if (lane.sourced) visit(lane.sourced[number]);
+    if (lane.plain) visit(lane.plain[number]);
   }
   template <class Visit>
   void visit_bucket(std::size_t thread, std::uint32_t number, Visit&& visit) const {
@@ -176,7 +178,8 @@ class DeferredUpdate {
   template <class F>
   void commit_unsorted(std::uint32_t number, F& f) {
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].plain[number].for_each([&](Plain& entry) { f(entry.owner, entry.update); });
+      if (lanes_[t].plain)
+        lanes_[t].plain[number].for_each([&](Plain& entry) { f(entry.owner, entry.update); });
   }
 
   /// Sorting a bucket by source alone is enough: it puts each of its owners' updates in order.
@@ -185,8 +188,9 @@ class DeferredUpdate {
     auto& order = lanes_.mine().order;
     order.clear();
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].sourced[number].for_each(
-          [&](Sourced& entry) { order.append(entry.source, &entry); });
+      if (lanes_[t].sourced)
+        lanes_[t].sourced[number].for_each(
+            [&](Sourced& entry) { order.append(entry.source, &entry); });
     for (const auto& keyed : order.sorted()) f(keyed.value->owner, keyed.value->update);
   }
 

@@ -11,7 +11,6 @@
 #include <optional>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/worklist.hpp"
@@ -71,6 +70,14 @@ concept RankedOperator = requires(const Op& op, const typename Op::Item item) {
   { op.priority(item) } -> std::convertible_to<std::uint8_t>;
 };
 
+/// An operator that can bring what an item's plan will read into the cache ahead of time.
+/// prefetch(item, stage) is called with the stages 2, 1 and 0, with some other items' plans made
+/// between them, so that a stage can follow what the one before has brought. It only reads.
+template <class Op>
+concept PrefetchingOperator = requires(const Op& op, const typename Op::Item item) {
+  op.prefetch(item, 2);
+};
+
 /// An operator that tells a Recording what an item costs, in nanoseconds, instead of having it
 /// timed: plan_cost(item), apply_cost(plan), or both.
 template <class Op>
@@ -113,15 +120,15 @@ class Commit {
   void wake(Item item) {
     // Relaxed: read after the barrier that ends the phase.
     if constexpr (ColouredOperator<Op>)
-      std::atomic_ref((*woken_at_)[item]).store(window_, std::memory_order_relaxed);
+      std::atomic_ref(woken_at_[item]).store(window_, std::memory_order_relaxed);
     woken_->append(item);
   }
 
   /// Says that an item's conflicts may have changed but nothing else that matters to it: if it is
   /// still to be planned in this round, it leaves the round and comes back in the next one.
   void disturb(Item item) requires ColouredOperator<Op> {
-    std::atomic_ref((*woken_at_)[item]).store(window_, std::memory_order_relaxed);
-    if ((*turn_of_)[item] > turn_ && (*turn_of_)[item] != 0xffffffffU) woken_->append(item);
+    std::atomic_ref(woken_at_[item]).store(window_, std::memory_order_relaxed);
+    if (turn_of_[item] > turn_ && turn_of_[item] != 0xffffffffU) woken_->append(item);
   }
 
   /// The next of the numbers of this kind that demand() asked for.
@@ -134,9 +141,9 @@ class Commit {
   friend class detail::OppositeOrder<Op>;
   DeferredUpdate<Update>* deferred_ = nullptr;
   Worklist<Item>* woken_ = nullptr;
-  std::vector<std::uint32_t>* woken_at_ = nullptr;       // [item], the window it was last woken in
-  const std::vector<std::uint32_t>* turn_of_ = nullptr;  // [item], its class in this round
-  std::uint32_t turn_ = 0;                               // the class being applied
+  std::uint32_t* woken_at_ = nullptr;       // [item], the window it was last woken in
+  const std::uint32_t* turn_of_ = nullptr;  // [item], its class in this window
+  std::uint32_t turn_ = 0;                  // the class being applied
   std::uint64_t source_ = 0;
   std::uint32_t window_ = 0;
   std::array<std::uint32_t, detail::Kinds<Op>::count> next_{};

@@ -3,8 +3,8 @@
 /// would need on more threads than there are.
 /// A program makes one and names it in ExecutorOptions. The executor's loops then run on the caller
 /// alone, chunk by chunk, each chunk timed, but cut as for as many threads as the executor has.
-/// What lies between two loops counts as serial. Without a recording a loop pays for one
-/// comparison.
+/// What lies between two loops counts as serial; while the system gives the core to others, nothing
+/// counts. Without a recording a loop pays for one comparison.
 #pragma once
 
 #include <chrono>
@@ -29,6 +29,7 @@ class Recording {
     Phase phase;
     Kind kind;
     std::size_t first, count;  ///< its costs
+    std::size_t block = 1;     ///< of items: how many were handed out at once
   };
 
   Recording();
@@ -63,13 +64,17 @@ class Recording {
 
   /// Nanoseconds since the last call, without what the clock itself takes.
   double lap();
+  double away();
   void flush();
-  void add(Stretch::Kind kind, std::size_t first);
+  void add(Stretch::Kind kind, std::size_t first, std::size_t block = 1);
+  void note(double cost_ns);
 
   std::vector<std::string> sections_{""};
   std::vector<Stretch> stretches_;
   std::vector<float> costs_;
   Clock::time_point last_ = Clock::now();
+  const Clock::time_point start_ = last_;
+  double gone_ = 0;  // nanoseconds since then in which the thread did not run
   double clock_ns_ = 0;
   std::uint32_t section_ = 0, round_ = 0, rounds_ = 0;
   Phase phase_ = Phase::other;
@@ -77,6 +82,7 @@ class Recording {
   bool in_loop_ = false;
   std::size_t loop_first_ = 0;   // where the costs of the running loop begin
   std::size_t chunk_first_ = 0;  // and those of the running chunk
+  std::size_t block_ = 0;        // items in the loop's first chunk
   bool given_ = false;           // costs of the running loop are given, not measured
   bool items_ = false;           // and are of single items
 };

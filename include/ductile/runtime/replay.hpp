@@ -18,7 +18,8 @@ namespace ductile::runtime {
 struct ReplayOptions {
   int threads = 1;
   double launch_ns = 1000;  ///< starting and joining the team once, with this many threads
-  std::size_t block = 128;  ///< items handed out at once where single items were recorded
+  std::size_t block = 0;    ///< items handed out at once where single items were recorded; 0: as
+                            ///< many as then
 };
 
 /// Times of a part of the run, in seconds.
@@ -50,7 +51,7 @@ struct Replay {
   std::vector<ReplayTimes> rounds;      ///< every round of every run, in order
 };
 
-/// Throws std::invalid_argument if options.threads or options.block is less than 1.
+/// Throws std::invalid_argument if options.threads is less than 1.
 /// Thread safety: any thread.
 Replay replay(const Recording& recording, const ReplayOptions& options);
 

@@ -8,10 +8,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <concepts>
 #include <cstddef>
 #include <iterator>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,18 +25,23 @@ namespace ductile::runtime {
 
 namespace sort_detail {
 
-constexpr std::size_t block_size = 32768;
+/// Of blocks that are sorted, merged or copied at once: enough of them for many threads.
+inline std::size_t block_size_of(std::size_t n) {
+  return std::clamp<std::size_t>(std::bit_ceil(n / 256), 2048, 32768);
+}
+constexpr std::size_t radix_block = 16384;
 constexpr unsigned digit_bits = 11;
 constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
 using DigitCounts = std::array<std::size_t, digit_count>;
 
 template <class T>
 void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
-  parallel_for_blocks(executor, from.size(), block_size,
-                      [&](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_for_ranges(executor, from.size(),
+                      [&](std::size_t begin, std::size_t end) {
                         const std::span part = from.subspan(begin, end - begin);
                         std::copy(part.begin(), part.end(), to.data() + begin);
-                      });
+                      },
+                      {.grain = 8192});
 }
 
 /// One pass over the digit at `shift`, in blocks of `block` values.
@@ -72,7 +79,7 @@ void radix_sort(const Executor& executor, std::span<T> values) {
       [](T a, T b) { return std::max(a, b); });
   const auto bits = static_cast<unsigned>(std::bit_width(top));
   const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
-  const std::size_t block = std::max(block_size, (values.size() + most_blocks - 1) / most_blocks);
+  const std::size_t block = std::max(radix_block, (values.size() + most_blocks - 1) / most_blocks);
   DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block)};
   std::vector<T> scratch(values.size());
   std::span<T> from = values, to = scratch;
@@ -102,7 +109,7 @@ std::size_t merge_split(std::span<const T> a, std::span<const T> b, std::size_t 
 /// Merges the sorted parts of length `width` of `from` pairwise into `to`.
 template <class T>
 void merge_round(const Executor& executor, std::span<const T> from, std::span<T> to,
-                 std::size_t width) {
+                 std::size_t width, std::size_t block_size) {
   const auto merge_piece = [&](std::size_t, std::size_t begin, std::size_t end) {
     const std::size_t first = begin / (2 * width) * (2 * width);  // widths are whole blocks
     const std::size_t middle = std::min(first + width, from.size());
@@ -119,18 +126,33 @@ void merge_round(const Executor& executor, std::span<const T> from, std::span<T>
 
 template <class T>
 void merge_sort(const Executor& executor, std::span<T> values) {
+  const std::size_t block_size = block_size_of(values.size());
   parallel_for_blocks(executor, values.size(), block_size,
                       [&](std::size_t, std::size_t begin, std::size_t end) {
                         const std::span part = values.subspan(begin, end - begin);
                         std::sort(part.begin(), part.end());
                       });
-  std::vector<T> scratch(values.begin(), values.end());
-  std::span<T> from = values, to = scratch;
+  const auto scratch = std::make_unique_for_overwrite<T[]>(values.size());
+  std::span<T> from = values, to(scratch.get(), values.size());
   for (std::size_t width = block_size; width < values.size(); width *= 2) {
-    merge_round<T>(executor, from, to, width);
+    merge_round<T>(executor, from, to, width, block_size);
     std::swap(from, to);
   }
   if (from.data() != values.data()) copy<T>(executor, from, values);
+}
+
+/// Whether no item is less than the one before it.
+template <class T>
+bool is_sorted(const Executor& executor, std::span<const T> values) {
+  std::atomic<bool> sorted = true;
+  const auto look = [&](std::size_t, std::size_t begin, std::size_t end) {
+    // Relaxed: read again after the loop's barrier; before, it only saves looking on.
+    if (!sorted.load(std::memory_order_relaxed)) return;
+    const std::span part = values.subspan(begin, std::min(end + 1, values.size()) - begin);
+    if (!std::is_sorted(part.begin(), part.end())) sorted.store(false, std::memory_order_relaxed);
+  };
+  parallel_for_blocks(executor, values.size(), 8192, look);
+  return sorted.load(std::memory_order_relaxed);
 }
 
 }  // namespace sort_detail
@@ -138,11 +160,11 @@ void merge_sort(const Executor& executor, std::span<T> values) {
 /// Sorts by operator<, a strict weak order. Throws std::bad_alloc. Thread safety: one thread.
 template <class T>
 void parallel_sort(const Executor& executor, std::span<T> values) {
-  if (std::is_sorted(values.begin(), values.end())) return;
+  if (sort_detail::is_sorted<T>(executor, values)) return;
   if constexpr (std::unsigned_integral<T>) {
     if (values.size() >= 1024) return sort_detail::radix_sort(executor, values);
   } else {
-    if (executor.threads() > 1 && values.size() > sort_detail::block_size)
+    if (executor.threads() > 1 && values.size() > 4096)
       return sort_detail::merge_sort(executor, values);
   }
   std::sort(values.begin(), values.end());
@@ -152,7 +174,7 @@ void parallel_sort(const Executor& executor, std::span<T> values) {
 /// order, and returns how many there are. Throws std::bad_alloc. Thread safety: one thread.
 template <class T>
 std::size_t parallel_unique(const Executor& executor, std::span<T> sorted) {
-  const std::size_t block_size = sort_detail::block_size;
+  const std::size_t block_size = 8192;
   const auto same = [](const T& a, const T& b) { return !(a < b) && !(b < a); };
   std::vector<T> before;  // [block], the item before it
   for (std::size_t i = 0; i < sorted.size(); i += block_size) before.push_back(sorted[i - (i > 0)]);

@@ -16,12 +16,13 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
 #include "ductile/runtime/detail/priority_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -31,12 +32,12 @@ namespace ductile::runtime::detail {
 struct BlockLayout {
   unsigned block_bits, step_bits;
 
-  /// About 32 blocks side by side, slowly more of them from a million vertices up. More steps make
-  /// fewer clashes, each step costs a launch.
+  /// About 256 blocks side by side, slowly more of them from a million vertices up; fewer of few
+  /// vertices, as short blocks clash more. More steps make fewer clashes, each costs a launch.
   static BlockLayout of(std::size_t vertex_count) {
     const int bits = std::bit_width(vertex_count);
     const int step_bits = std::clamp(bits - 13, 3, 5);
-    const int width_bits = 5 + std::max(0, bits - 20) / 2;
+    const int width_bits = std::clamp(bits - 7, 4, 8) + std::max(0, bits - 20) / 2;
     const int block_bits = std::max(0, bits - step_bits - width_bits);
     return {static_cast<unsigned>(block_bits), static_cast<unsigned>(step_bits)};
   }
@@ -77,7 +78,7 @@ class BlockedRun {
         colours_(colours),
         layout_(BlockLayout::of(colours.vertex_count())),
         blind_(executor),
-        losers_(executor, {.unique = true}) {}
+        lost_(colours.vertex_count()) {}
 
   void run() {
     const std::size_t rows = layout_.row_count(colours_.vertex_count());
@@ -85,9 +86,12 @@ class BlockedRun {
       parallel_for(executor_, rows,
                    [&](std::size_t row) { colour_block(layout_.block_of(row, step)); },
                    {.grain = 1});
-    find_losers();
-    losers_.collect();
-    colour_by_priority(executor_, graph_, losers_.take(), colours_, outranks);
+    mark_losers();
+    const auto append_if_lost = [&](std::size_t v, auto&& append) {
+      if (lost_[v]) append(static_cast<std::uint32_t>(v));
+    };
+    auto losers = parallel_collect<std::uint32_t>(executor_, lost_.size(), append_if_lost);
+    colour_by_priority(executor_, graph_, std::move(losers), colours_, outranks);
   }
 
  private:
@@ -136,13 +140,19 @@ class BlockedRun {
     return std::binary_search(vertices_.list, vertices_.list + vertices_.count, v);
   }
 
-  void find_losers() {
-    parallel_for(executor_, blind_.size(),
-                 [&](std::size_t t) {
-                   for (const auto& [u, v] : blind_[t])
-                     if (colours_[u] == colours_[v]) losers_.append(outranks(u, v) ? v : u);
+  void mark_losers() {
+    std::vector<std::span<const Pair>> parts;
+    for (std::size_t t = 0; t < blind_.size(); ++t)
+      for (std::span<const Pair> left = blind_[t]; !left.empty();) {
+        parts.push_back(left.first(std::min<std::size_t>(left.size(), 256)));
+        left = left.subspan(parts.back().size());
+      }
+    parallel_for(executor_, parts.size(),
+                 [&](std::size_t p) {
+                   for (const auto& [u, v] : parts[p])
+                     if (colours_[u] == colours_[v]) atomic_mark(lost_[outranks(u, v) ? v : u]);
                  },
-                 {.grain = 1});
+                 {.grain = 1, .serial_below = 4});
   }
 
   const Executor& executor_;
@@ -151,7 +161,7 @@ class BlockedRun {
   Colours<Word> colours_;
   BlockLayout layout_;
   PerThread<std::vector<Pair>> blind_;  // neighbours coloured at the same time
-  Worklist<std::uint32_t> losers_;
+  std::vector<std::uint8_t> lost_;      // [vertex], its colour is also that of one that outranks it
 };
 
 struct Blocked {

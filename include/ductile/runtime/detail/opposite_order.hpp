@@ -71,7 +71,7 @@ class OppositeOrder {
         Commit<Op> commit = commits[i];
         commit.deferred_ = &deferred;
         commit.woken_ = &woken;
-        commit.woken_at_ = &woken_at;
+        commit.woken_at_ = woken_at.data();
         if (plans[i]) twin_->apply(*plans[i], commit);
       }
       commit_all(*twin_, deferred);

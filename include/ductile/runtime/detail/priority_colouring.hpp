@@ -46,7 +46,7 @@ template <class Word, Graph G, class Before>
 void colour_by_priority(const Executor& executor, const G& graph,
                         std::vector<std::uint32_t> vertices, Colours<Word> colours,
                         const Before& before) {
-  const LoopOptions loop{.grain = 64, .serial_below = 1024};
+  const LoopOptions loop{.grain = 16, .serial_below = 128};
   parallel_for(
       executor, vertices.size(),
       [&](std::size_t i) { colours.set(vertices[i], Colours<Word>::waiting); }, loop);

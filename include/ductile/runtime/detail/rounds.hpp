@@ -5,8 +5,10 @@
 /// so nothing depends on which thread did what.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,7 +18,9 @@
 #include "ductile/runtime/atomic_min.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/detail/filled_array.hpp"
 #include "ductile/runtime/detail/phase_timer.hpp"
+#include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -63,18 +67,27 @@ class Rounds {
 
  private:
   static constexpr std::size_t kinds = detail::Kinds<Op>::count;
-  static constexpr std::size_t block = 32;
+  static constexpr std::size_t block = 32;  // of what takes well under a microsecond an item
   static constexpr LoopOptions by_block{.grain = 1, .serial_below = 3};
+  static constexpr LoopOptions copying{.grain = 512, .serial_below = 2048};
+
+  /// Items handed out at once to be planned or applied: few of a small batch, so that each of many
+  /// threads gets some.
+  static std::size_t block_of(std::size_t items) {
+    return std::clamp<std::size_t>(items / 512, 8, block);
+  }
 
   // ---- Colouring: cut the round into classes of items that do not conflict ----
 
   /// Goes over the work window by window, so that what one window's classes touch stays in cache.
   std::vector<Item> coloured_round(std::vector<Item> work) requires ColouredOperator<Op> {
-    woken_at_.resize(op_.item_count(), 0);
-    const std::size_t window = Check::on ? work.size() : options_.window;
-    for (std::size_t begin = 0; begin < work.size(); begin += window) {
+    woken_at_.resize(executor_, op_.item_count(), 0);
+    turn_of_.resize(executor_, op_.item_count(), absent);
+    const std::size_t windows = Check::on ? 1 : window_count(work.size());
+    for (std::size_t w = 0; w < windows; ++w) {
+      const std::size_t begin = work.size() * w / windows, end = work.size() * (w + 1) / windows;
       ++window_;
-      run_window(std::span(work).subspan(begin, std::min(window, work.size() - begin)));
+      run_window(std::span(work).subspan(begin, end - begin));
     }
     const std::vector<Item> woken = take_woken();
     // Who was woken by one window and planned in a later one has been considered again.
@@ -83,56 +96,61 @@ class Rounds {
     });
   }
 
-  void run_window(std::span<const Item> work) {
-    std::vector<std::vector<Item>> classes;
-    {
-      const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
-      classes = independent_classes(work);
-    }
-    for (turn_ = 0; turn_ < classes.size(); ++turn_) {
-      drop_woken(classes[turn_]);
-      execute(classes[turn_]);
-      if constexpr (Check::on) check_waiting(classes);
-    }
-    parallel_for(executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; });
+  std::size_t window_count(std::size_t items) const {
+    const std::size_t least = std::max<std::size_t>(1, options_.window);
+    return std::clamp<std::size_t>(items / least, 1, std::max<std::size_t>(1, options_.windows));
   }
 
-  std::vector<std::vector<Item>> independent_classes(std::span<const Item> work) {
-    turn_of_.resize(op_.item_count(), absent);
-    parallel_for(executor_, work.size(),
-                 [&](std::size_t i) { turn_of_[work[i]] = static_cast<std::uint32_t>(i); });
+  void run_window(std::span<const Item> work) {
+    std::vector<std::size_t> class_begin;
+    {
+      const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
+      class_begin = sort_by_class(work);
+    }
+    const std::size_t classes = class_begin.size() - 1;
+    for (turn_ = 0; turn_ < classes; ++turn_) {
+      execute(std::span(by_class_).subspan(class_begin[turn_],
+                                           class_begin[turn_ + 1] - class_begin[turn_]));
+      if constexpr (Check::on) check_waiting(class_begin[turn_ + 1]);
+    }
+    parallel_for(
+        executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; }, copying);
+  }
+
+  /// Sets by_class_ to the work sorted into classes of items that do not conflict, and turn_of_ to
+  /// the items' classes. Returns where each class begins, and the end.
+  std::vector<std::size_t> sort_by_class(std::span<const Item> work) {
+    parallel_for(
+        executor_, work.size(),
+        [&](std::size_t i) { turn_of_[work[i]] = static_cast<std::uint32_t>(i); }, copying);
     const CallbackGraph graph(work.size(), [&](std::uint32_t i, auto&& visit) {
       op_.conflicts(work[i], [&](Item other) {
         if (turn_of_[other] != absent) visit(turn_of_[other]);
       });
     });
     const Colouring colouring = colour(executor_, graph);
-    const ColourClasses by_colour = colour_classes(executor_, colouring);
-    std::vector<std::vector<Item>> classes(by_colour.count());
-    for (std::uint32_t c = 0; c < by_colour.count(); ++c) {
-      const auto members = by_colour.members(c);
-      classes[c].resize(members.size());
-      parallel_for(executor_, members.size(),
-                   [&](std::size_t i) { classes[c][i] = work[members[i]]; });
-    }
-    // From here on the array holds each item's class instead of its position.
-    parallel_for(executor_, work.size(),
-                 [&](std::size_t i) { turn_of_[work[i]] = colouring.colour_of[i]; });
-    return classes;
+    ColourClasses classes = colour_classes(executor_, colouring);
+    by_class_.resize(work.size());
+    const auto place = [&](std::size_t i) {
+      by_class_[i] = work[classes.vertices[i]];
+      turn_of_[work[i]] = colouring.colour_of[i];
+    };
+    parallel_for(executor_, work.size(), place, copying);
+    return std::move(classes.begin);
   }
 
-  /// A colouring is stale where something changed: who was woken comes back in the next round.
-  void drop_woken(std::vector<Item>& members) {
-    if constexpr (requires { Op::keeps_conflicts; }) return;
-    const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
-    report_.dropped +=
-        std::erase_if(members, [&](Item item) { return woken_at_[item] == window_; });
+  /// A colouring is stale where something changed: who was woken in this window comes back in the
+  /// next round.
+  bool stays(const Item& item) const {
+    if constexpr (ColouredOperator<Op> && !requires { Op::keeps_conflicts; })
+      return woken_at_[item] != window_;
+    return true;
   }
 
-  void check_waiting(const std::vector<std::vector<Item>>& classes) {
-    for (std::size_t turn = turn_ + 1; turn < classes.size(); ++turn)
-      for (const Item item : classes[turn])
-        if (woken_at_[item] != window_) check_.expect_kept(op_, item);
+  /// Those that wait for a later turn begin here.
+  void check_waiting(std::size_t begin) {
+    for (std::size_t i = begin; i < by_class_.size(); ++i)
+      if (woken_at_[by_class_[i]] != window_) check_.expect_kept(op_, by_class_[i]);
   }
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
@@ -141,7 +159,7 @@ class Rounds {
     std::vector<std::uint8_t> outcome(work.size());
     {
       const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
-      reserved_.resize(op_.resource_count(), ~std::uint64_t{0});
+      reserved_.resize(executor_, op_.resource_count(), ~std::uint64_t{0});
       if (!executor_.deterministic()) ticket_of_.resize(work.size());
       parallel_for_blocks(
           executor_, work.size(), block,
@@ -243,44 +261,71 @@ class Rounds {
 
   // ---- One batch: plan, apply, commit ----
 
-  void execute(const std::vector<Item>& batch) {
+  void execute(std::span<const Item> batch) {
     if (batch.empty()) return;
     ++report_.batches;
-    report_.planned += batch.size();
-    plans_.clear();
-    plans_.resize(batch.size());
+    size_ = batch.size();
+    block_size_ = block_of(size_);
+    const std::size_t blocks = (size_ + block_size_ - 1) / block_size_;
+    plans_.provide(executor_, size_);
+    planned_of_.assign(blocks, 0);
     {
       const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
       parallel_for_blocks(
-          executor_, batch.size(), block,
-          [&](std::size_t, std::size_t begin, std::size_t end) {
+          executor_, size_, block_size_,
+          [&](std::size_t b, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-              if constexpr (ColouredOperator<Op>) woken_at_[batch[i]] = 0;
-              plans_[i] = op_.plan(batch[i]);
-              if (recording_ != nullptr) [[unlikely]]
-                record_plan(batch[i]);
+              if constexpr (PrefetchingOperator<Op>) prefetch_after(batch, i);
+              planned_of_[b] += plan(batch[i], plans_[i]);
             }
           },
           by_block);
     }
+    const std::size_t planned = std::accumulate(planned_of_.begin(), planned_of_.end(), 0U);
+    report_.planned += planned;
+    report_.dropped += size_ - planned;
     if constexpr (Check::on) return apply_checked(batch);
     {
       const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
-      apply_plans();
+      apply_plans(blocks);
     }
     const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
-    report_.committed += deferred_.size();
+    const std::size_t updates = deferred_.size();
+    report_.committed += updates;
+    if (updates == 0) return;
     deferred_.commit(
         [&](std::uint32_t owner, const typename Op::Update& update) { op_.commit(owner, update); });
   }
 
-  void apply_plans() {
-    const std::size_t blocks = (plans_.size() + block - 1) / block;
+  /// What memory takes to answer is about as long as planning two items.
+  void prefetch_after(std::span<const Item> batch, std::size_t i) const {
+    for (const int stage : {2, 1, 0}) {
+      const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
+      if (ahead < batch.size()) op_.prefetch(batch[ahead], stage);
+    }
+  }
+
+  /// Plans an item, unless it left the round; false then.
+  bool plan(const Item& item, std::optional<Plan>& plan) {
+    const bool here = stays(item);
+    if constexpr (ColouredOperator<Op>)
+      if (here) woken_at_[item] = 0;
+    if (here) {
+      plan = op_.plan(item);
+    } else {
+      plan.reset();
+    }
+    if (recording_ != nullptr) [[unlikely]]
+      record_plan(item);
+    return here;
+  }
+
+  void apply_plans(std::size_t blocks) {
     first_of_.assign(blocks, {});
     applied_of_.assign(blocks, 0);
     if constexpr (kinds > 0) number_new_things();
     parallel_for_blocks(
-        executor_, plans_.size(), block,
+        executor_, size_, block_size_,
         [&](std::size_t b, std::size_t begin, std::size_t end) {
           Commit<Op> commit = new_commit();
           commit.next_ = first_of_[b];
@@ -298,28 +343,22 @@ class Rounds {
     for (const std::uint32_t applied : applied_of_) report_.applied += applied;
   }
 
-  void apply_checked(const std::vector<Item>& batch) {
-    first_of_.assign((batch.size() + block - 1) / block, {});
-    if constexpr (kinds > 0) number_new_things();
-    std::vector<Commit<Op>> commits(batch.size());
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      commits[i] = new_commit();
-      commits[i].source_ = i;
-      commits[i].next_ = first_of_[i / block];
-      if (!plans_[i]) continue;
-      ++report_.applied;
-      if constexpr (kinds > 0) {
-        const auto demand = op_.demand(*plans_[i]);
-        for (std::size_t k = 0; k < kinds; ++k) first_of_[i / block][k] += demand[k];
-      }
-    }
-    check_.run_batch(op_, {batch, plans_, commits}, deferred_, options_.order);
+  void apply_checked(std::span<const Item> all) {
+    std::vector<Item> batch;
+    std::vector<std::optional<Plan>> plans;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (stays(all[i])) batch.push_back(all[i]), plans.push_back(plans_[i]);
+    std::vector<Commit<Op>> commits(batch.size(), new_commit());
+    for (std::size_t i = 0; i < batch.size(); ++i) commits[i].source_ = i;
+    report_.applied += batch.size() - std::count(plans.begin(), plans.end(), std::nullopt);
+    if constexpr (kinds > 0) number_one_by_one(plans, commits);
+    check_.run_batch(op_, {batch, plans, commits}, deferred_, options_.order);
   }
 
   /// Sets first_of_ to the first new number of each kind for each block of the batch.
   void number_new_things() {
     parallel_for_blocks(
-        executor_, plans_.size(), block,
+        executor_, size_, block_size_,
         [&](std::size_t b, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             if (!plans_[i]) continue;
@@ -336,13 +375,28 @@ class Rounds {
       for (std::size_t k = 0; k < kinds; ++k) first[k] += base[k];
   }
 
+  /// The same for the commits of single items.
+  void number_one_by_one(const std::vector<std::optional<Plan>>& plans,
+                         std::vector<Commit<Op>>& commits) {
+    std::array<std::uint32_t, kinds> total{};
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      commits[i].next_ = total;
+      if (!plans[i]) continue;
+      const auto demand = op_.demand(*plans[i]);
+      for (std::size_t k = 0; k < kinds; ++k) total[k] += demand[k];
+    }
+    const std::array<std::uint32_t, kinds> base = op_.grow(total);
+    for (Commit<Op>& commit : commits)
+      for (std::size_t k = 0; k < kinds; ++k) commit.next_[k] += base[k];
+  }
+
   Commit<Op> new_commit() {
     Commit<Op> commit;
     commit.deferred_ = &deferred_;
     commit.woken_ = &woken_;
     if constexpr (ColouredOperator<Op>) {
-      commit.woken_at_ = &woken_at_;
-      commit.turn_of_ = &turn_of_;
+      commit.woken_at_ = woken_at_.data();
+      commit.turn_of_ = turn_of_.data();
       commit.turn_ = static_cast<std::uint32_t>(turn_);
     }
     commit.window_ = window_;
@@ -389,17 +443,27 @@ class Rounds {
   DeferredUpdate<typename Op::Update> deferred_;
   Worklist<Item> woken_;
   std::uint32_t round_ = 0;
-  std::uint32_t window_ = 0;             // the window being run, colouring only
-  std::vector<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
-  std::vector<std::uint32_t> turn_of_;   // [item], its place in the work, then its class, or absent
-  std::size_t turn_ = 0;                 // class being executed, colouring only
-  std::vector<std::uint64_t> reserved_;  // [resource], the lowest key that asked
-  std::vector<std::uint32_t> ticket_of_;  // [position], racing mode: order of arrival
+
+  // ---- Colouring ----
+  std::uint32_t window_ = 0;                     // the window being run
+  detail::FilledArray<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
+  detail::FilledArray<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its
+                                                 // class, or absent
+  std::vector<Item> by_class_;                   // the window's work, class after class
+  std::size_t turn_ = 0;                         // class being executed
+
+  // ---- Reservation ----
+  detail::FilledArray<std::uint64_t> reserved_;  // [resource], the lowest key that asked
+  std::vector<std::uint32_t> ticket_of_;         // [position], racing mode: order of arrival
   std::uint32_t ticket_ = 0;
-  std::uint32_t share_ = everyone;          // who has a hash up to this asks, reservation only
-  std::vector<std::optional<Plan>> plans_;  // [position in the batch]
-  std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block of the batch][kind]
-  std::vector<std::uint32_t> applied_of_;                   // [block of the batch]
+  std::uint32_t share_ = everyone;  // who has a hash up to this asks
+
+  // ---- The batch ----
+  std::size_t size_ = 0, block_size_ = 1;  // its items, and those of a block
+  detail::Slots<Plan> plans_;              // [position]; there may be old ones beyond its size
+  std::vector<std::uint32_t> planned_of_;  // [block]
+  std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block][kind]
+  std::vector<std::uint32_t> applied_of_;                   // [block]
 };
 
 }  // namespace ductile::runtime

@@ -1,0 +1,59 @@
+/// @file
+/// FilledArray: an array that grows, with one value in what is new. Unlike a vector's, its memory
+/// is first touched by the threads that fill it, so it takes no time on one thread.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime::detail {
+
+/// Thread safety: elements as those of an array; resize() one thread.
+template <class T>
+requires std::is_trivially_copyable_v<T>
+class FilledArray {
+ public:
+  std::size_t size() const { return size_; }
+  T* data() { return values_.get(); }
+  T& operator[](std::size_t i) { return values_[i]; }
+  const T& operator[](std::size_t i) const { return values_[i]; }
+
+  /// Grows to n elements, if there are fewer: what is new holds `value`. Throws std::bad_alloc.
+  void resize(const Executor& executor, std::size_t n, const T& value) {
+    if (n <= size_) return;
+    if (n > capacity_) move_to(executor, std::max(n, capacity_ + capacity_ / 2));
+    parallel_for_ranges(
+        executor, n - size_,
+        [&](std::size_t begin, std::size_t end) {
+          std::fill(values_.get() + size_ + begin, values_.get() + size_ + end, value);
+        },
+        by_pages);
+    size_ = n;
+  }
+
+ private:
+  static constexpr LoopOptions by_pages{.grain = 4096, .serial_below = 16384};
+
+  void move_to(const Executor& executor, std::size_t capacity) {
+    auto larger = std::make_unique_for_overwrite<T[]>(capacity);
+    parallel_for_ranges(
+        executor, size_,
+        [&](std::size_t begin, std::size_t end) {
+          std::copy(values_.get() + begin, values_.get() + end, larger.get() + begin);
+        },
+        by_pages);
+    values_ = std::move(larger);
+    capacity_ = capacity;
+  }
+
+  std::unique_ptr<T[]> values_;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+}  // namespace ductile::runtime::detail

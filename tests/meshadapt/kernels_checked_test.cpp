@@ -1,0 +1,110 @@
+/// @file
+/// Runs the kernels under the checks of their contracts with run_rounds, see checked_rounds.hpp.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ductile/meshadapt/background.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/runtime/checked_rounds.hpp"
+#include "operators/coarsen.hpp"
+#include "operators/refine.hpp"
+#include "operators/smooth.hpp"
+#include "operators/swap.hpp"
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+const runtime::Executor executor({.threads = 2});
+
+/// A small mesh on which every kernel finds something to do.
+template <int Dim>
+struct Case {
+  Mesh<Dim> mesh;
+  Background<Dim> background;
+
+  static Case make(std::uint64_t seed, double complexity) {
+    test::Random random(seed);
+    test::Grid grid = test::unit_grid(Dim, Dim == 2 ? 10 : 5);
+    grid.region = test::two_halves(Dim == 2 ? 10 : 5);
+    AnyMesh any = test::make_grid(grid);
+    test::jiggle(any, random, 0.3);
+    AnyField field = test::wild_field(any, random, 1.5, 3);
+    test::scale_to(field, any, complexity);
+    std::vector<Metric<Dim>> metric_of(any.vertex_count());
+    for (std::size_t v = 0; v < metric_of.size(); ++v)
+      std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric_of[v].m.begin());
+    Neighbours<Dim> neighbours;
+    std::vector<std::string> warnings;
+    auto mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
+    Background<Dim> background(executor, mesh, neighbours, metric_of);
+    for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
+      mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
+      mesh.host_of[v] = mesh.elements_of.of(v).front();
+    }
+    update_shapes(executor, mesh);
+    return {std::move(mesh), std::move(background)};
+  }
+};
+
+template <class Op, int Dim>
+void expect_sound(Mesh<Dim>& mesh, Op&& op, std::vector<typename std::decay_t<Op>::Item> work,
+                  const runtime::RoundsOptions& options = {}) {
+  try {
+    const auto report = runtime::run_rounds_checked(executor, op, std::move(work), options);
+    EXPECT_GT(report.applied, 0U);
+  } catch (const runtime::ContractBroken& broken) {
+    ADD_FAILURE() << broken.what();
+  }
+  const auto faults = check_mesh(executor, mesh);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+}
+
+template <class D>
+class KernelsChecked : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(KernelsChecked, Dimensions);
+
+TYPED_TEST(KernelsChecked, CoarsenKeepsItsContract) {
+  constexpr int Dim = TypeParam::value;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 20 : 5);
+    const Rules rules;
+    expect_sound(mesh, Coarsen<Dim>(mesh, rules),
+                 Coarsen<Dim>::crowded_vertices(executor, mesh, rules.short_edge, 0));
+  }
+}
+
+TYPED_TEST(KernelsChecked, RefineKeepsItsContract) {
+  constexpr int Dim = TypeParam::value;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 500 : 250);
+    const Rules rules;
+    expect_sound(mesh, Refine<Dim>(mesh, background, rules),
+                 Refine<Dim>::long_edges(executor, mesh, rules.long_edge, 0));
+  }
+}
+
+TYPED_TEST(KernelsChecked, SwapKeepsItsContract) {
+  constexpr int Dim = TypeParam::value;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 80 : 60);
+    expect_sound(mesh, Swap<Dim>(mesh), Swap<Dim>::improvements(executor, mesh, 0, 1.0));
+  }
+}
+
+TYPED_TEST(KernelsChecked, SmoothKeepsItsContract) {
+  constexpr int Dim = TypeParam::value;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 80 : 60);
+    expect_sound(mesh, Smooth<Dim>(mesh, background, {.optimise_below = 0.6}),
+                 Smooth<Dim>::movable_vertices(executor, mesh, 0), {.most_rounds = 4});
+  }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
