@@ -101,6 +101,8 @@ void Adapter<Dim>::run() {
         changed < Tuning<Dim>::calm && (changed < 5e-3 || share(splits_to_come()) < 0.1);
     report_.converged = calm && !next_stage();
   }
+  while (next_stage()) {
+  }  // what is left is done at once
   if (wanted >= little) {
     rearrange();
     polish();

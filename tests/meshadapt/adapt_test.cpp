@@ -196,6 +196,20 @@ TEST_P(Adapt, ChangesLittleTheSecondTime) {
   EXPECT_GT(measure(executor, again.mesh, &again.metric).quality.mean, quality - 1e-4);
 }
 
+TEST_P(Adapt, MendsAnAdaptedMeshWhereItMust) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 4));
+  const Executor executor({.threads = 2});
+  const AdaptedMesh once = adapt(executor, mesh, layered(mesh, dimension() == 2 ? 3000 : 800));
+  AnyField metric = once.metric;
+  const std::size_t components = stride_of(metric), vertex = once.mesh.vertex_count() / 2;
+  for (std::size_t c = 0; c < components; ++c) metric.values[vertex * components + c] *= 16;
+  const AdaptedMesh again = adapt(executor, once.mesh, metric);
+  EXPECT_EQ(again.report.iterations, 0);
+  EXPECT_GT(again.report.refine.applied, 0U);
+  const auto faults = test::faults_of(executor, once.mesh, again);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+}
+
 TEST_P(Adapt, LeavesALockedBoundaryAsItIs) {
   AnyMesh mesh = rich_mesh();
   AdaptOptions options;
