@@ -1,6 +1,6 @@
 /// @file
 /// Renumbering: vertices are sorted along a Hilbert curve through the bounding box, elements by
-/// their lowest vertex; whatever is gone sorts to the end and is cut off.
+/// their lowest vertex; whatever is gone is left out.
 #include <algorithm>
 #include <memory>
 

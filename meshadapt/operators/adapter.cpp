@@ -101,8 +101,7 @@ void Adapter<Dim>::run() {
         changed < Tuning<Dim>::calm && (changed < 5e-3 || share(splits_to_come()) < 0.1);
     report_.converged = calm && !next_stage();
   }
-  while (next_stage()) {
-  }  // what is left is done at once
+  stage_ = std::size(Tuning<Dim>::stages) - 1;  // what is left is split at once
   if (wanted >= little) {
     rearrange();
     polish();
