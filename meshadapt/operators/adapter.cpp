@@ -295,7 +295,7 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
     add(report_.swap, rounds);
     changes += rounds.applied;
-    if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 2e-3)) break;
+    if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 5e-3)) break;
   }
   tell("swap", changes);
   return changes;

@@ -54,7 +54,7 @@ class Swap {
     return static_cast<std::uint8_t>(255 * std::min(1.0F, std::max(0.0F, item.worst)));
   }
 
-  // ---- Apply: replace the elements, defer their vertices' lists, wake what is new ----
+  // ---- Apply: replace the elements, defer their vertices' lists ----
   std::array<std::uint32_t, 1> demand(const Plan& plan) const {
     const std::size_t gone = plan.old_elements.size(), come = plan.new_elements.size();
     return {static_cast<std::uint32_t>(come > gone ? come - gone : 0)};

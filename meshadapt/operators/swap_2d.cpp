@@ -35,30 +35,55 @@ std::optional<Replacement<2>> Swap<2>::plan(const Swappable& edge) const {
 template <>
 void Swap<2>::apply(const Replacement<2>& plan, runtime::Commit<Swap>& commit) {
   replace(mesh_, plan, commit);
-  const float worst =
-      std::min(mesh_.shape_of[plan.old_elements[0]], mesh_.shape_of[plan.old_elements[1]]);
-  const auto& [a, d, c] = plan.new_elements[0];
-  const VertexId b = plan.new_elements[1][1];
-  for (const auto& [p, q] : {std::pair{a, d}, {d, b}, {b, c}, {c, a}})
-    commit.wake({std::min(p, q), std::max(p, q), none, worst});
 }
 
+namespace {
+
+/// Above this share of the others' squared lengths an edge is opposite to a wide angle: 78 degrees
+/// if isosceles. It would be a right angle from 1 on, were the metric constant.
+constexpr double wide = 0.8;
+
+/// The corner of a triangle whose angle is wide, or -1. Only a flip of the edge opposite to it
+/// makes better triangles.
+int wide_corner(const Mesh<2>& mesh, ElementId element) {
+  const auto corner = mesh.sites(mesh.corners_of[element]);
+  const Metric<2>& metric = densest<2>(corner).metric;
+  std::array<double, 3> square;
+  for (std::size_t i = 0; i < 3; ++i)
+    square[i] =
+        squared_length(metric, corner[(i + 2) % 3]->position - corner[(i + 1) % 3]->position);
+  const auto longest = std::max_element(square.begin(), square.end());
+  const double others = square[0] + square[1] + square[2] - *longest;
+  return *longest > wide * others ? static_cast<int>(longest - square.begin()) : -1;
+}
+
+}  // namespace
+
+/// Flips are found from the poor triangle, as few are poor. One with a right angle always is: its
+/// mean ratio is 0.87 at most.
 template <>
 std::vector<Swappable> Swap<2>::improvements(const runtime::Executor& executor, Mesh<2>& mesh,
                                              std::uint32_t after, double below) {
   const Swap swap(mesh);
+  const double bound = shape_of_mean_ratio<2>(below);
+  const auto poor = [&](ElementId e) { return mesh.shape_of[e] < bound && mesh.alive(e); };
   return runtime::parallel_collect<Swappable>(
       executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
         const auto element = static_cast<ElementId>(e);
-        if (!mesh.alive(element) || mesh.changed_at[e] <= after) return;
-        for (int i = 0; i < 3; ++i) {
-          const auto [a, b] = facet_of<2>(mesh.corners_of[e], i);
-          const ElementId other = neighbour(mesh, element, i);
-          if (other == none || (other < element && mesh.changed_at[other] > after)) continue;
-          const float worst = std::min(mesh.shape_of[e], mesh.shape_of[other]);
-          const Swappable item{std::min(a, b), std::max(a, b), none, worst};
-          if (worst < shape_of_mean_ratio<2>(below) && swap.plan(item)) append(item);
+        if (!poor(element)) return;
+        const int corner = wide_corner(mesh, element);
+        if (corner < 0) return;
+        const ElementId other = neighbour(mesh, element, corner);
+        if (other == none || (mesh.changed_at[e] <= after && mesh.changed_at[other] <= after))
+          return;
+        const auto [a, b] = facet_of<2>(mesh.corners_of[e], corner);
+        if (other < element && poor(other)) {
+          const int at = wide_corner(mesh, other);
+          if (at >= 0 && facet_of<2>(mesh.corners_of[other], at) == Facet<2>{b, a}) return;
         }
+        const float worst = std::min(mesh.shape_of[e], mesh.shape_of[other]);
+        const Swappable item{std::min(a, b), std::max(a, b), none, worst};
+        if (swap.plan(item)) append(item);
       });
 }
 
