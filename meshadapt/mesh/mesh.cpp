@@ -55,13 +55,20 @@ void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
 }
 
 template <int Dim>
-std::vector<VertexId> vertices_changed(const Executor& executor, const Mesh<Dim>& mesh,
+std::vector<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>& mesh,
                                        std::uint32_t after) {
   std::vector<std::uint8_t> marked(mesh.vertex_slots());
   parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     if (mesh.changed_at[e] <= after || !mesh.alive(static_cast<ElementId>(e))) return;
     for (const VertexId v : mesh.corners_of[e]) runtime::atomic_mark(marked[v]);
   });
+  return marked;
+}
+
+template <int Dim>
+std::vector<VertexId> vertices_changed(const Executor& executor, const Mesh<Dim>& mesh,
+                                       std::uint32_t after) {
+  const auto marked = mark_changed(executor, mesh, after);
   return runtime::parallel_collect<VertexId>(executor, marked.size(),
                                              [&](std::size_t v, auto&& append) {
                                                if (marked[v]) append(static_cast<VertexId>(v));
@@ -80,6 +87,8 @@ template struct Mesh<2>;
 template struct Mesh<3>;
 template void rebuild_elements_of(const Executor&, Mesh<2>&);
 template void rebuild_elements_of(const Executor&, Mesh<3>&);
+template std::vector<std::uint8_t> mark_changed(const Executor&, const Mesh<2>&, std::uint32_t);
+template std::vector<std::uint8_t> mark_changed(const Executor&, const Mesh<3>&, std::uint32_t);
 template std::vector<VertexId> vertices_changed(const Executor&, const Mesh<2>&, std::uint32_t);
 template std::vector<VertexId> vertices_changed(const Executor&, const Mesh<3>&, std::uint32_t);
 template void update_shapes(const Executor&, Mesh<2>&);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "operators/edges.hpp"
 
 namespace ductile::meshadapt {
 
@@ -25,14 +25,11 @@ template <int Dim>
 std::vector<LongEdge> Refine<Dim>::long_edges(const runtime::Executor& executor,
                                               const Mesh<Dim>& mesh, double long_edge,
                                               std::uint32_t after) {
-  const auto changed = vertices_changed(executor, mesh, after);
-  return runtime::parallel_collect<LongEdge>(
-      executor, changed.size(), [&](std::size_t i, auto&& append) {
-        const VertexId a = changed[i];
-        for (const VertexId b : neighbours_of(mesh, a))
-          if (a < b && !shorter_than(mesh.site_of[a], mesh.site_of[b], long_edge))
-            append(LongEdge{a, b, static_cast<float>(mesh.length(a, b))});
-      });
+  return collect_edges<LongEdge>(executor, mesh, mark_changed(executor, mesh, after),
+                                 [&](VertexId a, VertexId b, auto&& append) {
+                                   if (!shorter_than(mesh.site_of[a], mesh.site_of[b], long_edge))
+                                     append(LongEdge{a, b, static_cast<float>(mesh.length(a, b))});
+                                 });
 }
 
 template <int Dim>

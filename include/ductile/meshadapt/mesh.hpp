@@ -134,7 +134,12 @@ void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
 template <int Dim>
 void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
-/// The living vertices next to an element that changed after this epoch, in order.
+/// Marks the vertices next to an element that changed after this epoch.
+template <int Dim>
+std::vector<std::uint8_t> mark_changed(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                       std::uint32_t after);
+
+/// Those vertices, in order.
 template <int Dim>
 std::vector<VertexId> vertices_changed(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                        std::uint32_t after);
