@@ -49,6 +49,9 @@ struct Tuning<3> {
 /// A mesh of which a smaller share would change is left alone, or only finished.
 constexpr double nothing = 2e-4, little = 5e-3;
 
+/// Rearranging also collapses edges that are hardly long enough: some would end up too short.
+constexpr double eager = 1.03;
+
 /// Adds the time of a scope to a kernel's, and makes it a section of the executor's recording.
 class KernelTimer {
  public:
@@ -171,7 +174,10 @@ double Adapter<Dim>::share(std::size_t changes) const {
 template <int Dim>
 Rules Adapter<Dim>::rules() const {
   Rules rules = options_.rules;
-  if (aim_ == Aim::rearrange) rules.stretched_edge = Tuning<Dim>::stretched_edge;
+  if (aim_ == Aim::rearrange) {
+    rules.stretched_edge = Tuning<Dim>::stretched_edge;
+    rules.short_edge *= eager;
+  }
   if (aim_ == Aim::finish) {
     rules.extends_long_edges = false;
     rules.shortest_split = rules.short_edge;
@@ -258,7 +264,7 @@ std::size_t Adapter<Dim>::coarsen() {
   const KernelTimer timer(executor_, "coarsen", report_.coarsen.seconds);
   std::size_t changes = 0;
   for (int sweep = 0; sweep < 8; ++sweep) {
-    auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, options_.rules.short_edge,
+    auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, rules().short_edge,
                                                end_epoch(seen_by_coarsen_));
     Coarsen<Dim> op(mesh_, rules());
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
