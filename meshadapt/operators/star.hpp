@@ -20,8 +20,6 @@ class Star {
     Corners<3> corners;
     float shape;
     bool changed;
-    bool on_patch;  // has a facet on one
-    std::uint32_t region;
   };
   struct Edge {
     VertexId to;
@@ -34,9 +32,7 @@ class Star {
     if (ball.size() > Mesh<3>::largest_ball) return;
     Numbering numbers;
     for (const ElementId e : ball) {
-      constexpr std::array<PatchId, 4> inside{};
-      entries.push_back({e, mesh.corners_of[e], mesh.shape_of[e], mesh.changed_at[e] > after,
-                         mesh.patches_of[e] != inside, mesh.region_of[e]});
+      entries.push_back({e, mesh.corners_of[e], mesh.shape_of[e], mesh.changed_at[e] > after});
       for (const VertexId v : entries.back().corners)
         if (v > vertex) note(numbers, v);
     }

@@ -169,24 +169,29 @@ std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappabl
   return result;
 }
 
+std::optional<Replacement<3>> plan_edge(const Mesh<3>& mesh, const Swappable& edge,
+                                        const Shell& shell) {
+  Ring ring;
+  if (!ring.close(shell.size(), edge.a, edge.b,
+                  [&](std::size_t i) { return mesh.corners_of[shell[i]]; }) ||
+      ring.vertices.size() > largest_ring)
+    return {};
+  return plan_edge_removal(mesh, edge, shell, ring, Swap<3>::bar(edge.worst));
+}
+
 }  // namespace
 
 template <>
 std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
   Shell shell;
-  float worst = 1;
+  Swappable now = item;
+  now.worst = 1;
   footprint(item, [&](ElementId e) {
     shell.push_back(e);
-    worst = std::min(worst, mesh_.shape_of[e]);
+    now.worst = std::min(now.worst, mesh_.shape_of[e]);
   });
-  if (item.c != none)
-    return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(worst)) : std::nullopt;
-  Ring ring;
-  if (!ring.close(shell.size(), item.a, item.b,
-                  [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }) ||
-      ring.vertices.size() > largest_ring)
-    return {};
-  return plan_edge_removal(mesh_, item, shell, ring, bar(worst));
+  if (item.c == none) return plan_edge(mesh_, now, shell);
+  return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(now.worst)) : std::nullopt;
 }
 
 template <>
@@ -196,84 +201,115 @@ void Swap<3>::apply(const Replacement<3>& plan, runtime::Commit<Swap>& commit) {
 
 namespace {
 
-/// Looks for swaps of the edges from one vertex, and of their faces, that are worth it.
-class SwapSearch {
+/// What lengths are compared with at a poor element. Edges that are short for the worst element
+/// around them are hardly ever worth removing, and faces are hardly ever worth piercing by an edge
+/// that is long for the worse element (docs/performance.md).
+struct Gauge {
+  const Metric<3>* metric = nullptr;  // that the element is judged by
+  double mean_square = 0;             // of its edges, in that metric
+
+  Gauge() = default;
+  Gauge(const Mesh<3>& mesh, const Corners<3>& corners) {
+    const auto corner = mesh.sites(corners);
+    metric = &densest<3>(corner).metric;
+    mean_square = sum_of_squared_lengths<3>(*metric, corner) / 6;
+  }
+  double relative_square(const Vector<3>& edge) const {
+    return squared_length(*metric, edge) / mean_square;
+  }
+};
+
+/// Looks for edges from one vertex whose removal is worth it.
+class EdgeSearch {
  public:
-  SwapSearch(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after, float good_enough)
-      : mesh_(mesh), vertex_(vertex), star_(mesh, vertex, after), good_enough_(good_enough) {}
+  EdgeSearch(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after, float good_enough)
+      : mesh_(mesh), vertex_(vertex), star_(mesh, vertex, after) {
+    for (const Star::Entry& entry : star_.entries)
+      gauge_of_.push_back(entry.shape < good_enough ? Gauge(mesh, entry.corners) : Gauge());
+  }
 
   void run(auto&& append) const {
-    for (const Star::Edge& edge : star_.edges) {
-      if (edge.count > Star::most_around || !concerns(edge)) continue;
-      Ring ring;
-      if (!ring.close(edge.count, vertex_, edge.to,
-                      [&](std::size_t i) { return star_.entries[edge.around[i]].corners; }))
-        continue;
-      if (ring.vertices.size() <= largest_ring) try_edge(edge, ring, append);
-      try_faces(edge, ring, append);
-    }
+    for (const Star::Edge& edge : star_.edges)
+      if (edge.count <= Star::most_around && worth_a_look(edge)) try_edge(edge, append);
   }
 
  private:
-  bool concerns(const Star::Edge& edge) const {
-    bool changed = false, bad = false;
+  static constexpr double long_edge = 0.9;
+
+  bool worth_a_look(const Star::Edge& edge) const {
+    bool changed = false;
+    std::size_t worst = edge.around[0];
     for (std::uint32_t i = 0; i < edge.count; ++i) {
-      const Star::Entry& entry = star_.entries[edge.around[i]];
-      changed = changed || entry.changed;
-      bad = bad || entry.shape < good_enough_;
+      const std::size_t entry = edge.around[i];
+      changed = changed || star_.entries[entry].changed;
+      if (star_.entries[entry].shape < star_.entries[worst].shape) worst = entry;
     }
-    return changed && bad;
+    if (!changed || gauge_of_[worst].metric == nullptr) return false;
+    const Vector<3> along = mesh_.site_of[edge.to].position - mesh_.site_of[vertex_].position;
+    return gauge_of_[worst].relative_square(along) > long_edge;
   }
 
-  void try_edge(const Star::Edge& edge, const Ring& ring, auto&& append) const {
+  void try_edge(const Star::Edge& edge, auto&& append) const {
+    Ring ring;
+    if (!ring.close(edge.count, vertex_, edge.to,
+                    [&](std::size_t i) { return star_.entries[edge.around[i]].corners; }) ||
+        ring.vertices.size() > largest_ring)
+      return;
     Shell shell;
     Swappable item{vertex_, edge.to, none, 1};
-    bool on_patch = false;
     for (std::uint32_t i = 0; i < edge.count; ++i) {
       const Star::Entry& entry = star_.entries[edge.around[i]];
       shell.push_back(entry.element);
       item.worst = std::min(item.worst, entry.shape);
-      on_patch = on_patch || entry.on_patch;
     }
-    const double bar = Swap<3>::bar(item.worst);
-    if (on_patch || ring.open ? plan_edge_removal(mesh_, item, shell, ring, bar).has_value()
-                              : may_change(edge) && triangulate(mesh_, item, ring, bar).has_value())
-      append(item);
-  }
-
-  /// Are the elements around an edge, none of which is on a patch, of one region that is free?
-  bool may_change(const Star::Edge& edge) const {
-    const std::uint32_t region = star_.entries[edge.around[0]].region;
-    return !mesh_.regions[region].required;
-  }
-
-  /// The faces on an edge whose third corner has a higher number still.
-  void try_faces(const Star::Edge& edge, const Ring& ring, auto&& append) const {
-    const std::size_t n = ring.vertices.size();
-    for (std::size_t i = 0; i + 1 < n + (ring.open ? 0 : 1); ++i) {
-      const std::size_t j = (i + 1) % n;
-      if (ring.vertices[j] < edge.to || (ring.open && j + 1 == n)) continue;
-      const Star::Entry& e = star_.entries[edge.around[ring.order[i]]];
-      const Star::Entry& f = star_.entries[edge.around[ring.order[j]]];
-      const Swappable face{vertex_, edge.to, ring.vertices[j], std::min(e.shape, f.shape)};
-      if ((!e.changed && !f.changed) || face.worst >= good_enough_) continue;
-      const VertexId p = ring.vertices[i], q = ring.vertices[(j + 1) % n];
-      if (worth_piercing(mesh_, face, p, q, Swap<3>::bar(face.worst)) && may_pierce(e, f, p))
-        append(face);
-    }
-  }
-
-  bool may_pierce(const Star::Entry& e, const Star::Entry& f, VertexId p) const {
-    const auto at_p = static_cast<std::size_t>(corner_of(e.corners, p));
-    return e.region == f.region && !mesh_.regions[e.region].required &&
-           mesh_.patches_of[e.element][at_p] == 0;
+    if (plan_edge_removal(mesh_, item, shell, ring, Swap<3>::bar(item.worst))) append(item);
   }
 
   const Mesh<3>& mesh_;
   VertexId vertex_;
   Star star_;
-  float good_enough_;
+  Buffer<Gauge, 64> gauge_of_;  // [entry], none of a good one
 };
+
+/// The facet whose opposite corner is the lowest over it: the largest, by Heron's formula in
+/// squared lengths.
+int lowest_corner(const Mesh<3>& mesh, const Corners<3>& corners, const Metric<3>& metric) {
+  const auto corner = mesh.sites(corners);
+  std::array<double, 4> area;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vector<3>& p = corner[(i + 1) % 4]->position;
+    const Vector<3> u = corner[(i + 2) % 4]->position - p, v = corner[(i + 3) % 4]->position - p;
+    const double a = squared_length(metric, u), b = squared_length(metric, v),
+                 c = squared_length(metric, v - u);
+    area[i] = 2 * (a * b + b * c + c * a) - (a * a + b * b + c * c);
+  }
+  return static_cast<int>(std::max_element(area.begin(), area.end()) - area.begin());
+}
+
+/// Is the largest facet of a poor element worth piercing? Found from the worse of its two elements.
+std::optional<Swappable> face_to_pierce(const Mesh<3>& mesh, ElementId element,
+                                        std::uint32_t after) {
+  constexpr double short_edge = 1.4;
+  const Corners<3>& corners = mesh.corners_of[element];
+  const Gauge gauge(mesh, corners);
+  const int apex = lowest_corner(mesh, corners, *gauge.metric);
+  const ElementId other = neighbour(mesh, element, apex);
+  const float worst = mesh.shape_of[element];
+  if (other == none || (mesh.changed_at[element] <= after && mesh.changed_at[other] <= after) ||
+      std::pair(mesh.shape_of[other], other) < std::pair(worst, element))
+    return {};
+  Facet<3> face = facet_of<3>(corners, apex);
+  std::sort(face.begin(), face.end());
+  const auto beyond = std::find_if(mesh.corners_of[other].begin(), mesh.corners_of[other].end(),
+                                   [&](VertexId v) { return !contains(face, v); });
+  const VertexId p = corners[static_cast<std::size_t>(apex)];
+  if (gauge.relative_square(mesh.site_of[*beyond].position - mesh.site_of[p].position) > short_edge)
+    return {};
+  const Swappable item{face[0], face[1], face[2], worst};
+  const Shell shell{std::min(element, other), std::max(element, other)};
+  if (!plan_face_swap(mesh, item, shell, Swap<3>::bar(worst))) return {};
+  return item;
+}
 
 }  // namespace
 
@@ -281,11 +317,34 @@ template <>
 std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, Mesh<3>& mesh,
                                              std::uint32_t after, double below) {
   const auto good_enough = static_cast<float>(shape_of_mean_ratio<3>(below));
-  const auto changed = vertices_changed(executor, mesh, after);
-  return runtime::parallel_collect<Swappable>(
-      executor, changed.size(), [&](std::size_t i, auto&& append) {
-        SwapSearch(mesh, changed[i], after, good_enough).run(append);
+  const auto poor = [&](ElementId e) { return mesh.shape_of[e] < good_enough; };
+  const double flat = std::min<double>(good_enough, shape_of_mean_ratio<3>(0.5));
+  const auto near_change = mark_changed(executor, mesh, after);
+  const auto vertices = runtime::parallel_collect<VertexId>(
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        if (near_change[v]) append(static_cast<VertexId>(v));
       });
+  auto found = runtime::parallel_collect<Swappable>(
+      executor, vertices.size(), [&](std::size_t i, auto&& append) {
+        for (const int stage : {2, 1, 0})
+          if (const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
+              ahead < vertices.size())
+            prefetch_ball(mesh, vertices[ahead], stage);
+        const auto ball = mesh.elements_of.of(vertices[i]);
+        if (std::any_of(ball.begin(), ball.end(), poor))
+          EdgeSearch(mesh, vertices[i], after, good_enough).run(append);
+      });
+  const auto faces = runtime::parallel_collect<Swappable>(
+      executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
+        const auto element = static_cast<ElementId>(e);
+        if (!(mesh.shape_of[e] < flat) || !mesh.alive(element)) return;
+        const auto is_near = [&](VertexId v) { return near_change[v] != 0; };
+        const Corners<3>& corners = mesh.corners_of[e];
+        if (std::count_if(corners.begin(), corners.end(), is_near) < 3) return;
+        if (const auto face = face_to_pierce(mesh, element, after)) append(*face);
+      });
+  found.insert(found.end(), faces.begin(), faces.end());
+  return found;
 }
 
 template class Swap<3>;
