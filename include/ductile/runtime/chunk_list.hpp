@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -25,8 +26,12 @@ class ChunkList {
   bool full() const { return next_ == end_; }
   bool empty() const { return used_ == 0; }
 
-  /// Precondition: !full().
-  void append(T&& value) { std::construct_at(next_, std::move(value)), ++next_; }
+  /// Adds T{arguments...}; changes nothing if that throws. Precondition: !full().
+  template <class... Arguments>
+  void append(Arguments&&... arguments) {
+    ::new (static_cast<void*>(next_)) T{std::forward<Arguments>(arguments)...};
+    ++next_;
+  }
 
   /// Starts the next chunk. Precondition: full(). Throws std::bad_alloc and changes nothing then.
   void grow() {
