@@ -29,6 +29,8 @@ class ChunkList {
   /// Adds T{arguments...}; changes nothing if that throws. Precondition: !full().
   template <class... Arguments>
   void append(Arguments&&... arguments) {
+    // Where many lists grow in turn, the processor does not see by itself what comes next in each.
+    __builtin_prefetch(reinterpret_cast<const char*>(next_) + write_ahead, 1);
     ::new (static_cast<void*>(next_)) T{std::forward<Arguments>(arguments)...};
     ++next_;
   }
@@ -84,6 +86,7 @@ class ChunkList {
     }
   };
 
+  static constexpr std::size_t write_ahead = 512;  // bytes
   static constexpr std::size_t first_capacity = std::max<std::size_t>(1, 512 / sizeof(T));
   static constexpr std::size_t last_capacity = std::max<std::size_t>(1, 65536 / sizeof(T));
 

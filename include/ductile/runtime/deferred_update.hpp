@@ -194,16 +194,32 @@ class DeferredUpdate {
         lanes_[t].plain[number].for_each([&](Plain& entry) { f(entry.owner, entry.update); });
   }
 
+  template <class Visit>
+  void for_each_sourced(std::uint32_t number, Visit&& visit) {
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      if (lanes_[t].sourced) lanes_[t].sourced[number].for_each(visit);
+  }
+
+  /// As it is where threads went through their parts of a loop in order and took none from others.
+  bool is_sorted(std::uint32_t number) {
+    std::uint64_t last = 0;
+    bool sorted = true;
+    for_each_sourced(number, [&](const Sourced& entry) {
+      sorted = sorted && last <= entry.source;
+      last = entry.source;
+    });
+    return sorted;
+  }
+
   /// Sorting a bucket by source alone is enough: it puts each of its owners' updates in order.
   template <class F>
   void commit_sorted(std::uint32_t number, F& f) {
+    const auto commit = [&](Sourced& entry) { f(entry.owner, entry.update); };
+    if (is_sorted(number)) return for_each_sourced(number, commit);
     auto& order = lanes_.mine().order;
     order.clear();
-    for (std::size_t t = 0; t < lanes_.size(); ++t)
-      if (lanes_[t].sourced)
-        lanes_[t].sourced[number].for_each(
-            [&](Sourced& entry) { order.append(entry.source, &entry); });
-    for (const auto& keyed : order.sorted()) f(keyed.value->owner, keyed.value->update);
+    for_each_sourced(number, [&](Sourced& entry) { order.append(entry.source, &entry); });
+    for (const auto& keyed : order.sorted()) commit(*keyed.value);
   }
 
   std::vector<std::uint32_t> touched_buckets() const {
