@@ -1,10 +1,11 @@
 /// @file
 /// Work stealing by compare-and-swap. Every thread starts with an equal part of the chunks, kept as
-/// one packed word, and takes chunks from its front. A thread without work looks for the longest
-/// part and takes the back half of it. A thread leaves when it finds nothing to take: what others
-/// still run cannot be shared any more, so nobody waits here but for the join.
-/// The words carry numbers of chunks only, so all orders are relaxed: what bodies read was written
-/// before the loop began, what they write is read after the join.
+/// one packed word, and takes chunks from its front: many at once while it has many, so that
+/// taking them costs nothing, and single ones in the end. A thread without work looks for the
+/// longest part and takes the back half of it. A thread leaves when it finds nothing to take: what
+/// others still run cannot be shared any more, so nobody waits here but for the join. The words
+/// carry numbers of chunks only, so all orders are relaxed: what bodies read was written before the
+/// loop began, what they write is read after the join.
 
 #include <algorithm>
 #include <atomic>
@@ -32,16 +33,15 @@ struct Part {
 struct alignas(128) PartOfThread {
   std::atomic<std::uint64_t> word{0};
 
-  /// Takes the first chunk of the part; false if there is none.
-  bool take_front(std::uint32_t& chunk) {
+  /// Takes a 64th of the part from its front, at least a chunk; nothing if there is none.
+  Part take_front() {
     std::uint64_t seen = word.load(std::memory_order_relaxed);
     for (;;) {
       const Part part = Part::of(seen);
-      if (part.size() == 0) return false;
-      chunk = part.begin;
-      if (word.compare_exchange_weak(seen, Part{part.begin + 1, part.end}.word(),
-                                     std::memory_order_relaxed))
-        return true;
+      const std::uint32_t end = part.begin + part.size() / 64 + (part.size() % 64 != 0);
+      if (part.size() == 0 ||
+          word.compare_exchange_weak(seen, Part{end, part.end}.word(), std::memory_order_relaxed))
+        return {part.begin, end};
     }
   }
 };
@@ -72,11 +72,8 @@ bool steal(Parts parts, PartOfThread& mine) {
 
 void work_and_steal(Loop& loop, Parts parts, PartOfThread& mine) {
   do {
-    std::uint32_t chunk = 0;
-    while (mine.take_front(chunk)) {
-      const std::size_t begin = chunk * loop.grain;
-      if (!loop.run(begin, std::min(loop.n, begin + loop.grain))) return;
-    }
+    for (Part taken = mine.take_front(); taken.size() > 0; taken = mine.take_front())
+      if (!loop.run(taken.begin * loop.grain, std::min(loop.n, taken.end * loop.grain))) return;
   } while (steal(parts, mine));
 }
 

@@ -69,16 +69,17 @@ void add_buffers(const std::string& candidate, Make make) {
         });
 }
 
-void add_floor() {
+void add_floor(const std::string& subject) {
   for (const Case& c : cases())
-    add("buffers/" + c.name + "/floor", thread_counts(), [c](benchmark::State& state, int threads) {
-      const Executor executor({.threads = threads});
-      std::vector<Update> own(c.count);
-      for (auto _ : state) {
-        parallel_for(executor, c.count, [&](std::size_t i) { own[i] = c.update(i); });
-        benchmark::ClobberMemory();
-      }
-    });
+    add(subject + '/' + c.name + "/floor", thread_counts(),
+        [c](benchmark::State& state, int threads) {
+          const Executor executor({.threads = threads});
+          std::vector<Update> own(c.count);
+          for (auto _ : state) {
+            parallel_for(executor, c.count, [&](std::size_t i) { own[i] = c.update(i); });
+            benchmark::ClobberMemory();
+          }
+        });
 }
 
 void add_deferred(const std::string& name, CommitOrder order) {
@@ -94,6 +95,24 @@ void add_deferred(const std::string& name, CommitOrder order) {
       deferred->commit([&](std::uint32_t owner, std::uint32_t value) { sums[owner] += value; });
     };
   });
+}
+
+/// Without the commit: what a loop pays for an update that it defers.
+void add_deferring(const std::string& name, CommitOrder order) {
+  for (const Case& c : cases())
+    add("deferring/" + c.name + '/' + name, thread_counts(),
+        [c, order](benchmark::State& state, int threads) {
+          const Executor executor({.threads = threads});
+          runtime::DeferredUpdate<std::uint32_t> deferred(executor, {.order = order});
+          for (auto _ : state) {
+            deferred.clear();
+            parallel_for(executor, c.count, [&](std::size_t i) {
+              const Update update = c.update(i);
+              deferred.defer(update.owner, i, update.value);
+            });
+          }
+          if (deferred.size() != c.count) state.SkipWithError("updates were lost");
+        });
 }
 
 void add_atomic() {
@@ -186,9 +205,13 @@ class TwoPasses {
 };
 
 void add_all() {
-  add_floor();
-  add_deferred("ductile.any_order", CommitOrder::any);
-  add_deferred("ductile.by_source", CommitOrder::by_source);
+  add_floor("buffers");
+  add_floor("deferring");
+  for (const auto& [name, order] : {std::pair("ductile.any_order", CommitOrder::any),
+                                    std::pair("ductile.by_source", CommitOrder::by_source)}) {
+    add_deferred(name, order);
+    add_deferring(name, order);
+  }
   add_atomic();
   add_mutexes("mutex.one", 1);
   add_mutexes("mutex.striped", 1024);

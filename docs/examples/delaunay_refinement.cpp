@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
+#include "cavity.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "example.hpp"
 #include "plane.hpp"
@@ -27,15 +29,9 @@ class RefineTriangles {
     VertexId last;
     friend auto operator<=>(const Item&, const Item&) = default;
   };
-  struct Side {  // of a cavity, anticlockwise, and the triangle beyond
-    VertexId begin, end;
-    TriangleId beyond;
-  };
   struct Plan {
     Item item;
-    Point point;
-    std::vector<TriangleId> cavity;
-    std::vector<Side> sides;
+    Cavity cavity;
     std::vector<TriangleId> also_read;
   };
   struct Update {
@@ -48,32 +44,30 @@ class RefineTriangles {
   /// Too large, or with an angle below 20.7 degrees: the radius is over sqrt(2) shortest edges.
   bool is_bad(TriangleId t) const {
     const Point a = mesh_.corner(t, 0), b = mesh_.corner(t, 1), c = mesh_.corner(t, 2);
-    const double ab = squared_length(a, b), bc = squared_length(b, c), ca = squared_length(c, a);
-    const double radius_squared =
-        ab * bc * ca / (4 * std::pow(static_cast<double>(turn(a, b, c)), 2));
-    return radius_squared > 2 * std::min({ab, bc, ca}) || radius_squared > std::pow(size_, 2);
+    const double shortest =
+        std::min({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
+    return circle_radius_squared(a, b, c) > std::min(2 * shortest, size_ * size_);
   }
 
   // ---- Plan: the cavity of the circle's centre, or of the middle of an edge. Reads only. ----
   std::optional<Plan> plan(const Item& item) const {
     const TriangleId t = item.triangle;
     if (mesh_.corners_of[t][2] != item.last || !is_bad(t)) return {};
-    const Point centre = circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
-    Plan insertion{item, centre, {}, {}, {}};
-    const std::optional<Side> in_the_way = dig(insertion, t, outside);
-    if (!in_the_way) return insertion;
+    Cavity cavity{circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2))};
+    const std::optional<Side> in_the_way = dig(mesh_, cavity, t);
+    if (!in_the_way) return Plan{item, std::move(cavity), {}};
     const Point a = mesh_.points[in_the_way->begin], b = mesh_.points[in_the_way->end];
-    Plan halving{item, {(a.x + b.x) / 2, (a.y + b.y) / 2}, {}, {}, insertion.cavity};
-    for (const Side& side : insertion.sides) halving.also_read.push_back(side.beyond);
-    dig(halving, in_the_way->beyond, in_the_way->begin);
+    Plan halving{item, {{(a.x + b.x) / 2, (a.y + b.y) / 2}}, std::move(cavity.triangles)};
+    for (const Side& side : cavity.sides) halving.also_read.push_back(side.beyond);
+    dig(mesh_, halving.cavity, in_the_way->beyond, in_the_way->begin);
     return halving;
   }
   // ---- Conflict rule: the cavity goes, the triangles around it get new neighbours ----
   void footprint(const Item& item, auto&& visit) const {
     const std::optional<Plan> insertion = plan(item);
     if (!insertion) return;
-    for (const TriangleId gone : insertion->cavity) visit(gone);
-    for (const Side& side : insertion->sides)
+    for (const TriangleId gone : insertion->cavity.triangles) visit(gone);
+    for (const Side& side : insertion->cavity.sides)
       if (side.beyond != outside) visit(side.beyond);
     for (const TriangleId read : insertion->also_read)
       if (read != outside) visit(read);
@@ -81,7 +75,8 @@ class RefineTriangles {
   std::size_t resource_count() const { return mesh_.corners_of.size(); }
   // ---- Growth: a vertex, and one or two triangles more than there were ----
   std::array<std::uint32_t, 2> demand(const Plan& insertion) const {
-    return {1, static_cast<std::uint32_t>(insertion.sides.size() - insertion.cavity.size())};
+    const Cavity& cavity = insertion.cavity;
+    return {1, static_cast<std::uint32_t>(cavity.sides.size() - cavity.triangles.size())};
   }
   std::array<std::uint32_t, 2> grow(const std::array<std::uint32_t, 2>& more) {
     const std::array<std::size_t, 2> first{mesh_.points.size(), mesh_.corners_of.size()};
@@ -93,9 +88,9 @@ class RefineTriangles {
   // ---- Apply: a triangle on each side of the cavity; wake those that are bad ----
   void apply(const Plan& insertion, auto& commit) {
     const VertexId vertex = commit.fresh(0);
-    mesh_.points[vertex] = insertion.point;
-    const auto& sides = insertion.sides;
-    std::vector<TriangleId> triangles = insertion.cavity;
+    mesh_.points[vertex] = insertion.cavity.point;
+    const std::vector<Side>& sides = insertion.cavity.sides;
+    std::vector<TriangleId> triangles = insertion.cavity.triangles;
     while (triangles.size() < sides.size()) triangles.push_back(commit.fresh(1));
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const Side& side = sides[i];
@@ -117,41 +112,6 @@ class RefineTriangles {
   }
 
  private:
-  /// Fills in the cavity around a plan's point and its sides, without the boundary edge that begins
-  /// at `halved`. Returns, with the triangle on this side of it, a boundary edge of which the point
-  /// is beyond, or inside the circle on it.
-  std::optional<Side> dig(Plan& insertion, TriangleId start, VertexId halved) const {
-    std::vector<TriangleId>& cavity = insertion.cavity;
-    cavity.push_back(start);
-    for (std::size_t k = 0; k < cavity.size(); ++k) {
-      const TriangleId t = cavity[k];
-      for (std::size_t i = 0; i < 3; ++i) {
-        const TriangleId other = mesh_.neighbours_of[t][i];
-        if (std::find(cavity.begin(), cavity.end(), other) != cavity.end()) continue;
-        const VertexId begin = mesh_.corners_of[t][(i + 1) % 3];
-        const VertexId end = mesh_.corners_of[t][(i + 2) % 3];
-        if (other == outside) {
-          if (begin == halved) continue;
-          if (halved == outside && is_in_the_way(begin, end, insertion.point))
-            return Side{begin, end, t};
-        } else if (in_circle(mesh_.corner(other, 0), mesh_.corner(other, 1), mesh_.corner(other, 2),
-                             insertion.point)) {
-          cavity.push_back(other);
-          continue;
-        }
-        insertion.sides.push_back({begin, end, other});
-      }
-    }
-    return {};
-  }
-
-  bool is_in_the_way(VertexId begin, VertexId end, Point point) const {
-    const Point a = mesh_.points[begin], b = mesh_.points[end];
-    const std::int64_t across = std::int64_t{a.x - point.x} * (b.x - point.x) +
-                                std::int64_t{a.y - point.y} * (b.y - point.y);
-    return across < 0 || turn(a, b, point) <= 0;
-  }
-
   Triangulation& mesh_;
   double size_;  // no triangle's circle has a greater radius
 };

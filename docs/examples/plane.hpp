@@ -55,6 +55,12 @@ inline double squared_length(Point a, Point b) {
   return std::pow(a.x - b.x, 2) + std::pow(a.y - b.y, 2);
 }
 
+/// The square of the radius of the circle through three points.
+inline double circle_radius_squared(Point a, Point b, Point c) {
+  return squared_length(a, b) * squared_length(b, c) * squared_length(c, a) /
+         (4 * std::pow(static_cast<double>(turn(a, b, c)), 2));
+}
+
 /// The centre of the circle through three points, rounded to whole numbers; if that is far outside
 /// the range of coordinates, a point on the way that is outside too.
 inline Point circle_centre(Point a, Point b, Point c) {

@@ -9,12 +9,10 @@
 #include <numeric>
 #include <vector>
 
-#include <boost/graph/adjacency_list.hpp>
-#include <boost/graph/kruskal_min_spanning_tree.hpp>
-
 #include "ductile/runtime/run_rounds.hpp"
 #include "example.hpp"
 #include "graphs.hpp"
+#include "kruskal.hpp"
 #include "skew_heaps.hpp"
 
 namespace {
@@ -112,26 +110,6 @@ class Contraction {
   Heaps heaps_;                         // of arcs, numbered as the graph's neighbours
 };
 
-/// The weights of the tree by Boost.Graph, ascending.
-std::vector<Weight> kruskal(runtime::CsrGraph<> graph) {
-  using Weighted = boost::property<boost::edge_weight_t, Weight>;
-  boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property, Weighted>
-      copy(graph.vertex_count());
-  for (Vertex a = 0; a < graph.vertex_count(); ++a)
-    graph.for_each_neighbour(a, [&](Vertex b) {
-      if (a < b) add_edge(a, b, weight_of(a, b), copy);
-    });
-  std::vector<decltype(copy)::edge_descriptor> tree;
-  const double seconds = example::seconds_of(
-      [&] { boost::kruskal_minimum_spanning_tree(copy, std::back_inserter(tree)); });
-  example::print_yardstick("Boost.Graph, Kruskal, one thread", seconds);
-  std::vector<Weight> weights(tree.size());
-  std::transform(tree.begin(), tree.end(), weights.begin(),
-                 [&](const auto& edge) { return get(boost::edge_weight, copy, edge); });
-  std::sort(weights.begin(), weights.end());
-  return weights;
-}
-
 void compare(const example::Arguments& arguments) {
   const example::GraphArrays grid = example::grid_graph(arguments.size);
   const runtime::CsrGraph<> graph = grid.view();
@@ -154,7 +132,7 @@ void compare(const example::Arguments& arguments) {
   std::erase(tree, Weight{0});
   std::sort(tree.begin(), tree.end());
   std::printf("edges in the tree: %zu\n", tree.size());
-  example::require(tree == kruskal(graph), "not the minimum spanning tree");
+  example::require(tree == example::kruskal(graph, weight_of), "not the minimum spanning tree");
 }
 
 }  // namespace

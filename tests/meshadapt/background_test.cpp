@@ -11,6 +11,7 @@ namespace ductile::meshadapt {
 namespace {
 
 using runtime::Executor;
+using test::difference;
 using test::Random;
 using test::uniform;
 
@@ -45,15 +46,6 @@ struct Scene {
         std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours), metric_of);
   }
 };
-
-template <int Dim>
-double difference(const Metric<Dim>& a, const Metric<Dim>& b) {
-  double most = 0;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j <= i; ++j)
-      most = std::max(most, std::abs(a(i, j) - b(i, j)) / std::sqrt(a(i, i) * a(j, j)));
-  return most;
-}
 
 /// A point in a random element, and the metric there by the definition.
 template <int Dim>

@@ -20,6 +20,22 @@ Site<Dim> random_site(Random& random) {
   return make_site(p, test::random_metric<Dim>(random, sizes));
 }
 
+/// The corners of an element, of either orientation, and pointers to them.
+template <int Dim>
+struct RandomElement {
+  std::array<Site<Dim>, Dim + 1> sites;
+  std::array<const Site<Dim>*, Dim + 1> corners;
+
+  explicit RandomElement(Random& random) {
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      sites[i] = random_site<Dim>(random);
+      corners[i] = &sites[i];
+    }
+  }
+  RandomElement(const RandomElement&) = delete;
+  RandomElement& operator=(const RandomElement&) = delete;
+};
+
 template <class Dimension>
 class BaseOf : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
@@ -29,12 +45,8 @@ TYPED_TEST(BaseOf, GivesTheShapeOfTheElementOnEitherSide) {
   constexpr int Dim = TypeParam::value;
   Random random(21);
   for (int trial = 0; trial < 5000; ++trial) {
-    std::array<Site<Dim>, Dim + 1> sites;
-    std::array<const Site<Dim>*, Dim + 1> element;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      sites[i] = random_site<Dim>(random);
-      element[i] = &sites[i];
-    }
+    RandomElement<Dim> made(random);
+    auto& element = made.corners;
     const int apex = trial % (Dim + 1);
     std::array<const Site<Dim>*, Dim> facet;
     for (std::size_t k = 0; k < Dim; ++k)
@@ -42,7 +54,7 @@ TYPED_TEST(BaseOf, GivesTheShapeOfTheElementOnEitherSide) {
           element[static_cast<std::size_t>(Simplex<Dim>::facet[static_cast<std::size_t>(apex)][k])];
     Base<Dim> base = make_base<Dim>(facet);
     weigh(base);
-    const Site<Dim>& top = sites[static_cast<std::size_t>(apex)];
+    const Site<Dim>& top = made.sites[static_cast<std::size_t>(apex)];
     const bool positive = shape<Dim>(element) > 0;
     EXPECT_EQ(volume_over(base, top.position) > 0, positive);
     EXPECT_EQ(shape_over(base, top) > 0, positive);
@@ -56,12 +68,8 @@ TYPED_TEST(BaseOf, AgreesThatAShapeIsAboveABar) {
   constexpr int Dim = TypeParam::value;
   Random random(22);
   for (int trial = 0; trial < 5000; ++trial) {
-    std::array<Site<Dim>, Dim + 1> sites;
-    std::array<const Site<Dim>*, Dim + 1> element;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      sites[i] = random_site<Dim>(random);
-      element[i] = &sites[i];
-    }
+    const RandomElement<Dim> made(random);
+    const auto& element = made.corners;
     const double value = shape<Dim>(element);
     EXPECT_EQ(shape_above<Dim>(element, 0), value > 0);
     if (value <= 0) continue;

@@ -8,6 +8,7 @@
 namespace ductile::meshadapt {
 namespace {
 
+using test::difference;
 using test::Random;
 using test::uniform;
 
@@ -24,17 +25,6 @@ Metric<Dim> random_metric(Random& random, double anisotropy) {
   sizes[0] = size;
   sizes[Dim - 1] = size * anisotropy;
   return test::random_metric<Dim>(random, sizes);
-}
-
-/// Largest difference between two metrics, in units of the larger of the diagonal entries
-/// concerned.
-template <int Dim>
-double difference(const Metric<Dim>& a, const Metric<Dim>& b) {
-  double most = 0;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j <= i; ++j)
-      most = std::max(most, std::abs(a(i, j) - b(i, j)) / std::sqrt(a(i, i) * a(j, j)));
-  return most;
 }
 
 TYPED_TEST(MetricIn, TheExponentialUndoesTheLogarithm) {

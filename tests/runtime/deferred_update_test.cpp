@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -106,6 +107,44 @@ TEST(DeferredUpdate, CarriesMoveOnlyAndLargeUpdates) {
   });
   EXPECT_EQ(letters, 20);
   owned.defer(1, 1, std::make_unique<int>(3));  // never committed: must not leak
+}
+
+TEST(DeferredUpdate, CommitsOverAlignedUpdatesWhereTheyWerePut) {
+  struct alignas(128) Aligned {
+    std::array<std::uint32_t, 1024> values;
+  };
+  for (const CommitOrder order : {CommitOrder::any, CommitOrder::by_source}) {
+    for (int threads : {1, 2, 8}) {
+      const Executor executor({.threads = threads});
+      DeferredUpdate<Aligned> deferred(executor, {.order = order});
+      for (int round = 0; round < 2; ++round) {
+        parallel_for(executor, 1000, [&](std::size_t i) {
+          Aligned update;
+          update.values.fill(static_cast<std::uint32_t>(i));
+          deferred.defer(static_cast<std::uint32_t>(i), i, update);
+        });
+        std::vector<int> seen(1000);
+        deferred.commit([&](std::uint32_t owner, const Aligned& update) {
+          const bool aligned = reinterpret_cast<std::uintptr_t>(&update) % 128 == 0;
+          const auto& v = update.values;
+          seen[owner] += aligned && std::count(v.begin(), v.end(), owner) == 1024;
+        });
+        EXPECT_EQ(seen, std::vector<int>(1000, 1)) << threads;
+        deferred.release();
+      }
+    }
+  }
+}
+
+TEST(DeferredUpdate, LetsTheCommitKeepWhatWasDeferred) {
+  const Executor executor({.threads = 2});
+  DeferredUpdate<std::unique_ptr<int>> deferred(executor);
+  parallel_for(executor, 2000, [&](std::size_t i) {
+    deferred.defer(static_cast<std::uint32_t>(i), i, std::make_unique<int>(static_cast<int>(i)));
+  });
+  std::vector<std::unique_ptr<int>> kept(2000);
+  deferred.commit([&](std::uint32_t o, std::unique_ptr<int>& u) { kept[o] = std::move(u); });
+  for (int i = 0; i < 2000; ++i) EXPECT_EQ(*kept[static_cast<std::size_t>(i)], i);
 }
 
 TEST(DeferredUpdate, CountsDropsAndReleases) {

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <memory>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -436,6 +440,68 @@ TEST(RunRounds, PassesOnWhatAnOperatorThrows) {
   EXPECT_EQ(message(plan), "plan");
   EXPECT_EQ(message(apply), "apply");
   EXPECT_EQ(message(commit), "commit");
+}
+
+/// Counts down from each item's number, on a counter that many share. Items, plans and updates can
+/// only be moved; plans and updates are large.
+class CountDown {
+ public:
+  struct Item {
+    std::unique_ptr<std::uint32_t> number;
+    bool operator<(const Item& other) const { return *number < *other.number; }
+  };
+  struct alignas(128) Large {
+    std::unique_ptr<std::uint32_t> number;
+    std::array<std::uint32_t, 1024> copies;
+  };
+  using Plan = Large;
+  using Update = Large;
+  static constexpr std::uint32_t counters = 50, steps = 4;
+
+  static Large large(std::uint32_t number) {
+    Large made{std::make_unique<std::uint32_t>(number), {}};
+    made.copies.fill(number);
+    return made;
+  }
+
+  std::optional<Plan> plan(const Item& item) const { return large(*item.number); }
+  void footprint(const Item& item, auto&& visit) const { visit(*item.number / steps % counters); }
+  std::size_t resource_count() const { return counters; }
+  void apply(const Plan& plan, Commit<CountDown>& commit) {
+    const std::uint32_t number = *plan.number;
+    commit.defer(number / steps % counters, large(number));
+    if (number % steps > 0) commit.wake({std::make_unique<std::uint32_t>(number - 1)});
+  }
+  void commit(std::uint32_t counter, Update&& update) {
+    for (const std::uint32_t copy : update.copies) whole = whole && copy == *update.number;
+    passed[counter].push_back(std::move(update.number));
+  }
+
+  std::atomic<bool> whole = true;
+  std::array<std::vector<std::unique_ptr<std::uint32_t>>, counters> passed;
+};
+
+TEST(RunRounds, MovesWhatCanOnlyBeMoved) {
+  constexpr std::uint32_t starts = 600;
+  std::vector<std::vector<std::uint32_t>> first;
+  for (int threads : {1, 2, 3, 8}) {
+    std::vector<CountDown::Item> work;
+    for (std::uint32_t i = 0; i < starts; ++i)
+      work.push_back(
+          {std::make_unique<std::uint32_t>(i * CountDown::steps + CountDown::steps - 1)});
+    CountDown count;
+    const auto report = run_rounds(Executor({.threads = threads}), count, std::move(work));
+    EXPECT_EQ(report.left, 0U);
+    EXPECT_TRUE(count.whole);
+    std::vector<std::vector<std::uint32_t>> got(CountDown::counters);
+    std::set<std::uint32_t> all;
+    for (std::uint32_t c = 0; c < CountDown::counters; ++c)
+      for (const auto& number : count.passed[c]) got[c].push_back(*number), all.insert(*number);
+    EXPECT_EQ(all.size(), starts * CountDown::steps);
+    EXPECT_EQ(*all.rbegin(), starts * CountDown::steps - 1);
+    if (first.empty()) first = got;
+    EXPECT_EQ(got, first) << threads;
+  }
 }
 
 TEST(RunRounds, NoWorkIsNoRound) {

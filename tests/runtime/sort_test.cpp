@@ -34,6 +34,26 @@ TYPED_TEST(ParallelSort, AgreesWithTheStandardOne) {
   }
 }
 
+TEST(ParallelSort, SortsNumbersThatAreAllThere) {
+  // Their digits begin powers of two apart, so whole cache lines are written at once.
+  for (const std::size_t n : {131072U, 262144U, 300007U}) {
+    std::vector<std::uint64_t> expected(n), values(n);
+    std::iota(expected.begin(), expected.end(), 0U);
+    for (const std::size_t stride : {1U, 7U, 40961U}) {
+      for (std::size_t i = 0; i < n; ++i) values[i] = (i * stride % n) ^ (n % 2 == 0 ? 1U : 0U);
+      for (int threads : {1, 2, 3, 8}) {
+        const Executor executor({.threads = threads});
+        std::vector<std::uint64_t> sorted = values;
+        parallel_sort(executor, std::span(sorted));
+        EXPECT_EQ(sorted, expected) << n << " values, stride " << stride;
+        std::vector<std::uint32_t> narrow(values.begin(), values.end());
+        parallel_sort(executor, std::span(narrow));
+        EXPECT_TRUE(std::equal(narrow.begin(), narrow.end(), expected.begin()));
+      }
+    }
+  }
+}
+
 TEST(ParallelSort, SeesWhatIsOutOfOrderBetweenBlocks) {
   for (std::size_t at : {1U, 8191U, 8192U, 8193U, 16384U, 19999U}) {
     std::vector<std::uint32_t> values(20000);

@@ -2,6 +2,10 @@
 /// Metric fields to test with, from tame to nasty.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "support/meshes.hpp"
@@ -11,6 +15,17 @@ namespace ductile::meshadapt::test {
 /// A metric with random axes that asks for these sizes along them.
 template <int Dim>
 Metric<Dim> random_metric(Random& random, const std::array<double, Dim>& sizes);
+
+/// Largest difference between the entries of two metrics, each over the root of the product of the
+/// first one's diagonal entries in its row and column.
+template <int Dim>
+double difference(const Metric<Dim>& a, const Metric<Dim>& b) {
+  double most = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j <= i; ++j)
+      most = std::max(most, std::abs(a(i, j) - b(i, j)) / std::sqrt(a(i, i) * a(j, j)));
+  return most;
+}
 
 /// A field with a metric of make(vertex) at each vertex.
 template <int Dim, class Make>

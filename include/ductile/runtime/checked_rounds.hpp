@@ -11,6 +11,7 @@
 /// An operator that on purpose does not wake all who could plan again has a member `forgoes_wakes`.
 #pragma once
 
+#include <concepts>
 #include <utility>
 #include <vector>
 
@@ -23,12 +24,14 @@
 
 namespace ductile::runtime {
 
-/// As run_rounds(). Plans every waiting item after every batch. Throws ContractBroken, and what the
-/// operator throws; the operator's data are then not to be used. Thread safety: one caller.
+/// As run_rounds(), for items that can be copied. Plans every waiting item after every batch.
+/// Throws ContractBroken, and what the operator throws; the operator's data are then not to be
+/// used. Thread safety: one caller.
 template <class Op>
-requires ColouredOperator<Op> || ReservingOperator<Op> RoundsReport
-run_rounds_checked(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
-                   const RoundsOptions& options = {}) {
+requires(ColouredOperator<Op> || ReservingOperator<Op>) &&
+    std::copyable<typename Op::Item> RoundsReport
+    run_rounds_checked(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
+                       const RoundsOptions& options = {}) {
   const Executor alone({.threads = 1, .deterministic = executor.deterministic()});
   return Rounds<Op, detail::OperatorCheck<Op>>(alone, op, options).run(std::move(work));
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -25,8 +26,14 @@ class ChunkList {
   bool full() const { return next_ == end_; }
   bool empty() const { return used_ == 0; }
 
-  /// Precondition: !full().
-  void append(T&& value) { std::construct_at(next_, std::move(value)), ++next_; }
+  /// Adds T{arguments...}; changes nothing if that throws. Precondition: !full().
+  template <class... Arguments>
+  void append(Arguments&&... arguments) {
+    // Where many lists grow in turn, the processor does not see by itself what comes next in each.
+    __builtin_prefetch(reinterpret_cast<const char*>(next_) + write_ahead, 1);
+    ::new (static_cast<void*>(next_)) T{std::forward<Arguments>(arguments)...};
+    ++next_;
+  }
 
   /// Starts the next chunk. Precondition: full(). Throws std::bad_alloc and changes nothing then.
   void grow() {
@@ -79,6 +86,7 @@ class ChunkList {
     }
   };
 
+  static constexpr std::size_t write_ahead = 512;  // bytes
   static constexpr std::size_t first_capacity = std::max<std::size_t>(1, 512 / sizeof(T));
   static constexpr std::size_t last_capacity = std::max<std::size_t>(1, 65536 / sizeof(T));
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/parallel_for.hpp"
@@ -12,7 +13,8 @@
 namespace ductile::runtime {
 
 /// Calls find(i, append) for i in [0, n); append(item) adds an item to the result. Items of a lower
-/// i come first. Thread safety: one caller; runs on the executor.
+/// i come first. Item is default-constructible and movable. Thread safety: one caller; runs on the
+/// executor.
 template <class Item, class Find>
 std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find) {
   const std::size_t block_size = std::clamp<std::size_t>(n / 4096, 16, 1024);
@@ -21,7 +23,7 @@ std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find
                       [&](std::size_t block, std::size_t begin, std::size_t end) {
                         std::vector<Item>& mine = found[block];
                         for (std::size_t i = begin; i < end; ++i)
-                          find(i, [&](const Item& item) { mine.push_back(item); });
+                          find(i, [&](Item item) { mine.push_back(std::move(item)); });
                       });
   std::vector<std::size_t> offset(found.size());
   std::size_t total = 0;
@@ -32,7 +34,7 @@ std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find
   std::vector<Item> all(total);
   parallel_for(executor, found.size(),
                [&](std::size_t b) {
-                 std::copy(found[b].begin(), found[b].end(),
+                 std::move(found[b].begin(), found[b].end(),
                            all.begin() + static_cast<std::ptrdiff_t>(offset[b]));
                },
                {.grain = 16, .serial_below = 64});

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,36 +32,37 @@ struct DeferredUpdateOptions {
   CommitOrder order = CommitOrder::any;
 };
 
-/// T is move-constructible. Between construction and destruction an object serves one loop or
-/// commit() at a time, on the executor it was made with.
+/// Updates stay where defer() put them, of whatever size and alignment T is. Between construction
+/// and destruction an object serves one loop or commit() at a time, on the executor it was made
+/// with.
 template <class T>
+requires std::move_constructible<T>
 class DeferredUpdate {
  public:
   explicit DeferredUpdate(const Executor& executor, DeferredUpdateOptions options = {})
       : executor_(executor),
         options_(options),
-        bucket_count_(
-            std::clamp(std::bit_ceil(8U * static_cast<unsigned>(executor.threads())), 64U, 1024U)),
+        bucket_mask_(
+            std::clamp(std::bit_ceil(8U * static_cast<unsigned>(executor.threads())), 64U, 1024U) -
+            1),
         lanes_(executor) {}
 
   /// Keeps `update` for `owner`. `source` is who defers it, for instance the item being applied;
   /// under by_source one source defers from one thread only between two commits.
   /// Thread safety: any thread of a loop of the executor, or the caller outside of loops.
-  void defer(std::uint32_t owner, std::uint64_t source, T update) {
-    Lane& lane = lanes_.mine();
-    if (!lane.plain && !lane.sourced) [[unlikely]]
-      make_buckets(lane);
-    const std::uint32_t number = bucket_of(owner);
-    if (by_source()) {
-      append(lane, number, lane.sourced[number], Sourced{source, owner, std::move(update)});
-    } else {
-      append(lane, number, lane.plain[number], Plain{owner, std::move(update)});
-    }
+  /// Throws std::bad_alloc, or what copying an update throws; it is not kept then.
+  void defer(std::uint32_t owner, std::uint64_t source, T&& update) {
+    keep(owner, source, std::move(update));
+  }
+  void defer(std::uint32_t owner, std::uint64_t source,
+             const T& update) requires std::copy_constructible<T> {
+    keep(owner, source, update);
   }
 
   /// Calls f(owner, update) for every update kept, each owner's on one thread, and forgets them.
-  /// f must not defer to this object. An exception thrown by f reaches the caller; the updates that
-  /// were not committed by then are dropped. Thread safety: one thread, no loop running.
+  /// f may move from an update, and must not defer to this object. An exception thrown by f reaches
+  /// the caller; the updates that were not committed by then are dropped. Thread safety: one
+  /// thread, no loop running.
   template <class F>
   void commit(F&& f) {
     const std::vector<std::uint32_t> buckets = touched_buckets();
@@ -100,11 +102,7 @@ class DeferredUpdate {
   /// Drops all updates and gives all buffers back. Thread safety: one thread, no loop running.
   void release() {
     clear();
-    for (std::size_t t = 0; t < lanes_.size(); ++t) {
-      for (std::uint32_t b = 0; b < bucket_count_; ++b)
-        visit_bucket(t, b, [](auto& bucket) { bucket.release(); });
-      lanes_[t].order = {};
-    }
+    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t] = Lane();
   }
 
  private:
@@ -134,25 +132,38 @@ class DeferredUpdate {
   static constexpr std::size_t small = 256;      // updates not worth waking a team for
   static constexpr unsigned neighbour_bits = 8;  // owners in a row that share a bucket
 
-  std::uint32_t bucket_of(std::uint32_t owner) const {
-    return (owner >> neighbour_bits) & (bucket_count_ - 1);
-  }
-
   bool by_source() const { return options_.order == CommitOrder::by_source; }
 
-  template <class Entry>
-  static void append(Lane& lane, std::uint32_t number, ChunkList<Entry>& bucket, Entry&& entry) {
+  /// As few steps as can be: this is what loops call for every update.
+  template <class Value>
+  void keep(std::uint32_t owner, std::uint64_t source, Value&& update) {
+    Lane& lane = lanes_.mine();
+    if (!lane.plain && !lane.sourced) [[unlikely]]
+      make_buckets(lane);
+    const std::uint32_t number = (owner >> neighbour_bits) & bucket_mask_;
+    if (lane.plain) {
+      append(lane, number, lane.plain[number], owner, std::forward<Value>(update));
+    } else {
+      append(lane, number, lane.sourced[number], source, owner, std::forward<Value>(update));
+    }
+  }
+
+  template <class Entry, class... Arguments>
+  static void append(Lane& lane, std::uint32_t number, ChunkList<Entry>& bucket,
+                     Arguments&&... arguments) {
     if (bucket.full()) [[unlikely]]
       make_room(lane, number, bucket);
-    bucket.append(std::forward<Entry>(entry));
+    bucket.append(std::forward<Arguments>(arguments)...);
   }
 
   /// Only the lanes of threads that defer something get any.
   [[gnu::noinline]] void make_buckets(Lane& lane) const {
+    const std::size_t count = std::size_t{bucket_mask_} + 1;
+    lane.touched.reserve(count);
     if (by_source()) {
-      lane.sourced = std::make_unique<ChunkList<Sourced>[]>(bucket_count_);
+      lane.sourced = std::make_unique<ChunkList<Sourced>[]>(count);
     } else {
-      lane.plain = std::make_unique<ChunkList<Plain>[]>(bucket_count_);
+      lane.plain = std::make_unique<ChunkList<Plain>[]>(count);
     }
   }
 
@@ -160,8 +171,9 @@ class DeferredUpdate {
   template <class Entry>
   [[gnu::noinline]] static void make_room(Lane& lane, std::uint32_t number,
                                           ChunkList<Entry>& bucket) {
-    if (bucket.empty()) lane.touched.push_back(number);
+    const bool first = bucket.empty();
     bucket.grow();
+    if (first) lane.touched.push_back(number);  // cannot throw: make_buckets() reserved
   }
 
   template <class Visit>
@@ -182,16 +194,32 @@ class DeferredUpdate {
         lanes_[t].plain[number].for_each([&](Plain& entry) { f(entry.owner, entry.update); });
   }
 
+  template <class Visit>
+  void for_each_sourced(std::uint32_t number, Visit&& visit) {
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      if (lanes_[t].sourced) lanes_[t].sourced[number].for_each(visit);
+  }
+
+  /// As it is where threads went through their parts of a loop in order and took none from others.
+  bool is_sorted(std::uint32_t number) {
+    std::uint64_t last = 0;
+    bool sorted = true;
+    for_each_sourced(number, [&](const Sourced& entry) {
+      sorted = sorted && last <= entry.source;
+      last = entry.source;
+    });
+    return sorted;
+  }
+
   /// Sorting a bucket by source alone is enough: it puts each of its owners' updates in order.
   template <class F>
   void commit_sorted(std::uint32_t number, F& f) {
+    const auto commit = [&](Sourced& entry) { f(entry.owner, entry.update); };
+    if (is_sorted(number)) return for_each_sourced(number, commit);
     auto& order = lanes_.mine().order;
     order.clear();
-    for (std::size_t t = 0; t < lanes_.size(); ++t)
-      if (lanes_[t].sourced)
-        lanes_[t].sourced[number].for_each(
-            [&](Sourced& entry) { order.append(entry.source, &entry); });
-    for (const auto& keyed : order.sorted()) f(keyed.value->owner, keyed.value->update);
+    for_each_sourced(number, [&](Sourced& entry) { order.append(entry.source, &entry); });
+    for (const auto& keyed : order.sorted()) commit(*keyed.value);
   }
 
   std::vector<std::uint32_t> touched_buckets() const {
@@ -214,7 +242,7 @@ class DeferredUpdate {
 
   Executor executor_;
   DeferredUpdateOptions options_;
-  std::uint32_t bucket_count_;  // a power of two
+  std::uint32_t bucket_mask_;  // their number, a power of two, less one
   PerThread<Lane> lanes_;
 };
 

@@ -29,14 +29,16 @@ class OppositeOrder;
 
 /// What any operator provides. `plan` and the conflict members only read; `apply` writes what the
 /// item owns and defers every other write; `commit` carries one deferred write out, on behalf of
-/// the owner of what it changes. All are called by many threads.
+/// the owner of what it changes. All are called by many threads. Plans and updates are movable;
+/// commit may take an update as Update&&. Items are movable, default-constructible and ordered by
+/// operator<; those of which neither is less are one and the same. Moving must not throw.
 template <class Op>
 concept Operator = requires(Op& op, const Op& reader, const typename Op::Item item,
-                            const typename Op::Plan plan, const typename Op::Update update,
+                            const typename Op::Plan plan, typename Op::Update update,
                             Commit<Op>& later, std::uint32_t owner) {
   { reader.plan(item) } -> std::same_as<std::optional<typename Op::Plan>>;
   op.apply(plan, later);
-  op.commit(owner, update);
+  op.commit(owner, std::move(update));
 };
 
 /// Items are numbers below item_count(); conflicts(item, visit) visits those it may not run beside
@@ -110,8 +112,11 @@ class Commit {
   using Update = typename Op::Update;
 
   /// Commits `update` on behalf of `owner` when all of the round has been applied.
-  void defer(std::uint32_t owner, Update update) {
+  void defer(std::uint32_t owner, Update&& update) {
     deferred_->defer(owner, source_, std::move(update));
+  }
+  void defer(std::uint32_t owner, const Update& update) requires std::copy_constructible<Update> {
+    deferred_->defer(owner, source_, update);
   }
 
   /// Considers an item again: its plan or its conflicts may have changed. If it is in this window
@@ -121,7 +126,7 @@ class Commit {
     // Relaxed: read after the barrier that ends the phase.
     if constexpr (ColouredOperator<Op>)
       std::atomic_ref(woken_at_[item]).store(window_, std::memory_order_relaxed);
-    woken_->append(item);
+    woken_->append(std::move(item));
   }
 
   /// Says that an item's conflicts may have changed but nothing else that matters to it: if it is

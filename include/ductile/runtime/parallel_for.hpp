@@ -17,7 +17,8 @@
 namespace ductile::runtime {
 
 struct LoopOptions {
-  std::size_t grain = 0;                    ///< iterations handed out at once; 0: chosen
+  std::size_t grain = 0;  ///< iterations handed out at once; 0: chosen. Stealing by atomics hands
+                          ///< out more while many are left.
   Schedule schedule = Schedule::automatic;  ///< automatic: the executor's
   std::size_t serial_below = 0;             ///< fewer iterations than this run on the caller alone
 };

@@ -3,21 +3,24 @@
 /// executor. The result does not depend on threads or timing as long as items of which neither is
 /// less are identical.
 /// Unsigned integers by radix, least significant digit first; other types by sorted blocks merged
-/// pairwise, each merge cut into pieces of equal length ("merge path").
+/// pairwise, each merge cut into pieces of equal length ("merge path"). What is large, or can only
+/// be moved, stays where it is until its order is known.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <concepts>
 #include <cstddef>
-#include <iterator>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/detail/radix_sort.hpp"
+#include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
@@ -28,66 +31,6 @@ namespace sort_detail {
 /// Of blocks that are sorted, merged or copied at once: enough of them for many threads.
 inline std::size_t block_size_of(std::size_t n) {
   return std::clamp<std::size_t>(std::bit_ceil(n / 256), 2048, 32768);
-}
-constexpr std::size_t radix_block = 16384;
-constexpr unsigned digit_bits = 11;
-constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
-using DigitCounts = std::array<std::size_t, digit_count>;
-
-template <class T>
-void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
-  parallel_for_ranges(executor, from.size(),
-                      [&](std::size_t begin, std::size_t end) {
-                        const std::span part = from.subspan(begin, end - begin);
-                        std::copy(part.begin(), part.end(), to.data() + begin);
-                      },
-                      {.grain = 8192});
-}
-
-/// One pass over the digit at `shift`, in blocks of `block` values.
-struct DigitPass {
-  std::size_t block;
-  std::vector<DigitCounts> counts;  // [block], of each digit; then where its values go
-  unsigned shift = 0;
-};
-
-/// Stable: sorts `from` by the pass's digit into `to`.
-template <std::unsigned_integral T>
-void scatter_by_digit(const Executor& executor, std::span<const T> from, std::span<T> to,
-                      DigitPass& pass) {
-  const auto digit = [shift = pass.shift](T value) {
-    return static_cast<std::size_t>(value >> shift) & (digit_count - 1);
-  };
-  const auto count = [&](std::size_t b, std::size_t begin, std::size_t end) {
-    pass.counts[b].fill(0);
-    for (std::size_t i = begin; i < end; ++i) ++pass.counts[b][digit(from[i])];
-  };
-  const auto scatter = [&](std::size_t b, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) to[pass.counts[b][digit(from[i])]++] = from[i];
-  };
-  parallel_for_blocks(executor, from.size(), pass.block, count);
-  std::size_t sum = 0;
-  for (std::size_t d = 0; d < digit_count; ++d)
-    for (DigitCounts& counts : pass.counts) sum += std::exchange(counts[d], sum);
-  parallel_for_blocks(executor, from.size(), pass.block, scatter);
-}
-
-template <std::unsigned_integral T>
-void radix_sort(const Executor& executor, std::span<T> values) {
-  const T top = parallel_reduce(
-      executor, values.size(), T{0}, [&](std::size_t i) { return values[i]; },
-      [](T a, T b) { return std::max(a, b); });
-  const auto bits = static_cast<unsigned>(std::bit_width(top));
-  const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
-  const std::size_t block = std::max(radix_block, (values.size() + most_blocks - 1) / most_blocks);
-  DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block)};
-  std::vector<T> scratch(values.size());
-  std::span<T> from = values, to = scratch;
-  for (; pass.shift < bits; pass.shift += digit_bits) {
-    scatter_by_digit<T>(executor, from, to, pass);
-    std::swap(from, to);
-  }
-  if (from.data() != values.data()) copy<T>(executor, from, values);
 }
 
 /// How many of the first `rank` elements of the merge of a and b come from a.
@@ -155,39 +98,85 @@ bool is_sorted(const Executor& executor, std::span<const T> values) {
   return sorted.load(std::memory_order_relaxed);
 }
 
+/// Stands for a value while its order is being found.
+template <class T>
+struct Reference {
+  T* value;
+  bool operator<(const Reference& other) const { return *value < *other.value; }
+};
+
+template <class T>
+constexpr bool cheap_to_move =
+    std::copyable<T>&& std::default_initializable<T>&& std::is_trivially_destructible_v<T> &&
+    sizeof(T) <= 64;
+
+template <class T>
+void sort_in_place(const Executor& executor, std::span<T> values) {
+  if (executor.threads() > 1 && values.size() > 4096) return merge_sort(executor, values);
+  std::sort(values.begin(), values.end());
+}
+
+/// Moves every value twice.
+template <class T>
+void sort_by_reference(const Executor& executor, std::span<T> values) {
+  const auto references = std::make_unique_for_overwrite<Reference<T>[]>(values.size());
+  const std::span order(references.get(), values.size());
+  const LoopOptions copying{.serial_below = 1024};
+  parallel_for(
+      executor, order.size(), [&](std::size_t i) { order[i] = {&values[i]}; }, copying);
+  sort_in_place(executor, order);
+  detail::Slots<T> sorted;
+  sorted.provide(executor, values.size());
+  parallel_for(
+      executor, order.size(), [&](std::size_t i) { sorted[i].emplace(std::move(*order[i].value)); },
+      copying);
+  parallel_for(
+      executor, order.size(),
+      [&](std::size_t i) {
+        values[i] = std::move(*sorted[i]);
+        sorted[i].reset();
+      },
+      copying);
+}
+
 }  // namespace sort_detail
 
-/// Sorts by operator<, a strict weak order. Throws std::bad_alloc. Thread safety: one thread.
-template <class T>
+/// Sorts by operator<, a strict weak order. T is movable. Throws std::bad_alloc; no value is
+/// lost then. Thread safety: one thread.
+template <std::movable T>
 void parallel_sort(const Executor& executor, std::span<T> values) {
   if (sort_detail::is_sorted<T>(executor, values)) return;
   if constexpr (std::unsigned_integral<T>) {
     if (values.size() >= 1024) return sort_detail::radix_sort(executor, values);
+    std::sort(values.begin(), values.end());
+  } else if constexpr (sort_detail::cheap_to_move<T>) {
+    sort_detail::sort_in_place(executor, values);
   } else {
-    if (executor.threads() > 1 && values.size() > 4096)
-      return sort_detail::merge_sort(executor, values);
+    sort_detail::sort_by_reference(executor, values);
   }
-  std::sort(values.begin(), values.end());
 }
 
 /// Moves the first of each run of equal items (neither is less) of a sorted range to the front, in
-/// order, and returns how many there are. Throws std::bad_alloc. Thread safety: one thread.
-template <class T>
+/// order, and returns how many there are. T is movable; what is behind them may have been moved
+/// from. Throws std::bad_alloc. Thread safety: one thread.
+template <std::movable T>
 std::size_t parallel_unique(const Executor& executor, std::span<T> sorted) {
   const std::size_t block_size = 8192;
   const auto same = [](const T& a, const T& b) { return !(a < b) && !(b < a); };
-  std::vector<T> before;  // [block], the item before it
-  for (std::size_t i = 0; i < sorted.size(); i += block_size) before.push_back(sorted[i - (i > 0)]);
-  std::vector<std::span<const T>> kept(before.size());
+  std::vector<std::span<T>> kept((sorted.size() + block_size - 1) / block_size);
+  // Whether a block begins with what the one before it ends with, asked before anything is moved.
+  std::vector<std::uint8_t> repeats(kept.size());
+  for (std::size_t b = 1; b < kept.size(); ++b)
+    repeats[b] = same(sorted[b * block_size - 1], sorted[b * block_size]);
   parallel_for_blocks(executor, sorted.size(), block_size,
                       [&](std::size_t block, std::size_t begin, std::size_t end) {
                         const std::span part = sorted.subspan(begin, end - begin);
                         const auto last = std::unique(part.begin(), part.end(), same);
-                        const bool repeats = block > 0 && same(before[block], part.front());
-                        kept[block] = {part.begin() + (repeats ? 1 : 0), last};
+                        kept[block] = {part.begin() + repeats[block], last};
                       });
   T* end = sorted.data();
-  for (const std::span<const T> part : kept) end = std::copy(part.begin(), part.end(), end);
+  for (const std::span<T> part : kept)
+    end = part.data() == end ? end + part.size() : std::move(part.begin(), part.end(), end);
   return static_cast<std::size_t>(end - sorted.data());
 }
 

@@ -7,18 +7,20 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <bit>
+#include <concepts>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <span>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "ductile/runtime/detail/batch.hpp"
+#include "ductile/runtime/detail/segments.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
@@ -33,65 +35,71 @@ enum class WorkOrder {
 struct WorklistOptions {
   WorkOrder order = WorkOrder::by_item;
   bool unique = false;       ///< drop duplicates; the items are then sorted as well
-  std::size_t batch = 1024;  ///< a private batch of this many items publishes itself
+  std::size_t batch = 1024;  ///< a private batch of this many items publishes itself; it is never
+                             ///< more than 64 KiB of them
 };
 
-/// An object serves one loop of its executor at a time.
+/// Items are moved from the batch to the common list, as it grows, and where they are sorted, so
+/// moving one must not throw; they need not be copyable, nor have operator< if they are not to be
+/// sorted. An object serves one loop of its executor at a time.
 template <class T>
-requires std::is_trivially_copyable_v<T>
+requires std::movable<T> && std::is_nothrow_move_constructible_v<T>
 class Worklist {
  public:
+  /// Throws std::invalid_argument if items are to be sorted that have no operator<.
   explicit Worklist(const Executor& executor, WorklistOptions options = {})
-      : executor_(executor), options_(options), batches_(executor) {
-    options_.batch = std::max<std::size_t>(1, options_.batch);
+      : executor_(executor), options_(options), lanes_(executor) {
+    if (!ordered && sorts())
+      throw std::invalid_argument("Worklist: items without operator< can only be in arrival order");
+    options_.batch = std::clamp<std::size_t>(options_.batch, 1, longest_batch);
   }
   ~Worklist() { release(); }
   Worklist(const Worklist&) = delete;
   Worklist& operator=(const Worklist&) = delete;
 
-  /// Adds an item to the calling thread's batch.
-  /// Thread safety: any thread of a loop of the executor, or the caller outside of loops.
-  void append(const T& item) {
-    detail::Batch<T>& batch = batches_.mine();
-    if (batch.full()) [[unlikely]]
-      make_room(batch);
-    batch.append(item);
-  }
+  /// Adds an item to the calling thread's batch. Throws std::bad_alloc, or what copying the item
+  /// throws. Thread safety: any thread of a loop of the executor, or the caller outside of loops.
+  void append(T&& item) { add(std::move(item)); }
+  void append(const T& item) requires std::copy_constructible<T> { add(item); }
 
   /// Places the calling thread's batch in the common list. Throws std::bad_alloc; the list can then
   /// only be cleared. Thread safety: as append().
-  void publish() { place(batches_.mine()); }
+  void publish() { place(lanes_.mine()); }
 
   /// Publishes what all threads still hold and readies items(). Thread safety: one thread, after
-  /// the loop. Throws std::bad_alloc.
+  /// the loop. Throws std::bad_alloc, as publish() does.
   void collect() {
-    for (std::size_t t = 0; t < batches_.size(); ++t) place(batches_[t]);
-    if (broken_.load(std::memory_order_relaxed)) throw std::bad_alloc();
-    size_ = length_.load(std::memory_order_relaxed);
-    if (size_ > segment_end(0)) gather();
-    const bool sorted = options_.unique || options_.order == WorkOrder::by_item;
-    if (sorted) parallel_sort(executor_, mutable_items());
-    if (options_.unique) {
-      size_ = parallel_unique(executor_, mutable_items());
-      length_.store(size_, std::memory_order_relaxed);
+    for (std::size_t t = 0; t < lanes_.size(); ++t) place(lanes_[t]);
+    if (broken()) throw std::bad_alloc();
+    const std::size_t all = length_.load(std::memory_order_relaxed);
+    places_.gather(executor_, all);
+    size_ = all;
+    if constexpr (ordered) {
+      if (sorts()) parallel_sort(executor_, mutable_items());
+      if (options_.unique) drop_after(parallel_unique(executor_, mutable_items()));
     }
   }
 
   /// The items as of the last collect(). Thread safety: any thread while nobody changes the list.
-  std::span<const T> items() const { return {segments_[0].load(std::memory_order_relaxed), size_}; }
+  std::span<const T> items() const { return {places_.first(), size_}; }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
   /// Moves the collected items out and leaves the list empty. Thread safety: one thread.
   std::vector<T> take() {
-    std::vector<T> all(items().begin(), items().end());
+    const std::span<T> all = mutable_items();
+    std::vector<T> taken(std::make_move_iterator(all.begin()), std::make_move_iterator(all.end()));
     clear();
-    return all;
+    return taken;
   }
 
   /// Forgets all items and keeps the memory. Thread safety: one thread.
   void clear() {
-    for (std::size_t t = 0; t < batches_.size(); ++t) batches_[t].clear();
+    destroy_placed();
+    for (std::size_t t = 0; t < lanes_.size(); ++t) {
+      lanes_[t].batch.clear();
+      lanes_[t].missing_begin = lanes_[t].missing_end = 0;
+    }
     length_.store(0, std::memory_order_relaxed);
     broken_.store(false, std::memory_order_relaxed);
     size_ = 0;
@@ -100,96 +108,100 @@ class Worklist {
   /// Forgets all items and gives the memory back. Thread safety: one thread.
   void release() {
     clear();
-    for (std::size_t t = 0; t < batches_.size(); ++t) batches_[t].release();
-    for (unsigned k = 0; k < segment_count; ++k) free_segment(k);
-    first_bits_ = initial_bits;
+    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].batch.release();
+    places_.release();
   }
 
  private:
-  // Segment 0 holds the first 2^first_bits_ items, segment k > 0 as many as all before it.
-  static constexpr unsigned initial_bits = 10;
-  static constexpr unsigned segment_count = 48;
+  struct Lane {
+    detail::Batch<T> batch;
+    std::size_t missing_begin = 0, missing_end = 0;  // places it was given and had no memory for
+  };
 
-  std::size_t segment_begin(unsigned k) const {
-    return k == 0 ? 0 : std::size_t{1} << (first_bits_ + k - 1);
-  }
-  std::size_t segment_end(unsigned k) const { return std::size_t{1} << (first_bits_ + k); }
-  std::size_t segment_capacity(unsigned k) const { return segment_end(k) - segment_begin(k); }
-  unsigned segment_of(std::size_t position) const {
-    return static_cast<unsigned>(std::bit_width(position >> first_bits_));
-  }
-  std::span<T> mutable_items() { return {segments_[0].load(std::memory_order_relaxed), size_}; }
+  static constexpr bool ordered = requires(const T& a) {
+    { a < a } -> std::convertible_to<bool>;
+  };
+  /// As many as fit into 64 KiB, at least one.
+  static constexpr std::size_t longest_batch = std::max<std::size_t>(1, 65536 / sizeof(T));
 
-  [[gnu::noinline]] void make_room(detail::Batch<T>& batch) {
-    if (batch.reserved()) {
-      place(batch);
+  bool sorts() const { return options_.unique || options_.order == WorkOrder::by_item; }
+
+  std::span<T> mutable_items() { return {places_.first(), size_}; }
+
+  template <class Item>
+  void add(Item&& item) {
+    Lane& lane = lanes_.mine();
+    if (lane.batch.full()) [[unlikely]]
+      make_room(lane);
+    lane.batch.append(std::forward<Item>(item));
+  }
+
+  [[gnu::noinline]] void make_room(Lane& lane) {
+    if (lane.batch.reserved()) {
+      place(lane);
     } else {
-      batch.reserve(options_.batch);
+      lane.batch.reserve(options_.batch);
     }
   }
 
-  void place(detail::Batch<T>& batch) {
-    const std::span<const T> items = batch.items();
+  void place(Lane& lane) {
+    const std::span<T> items = lane.batch.items();
     if (items.empty()) return;
+    if (broken()) throw std::bad_alloc();  // so that no thread misses memory twice
     // Relaxed: it hands out places only; the items are read after the barrier that ends the loop.
-    std::size_t to = length_.fetch_add(items.size(), std::memory_order_relaxed);
+    const std::size_t begin = length_.fetch_add(items.size(), std::memory_order_relaxed);
+    const std::size_t end = begin + items.size();
     try {
-      for (std::size_t from = 0; from < items.size();) {
-        const unsigned k = segment_of(to);
-        const std::size_t n = std::min(items.size() - from, segment_end(k) - to);
-        std::copy_n(items.data() + from, n, provide_segment(k) + (to - segment_begin(k)));
-        from += n, to += n;
-      }
+      places_.provide(begin, end);
     } catch (...) {
+      lane.missing_begin = begin, lane.missing_end = end;
       broken_.store(true, std::memory_order_relaxed);  // read after the loop's barrier
       throw;
     }
-    batch.clear();
-  }
-
-  T* provide_segment(unsigned k) {
-    // Acquire pairs with the release below: the allocator's writes to the memory come first.
-    T* segment = segments_[k].load(std::memory_order_acquire);
-    if (segment != nullptr) return segment;
-    T* const fresh = std::allocator<T>().allocate(segment_capacity(k));
-    if (segments_[k].compare_exchange_strong(segment, fresh, std::memory_order_acq_rel))
-      return fresh;
-    std::allocator<T>().deallocate(fresh, segment_capacity(k));
-    return segment;
-  }
-
-  void free_segment(unsigned k) {
-    if (T* const segment = segments_[k].exchange(nullptr, std::memory_order_relaxed))
-      std::allocator<T>().deallocate(segment, segment_capacity(k));
-  }
-
-  /// Makes segment 0 long enough for all items, now and in the rounds to come.
-  void gather() {
-    const auto bits = static_cast<unsigned>(std::bit_width(size_ - 1));
-    T* const whole = std::allocator<T>().allocate(std::size_t{1} << bits);
-    for (unsigned k = 0; k < segment_count && segment_begin(k) < size_; ++k) {
-      const T* const segment = segments_[k].load(std::memory_order_relaxed);
-      const std::size_t n = std::min(size_, segment_end(k)) - segment_begin(k);
-      T* const to = whole + segment_begin(k);
-      parallel_for_ranges(executor_, n,
-                          [=](std::size_t begin, std::size_t end) {
-                            std::copy_n(segment + begin, end - begin, to + begin);
-                          },
-                          {.grain = 16384, .serial_below = 65536});
+    for (std::size_t to = begin; to < end;) {
+      const std::size_t n = std::min(end, places_.end_after(to)) - to;
+      std::uninitialized_move_n(items.data() + (to - begin), n, places_.at(to));
+      to += n;
     }
-    for (unsigned k = 0; k < segment_count; ++k) free_segment(k);
-    first_bits_ = bits;
-    segments_[0].store(whole, std::memory_order_relaxed);
+    lane.batch.clear();
+  }
+
+  bool broken() const { return broken_.load(std::memory_order_relaxed); }
+
+  bool is_missing(std::size_t position) const {
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      if (lanes_[t].missing_begin <= position && position < lanes_[t].missing_end) return true;
+    return false;
+  }
+
+  void destroy_placed() {
+    if constexpr (std::is_trivially_destructible_v<T>) return;
+    const bool some_missing = broken();
+    const auto destroy = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (!some_missing || !is_missing(i)) std::destroy_at(places_.at(i));
+    };
+    parallel_for_ranges(executor_, length_.load(std::memory_order_relaxed), destroy,
+                        {.grain = 4096, .serial_below = 16384});
+  }
+
+  /// Keeps the first `count` collected items.
+  void drop_after(std::size_t count) {
+    if constexpr (!std::is_trivially_destructible_v<T>) {
+      const std::span<T> rest = mutable_items().subspan(count);
+      std::destroy(rest.begin(), rest.end());
+    }
+    size_ = count;
+    length_.store(count, std::memory_order_relaxed);
   }
 
   Executor executor_;
   WorklistOptions options_;
-  unsigned first_bits_ = initial_bits;
   std::size_t size_ = 0;  // items collected
-  PerThread<detail::Batch<T>> batches_;
-  std::array<std::atomic<T*>, segment_count> segments_{};
+  PerThread<Lane> lanes_;
+  detail::Segments<T> places_;
   alignas(128) std::atomic<std::size_t> length_{0};  // places handed out
-  alignas(128) std::atomic<bool> broken_{false};     // a place was handed out and not filled
+  alignas(128) std::atomic<bool> broken_{false};     // some were not filled
 };
 
 }  // namespace ductile::runtime

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/deferred_update.hpp"
@@ -50,8 +51,9 @@ bool is_void(const Op& op, const typename Op::Item& item) {
 
 template <class Op>
 void commit_all(Op& op, DeferredUpdate<typename Op::Update>& deferred) {
-  deferred.commit(
-      [&](std::uint32_t owner, const typename Op::Update& update) { op.commit(owner, update); });
+  deferred.commit([&](std::uint32_t owner, typename Op::Update& update) {
+    op.commit(owner, std::move(update));
+  });
 }
 
 /// A copy of the operator that has applied a batch in the opposite order, if it can be compared.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -39,6 +40,7 @@ class Rounds {
  public:
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
+  using Update = typename Op::Update;
 
   Rounds(const Executor& executor, Op& op, const RoundsOptions& options)
       : executor_(executor),
@@ -182,8 +184,9 @@ class Rounds {
     report_.lost += lost;
     adapt_share(winners.size(), lost);
     execute(winners);
-    const std::vector<Item> woken = take_woken();
-    rest.insert(rest.end(), woken.begin(), woken.end());
+    std::vector<Item> woken = take_woken();
+    rest.insert(rest.end(), std::make_move_iterator(woken.begin()),
+                std::make_move_iterator(woken.end()));
     return rest;
   }
 
@@ -237,8 +240,8 @@ class Rounds {
     return all;
   }
 
-  /// The items with one of these outcomes, in order.
-  std::vector<Item> select(const std::vector<Item>& work, const std::vector<std::uint8_t>& outcome,
+  /// Moves the items with one of these outcomes out of the work, in order.
+  std::vector<Item> select(std::vector<Item>& work, const std::vector<std::uint8_t>& outcome,
                            std::uint8_t wanted) {
     std::vector<std::uint32_t> offset((work.size() + block - 1) / block);
     parallel_for_blocks(
@@ -253,7 +256,7 @@ class Rounds {
         [&](std::size_t b, std::size_t begin, std::size_t end) {
           std::uint32_t at = offset[b];
           for (std::size_t i = begin; i < end; ++i)
-            if ((outcome[i] & wanted) != 0) selected[at++] = work[i];
+            if ((outcome[i] & wanted) != 0) selected[at++] = std::move(work[i]);
         },
         by_block);
     return selected;
@@ -294,7 +297,7 @@ class Rounds {
     report_.committed += updates;
     if (updates == 0) return;
     deferred_.commit(
-        [&](std::uint32_t owner, const typename Op::Update& update) { op_.commit(owner, update); });
+        [&](std::uint32_t owner, Update& update) { op_.commit(owner, std::move(update)); });
   }
 
   /// What memory takes to answer is about as long as planning two items.
@@ -347,7 +350,7 @@ class Rounds {
     std::vector<Item> batch;
     std::vector<std::optional<Plan>> plans;
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (stays(all[i])) batch.push_back(all[i]), plans.push_back(plans_[i]);
+      if (stays(all[i])) batch.push_back(all[i]), plans.push_back(std::move(plans_[i]));
     std::vector<Commit<Op>> commits(batch.size(), new_commit());
     for (std::size_t i = 0; i < batch.size(); ++i) commits[i].source_ = i;
     report_.applied += batch.size() - std::count(plans.begin(), plans.end(), std::nullopt);
@@ -440,7 +443,7 @@ class Rounds {
   [[no_unique_address]] Check check_;
   RoundsReport report_;
   Recording* recording_;  // null but for replays
-  DeferredUpdate<typename Op::Update> deferred_;
+  DeferredUpdate<Update> deferred_;
   Worklist<Item> woken_;
   std::uint32_t round_ = 0;
 

@@ -1,0 +1,130 @@
+/// @file
+/// A radix sort of unsigned integers on all threads of an executor, least significant digit first.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime::sort_detail {
+
+constexpr std::size_t radix_block = 16384;
+constexpr unsigned digit_bits = 11;
+constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
+using DigitCounts = std::array<std::size_t, digit_count>;
+
+template <class T>
+void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
+  parallel_for_ranges(executor, from.size(),
+                      [&](std::size_t begin, std::size_t end) {
+                        const std::span part = from.subspan(begin, end - begin);
+                        std::copy(part.begin(), part.end(), to.data() + begin);
+                      },
+                      {.grain = 8192});
+}
+
+/// One pass over the digit at `shift`, in blocks of `block` values.
+struct DigitPass {
+  std::size_t block;
+  std::vector<DigitCounts> counts;  // [block], of each digit; then where its values go
+  unsigned shift = 0;
+
+  std::size_t digit(std::unsigned_integral auto value) const {
+    return static_cast<std::size_t>(value >> shift) & (digit_count - 1);
+  }
+};
+
+/// Puts values where `place_of` says for their digit, and counts it up.
+template <std::unsigned_integral T>
+void scatter_singly(std::span<const T> values, T* to, const DigitPass& pass,
+                    DigitCounts& place_of) {
+  for (const T value : values) to[place_of[pass.digit(value)]++] = value;
+}
+
+/// The same, but gathers cache lines and writes whole ones.
+template <std::unsigned_integral T>
+void scatter_lines(std::span<const T> values, T* to, const DigitPass& pass, DigitCounts& place_of) {
+  constexpr std::size_t line = 64 / sizeof(T);
+  const auto gathered = std::make_unique_for_overwrite<std::array<T, line>[]>(digit_count);
+  const DigitCounts first = place_of;
+  const auto flush = [&](std::size_t digit, std::size_t end) {
+    const std::size_t line_begin = (end - 1) / line * line;
+    for (std::size_t i = std::max(line_begin, first[digit]); i < end; ++i)
+      to[i] = gathered[digit][i - line_begin];
+  };
+  for (const T value : values) {
+    const std::size_t digit = pass.digit(value), place = place_of[digit]++;
+    gathered[digit][place % line] = value;
+    if (place % line == line - 1) flush(digit, place + 1);
+  }
+  for (std::size_t digit = 0; digit < digit_count; ++digit)
+    if (place_of[digit] % line != 0 && place_of[digit] != first[digit])
+      flush(digit, place_of[digit]);
+}
+
+/// Whether many digits' places fall into the same set of a cache, which cannot hold them side by
+/// side: so it is with numbers that are all there, whose digits begin powers of two apart.
+/// `bytes` is the size of a value.
+inline bool crowd_a_cache_set(const DigitCounts& place_of, std::size_t bytes) {
+  constexpr std::size_t sets = 64, line = 64;
+  std::array<std::size_t, sets> digits_in{};
+  std::size_t used = 0;
+  for (std::size_t digit = 0; digit + 1 < digit_count; ++digit) {
+    if (place_of[digit] == place_of[digit + 1]) continue;
+    ++digits_in[place_of[digit] * bytes / line % sets];
+    ++used;
+  }
+  return *std::max_element(digits_in.begin(), digits_in.end()) > 4 * (used / sets + 4);
+}
+
+/// Stable: sorts `from` by the pass's digit into `to`.
+template <std::unsigned_integral T>
+void scatter_by_digit(const Executor& executor, std::span<const T> from, std::span<T> to,
+                      DigitPass& pass) {
+  const auto count = [&](std::size_t b, std::size_t begin, std::size_t end) {
+    pass.counts[b].fill(0);
+    for (std::size_t i = begin; i < end; ++i) ++pass.counts[b][pass.digit(from[i])];
+  };
+  const auto scatter = [&](std::size_t b, std::size_t begin, std::size_t end) {
+    const std::span values = from.subspan(begin, end - begin);
+    if (to.size_bytes() > 262144 && crowd_a_cache_set(pass.counts[b], sizeof(T))) {
+      scatter_lines(values, to.data(), pass, pass.counts[b]);
+    } else {
+      scatter_singly(values, to.data(), pass, pass.counts[b]);
+    }
+  };
+  parallel_for_blocks(executor, from.size(), pass.block, count);
+  std::size_t sum = 0;
+  for (std::size_t d = 0; d < digit_count; ++d)
+    for (DigitCounts& counts : pass.counts) sum += std::exchange(counts[d], sum);
+  parallel_for_blocks(executor, from.size(), pass.block, scatter);
+}
+
+template <std::unsigned_integral T>
+void radix_sort(const Executor& executor, std::span<T> values) {
+  const T top = parallel_reduce(
+      executor, values.size(), T{0}, [&](std::size_t i) { return values[i]; },
+      [](T a, T b) { return std::max(a, b); });
+  const auto bits = static_cast<unsigned>(std::bit_width(top));
+  const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
+  const std::size_t block = std::max(radix_block, (values.size() + most_blocks - 1) / most_blocks);
+  DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block)};
+  std::vector<T> scratch(values.size());
+  std::span<T> from = values, to = scratch;
+  for (; pass.shift < bits; pass.shift += digit_bits) {
+    scatter_by_digit<T>(executor, from, to, pass);
+    std::swap(from, to);
+  }
+  if (from.data() != values.data()) copy<T>(executor, from, values);
+}
+
+}  // namespace ductile::runtime::sort_detail
