@@ -7,17 +7,41 @@ namespace ductile::runtime {
 
 namespace detail {
 
-std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of) {
-  constexpr std::size_t block = 4096;
-  std::vector<std::uint32_t> most((colour_of.size() + block - 1) / block);
-  parallel_for_blocks(executor, colour_of.size(), block,
-                      [&](std::size_t b, std::size_t begin, std::size_t end) {
-                        std::uint32_t greatest = 0;
-                        for (std::size_t i = begin; i < end; ++i)
-                          greatest = std::max(greatest, colour_of[i] + 1);  // none counts as 0
-                        most[b] = greatest;
-                      });
+namespace {
+
+/// The greatest of what greatest_in(begin, end) says of the blocks of [0, n); 0 if there are none.
+template <class GreatestIn>
+std::uint32_t greatest(const Executor& executor, std::size_t n, GreatestIn greatest_in) {
+  constexpr std::size_t block = 16384;
+  std::vector<std::uint32_t> most((n + block - 1) / block);
+  parallel_for_blocks(
+      executor, n, block,
+      [&](std::size_t b, std::size_t begin, std::size_t end) { most[b] = greatest_in(begin, end); },
+      {.grain = 1, .serial_below = 2});
   return most.empty() ? 0 : *std::max_element(most.begin(), most.end());
+}
+
+}  // namespace
+
+std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
+                    std::span<std::uint32_t> colour_of) {
+  return greatest(executor, bytes.size(), [&](std::size_t begin, std::size_t end) {
+    std::uint8_t most = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      most = std::max(most, bytes[i]);
+      colour_of[i] = bytes[i];
+    }
+    return std::uint32_t{most} + 1;
+  });
+}
+
+std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of) {
+  return greatest(executor, colour_of.size(), [&](std::size_t begin, std::size_t end) {
+    std::uint32_t most = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      most = std::max(most, colour_of[i] + 1);  // none counts as 0
+    return most;
+  });
 }
 
 }  // namespace detail

@@ -44,22 +44,14 @@ void add_floor() {
           });
 }
 
-void add_ductile(const std::string& name, ColouringMethod method,
-                 bool (*takes_part)(const GraphCase&) = every_graph) {
+void add_ductile(const std::string& name, ColouringMethod method) {
   const bool serial = method == ColouringMethod::serial;
-  add_colourings(
-      "ductile." + name, serial ? std::vector{1} : thread_counts(),
-      [method](const Rows& graph, int threads) {
-        return [&graph, method, executor = Executor({.threads = threads})] {
-          return colour(executor, graph.view(), method);
-        };
-      },
-      takes_part);
-}
-
-/// By priority, many neighbours of a hub wait for one another, and it takes far longer than others.
-bool unless_long(const GraphCase& graph_case) {
-  return extent() != Extent::standard || graph_case.name != "rmat_skewed";
+  add_colourings("ductile." + name, serial ? std::vector{1} : thread_counts(),
+                 [method](const Rows& graph, int threads) {
+                   return [&graph, method, executor = Executor({.threads = threads})] {
+                     return colour(executor, graph.view(), method);
+                   };
+                 });
 }
 
 Colouring colour_by_boost(const Rows& graph) {
@@ -107,7 +99,7 @@ void add_all() {
   add_ductile("blocked", ColouringMethod::blocked);
   add_ductile("detect_again", ColouringMethod::detect_again);
   add_ductile("two_phase", ColouringMethod::two_phase);
-  add_ductile("by_priority", ColouringMethod::by_priority, unless_long);
+  add_ductile("by_priority", ColouringMethod::by_priority);
   add_colourings("boost.sequential", {1}, [](const Rows& graph, int) {
     return [&graph] { return colour_by_boost(graph); };
   });

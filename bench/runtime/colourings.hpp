@@ -20,16 +20,12 @@ inline std::vector<unsigned> graph_scales() {
   return by_extent<std::vector<unsigned>>({14}, {20}, {17, 20, 22});
 }
 
-inline bool every_graph(const GraphCase&) { return true; }
-
 /// `make(rows, threads)` returns a function that colours these rows and returns a
 /// runtime::Colouring. Counter: colours.
 template <class Make>
-void add_colourings(const std::string& candidate, const std::vector<int>& threads_of, Make make,
-                    bool (*takes_part)(const GraphCase&) = every_graph) {
+void add_colourings(const std::string& candidate, const std::vector<int>& threads_of, Make make) {
   for (const unsigned scale : graph_scales())
-    for (const GraphCase& graph_case : graph_cases()) {
-      if (!takes_part(graph_case)) continue;
+    for (const GraphCase& graph_case : graph_cases())
       add("colouring/" + graph_case.name + "_2^" + std::to_string(scale) + '/' + candidate,
           threads_of, [&graph_case, scale, make](benchmark::State& state, int threads) {
             const Rows& graph = graph_of(graph_case, scale);
@@ -40,7 +36,6 @@ void add_colourings(const std::string& candidate, const std::vector<int>& thread
               state.SkipWithError("neighbours have the same colour");
             state.counters["colours"] = colouring.count;
           });
-    }
 }
 
 /// Candidates of Kokkos Kernels; in a file of its own, as it is there only where it is installed.

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/hash.hpp"
@@ -85,17 +87,91 @@ TEST(Colouring, OfTheSquareSeparatesVerticesTwoEdgesApart) {
     }
 }
 
-/// The vertices of a graph whose hash leaves a remainder below `share` of 16.
+/// Serial first-fit in the order of the hashed priority.
+std::vector<std::uint32_t> in_order_of_priority(const test::TestGraph& graph) {
+  std::vector<std::uint32_t> order(graph.vertex_count());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [](std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); });
+  std::vector<std::uint32_t> colour_of(order.size(), Colouring::none);
+  for (const std::uint32_t v : order) {
+    std::vector<bool> taken(order.size() + 1);
+    graph.view().for_each_neighbour(v, [&](std::uint32_t u) {
+      if (colour_of[u] != Colouring::none) taken[colour_of[u]] = true;
+    });
+    colour_of[v] =
+        static_cast<std::uint32_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
+  }
+  return colour_of;
+}
+
+TEST(Colouring, ByPriorityIsFirstFitInItsOrder) {
+  for (const auto& graph : {test::rmat_graph(9, 6000, 1), test::random_graph(700, 3000, 2),
+                            test::star_graph(800), test::clique_graph(900, 90)})
+    for (int threads : {1, 3})
+      EXPECT_EQ(colour(Executor({.threads = threads}), graph.view(), ColouringMethod::by_priority)
+                    .colour_of,
+                in_order_of_priority(graph))
+          << graph.name;
+}
+
+/// Cliques of sizes that just fit into words of each width, and just do not.
+TEST(Colouring, TakesAsManyColoursAsAreNeeded) {
+  for (const std::uint32_t clique : {62U, 63U, 64U, 254U, 255U, 1100U}) {
+    test::Edges edges;
+    for (std::uint32_t u = 0; u < clique; ++u)
+      for (std::uint32_t v = 0; v < u; ++v) edges.emplace_back(5 * u, 5 * v);
+    const auto graph = test::make_graph("clique and lone vertices", 5 * clique, std::move(edges));
+    const int threads = clique < 1000 ? 4 : 2;
+    const Executor executor({.threads = threads});
+    for (const ColouringMethod method : methods) {
+      const Colouring colouring = colour(executor, graph.view(), method);
+      EXPECT_EQ(colouring.count, clique) << static_cast<int>(method);
+      EXPECT_TRUE(is_proper(executor, graph.view(), colouring)) << clique;
+    }
+  }
+}
+
+/// Windows that are coloured at the same time share many edges here.
+TEST(Colouring, FindsAllClashesOfSpeculation) {
+  for (const auto& graph : {test::mesh_graph(300), test::shuffled(test::mesh_graph(300), 7),
+                            test::random_graph(20000, 400000, 8), test::rmat_graph(14, 200000, 9)})
+    for (const ColouringMethod method : {ColouringMethod::detect_again, ColouringMethod::two_phase})
+      for (int threads : {2, 3, 4, 8}) {
+        const Executor executor({.threads = threads});
+        for (int run = 0; run < 5; ++run)
+          EXPECT_TRUE(is_proper(executor, graph.view(), colour(executor, graph.view(), method)))
+              << graph.name << ", threads " << threads;
+      }
+}
+
+TEST(Colouring, OfACallbackIsThatOfItsRows) {
+  const auto graph = test::random_graph(5000, 30000, 10);
+  const CsrGraph<> rows = graph.view();
+  const auto callback = callback_graph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {
+    rows.for_each_neighbour(v, visit);
+  });
+  const Executor executor({.threads = 2});
+  for (const ColouringMethod method :
+       {ColouringMethod::serial, ColouringMethod::blocked, ColouringMethod::by_priority})
+    EXPECT_EQ(colour(executor, callback, method).colour_of,
+              colour(executor, rows, method).colour_of);
+}
+
+/// The vertices of a graph whose hash leaves a remainder below `share` of 64.
 std::vector<std::uint32_t> some_vertices(const test::TestGraph& graph, std::uint32_t share) {
   std::vector<std::uint32_t> some;
   for (std::uint32_t v = 0; v + 1 < graph.offset.size(); ++v)
-    if (mix32(v) % 16 < share) some.push_back(v);
+    if (mix32(v) % 64 < share) some.push_back(v);
   return some;
 }
 
+/// 1 of 64 is few: they go one after the other, or by priority in the largest graph.
 TEST(Recolour, KeepsTheOthersAndIsTheSameAtAnyThreadCount) {
-  for (const auto& graph : test::test_graphs())
-    for (std::uint32_t share : {1U, 12U}) {
+  std::vector<test::TestGraph> graphs = test::test_graphs();
+  graphs.push_back(test::mesh_graph(260));
+  for (const auto& graph : graphs)
+    for (std::uint32_t share : {1U, 4U, 48U}) {
       const auto some = some_vertices(graph, share);
       Colouring start = colour(Executor({.threads = 1}), graph.view());
       Colouring first;
@@ -115,7 +191,7 @@ TEST(Recolour, KeepsTheOthersAndIsTheSameAtAnyThreadCount) {
 TEST(Recolour, ColoursAPartAsIfTheRestWereNotThere) {
   for (const auto& graph : test::test_graphs())
     for (int threads : {1, 4}) {
-      const auto some = some_vertices(graph, 9);
+      const auto some = some_vertices(graph, 36);
       Colouring part{std::vector<std::uint32_t>(graph.view().vertex_count(), Colouring::none), 0};
       recolour(Executor({.threads = threads}), graph.view(), some, part);
       EXPECT_TRUE(test::edges_are_properly_coloured(graph, part.colour_of, Colouring::none));

@@ -4,7 +4,11 @@
 
 #include <cstdint>
 #include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
+#include "ductile/runtime/csr_rows.hpp"
 #include "graphs.hpp"
 
 namespace ductile::runtime {
@@ -25,9 +29,20 @@ TEST(Graph, ViewsShowTheNeighbours) {
   const auto same = callback_graph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {
     rows.for_each_neighbour(v, visit);
   });
-  static_assert(Graph<decltype(same)>);
+  static_assert(Graph<decltype(same)> && !PrefetchingGraph<decltype(same)>);
+  static_assert(PrefetchingGraph<CsrGraph<>>);
   for (std::uint32_t v = 0; v < 16; ++v) EXPECT_EQ(neighbours(same, v), neighbours(rows, v));
   EXPECT_EQ(CsrGraph<>{}.vertex_count(), 0U);
+}
+
+TEST(Graph, RowsHoldBothDirectionsInTheOrderOfTheEdges) {
+  const std::pair<std::uint32_t, std::uint32_t> edges[] = {{2, 0}, {0, 1}, {1, 1}, {0, 2}};
+  const CsrRows rows = csr_rows(4, edges);
+  EXPECT_EQ(rows.vertex_count(), 4U);
+  EXPECT_EQ(rows.offset, (std::vector<std::uint32_t>{0, 3, 6, 8, 8}));
+  EXPECT_EQ(rows.neighbour, (std::vector<std::uint32_t>{2, 1, 2, 0, 1, 1, 0, 0}));
+  EXPECT_EQ(csr_rows(0, {}).view().vertex_count(), 0U);
+  EXPECT_THROW(csr_rows(2, edges), std::out_of_range);
 }
 
 TEST(Graph, SquareJoinsVerticesTwoEdgesApart) {

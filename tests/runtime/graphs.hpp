@@ -11,31 +11,20 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/graph.hpp"
+#include "ductile/runtime/csr_rows.hpp"
 
 namespace ductile::runtime::test {
 
 using Edges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-struct TestGraph {
+struct TestGraph : CsrRows {
   std::string name;
   Edges edges;
-  std::vector<std::uint32_t> offset, neighbour;
-
-  CsrGraph<> view() const { return {offset, neighbour}; }
 };
 
 inline TestGraph make_graph(std::string name, std::uint32_t vertices, Edges edges) {
-  TestGraph graph{std::move(name), std::move(edges), std::vector<std::uint32_t>(vertices + 1), {}};
-  for (const auto& [u, v] : graph.edges) ++graph.offset[u + 1], ++graph.offset[v + 1];
-  std::partial_sum(graph.offset.begin(), graph.offset.end(), graph.offset.begin());
-  graph.neighbour.resize(graph.offset.back());
-  std::vector<std::uint32_t> next = graph.offset;
-  for (const auto& [u, v] : graph.edges) {
-    graph.neighbour[next[u]++] = v;
-    graph.neighbour[next[v]++] = u;
-  }
-  return graph;
+  CsrRows rows = csr_rows(vertices, edges);
+  return {std::move(rows), std::move(name), std::move(edges)};
 }
 
 /// Loops and repeated edges included.

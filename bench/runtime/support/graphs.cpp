@@ -98,18 +98,7 @@ void join(const Cells& cells, std::array<std::size_t, 2> pair, double radius, Ed
 
 }  // namespace
 
-Rows rows(const EdgeList& list) {
-  Rows graph{std::vector<std::uint32_t>(list.vertex_count + 1), {}};
-  for (const auto& [u, v] : list.edges) ++graph.offset.at(u + 1), ++graph.offset.at(v + 1);
-  std::partial_sum(graph.offset.begin(), graph.offset.end(), graph.offset.begin());
-  graph.neighbour.resize(graph.offset.back());
-  std::vector<std::uint32_t> next = graph.offset;
-  for (const auto& [u, v] : list.edges) {
-    graph.neighbour[next[u]++] = v;
-    graph.neighbour[next[v]++] = u;
-  }
-  return graph;
-}
+Rows rows(const EdgeList& list) { return runtime::csr_rows(list.vertex_count, list.edges); }
 
 EdgeList mesh(std::uint32_t side, int dim) {
   const std::uint32_t depth = dim == 3 ? side : 1;

@@ -8,17 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/graph.hpp"
+#include "ductile/runtime/csr_rows.hpp"
 
 namespace ductile::bench {
 
-/// Compressed rows of a symmetric graph.
-struct Rows {
-  std::vector<std::uint32_t> offset, neighbour;  ///< [vertex + 1]; [offset.back()]
-
-  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(offset.size() - 1); }
-  runtime::CsrGraph<> view() const { return {offset, neighbour}; }
-};
+using Rows = runtime::CsrRows;
 
 /// Each edge once; loops are not allowed, repetitions are.
 struct EdgeList {

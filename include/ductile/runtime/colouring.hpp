@@ -46,28 +46,39 @@ namespace detail {
 
 constexpr std::size_t few_vertices = 256;  // coloured on the caller, in order
 
-/// Runs a method with colours of one byte or, if there are too many, of four.
-template <class Method, Graph G>
-void colour_all(const Executor& executor, const G& graph, std::vector<std::uint32_t>& colour_of,
-                const std::uint32_t* list = nullptr) {
-  const std::size_t n = colour_of.size();
-  try {
-    std::vector<std::uint8_t> bytes(n, Colours<std::uint8_t>::none);
-    Method::run(executor, graph, VertexSet{n, list}, Colours(std::span(bytes)));
-    const auto widen = [&](std::size_t begin, std::size_t end) {
-      std::copy(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
-                bytes.begin() + static_cast<std::ptrdiff_t>(end),
-                colour_of.begin() + static_cast<std::ptrdiff_t>(begin));
-    };
-    parallel_for_ranges(executor, n, widen, {.grain = 4096, .serial_below = 16384});
-  } catch (const TooManyColours&) {
-    std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
-    Method::run(executor, graph, VertexSet{n, list}, Colours(std::span(colour_of)));
-  }
-}
+/// Copies colours of one byte to words of four. Returns one more than the greatest.
+std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
+                    std::span<std::uint32_t> colour_of);
 
 /// One more than the greatest colour.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
+
+/// Colours all by a method, with words of one byte. Returns one more than the greatest colour.
+template <class Method, class Width, Graph G>
+std::uint32_t colour_in_bytes(const Executor& executor, const G& graph,
+                              std::vector<std::uint32_t>& colour_of) {
+  std::vector<std::uint8_t> bytes(colour_of.size(), Colours<Width>::none);
+  Method::run(executor, graph, VertexSet{bytes.size()}, Colours<Width>(bytes));
+  return widen(executor, bytes, colour_of);
+}
+
+/// The same, with the shortest words that hold the colours. Hubs, which take many, often come
+/// first, so that it shows soon what does not.
+template <class Method, Graph G>
+std::uint32_t colour_all(const Executor& executor, const G& graph,
+                         std::vector<std::uint32_t>& colour_of) {
+  try {
+    return colour_in_bytes<Method, Narrow>(executor, graph, colour_of);
+  } catch (const TooManyColours&) {
+  }
+  try {
+    return colour_in_bytes<Method, OneByte>(executor, graph, colour_of);
+  } catch (const TooManyColours&) {
+  }
+  std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
+  Method::run(executor, graph, VertexSet{colour_of.size()}, Colours<FourBytes>(colour_of));
+  return colour_count(executor, colour_of);
+}
 
 }  // namespace detail
 
@@ -83,31 +94,33 @@ Colouring colour(const Executor& executor, const G& graph,
   const bool by_degree =
       method == ColouringMethod::largest_first || method == ColouringMethod::largest_log_first;
   if (colour_of.size() < detail::few_vertices && !by_degree) method = ColouringMethod::serial;
+  const auto by = [&]<class Method>(Method) {
+    colouring.count = detail::colour_all<Method>(executor, graph, colour_of);
+  };
   switch (method) {
     case ColouringMethod::serial:
-      detail::colour_all<detail::Serial>(executor, graph, colour_of);
+      by(detail::Serial());
       break;
-    case ColouringMethod::automatic:  // blocked is deterministic and no slower than the others
+    case ColouringMethod::automatic:  // blocked is deterministic and not far from the fastest
     case ColouringMethod::blocked:
-      detail::colour_all<detail::Blocked>(executor, graph, colour_of);
+      by(detail::Blocked());
       break;
     case ColouringMethod::by_priority:
-      detail::colour_all<detail::ByPriority>(executor, graph, colour_of);
+      by(detail::ByPriority());
       break;
     case ColouringMethod::largest_first:
-      detail::colour_all<detail::ByDegree<false>>(executor, graph, colour_of);
+      by(detail::ByDegree<false>());
       break;
     case ColouringMethod::largest_log_first:
-      detail::colour_all<detail::ByDegree<true>>(executor, graph, colour_of);
+      by(detail::ByDegree<true>());
       break;
     case ColouringMethod::detect_again:
-      detail::colour_all<detail::DetectAgain>(executor, graph, colour_of);
+      by(detail::DetectAgain());
       break;
     case ColouringMethod::two_phase:
-      detail::colour_all<detail::TwoPhase>(executor, graph, colour_of);
+      by(detail::TwoPhase());
       break;
   }
-  colouring.count = detail::colour_count(executor, colour_of);
   return colouring;
 }
 
@@ -124,9 +137,12 @@ void recolour(const Executor& executor, const G& graph, std::span<const std::uin
       executor, vertices.size(), [&](std::size_t i) { colour_of[vertices[i]] = Colouring::none; },
       loop);
   const detail::VertexSet set{vertices.size(), vertices.data()};
-  const detail::Colours colours{std::span(colour_of)};
+  const detail::Colours<detail::FourBytes> colours(colour_of);
   if (vertices.size() < detail::few_vertices) {
     detail::Serial::run(executor, graph, set, colours);
+  } else if (vertices.size() < colour_of.size() / 16) {
+    // Scattered vertices hardly wait for each other, and blocks would cost as if all were there.
+    detail::colour_by_priority(executor, graph, vertices, colours, detail::outranks);
   } else {
     detail::Blocked::run(executor, graph, set, colours);
   }

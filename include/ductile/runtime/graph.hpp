@@ -22,6 +22,15 @@ concept Graph = requires(const G& graph, std::uint32_t v) {
   graph.for_each_neighbour(v, [](std::uint32_t) {});
 };
 
+/// A graph that can fetch a vertex's neighbours into the cache ahead of their use: prefetch(v). It
+/// costs no more than a few instructions and changes nothing. Worth having where the rows of many
+/// vertices are read one after the other; the processor alone does not see that coming where
+/// everything else hits the cache. Thread safety: as visiting.
+template <class G>
+concept PrefetchingGraph = Graph<G> && requires(const G& graph, std::uint32_t v) {
+  graph.prefetch(v);
+};
+
 /// Compressed rows: the neighbours of v are neighbour[offset[v]] to neighbour[offset[v + 1] - 1].
 template <std::unsigned_integral Offset = std::uint32_t>
 struct CsrGraph {
@@ -34,6 +43,7 @@ struct CsrGraph {
     const Offset end = offset[std::size_t{v} + 1];
     for (Offset i = offset[v]; i < end; ++i) visit(neighbour[i]);
   }
+  void prefetch(std::uint32_t v) const { __builtin_prefetch(neighbour.data() + offset[v]); }
 };
 
 /// A graph known through a function neighbours_of(v, visit).

@@ -68,10 +68,28 @@ struct BlockLayout {
   }
 };
 
-template <class Word, Graph G>
+/// The colours but those of vertices that get theirs at the same time as v.
+template <class Run>
+class SeenFrom {
+ public:
+  using Word = typename Run::Word;
+  static constexpr Word most = Run::most;
+
+  SeenFrom(const Run& run, std::uint32_t v) : run_(&run), v_(v) {}
+  Word operator[](std::uint32_t u) const { return run_->colour_seen(u, v_); }
+
+ private:
+  const Run* run_;
+  std::uint32_t v_;
+};
+
+template <class Width, Graph G>
 class BlockedRun {
  public:
-  BlockedRun(const Executor& executor, const G& graph, VertexSet vertices, Colours<Word> colours)
+  using Word = typename Width::Word;
+  static constexpr Word most = Width::most;
+
+  BlockedRun(const Executor& executor, const G& graph, VertexSet vertices, Colours<Width> colours)
       : executor_(executor),
         graph_(graph),
         vertices_(vertices),
@@ -90,8 +108,13 @@ class BlockedRun {
     const auto append_if_lost = [&](std::size_t v, auto&& append) {
       if (lost_[v]) append(static_cast<std::uint32_t>(v));
     };
-    auto losers = parallel_collect<std::uint32_t>(executor_, lost_.size(), append_if_lost);
-    colour_by_priority(executor_, graph_, std::move(losers), colours_, outranks);
+    const auto losers = parallel_collect<std::uint32_t>(executor_, lost_.size(), append_if_lost);
+    colour_by_priority(executor_, graph_, losers, colours_, outranks);
+  }
+
+  /// The colour of u as v sees it: none if it is coloured at the same time.
+  Word colour_seen(std::uint32_t u, std::uint32_t v) const {
+    return layout_.apart()(u, v) && is_given(u) ? Colours<Width>::none : colours_[u];
   }
 
  private:
@@ -100,24 +123,27 @@ class BlockedRun {
   void colour_block(std::size_t block) {
     const auto [begin, end] = vertices_in(block);
     // Copies, which the compiler keeps in registers across the calls in the loop.
+    const auto& rows = in_registers(graph_);
     const BlockLayout::Apart apart = layout_.apart();
-    const Colours<Word> colours = colours_;
+    const Colours<Width> colours = colours_;
     const VertexSet vertices = vertices_;
     for (std::size_t i = begin; i < end; ++i) {
+      prefetch_after(rows, vertices, i);
       const std::uint32_t v = vertices[i];
-      const auto counts = [this, apart, v](std::uint32_t u) {
+      TakenColours<SeenFrom<BlockedRun>> seen;
+      rows.for_each_neighbour(v, [&](std::uint32_t u) {
         if (apart(u, v)) [[unlikely]]
-          return !note_if_blind(u, v);
-        return true;
-      };
-      colours.set(v, least_free(graph_, v, colours, counts));
+          if (note_if_blind(u, v)) return;
+        seen.add(colours[u]);
+      });
+      colours.set(v, least_free(rows, v, SeenFrom(*this, v), seen));
     }
   }
 
   /// Whether u and v, which are apart, get their colours at the same time, and not only v.
   /// Not inlined, so as to keep the caller's loop tight.
   [[gnu::noinline, gnu::cold]] bool note_if_blind(std::uint32_t u, std::uint32_t v) {
-    if (vertices_.list != nullptr && !contains(u)) return false;
+    if (!is_given(u)) return false;
     if (u < v) blind_.mine().emplace_back(u, v);  // one of the two notes it
     return true;
   }
@@ -136,8 +162,9 @@ class BlockedRun {
     return {position(begin), position(end)};
   }
 
-  bool contains(std::uint32_t v) const {
-    return std::binary_search(vertices_.list, vertices_.list + vertices_.count, v);
+  bool is_given(std::uint32_t v) const {
+    return vertices_.list == nullptr ||
+           std::binary_search(vertices_.list, vertices_.list + vertices_.count, v);
   }
 
   void mark_losers() {
@@ -158,17 +185,17 @@ class BlockedRun {
   const Executor& executor_;
   const G& graph_;
   VertexSet vertices_;
-  Colours<Word> colours_;
+  Colours<Width> colours_;
   BlockLayout layout_;
   PerThread<std::vector<Pair>> blind_;  // neighbours coloured at the same time
   std::vector<std::uint8_t> lost_;      // [vertex], its colour is also that of one that outranks it
 };
 
 struct Blocked {
-  template <class Word, Graph G>
+  template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
-                  Colours<Word> colours) {
-    BlockedRun<Word, G>(executor, graph, vertices, colours).run();
+                  Colours<Width> colours) {
+    BlockedRun<Width, G>(executor, graph, vertices, colours).run();
   }
 };
 

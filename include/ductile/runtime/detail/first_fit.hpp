@@ -1,17 +1,19 @@
 /// @file
 /// What all colouring methods share: the words that hold colours while a method runs, the set of
 /// vertices it colours, and first-fit for one vertex.
-/// While a method runs a colour takes one byte, or four if a byte is too short or the colours are
-/// already in a caller's array. Colours are read and written as relaxed atomics: a colour carries
+/// While a method runs a colour takes one byte, or four if there are many or they are already in a
+/// caller's array. Colours are read and written as relaxed atomics: a colour carries
 /// no other data, and what must not be missed is ordered by the barrier that ends a loop.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
@@ -28,14 +30,33 @@ struct VertexSet {
   }
 };
 
-/// A colour does not fit into the words; the colouring starts again with longer ones.
+/// There is no such colour in these words; the colouring starts again with longer ones.
 struct TooManyColours {};
 
-template <std::unsigned_integral Word>
+// ---- Widths: the words that hold colours, and the greatest colour, which leaves room for two
+// marks
+
+/// So few colours that TakenColours has room for them all: no look at how great a colour is.
+struct Narrow {
+  using Word = std::uint8_t;
+  static constexpr Word most = 61;
+};
+struct OneByte {
+  using Word = std::uint8_t;
+  static constexpr Word most = 253;
+};
+struct FourBytes {
+  using Word = std::uint32_t;
+  static constexpr Word most = 0xfffffffd;
+};
+
+template <class Width>
 class Colours {
  public:
+  using Word = typename Width::Word;
   static constexpr Word none = static_cast<Word>(~Word{0});  ///< not yet coloured
   static constexpr Word waiting = none - 1;                  ///< lost its colour, will get another
+  static constexpr Word most = Width::most;
 
   explicit Colours(std::span<Word> words) : words_(words) {}
 
@@ -51,72 +72,104 @@ class Colours {
   std::span<Word> words_;
 };
 
-/// least_free() for a vertex whose neighbours have many colours: 64 of them at a time.
-template <class Word, Graph G, class Counts>
-[[gnu::noinline]] Word least_free_of_many(const G& graph, std::uint32_t v, Colours<Word> colours,
-                                          Counts counts) {
-  for (std::uint32_t base = 0;; base += 64) {
-    std::uint64_t taken = 0;
-    graph.for_each_neighbour(v, [&](std::uint32_t u) {
-      if (!counts(u)) return;
-      const std::uint32_t colour = std::uint32_t{colours[u]} - base;
-      taken |= std::uint64_t{colour < 64} << (colour & 63U);
-    });
-    if (~taken == 0) continue;
-    const std::uint32_t free = base + static_cast<std::uint32_t>(std::countr_one(taken));
-    if (free >= Colours<Word>::waiting) throw TooManyColours{};
-    return static_cast<Word>(free);
-  }
-}
-
-/// What a look at a vertex's neighbours shows.
-/// Colours below 62 are bits of `taken`; `waiting` and `none` fall on the bits above them. Any
-/// other colour shows in the bits of `high` from 64 up.
-template <class Word>
+/// The least colours that a look at a vertex's neighbours shows to be taken, as bits. A View is
+/// Colours, or shows some of them.
+template <class View>
 struct TakenColours {
-  std::uint64_t taken = 0;
-  Word high = 0;
+  static constexpr std::uint32_t count = 62;
 
-  void add(Word colour) {
-    taken |= std::uint64_t{1} << (colour & 63U);
-    high |= static_cast<Word>(colour + 2);
+  std::uint64_t bits = 0;  ///< `waiting` and `none` fall on those beyond the count, or on none
+
+  void add(std::uint32_t colour) {  // not of bytes, which GCC 12 may put into mask registers
+    std::uint64_t bit = 1;
+    if constexpr (View::most >= count) bit = colour < count ? 1 : 0;
+    bits |= bit << (colour & 63U);
   }
 };
 
-template <class Word, Graph G, class Counts>
-Word least_free(const G& graph, std::uint32_t v, Colours<Word> colours, TakenColours<Word> seen,
-                Counts counts) {
-  const auto free = static_cast<std::uint32_t>(std::countr_one(seen.taken));
-  if (free < 62 && seen.high < 64) [[likely]]
-    return static_cast<Word>(free);
-  return least_free_of_many(graph, v, colours, counts);
+/// What a loop over many vertices reads the graph through: a copy of a small view, which the
+/// compiler keeps in registers, as no store of a colour can be one to it; or the graph itself.
+template <Graph G>
+decltype(auto) in_registers(const G& graph) {
+  if constexpr (std::is_trivially_copyable_v<G> && sizeof(G) <= 32) {
+    return G(graph);
+  } else {
+    return (graph);
+  }
 }
 
-/// The least colour that none of v's neighbours u with counts(u) has; counts may be asked about a
-/// neighbour again. Throws TooManyColours.
+/// Covers the time that memory takes, at some nanoseconds a vertex.
+constexpr std::size_t prefetch_distance = 32;
+
+/// Asks for the neighbours of the vertex that has its turn some steps after number i.
+template <Graph G>
+void prefetch_after(const G& graph, const VertexSet& vertices, std::size_t i) {
+  if constexpr (PrefetchingGraph<G>)
+    if (i + prefetch_distance < vertices.count) graph.prefetch(vertices[i + prefetch_distance]);
+}
+
+/// The least free colour, above those of TakenColours: a thousand are looked at in each pass over
+/// the neighbours.
+template <Graph G, class View>
+[[gnu::noinline]] typename View::Word least_free_of_many(const G& graph, std::uint32_t v,
+                                                         View colours) {
+  constexpr std::uint32_t words = 16, range = 64 * words;
+  for (std::uint64_t base = TakenColours<View>::count; base <= View::most; base += range) {
+    std::array<std::uint64_t, words> taken{};
+    graph.for_each_neighbour(v, [&](std::uint32_t u) {
+      const std::uint64_t colour = std::uint64_t{colours[u]} - base;
+      if (colour < range) taken[colour / 64] |= std::uint64_t{1} << (colour % 64);
+    });
+    for (std::uint64_t word = 0; word < words; ++word) {
+      const auto free = base + 64 * word + static_cast<unsigned>(std::countr_one(taken[word]));
+      if (~taken[word] != 0 && free <= View::most) return static_cast<typename View::Word>(free);
+    }
+  }
+  throw TooManyColours{};
+}
+
+/// The least colour not taken, of those a look at v's neighbours has shown, or beyond them.
+/// Throws TooManyColours.
+template <Graph G, class View>
+typename View::Word least_free(const G& graph, std::uint32_t v, View colours,
+                               TakenColours<View> seen) {
+  const auto free = static_cast<std::uint32_t>(std::countr_one(seen.bits));
+  if (free < TakenColours<View>::count) [[likely]]
+    return static_cast<typename View::Word>(free);
+  return least_free_of_many(graph, v, colours);
+}
+
+/// The least colour that none of v's neighbours has. Throws TooManyColours.
 /// Inlined always: the loop over neighbours is what colouring spends its time on, and keeps what it
 /// needs in registers only where the compiler sees all of it.
-template <class Word, Graph G, class Counts>
-[[gnu::always_inline]] inline Word least_free(const G& graph, std::uint32_t v,
-                                              Colours<Word> colours, Counts counts) {
-  TakenColours<Word> seen;
-  graph.for_each_neighbour(v, [&](std::uint32_t u) {
-    if (counts(u)) seen.add(colours[u]);
-  });
-  return least_free(graph, v, colours, seen, counts);
+template <Graph G, class View>
+[[gnu::always_inline]] inline typename View::Word least_free(const G& graph, std::uint32_t v,
+                                                             View colours) {
+  TakenColours<View> seen;
+  graph.for_each_neighbour(v, [&](std::uint32_t u) { seen.add(colours[u]); });
+  return least_free(graph, v, colours, seen);
 }
 
-template <class Word, Graph G>
-Word least_free(const G& graph, std::uint32_t v, Colours<Word> colours) {
-  return least_free(graph, v, colours, [](std::uint32_t) { return true; });
+/// A neighbour of lower id has v's colour.
+template <class Width, Graph G>
+bool clashes(const G& graph, std::uint32_t v, const Colours<Width>& colours) {
+  const std::uint32_t own = colours[v];
+  unsigned clash = 0;
+  graph.for_each_neighbour(v, [&](std::uint32_t u) {
+    clash |= static_cast<unsigned>(u < v) & static_cast<unsigned>(colours[u] == own);
+  });
+  return clash != 0;
 }
 
 /// First-fit in order, on the caller.
 struct Serial {
-  template <class Word, Graph G>
-  static void run(const Executor&, const G& graph, VertexSet vertices, Colours<Word> colours) {
-    for (std::size_t i = 0; i < vertices.count; ++i)
-      colours.set(vertices[i], least_free(graph, vertices[i], colours));
+  template <class Width, Graph G>
+  static void run(const Executor&, const G& graph, VertexSet vertices, Colours<Width> colours) {
+    const auto& rows = in_registers(graph);
+    for (std::size_t i = 0; i < vertices.count; ++i) {
+      prefetch_after(rows, vertices, i);
+      colours.set(vertices[i], least_free(rows, vertices[i], colours));
+    }
   }
 };
 

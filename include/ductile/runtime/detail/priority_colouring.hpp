@@ -1,15 +1,19 @@
 /// @file
 /// First-fit in order of priority, on many threads (Jones and Plassmann, SIAM J. Sci. Comput. 14,
 /// 1993): a vertex waits for its uncoloured neighbours of higher priority and ignores those of
-/// lower, which wait for it. So its colour is the same whenever it is found, and all may go on
-/// without regard to rounds; a round only collects who still waits.
+/// lower, which wait for it. It counts whom it waits for; the last of them hands it on, so that a
+/// neighbour is looked at twice, however long the wait is. A thread goes on with the vertices it
+/// has set free itself, but for more than it can take, which all share in the next round.
 /// The result is that of serial first-fit in descending order of priority.
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "ductile/runtime/detail/first_fit.hpp"
@@ -24,43 +28,95 @@ namespace ductile::runtime::detail {
 /// An object and not a function, so that it is inlined where it is handed on.
 constexpr auto outranks = [](std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); };
 
-/// Colours v unless it has to wait for a neighbour; false then. `before(u, v)` is a strict order.
-template <class Word, Graph G, class Before>
-bool colour_in_turn(const G& graph, std::uint32_t v, const Colours<Word>& colours,
-                    const Before& before) {
-  bool waits = false;
-  TakenColours<Word> seen;
-  graph.for_each_neighbour(v, [&](std::uint32_t u) {
-    const Word colour = colours[u];
-    if (colour == Colours<Word>::waiting) [[unlikely]]
-      waits = waits || before(u, v);
-    seen.add(colour);
-  });
-  if (waits) return false;
-  colours.set(v, least_free(graph, v, colours, seen, [](std::uint32_t) { return true; }));
-  return true;
-}
+/// Takes the colours of vertices away and gives them new ones. `before(u, v)` is a strict order.
+template <class Width, Graph G, class Before>
+class PriorityRun {
+ public:
+  PriorityRun(const Executor& executor, const G& graph, Colours<Width> colours,
+              const Before& before)
+      : executor_(executor),
+        graph_(graph),
+        colours_(colours),
+        before_(before),
+        awaited_(std::make_unique_for_overwrite<std::uint32_t[]>(colours.vertex_count())),
+        free_(executor, {.order = WorkOrder::arrival}) {}
 
-/// Takes the colours of `vertices` away and gives them new ones.
-template <class Word, Graph G, class Before>
-void colour_by_priority(const Executor& executor, const G& graph,
-                        std::vector<std::uint32_t> vertices, Colours<Word> colours,
-                        const Before& before) {
-  const LoopOptions loop{.grain = 16, .serial_below = 128};
-  parallel_for(
-      executor, vertices.size(),
-      [&](std::size_t i) { colours.set(vertices[i], Colours<Word>::waiting); }, loop);
-  Worklist<std::uint32_t> later(executor, {.order = WorkOrder::arrival});
-  while (!vertices.empty()) {
-    parallel_for(
-        executor, vertices.size(),
-        [&](std::size_t i) {
-          if (!colour_in_turn(graph, vertices[i], colours, before)) later.append(vertices[i]);
-        },
-        loop);
-    later.collect();
-    vertices = later.take();
+  void run(std::span<const std::uint32_t> vertices) {
+    for_each(vertices, [&](std::uint32_t v) { colours_.set(v, Colours<Width>::waiting); });
+    for_each(vertices, [&](std::uint32_t v) { colour_or_count(v); });
+    for (free_.collect(); !free_.empty(); free_.collect()) {
+      const std::vector<std::uint32_t> now = free_.take();
+      for_each(now, [&](std::uint32_t v) { colour_from(v); });
+    }
   }
+
+ private:
+  template <class Body>
+  void for_each(std::span<const std::uint32_t> vertices, Body body) const {
+    parallel_for(executor_, vertices.size(),
+                 [&](std::size_t i) {
+                   prefetch_after(graph_, {vertices.size(), vertices.data()}, i);
+                   body(vertices[i]);
+                 },
+                 {.grain = 64, .serial_below = 128});
+  }
+
+  /// Counts whom v waits for. If no neighbour waits at all, nobody misses v and it is coloured.
+  void colour_or_count(std::uint32_t v) {
+    std::uint32_t awaited = 0, waiting = 0;
+    TakenColours<Colours<Width>> seen;
+    graph_.for_each_neighbour(v, [&](std::uint32_t u) {
+      const std::uint32_t colour = colours_[u];
+      seen.add(colour);
+      if (colour != Colours<Width>::waiting || u == v) return;
+      ++waiting;
+      if (before_(u, v)) ++awaited;
+    });
+    awaited_[v] = awaited;
+    if (waiting == 0) {
+      colours_.set(v, least_free(graph_, v, colours_, seen));
+    } else if (awaited == 0) {
+      free_.append(v);
+    }
+  }
+
+  /// Colours v, and whom it sets free.
+  void colour_from(std::uint32_t v) {
+    std::array<std::uint32_t, 64> stack;
+    std::size_t size = 0;
+    for (stack[size++] = v; size > 0;) {
+      v = stack[--size];
+      colours_.set(v, least_free(graph_, v, colours_));
+      graph_.for_each_neighbour(v, [&](std::uint32_t u) {
+        if (colours_[u] != Colours<Width>::waiting || !hand_on(u)) return;
+        if (size < stack.size()) {
+          stack[size++] = u;
+        } else {
+          free_.append(u);
+        }
+      });
+    }
+  }
+
+  /// A neighbour of u has its colour; true if it was the last that u waited for. Each sees what
+  /// those before it released, so that the last one knows the colours of all.
+  bool hand_on(std::uint32_t u) {
+    return std::atomic_ref(awaited_[u]).fetch_sub(1, std::memory_order_acq_rel) == 1;
+  }
+
+  const Executor& executor_;
+  const G& graph_;
+  Colours<Width> colours_;
+  const Before& before_;
+  std::unique_ptr<std::uint32_t[]> awaited_;  // [vertex], neighbours it waits for; of those given
+  Worklist<std::uint32_t> free_;              // wait for nobody
+};
+
+template <class Width, Graph G, class Before>
+void colour_by_priority(const Executor& executor, const G& graph,
+                        std::span<const std::uint32_t> vertices, Colours<Width> colours,
+                        const Before& before) {
+  PriorityRun<Width, G, Before>(executor, graph, colours, before).run(vertices);
 }
 
 inline std::vector<std::uint32_t> listed(const VertexSet& vertices) {
@@ -70,9 +126,9 @@ inline std::vector<std::uint32_t> listed(const VertexSet& vertices) {
 }
 
 struct ByPriority {
-  template <class Word, Graph G>
+  template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
-                  Colours<Word> colours) {
+                  Colours<Width> colours) {
     colour_by_priority(executor, graph, listed(vertices), colours, outranks);
   }
 };
@@ -81,9 +137,9 @@ struct ByPriority {
 /// vertices that wait for each other (Hasenplaugh et al., SPAA 2014). Ties by hash.
 template <bool OfLogarithm>
 struct ByDegree {
-  template <class Word, Graph G>
+  template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
-                  Colours<Word> colours) {
+                  Colours<Width> colours) {
     std::vector<std::uint32_t> size_of(colours.vertex_count());
     parallel_for(executor, vertices.count,
                  [&](std::size_t i) {
