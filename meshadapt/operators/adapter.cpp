@@ -33,6 +33,8 @@ struct Tuning<2> {
   static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
   static constexpr double swap_below = 0.9;      ///< mean ratio of elements that are swapped
   static constexpr double optimise_below = 0.8;  ///< of those that are optimised in the end
+  /// ... and of those around a vertex on the whole where they are finished together.
+  static constexpr double mean_below = 0.7;
 };
 
 template <>
@@ -44,6 +46,7 @@ struct Tuning<3> {
   static constexpr double stretched_edge = 1.55;
   static constexpr double swap_below = 0.8;
   static constexpr double optimise_below = 0.6;
+  static constexpr double mean_below = 0;
 };
 
 /// A mesh of which a smaller share would change is left alone, or only finished.
@@ -312,7 +315,10 @@ std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplaci
   if (!options_.move) return 0;
   const KernelTimer timer(executor_, "smooth", report_.smooth.seconds);
   Smooth<Dim> op(mesh_, background_,
-                 {.laplacian = laplacian, .optimise_below = optimise_below, .again = sweeps > 1});
+                 {.laplacian = laplacian,
+                  .optimise_below = optimise_below,
+                  .mean_below = aim_ == Aim::finish ? Tuning<Dim>::mean_below : 0,
+                  .again = sweeps > 1});
   auto work = laplacian
                   ? Smooth<Dim>::movable_vertices(executor_, mesh_, end_epoch(seen_by_smooth_))
                   : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below);

@@ -15,8 +15,9 @@ struct Base {
       normal;  ///< towards the side of the element; as long as the facet is large, twice in 3D
   Vector<Dim> centre;
   std::array<Vector<Dim>, Dim - 1> side;  ///< from the facet's first corner to the others
-  const Site<Dim>* judge = nullptr;       ///< its densest corner
-  double squares = 0;                     ///< sum of its squared edge lengths there, once weighed
+  std::array<const Site<Dim>*, Dim> corner{};
+  const Site<Dim>* judge = nullptr;  ///< the densest of them
+  double squares = 0;                ///< sum of its squared edge lengths there, once weighed
 };
 
 /// Sum of the squared lengths of the base's edges.
@@ -35,6 +36,7 @@ double base_squares(const Base<Dim>& base, const Metric<Dim>& metric) {
 template <int Dim>
 Base<Dim> make_base(const std::array<const Site<Dim>*, Dim>& corner) {
   Base<Dim> base;
+  base.corner = corner;
   base.judge = corner[0];
   Vector<Dim> sum = corner[0]->position;
   for (std::size_t i = 1; i < Dim; ++i) {
@@ -71,6 +73,26 @@ double squares_over(const Base<Dim>& base, const Vector<Dim>& apex, const Metric
   return (Dim + 1.0) / Dim * squares + Dim * squared_length(metric, apex - base.centre);
 }
 
+/// The same in the metric of a site.
+template <int Dim>
+double squares_at(const Base<Dim>& base, const Vector<Dim>& apex, const Site<Dim>& site) {
+  return squares_over(base, apex, site.metric, base_squares(base, site.metric));
+}
+
+/// Of the element with this apex, the corner whose metric shape() takes the lengths in if it is
+/// doubtful.
+template <int Dim>
+const Site<Dim>& strictest(const Base<Dim>& base, const Site<Dim>& apex) {
+  const Site<Dim>* found = &apex;
+  double largest = squares_at(base, apex.position, apex);
+  for (const Site<Dim>* site : base.corner) {
+    const double squares = squares_at(base, apex.position, *site);
+    if (squares > largest) found = site;
+    largest = std::max(largest, squares);
+  }
+  return *found;
+}
+
 /// shape() of the element with this apex over the base, or under it, but for rounding: 0 or less
 /// only says that the volume is not positive. To be confirmed by certain_determinant() before it is
 /// acted on.
@@ -84,7 +106,10 @@ double shape_over(const Base<Dim>& base, const Site<Dim>& apex, bool under = fal
   const double squares =
       squares_over(base, apex.position, judge.metric,
                    apex_judges ? base_squares(base, judge.metric) : base.squares);
-  return shape_from<Dim>(judge.density * determinant, squares);
+  const double value = shape_from<Dim>(judge.density * determinant, squares);
+  if (value > doubtful_shape) return value;
+  return shape_from<Dim>(judge.density * determinant,
+                         squares_at(base, apex.position, strictest(base, apex)));
 }
 
 }  // namespace ductile::meshadapt

@@ -68,7 +68,11 @@ auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
   if (!options_.laplacian && best.score.worst >= good_enough) return {};
   const Bases bases = bases_around(vertex);
   bool moved = options_.laplacian && relax(vertex, bases, best);
-  if (best.score.worst < good_enough) moved = optimise(vertex, bases, best) || moved;
+  if (best.score.worst < good_enough) {
+    const double poor = shape_of_mean_ratio<Dim>(options_.mean_below);
+    const bool all_poor = best.score.sum < poor * static_cast<double>(ball.size());
+    moved = optimise(vertex, bases, all_poor ? Aim::mean : Aim::worst, best) || moved;
+  }
   if (!moved) return {};
   const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
   const bool far = squared_length(best.site.metric, step) > options_.far * options_.far;
@@ -195,32 +199,41 @@ template <int Dim>
 Vector<Dim> Smooth<Dim>::shape_gradient(const Base<Dim>& base, const Site<Dim>& apex,
                                         double shape_here) {
   const Vector<Dim> up = apex.position - base.centre;
-  const Metric<Dim>& metric = apex.density > base.judge->density ? apex.metric : base.judge->metric;
+  const Site<Dim>& densest = apex.density > base.judge->density ? apex : *base.judge;
+  const Metric<Dim>& metric =
+      (shape_here > doubtful_shape ? densest : strictest(base, apex)).metric;
   const double squares = squares_over(base, apex.position, metric, base_squares(base, metric));
   constexpr double power = Dim == 2 ? 1.0 : 1.5;
   return shape_here * ((1 / dot(base.normal, up)) * base.normal -
                        (2 * power * Dim / squares) * product(metric, up));
 }
 
-/// A direction in which all of the worst elements get better, or nearly 0 if there is none. It is
-/// sought in the space where the metric is the identity, lest the thin direction hide the others.
+/// A direction in which all of the worst elements get better, or nearly 0 if there is none; or that
+/// in which the harmonic mean of all shapes rises most. It is sought in the space where the metric
+/// is the identity, lest the thin direction hide the others.
 template <int Dim>
-Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Bases& bases, const Place& at) const {
+Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Bases& bases, Aim aim,
+                                const Place& at) const {
   const Eigen<Dim> axes = eigen(at.site.metric);
   Buffer<Vector<Dim>, 16> gradients;
   for (const Base<Dim>& base : bases) {
     const double value = shape_over(base, at.site);
-    if (value > at.score.worst * 1.15 + 0.01) continue;
+    if (aim == Aim::worst && value > at.score.worst * 1.15 + 0.01) continue;
+    const double weight = aim == Aim::worst ? 1 : 1 / (value * value);
     const Vector<Dim> free = allowed(vertex, shape_gradient(base, at.site, value));
     Vector<Dim> unit;
     for (int i = 0; i < Dim; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      unit[i] = dot(free, axes.vector[k]) / std::sqrt(axes.value[k]);
+      unit[i] = weight * dot(free, axes.vector[k]) / std::sqrt(axes.value[k]);
     }
     gradients.push_back(unit);
   }
   if (gradients.empty()) return {};
-  const Vector<Dim> unit = shortest_in_hull<Dim>(gradients);
+  Vector<Dim> unit;
+  if (aim == Aim::worst)
+    unit = shortest_in_hull<Dim>(gradients);
+  else
+    for (const Vector<Dim>& gradient : gradients) unit += gradient;
   Vector<Dim> direction;
   for (int i = 0; i < Dim; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -229,23 +242,33 @@ Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Bases& bases, const Place
   return allowed(vertex, direction);
 }
 
-/// Climbs the worst shape around the vertex by line searches.
+/// The sum of the inverse shapes around the vertex if it were at this site.
 template <int Dim>
-bool Smooth<Dim>::optimise(VertexId vertex, const Bases& bases, Place& best) const {
+double Smooth<Dim>::inverse_shapes(const Bases& bases, const Site<Dim>& site) {
+  double sum = 0;
+  for (const Base<Dim>& base : bases) sum += 1 / shape_over(base, site);
+  return sum;
+}
+
+/// Climbs the worst shape around the vertex, or the harmonic mean of all, by line searches.
+template <int Dim>
+bool Smooth<Dim>::optimise(VertexId vertex, const Bases& bases, Aim aim, Place& best) const {
   constexpr int climbs = 4, halvings = 5;
   bool moved = false;
   double reach = 0.3;  // metric length of the first trial step
   for (int climb = 0; climb < climbs; ++climb) {
-    const Vector<Dim> direction = ascent(vertex, bases, best);
+    const Vector<Dim> direction = ascent(vertex, bases, aim, best);
     const double length = std::sqrt(squared_length(best.site.metric, direction));
     if (!(length > 0) || !std::isfinite(length)) break;
     bool better = false;
+    const double bar = aim == Aim::worst ? best.score.worst * 1.001 : 0;
+    const double most = aim == Aim::worst ? 0 : inverse_shapes(bases, best.site) * 0.999;
     for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
       // What is left of a direction that was nearly normal to its patch is rounding, still normal.
       const Vector<Dim> step = allowed(vertex, (reach / length) * direction);
       const Vector<Dim> position = best.site.position + step;
-      const auto trial = place(vertex, bases, position, best, {best.score.worst * 1.001, 0});
-      if (!trial) continue;
+      const auto trial = place(vertex, bases, position, best, {bar, 0});
+      if (!trial || (aim == Aim::mean && inverse_shapes(bases, trial->site) > most)) continue;
       best = *trial;
       better = moved = true;
     }

@@ -2,8 +2,8 @@
 /// Smooth: moves vertices to where their elements are better. Each vertex first goes
 /// towards the mean of the places where each of its elements would be regular (a Laplacian in
 /// metric space, constrained by quality); where elements stay bad, it climbs towards the place
-/// where the worst of them is best. Neighbours never move together, so a sweep is a Gauss-Seidel
-/// iteration by colours.
+/// where the worst of them is best, or all are on the whole. Neighbours never move together, so a
+/// sweep is a Gauss-Seidel iteration by colours.
 #pragma once
 
 #include <optional>
@@ -28,6 +28,7 @@ struct VertexMove {
 struct SmoothOptions {
   bool laplacian = true;
   double optimise_below = 0.4;  ///< optimise where the worst mean ratio around is below this
+  double mean_below = 0;        ///< ... for all of them where their mean is below this
   double far = 0.08;            ///< metric length of a move that neighbours take notice of
   bool again = true;            ///< wake whoever has a neighbour that moved far
 };
@@ -71,6 +72,8 @@ class Smooth {
   void commit(std::uint32_t, const Update&) {}
 
  private:
+  /// What is climbed: the worst shape around, or the harmonic mean of all.
+  enum class Aim : std::uint8_t { worst, mean };
   struct Score {
     double worst = 0, sum = 0;
   };
@@ -88,8 +91,9 @@ class Smooth {
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
   Vector<Dim> regular_displacement(VertexId vertex, const Bases& bases) const;
   bool relax(VertexId vertex, const Bases& bases, Place& best) const;
-  bool optimise(VertexId vertex, const Bases& bases, Place& best) const;
-  Vector<Dim> ascent(VertexId vertex, const Bases& bases, const Place& at) const;
+  bool optimise(VertexId vertex, const Bases& bases, Aim aim, Place& best) const;
+  Vector<Dim> ascent(VertexId vertex, const Bases& bases, Aim aim, const Place& at) const;
+  static double inverse_shapes(const Bases& bases, const Site<Dim>& site);
   static Vector<Dim> shape_gradient(const Base<Dim>& base, const Site<Dim>& apex,
                                     double shape_here);
 

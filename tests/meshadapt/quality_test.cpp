@@ -90,6 +90,22 @@ TEST(Shape, IsJudgedInTheDensestMetric) {
   EXPECT_NEAR(judged, shape_of<2>(sites), 1e-14);
 }
 
+TEST(Shape, OfADoubtfulElementHardlyDependsOnWhichCornerIsDensest) {
+  // Thin layers that turn from corner to corner, as along a circle.
+  const auto site = [](const Vector<2>& p, double turn, double density) {
+    const double c = std::cos(turn), s = std::sin(turn), thin = 1e4 * density, wide = density;
+    const Metric<2> metric{
+        {wide * c * c + thin * s * s, (wide - thin) * c * s, wide * s * s + thin * c * c}};
+    return make_site<2>(p, metric);
+  };
+  const auto judged = [&](double first, double second) {
+    return shape_of<2>({site({{0, 0}}, 0.0, first), site({{0.3, 0}}, 0.1, second),
+                        site({{0.15, 0.01}}, 0.05, 0.5)});
+  };
+  EXPECT_GT(judged(1.001, 1), 0);
+  EXPECT_NEAR(judged(1.001, 1) / judged(1, 1.001), 1, 0.01);
+}
+
 TEST(ShorterThan, SaysWhatTheLengthSays) {
   Random random(11);
   for (int trial = 0; trial < 20000; ++trial) {

@@ -3,6 +3,7 @@
 /// The kernels compare shape(), which needs no cubic root; mean_ratio() is what reports show.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -79,10 +80,26 @@ double shape_from(double volume, double squares) {
     return 12 * std::sqrt(3.0) * volume / (squares * std::sqrt(squares));
 }
 
+/// Elements of a shape below this are judged with caution. Good ones look alike from every corner.
+inline constexpr double doubtful_shape = 0.65;
+
+/// The largest sum of squared lengths that an element has in the metric of any of its corners.
+template <int Dim>
+double largest_sum_of_squares(const std::array<const Site<Dim>*, Dim + 1>& corner) {
+  double largest = 0;
+  for (const Site<Dim>* site : corner)
+    largest = std::max(largest, sum_of_squared_lengths<Dim>(site->metric, corner));
+  return largest;
+}
+
 /// Shape of an element in the metric of its densest corner: 4 sqrt(3) A / (sum of squared lengths)
 /// in 2D; the volume-length ratio 72 sqrt(3) V / (sum of squared lengths)^(3/2) in 3D
 /// (Parthasarathy, Graichen & Hathaway, Finite Elem. Anal. Des. 15, 1994). 1 for a regular element,
 /// 0 or less for one that is not certain to have a positive volume.
+///
+/// If that is doubtful, the lengths are taken where they are largest: of corners that are nearly as
+/// dense but turned, the least change of the metric may make another one the densest, from which
+/// the element is a sliver.
 template <int Dim>
 double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   std::array<Vector<Dim>, Dim + 1> p;
@@ -90,8 +107,10 @@ double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   const double determinant = certain_determinant<Dim>(p);
   if (!(determinant > 0)) return determinant;
   const Site<Dim>& judge = densest<Dim>(corner);
-  const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
-  return shape_from<Dim>(judge.density * determinant, squares);
+  const double volume = judge.density * determinant;
+  const double value = shape_from<Dim>(volume, sum_of_squared_lengths<Dim>(judge.metric, corner));
+  if (value > doubtful_shape) return value;
+  return shape_from<Dim>(volume, largest_sum_of_squares<Dim>(corner));
 }
 
 /// shape(corner) > bar, decided without the root and the division; bar is not negative.
@@ -102,12 +121,16 @@ bool shape_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar
   const double determinant = certain_determinant<Dim>(p);
   if (!(determinant > 0)) return false;
   const Site<Dim>& judge = densest<Dim>(corner);
-  const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
   const double volume = judge.density * determinant;
-  if constexpr (Dim == 2)
-    return 2 * std::sqrt(3.0) * volume > bar * squares;
-  else
-    return 432 * volume * volume > bar * bar * (squares * squares * squares);
+  const auto above = [volume](double limit, double squares) {
+    if constexpr (Dim == 2)
+      return 2 * std::sqrt(3.0) * volume > limit * squares;
+    else
+      return 432 * volume * volume > limit * limit * (squares * squares * squares);
+  };
+  const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
+  if (above(std::max(bar, doubtful_shape), squares)) return true;
+  return above(bar, squares) && above(bar, largest_sum_of_squares<Dim>(corner));
 }
 
 /// Mean ratio from shape: 12 (3V)^(2/3) / (sum of the six squared lengths) in 3D (Liu & Joe, BIT
