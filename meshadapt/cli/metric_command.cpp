@@ -178,7 +178,7 @@ class Work {
   std::string summary() const {
     double finest = 0, coarsest = std::numeric_limits<double>::infinity();
     for (const Metric<Dim>& metric : metric_of_)
-      for (const double value : meshadapt::eigen(metric).value) {
+      for (const double value : meshadapt::principal_axes(metric).value) {
         finest = std::max(finest, value);
         coarsest = std::min(coarsest, value);
       }

@@ -46,9 +46,9 @@ MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>
   if (!(goal.complexity > 0) || !std::isfinite(goal.complexity))
     throw InputError("complexity: expected a number above 0, found " +
                      std::to_string(goal.complexity));
-  Spectrum<Dim> spectrum{std::vector<Eigen<Dim>>(metric_of.size()), goal.bounds};
+  Spectrum<Dim> spectrum{std::vector<PrincipalAxes<Dim>>(metric_of.size()), goal.bounds};
   runtime::parallel_for(executor, metric_of.size(),
-                        [&](std::size_t v) { spectrum.axes_of[v] = eigen(metric_of[v]); });
+                        [&](std::size_t v) { spectrum.axes_of[v] = principal_axes(metric_of[v]); });
   const double now = complexity(executor, mesh, metric_of);
   const double factor =
       fitting_factor([&](double f) { return spectrum.complexity(executor, mesh, f); },

@@ -95,7 +95,7 @@ class HessianMetric {
         if (!std::isfinite(component))
           throw InputError("metric of a Hessian: expected finite numbers, found none at vertex " +
                            std::to_string(v + 1));
-      spectrum_.axes_of[v] = eigen(hessian_of[v]);
+      spectrum_.axes_of[v] = principal_axes(hessian_of[v]);
       for (std::size_t i = 0; i < Dim; ++i)
         curvature_of_[v][i] = std::abs(spectrum_.axes_of[v].value[i]);
     });

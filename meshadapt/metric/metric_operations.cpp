@@ -91,7 +91,7 @@ Metric<Dim> seen_from(const Matrix<Dim>& lower, const Metric<Dim>& other) {
 template <int Dim>
 bool raise(Metric<Dim>& base, const Metric<Dim>& other, double tolerance) {
   const Matrix<Dim> lower = cholesky(base);
-  const Eigen<Dim> ratio = eigen(seen_from<Dim>(lower, other));
+  const PrincipalAxes<Dim> ratio = principal_axes(seen_from<Dim>(lower, other));
   bool changed = false;
   for (std::size_t i = 0; i < Dim; ++i) {
     const double excess = ratio.value[i] - 1;
@@ -278,7 +278,7 @@ void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds) {
   expect_bounds(bounds);
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    Eigen<Dim> axes = eigen(metric_of[v]);
+    PrincipalAxes<Dim> axes = principal_axes(metric_of[v]);
     const auto within = bounded(axes.value, bounds);
     if (within == axes.value) return;
     axes.value = within;

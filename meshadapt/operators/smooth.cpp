@@ -206,7 +206,7 @@ Vector<Dim> Smooth<Dim>::shape_gradient(const Base<Dim>& base, const Site<Dim>& 
 /// sought in the space where the metric is the identity, lest the thin direction hide the others.
 template <int Dim>
 Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Bases& bases, const Place& at) const {
-  const Eigen<Dim> axes = eigen(at.site.metric);
+  const PrincipalAxes<Dim> axes = principal_axes(at.site.metric);
   Buffer<Vector<Dim>, 16> gradients;
   for (const Base<Dim>& base : bases) {
     const double value = shape_over(base, at.site);

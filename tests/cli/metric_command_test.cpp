@@ -56,7 +56,7 @@ class Scene {
   std::array<double, 3> sizes(const std::string& name) const {
     double shortest = std::numeric_limits<double>::infinity(), longest = 0, ratio = 1;
     for (const Metric<Dim>& metric : metrics<Dim>(name)) {
-      const auto value = meshadapt::eigen(metric).value;
+      const auto value = meshadapt::principal_axes(metric).value;
       const auto [low, high] = std::minmax_element(value.begin(), value.end());
       shortest = std::min(shortest, 1 / std::sqrt(*high));
       longest = std::max(longest, 1 / std::sqrt(*low));

@@ -39,7 +39,7 @@ struct Scene {
       std::array<double, Dim> sizes;
       for (double& h : sizes) h = uniform(random, 0.1, 1);
       absolute_of.push_back(test::random_metric<Dim>(random, sizes));
-      Eigen<Dim> axes = eigen(absolute_of.back());
+      PrincipalAxes<Dim> axes = principal_axes(absolute_of.back());
       for (double& value : axes.value)
         if (test::chance(random, 0.5)) value = -value;
       hessian_of.push_back(compose(axes));
@@ -103,7 +103,7 @@ TYPED_TEST(HessianMetricIn, KeepsToBoundsAndReachesTheComplexityAllTheSame) {
   EXPECT_TRUE(result.fit.reached);
   EXPECT_NEAR(complexity<Dim>(executor, scene.mesh, result.metric_of), wanted, 1e-6 * wanted);
   for (const Metric<Dim>& metric : result.metric_of) {
-    const auto value = eigen(metric).value;
+    const auto value = principal_axes(metric).value;
     const auto [low, high] = std::minmax_element(value.begin(), value.end());
     EXPECT_LE(*high, (1 + 1e-9) / (0.02 * 0.02));
     EXPECT_GE(*low, (1 - 1e-9) / (0.08 * 0.08));

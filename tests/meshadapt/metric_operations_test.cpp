@@ -42,7 +42,7 @@ template <int Dim>
 Metric<Dim> random_metric(Random& random, double anisotropy) {
   Metric<Dim> any;
   for (double& component : any.m) component = uniform(random, -1, 1);
-  Eigen<Dim> axes = eigen(any);
+  PrincipalAxes<Dim> axes = principal_axes(any);
   const double spread = std::log(anisotropy);
   for (double& value : axes.value) value = std::exp(-2 * uniform(random, 0, spread));
   axes.value[0] = 1;
@@ -69,7 +69,7 @@ std::vector<Vector<Dim>> directions(Random& random, const Metric<Dim>& a, const 
   std::vector<Vector<Dim>> all(20);
   for (Vector<Dim>& d : all) d = random_direction<Dim>(random);
   for (const Metric<Dim>& metric : {a, b})
-    for (const Vector<Dim>& axis : eigen(metric).vector) all.push_back(axis);
+    for (const Vector<Dim>& axis : principal_axes(metric).vector) all.push_back(axis);
   return all;
 }
 
@@ -149,7 +149,7 @@ TYPED_TEST(MetricOperations, BoundsClampSizesAndKeepAxes) {
   std::vector<Metric<Dim>> bounded = metrics;
   bound_sizes(executor, bounded, {.smallest = 2, .largest = 50});
   for (std::size_t i = 0; i < metrics.size(); ++i) {
-    const Eigen<Dim> before = eigen(metrics[i]);
+    const PrincipalAxes<Dim> before = principal_axes(metrics[i]);
     for (int k = 0; k < Dim; ++k) {
       const Vector<Dim>& axis = before.vector[static_cast<std::size_t>(k)];
       const double size = 1 / std::sqrt(before.value[static_cast<std::size_t>(k)]);
@@ -226,7 +226,7 @@ double worst_excess(const Mesh<Dim>& mesh, const std::vector<Metric<Dim>>& metri
     const double growth = 1 + std::sqrt(squared_length(metric_of[p], edge)) * std::log(factor);
     std::vector<Vector<Dim>> all{edge};
     for (const VertexId v : {p, q})
-      for (const Vector<Dim>& axis : eigen(metric_of[v]).vector) all.push_back(axis);
+      for (const Vector<Dim>& axis : principal_axes(metric_of[v]).vector) all.push_back(axis);
     for (const Vector<Dim>& d : all)
       worst = std::max(worst, squared_length(metric_of[p], d) / (growth * growth) /
                                       squared_length(metric_of[q], d) -
@@ -292,7 +292,7 @@ TYPED_TEST(MetricOperations, GradationLeavesASmoothFieldAlone) {
   std::vector<Metric<Dim>> metric_of(mesh.vertex_slots());
   for (std::size_t v = 0; v < metric_of.size(); ++v) {
     const Vector<Dim>& x = mesh.site_of[v].position;
-    Eigen<Dim> axes = eigen(isotropic<Dim>(0.05 + 0.1 * x[0]));
+    PrincipalAxes<Dim> axes = principal_axes(isotropic<Dim>(0.05 + 0.1 * x[0]));
     axes.value[0] *= 25;
     metric_of[v] = compose(axes);
   }
@@ -359,7 +359,7 @@ TYPED_TEST(MetricOperations, GradationComesToAnEndOnWildMetrics) {
   EXPECT_TRUE(report.converged);
   EXPECT_LT(worst_excess(mesh, metric_of, 1.3), 1.1e-3);
   for (const Metric<Dim>& metric : metric_of)
-    for (const double value : eigen(metric).value) {
+    for (const double value : principal_axes(metric).value) {
       EXPECT_GT(value, 0);
       EXPECT_LT(value, 1e7);
     }
