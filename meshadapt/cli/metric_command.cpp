@@ -12,7 +12,6 @@
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "files.hpp"
@@ -199,7 +198,8 @@ class Work {
     if (job_.operation == "implied") return imply();
     metric_of_ = metrics(job_.fields[0]);
     if (job_.operation == "scale") scale();
-    for (std::size_t i = 1; i < job_.fields.size(); ++i) intersect_with(metrics(job_.fields[i]));
+    for (std::size_t i = 1; i < job_.fields.size(); ++i)
+      meshadapt::intersect(executor_, metric_of_, metrics(job_.fields[i]));
   }
 
   std::vector<Metric<Dim>> metrics(const fs::path& path) {
@@ -225,18 +225,10 @@ class Work {
                                               {goal_.complexity, goal_.bounds}));
   }
 
-  void intersect_with(const std::vector<Metric<Dim>>& other_of) {
-    runtime::parallel_for(executor_, metric_of_.size(), [&](std::size_t v) {
-      metric_of_[v] = meshadapt::intersect(metric_of_[v], other_of[v]);
-    });
-  }
-
   void grade() {
-    meshadapt::Neighbours<Dim> neighbours;
-    const auto mesh = meshadapt::make_mesh<Dim>(executor_, mesh_, {.complete_boundary = true},
-                                                neighbours, warnings_);
-    const auto report =
-        meshadapt::limit_gradation(executor_, metric_of_, mesh, {.factor = job_.gradation});
+    const auto report = meshadapt::limit_gradation(
+        executor_, metric_of_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
+        {.factor = job_.gradation});
     if (!report.converged)
       warnings_.push_back("sizes still grow faster than asked for in places, after " +
                           std::to_string(report.sweeps) + " sweeps over the edges");

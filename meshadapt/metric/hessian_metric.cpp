@@ -165,9 +165,7 @@ SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
       all = std::move(one);
       continue;
     }
-    parallel_for(executor, all.metric_of.size(), [&](std::size_t v) {
-      all.metric_of[v] = intersect(all.metric_of[v], one.metric_of[v]);
-    });
+    intersect(executor, all.metric_of, one.metric_of);
     all.fit.error = std::max(all.fit.error, one.fit.error);
     all.fit.reached = all.fit.reached && one.fit.reached;
   }

@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "cases/box_mesh.hpp"
 #include "cases/formulas.hpp"
+#include "cases/unit_box.hpp"
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
@@ -130,7 +131,8 @@ TEST(AdaptCase, RefusesUnknownNamesAndFactors) {
 }
 
 TEST(BoxMesh, IsNotedToLeaveTheBox) {
-  for (const auto& whole : {rectangle_mesh({1, 1}, {3, 3}), box_mesh({1, 1, 1}, {3, 3, 3})}) {
+  for (const auto& whole :
+       {meshadapt::rectangle_mesh({1, 1}, {3, 3}), meshadapt::box_mesh({1, 1, 1}, {3, 3, 3})}) {
     const auto dim = static_cast<std::size_t>(whole.dimension);
     EXPECT_TRUE(fills_unit_box(whole));
     meshadapt::AnyMesh moved = whole;  // (1/3, 0, ...) sinks below the bottom

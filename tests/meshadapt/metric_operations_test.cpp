@@ -272,6 +272,31 @@ TYPED_TEST(MetricOperations, GradationBoundsGrowthAlongEveryEdge) {
   }
 }
 
+TYPED_TEST(MetricOperations, GradationIsTheSameOnBothKindsOfMesh) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 2});
+  const Mesh<Dim> mesh = grid_mesh<Dim>(cells<Dim>);
+  const auto fixed = make_fixed_mesh<Dim>(executor, to_any_mesh(mesh));
+  auto metric_of = spots<Dim>(mesh.vertex_slots(), 7, 20);
+  auto other_of = metric_of;
+  limit_gradation(executor, metric_of, mesh, {.factor = 1.3});
+  limit_gradation(executor, other_of, fixed, {.factor = 1.3});
+  EXPECT_EQ(metric_of, other_of);
+  other_of.pop_back();
+  EXPECT_THROW(limit_gradation(executor, other_of, fixed), InputError);
+}
+
+TYPED_TEST(MetricOperations, IntersectsAtEveryVertex) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 3});
+  const auto a = spots<Dim>(2000, 1, 20), b = spots<Dim>(2000, 2, 5);
+  auto both = a;
+  intersect(executor, both, b);
+  for (std::size_t v = 0; v < a.size(); ++v) EXPECT_EQ(both[v], intersect(a[v], b[v]));
+  both.pop_back();
+  EXPECT_THROW(intersect(executor, both, b), InputError);
+}
+
 TYPED_TEST(MetricOperations, GradationOfSizesFollowsTheDistance) {
   constexpr int Dim = TypeParam::value;
   const Mesh<Dim> mesh = grid_mesh<Dim>(cells<Dim>);
