@@ -46,11 +46,12 @@ int main(int argument_count, char** argument) {
     meshadapt::AnyField solution;
     const meshadapt::SolutionMetricOptions options{
         .goal = {.complexity = meshadapt::complexity_of_elements(2, 4000),
-                 .bounds = {.smallest = 1e-3}}};
+                 .bounds = {.smallest = 1e-3}},
+        .gradation = 1.5};
     for (int step = 0; step < 4; ++step) {
       solution = solution_at(0.3 + 0.1 * step, mesh);
       const auto wanted = meshadapt::solution_metric(executor, mesh, solution, options);
-      auto adapted = meshadapt::adapt(executor, mesh, wanted.metric, {.gradation = 1.5}).mesh;
+      auto adapted = meshadapt::adapt(executor, mesh, wanted.metric).mesh;
       const auto carried = meshadapt::project_field(executor, {mesh, solution}, adapted).field;
       std::printf("step %d: %zu triangles, error about %.1e, amount %.15f, carried %.15f\n", step,
                   adapted.triangles.size(), wanted.fit.error, amount(executor, mesh, solution),

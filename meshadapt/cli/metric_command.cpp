@@ -208,8 +208,8 @@ class Work {
 
   void make() {
     const AnyField field = read_fields(job_.fields[0], mesh_, warnings_);
-    const auto made =
-        meshadapt::solution_metric(executor_, mesh_, field, {goal_, job_.fit.recovery});
+    const auto made = meshadapt::solution_metric(executor_, mesh_, field,
+                                                 {goal_, job_.gradation, job_.fit.recovery});
     metric_of_ = meshadapt::tensors_of<Dim>(executor_, made.metric);
     check(made.fit);
   }
@@ -222,7 +222,7 @@ class Work {
   void scale() {
     check(meshadapt::scale_to_complexity<Dim>(executor_, metric_of_,
                                               meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
-                                              {goal_.complexity, goal_.bounds}));
+                                              {goal_.complexity, goal_.bounds, job_.gradation}));
   }
 
   void grade() {
@@ -239,7 +239,7 @@ class Work {
     if (fit.reached) return;
     char text[200];
     std::snprintf(text, sizeof text,
-                  "the bounds on sizes leave no metric with the %s asked for; the nearest has %.6g",
+                  "no metric within the bounds has the %s asked for; the nearest found has %.6g",
                   goal_.error > 0 ? "error" : "complexity",
                   goal_.error > 0 ? fit.error : fit.complexity);
     warnings_.push_back(text);
