@@ -15,7 +15,8 @@ do for [d in "2d 3d"] {
     plot for [k=2:5] "seconds_".d.".csv" using 1:k with linespoints lw 2 pt 7 title columnheader(k)
     set yrange [0:1.2]
     set ylabel "parallel efficiency"
-    plot 1 with lines dt 2 lc rgb "black" title "ideal", for [k=2:5] "efficiency_".d.".csv" using 1:k with linespoints lw 2 pt 7 title columnheader(k)
+    plot for [k=2:5] "efficiency_".d.".csv" using 1:k with linespoints lw 2 pt 7 title columnheader(k), \
+         1 with lines dt 2 lc rgb "black" title "ideal"
     unset multiplot
     set autoscale
   }
