@@ -25,7 +25,8 @@ constexpr std::array<cli::Option, 6> options{{
      "of the filter, which shrinks to the minimum length on the way (default: 0.01 if that is "
      "more)"},
     {"--elements", "N",
-     "of adapted meshes, before gradation (default: 8000; 2D, minimum length below 0.005: 30000)"},
+     "of adapted meshes, before gradation (default: 8000, or 30000 for lengths below 0.005; 3D: "
+     "12000)"},
     {"--cells", "N",
      "of the uniform mesh across the height, a multiple of 10 (default in 2D: four to the minimum "
      "length; none if that is too fine for this program)"},
@@ -46,7 +47,7 @@ struct Defaults {
   int iterations = 0, start_cells = 0, uniform_cells = 0, judge_cells = 0;
 };
 constexpr Defaults plane{0.01, 8000, 120, 50, 200, 400};
-constexpr Defaults space{0.08, 8000, 40, 10, 20, 30};
+constexpr Defaults space{0.08, 12000, 40, 10, 20, 30};
 constexpr Defaults test{0.05, 1000, 30, 10, 40, 80};
 
 /// The contrast and the number of elements that conjugate gradients and a cube's third dimension
