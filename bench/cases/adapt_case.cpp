@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "cases/box_mesh.hpp"
 #include "cases/formulas.hpp"
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 
 namespace ductile::bench {
@@ -89,8 +89,8 @@ Formula<3> formula_of(const runtime::Executor& executor, const CaseInfo& info, d
 }
 
 AnyMesh regular_mesh(int dimension, int cells) {
-  AnyMesh mesh = dimension == 2 ? rectangle_mesh({1, 1}, {cells, cells})
-                                : box_mesh({1, 1, 1}, {cells, cells, cells});
+  AnyMesh mesh = dimension == 2 ? meshadapt::rectangle_mesh({1, 1}, {cells, cells})
+                                : meshadapt::box_mesh({1, 1, 1}, {cells, cells, cells});
   mesh.name = "start";
   return mesh;
 }

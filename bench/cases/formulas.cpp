@@ -36,10 +36,10 @@ constexpr double least_curvature = 0.01, smallest_size = 1e-5, largest_size = 0.
 
 /// det(|H|)^(-1/(4 + Dim)) |H|, in its eigenvectors; values in no order.
 template <int Dim>
-meshadapt::Eigen<Dim> unscaled_psi_metric(double x, double y) {
+meshadapt::PrincipalAxes<Dim> unscaled_psi_metric(double x, double y) {
   const PsiHessian hessian = psi_hessian(x, y, 0);
-  const auto plane = meshadapt::eigen(Metric<2>{{hessian.xx, hessian.xy, hessian.yy}});
-  meshadapt::Eigen<Dim> axes{};
+  const auto plane = meshadapt::principal_axes(Metric<2>{{hessian.xx, hessian.xy, hessian.yy}});
+  meshadapt::PrincipalAxes<Dim> axes{};
   axes.vector[Dim - 1][Dim - 1] = 1;
   for (std::size_t i = 0; i < 2; ++i) {
     axes.value[i] = plane.value[i];
@@ -56,7 +56,7 @@ meshadapt::Eigen<Dim> unscaled_psi_metric(double x, double y) {
 }
 
 template <int Dim>
-double density(const meshadapt::Eigen<Dim>& axes, double factor) {
+double density(const meshadapt::PrincipalAxes<Dim>& axes, double factor) {
   double determinant = 1;
   for (const double value : axes.value)
     determinant *= std::clamp(factor * value, 1 / (largest_size * largest_size),

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "cases/box_mesh.hpp"
+#include "cases/unit_box.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/metric_field.hpp"

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "cases/box_mesh.hpp"
+#include "cases/unit_box.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/runtime/recording.hpp"

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
@@ -20,12 +22,12 @@ namespace {
 
 /// A front that moves to the right: here one would solve equations.
 meshadapt::AnyField solution_at(double time, const meshadapt::AnyMesh& mesh) {
-  meshadapt::AnyField field{2, mesh.vertex_count(), {meshadapt::AnyField::Type::scalar}, {}, "u"};
+  std::vector<double> value_of;
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const double x = mesh.coordinates[2 * v], y = mesh.coordinates[2 * v + 1];
-    field.values.push_back(0.5 + 0.5 * std::tanh(40 * (x - time - 0.1 * std::sin(9 * y))));
+    const auto p = meshadapt::position_in<2>(mesh, v);
+    value_of.push_back(0.5 + 0.5 * std::tanh(40 * (p[0] - time - 0.1 * std::sin(9 * p[1]))));
   }
-  return field;
+  return meshadapt::scalar_field(2, value_of, "u");
 }
 
 double amount(const ductile::runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
@@ -44,11 +46,12 @@ int main(int argument_count, char** argument) {
     meshadapt::AnyField solution;
     const meshadapt::SolutionMetricOptions options{
         .goal = {.complexity = meshadapt::complexity_of_elements(2, 4000),
-                 .bounds = {.smallest = 1e-3}}};
+                 .bounds = {.smallest = 1e-3}},
+        .gradation = 1.5};
     for (int step = 0; step < 4; ++step) {
       solution = solution_at(0.3 + 0.1 * step, mesh);
       const auto wanted = meshadapt::solution_metric(executor, mesh, solution, options);
-      auto adapted = meshadapt::adapt(executor, mesh, wanted.metric, {.gradation = 1.5}).mesh;
+      auto adapted = meshadapt::adapt(executor, mesh, wanted.metric).mesh;
       const auto carried = meshadapt::project_field(executor, {mesh, solution}, adapted).field;
       std::printf("step %d: %zu triangles, error about %.1e, amount %.15f, carried %.15f\n", step,
                   adapted.triangles.size(), wanted.fit.error, amount(executor, mesh, solution),

@@ -12,7 +12,6 @@
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "files.hpp"
@@ -178,7 +177,7 @@ class Work {
   std::string summary() const {
     double finest = 0, coarsest = std::numeric_limits<double>::infinity();
     for (const Metric<Dim>& metric : metric_of_)
-      for (const double value : meshadapt::eigen(metric).value) {
+      for (const double value : meshadapt::principal_axes(metric).value) {
         finest = std::max(finest, value);
         coarsest = std::min(coarsest, value);
       }
@@ -199,7 +198,8 @@ class Work {
     if (job_.operation == "implied") return imply();
     metric_of_ = metrics(job_.fields[0]);
     if (job_.operation == "scale") scale();
-    for (std::size_t i = 1; i < job_.fields.size(); ++i) intersect_with(metrics(job_.fields[i]));
+    for (std::size_t i = 1; i < job_.fields.size(); ++i)
+      meshadapt::intersect(executor_, metric_of_, metrics(job_.fields[i]));
   }
 
   std::vector<Metric<Dim>> metrics(const fs::path& path) {
@@ -208,8 +208,8 @@ class Work {
 
   void make() {
     const AnyField field = read_fields(job_.fields[0], mesh_, warnings_);
-    const auto made =
-        meshadapt::solution_metric(executor_, mesh_, field, {goal_, job_.fit.recovery});
+    const auto made = meshadapt::solution_metric(executor_, mesh_, field,
+                                                 {goal_, job_.gradation, job_.fit.recovery});
     metric_of_ = meshadapt::tensors_of<Dim>(executor_, made.metric);
     check(made.fit);
   }
@@ -222,21 +222,13 @@ class Work {
   void scale() {
     check(meshadapt::scale_to_complexity<Dim>(executor_, metric_of_,
                                               meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
-                                              {goal_.complexity, goal_.bounds}));
-  }
-
-  void intersect_with(const std::vector<Metric<Dim>>& other_of) {
-    runtime::parallel_for(executor_, metric_of_.size(), [&](std::size_t v) {
-      metric_of_[v] = meshadapt::intersect(metric_of_[v], other_of[v]);
-    });
+                                              {goal_.complexity, goal_.bounds, job_.gradation}));
   }
 
   void grade() {
-    meshadapt::Neighbours<Dim> neighbours;
-    const auto mesh = meshadapt::make_mesh<Dim>(executor_, mesh_, {.complete_boundary = true},
-                                                neighbours, warnings_);
-    const auto report =
-        meshadapt::limit_gradation(executor_, metric_of_, mesh, {.factor = job_.gradation});
+    const auto report = meshadapt::limit_gradation(
+        executor_, metric_of_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
+        {.factor = job_.gradation});
     if (!report.converged)
       warnings_.push_back("sizes still grow faster than asked for in places, after " +
                           std::to_string(report.sweeps) + " sweeps over the edges");
@@ -247,7 +239,7 @@ class Work {
     if (fit.reached) return;
     char text[200];
     std::snprintf(text, sizeof text,
-                  "the bounds on sizes leave no metric with the %s asked for; the nearest has %.6g",
+                  "no metric within the bounds has the %s asked for; the nearest found has %.6g",
                   goal_.error > 0 ? "error" : "complexity",
                   goal_.error > 0 ? fit.error : fit.complexity);
     warnings_.push_back(text);

@@ -73,7 +73,7 @@ void expect_metric(const AnyField& field, std::size_t vertex, const Metric<Dim>&
   for (int i = 0; i < Dim; ++i) trace += metric(i, i);
   const bool within = trace > 1e-120 && trace < 1e120;
   if (within && eigenvalue_ratio_bound(metric) > 1e-12) return;
-  const auto values = eigen(metric).value;
+  const auto values = principal_axes(metric).value;
   const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
   if (!(*smallest > 0))
     fail_at(field, vertex, "a positive definite tensor",

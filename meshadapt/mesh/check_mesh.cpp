@@ -59,18 +59,8 @@ class AnyMeshChecker {
   static constexpr const char* element_name = Dim == 2 ? "triangle " : "tetrahedron ";
   static constexpr const char* facet_name = Dim == 2 ? "edge " : "triangle ";
 
-  const Cells<Dim + 1>& elements() const {
-    if constexpr (Dim == 2)
-      return mesh_.triangles;
-    else
-      return mesh_.tetrahedra;
-  }
-  const Cells<Dim>& facets() const {
-    if constexpr (Dim == 2)
-      return mesh_.edges;
-    else
-      return mesh_.triangles;
-  }
+  const Cells<Dim + 1>& elements() const { return elements_in<Dim>(mesh_); }
+  const Cells<Dim>& facets() const { return facets_in<Dim>(mesh_); }
   static std::string number(std::size_t i) { return std::to_string(i + 1); }
 
   // ---- Indices ----

@@ -7,6 +7,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/first_bad.hpp"
 
 namespace ductile::meshadapt {
 
@@ -14,16 +15,6 @@ using runtime::Executor;
 using runtime::parallel_for;
 
 namespace {
-
-constexpr std::size_t no_index = static_cast<std::size_t>(-1);
-
-template <int Dim>
-const std::vector<Corners<Dim>>& elements_in(const AnyMesh& any) {
-  if constexpr (Dim == 2)
-    return any.triangles.vertices;
-  else
-    return any.tetrahedra.vertices;
-}
 
 template <int Dim>
 class FixedMeshMaker {
@@ -45,20 +36,8 @@ class FixedMeshMaker {
     throw InputError(any_.name + ": " + what);
   }
 
-  std::string element_name(std::size_t element) const {
-    return (Dim == 2 ? "triangle " : "tetrahedron ") + std::to_string(element + 1);
-  }
-
-  template <class Bad>
-  std::size_t first_bad(Bad&& bad) const {
-    return runtime::parallel_reduce(
-        executor_, elements_in<Dim>(any_).size(), no_index,
-        [&](std::size_t e) { return bad(e) ? e : no_index; },
-        [](std::size_t a, std::size_t b) { return std::min(a, b); });
-  }
-
   void check() const {
-    const auto& elements = elements_in<Dim>(any_);
+    const auto& elements = elements_in<Dim>(any_).vertices;
     if (any_.dimension != Dim)
       fail("expected dimension " + std::to_string(Dim) + ", found " +
            std::to_string(any_.dimension));
@@ -70,34 +49,34 @@ class FixedMeshMaker {
       fail(std::string("expected ") + (Dim == 2 ? "triangles" : "tetrahedra") + ", found none");
     if (any_.vertex_count() >= none || elements.size() >= none / 4)
       fail("too many entities for 32-bit numbers");
-    const std::size_t bad = first_bad([&](std::size_t e) {
+    const std::size_t bad = first_bad(executor_, elements_in<Dim>(any_).size(), [&](std::size_t e) {
       for (const VertexId v : elements[e])
         if (v >= any_.vertex_count()) return true;
       return false;
     });
     if (bad != no_index)
-      fail(element_name(bad) + " names a vertex beyond the " + std::to_string(any_.vertex_count()) +
-           " that there are");
+      fail(entity(element_name<Dim>(), bad) + " names a vertex beyond the " +
+           std::to_string(any_.vertex_count()) + " that there are");
   }
 
   void place_vertices() {
     mesh_.position_of.resize(any_.vertex_count());
-    parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
-      for (std::size_t axis = 0; axis < Dim; ++axis)
-        mesh_.position_of[v].x[axis] = any_.coordinates[v * Dim + axis];
-    });
+    parallel_for(executor_, mesh_.vertex_count(),
+                 [&](std::size_t v) { mesh_.position_of[v] = position_in<Dim>(any_, v); });
   }
 
   void measure_elements() {
-    mesh_.corners_of = elements_in<Dim>(any_);
+    mesh_.corners_of = elements_in<Dim>(any_).vertices;
     mesh_.volume_of.resize(mesh_.element_count());
     parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
       const double determinant = plain_determinant(mesh_.points(static_cast<ElementId>(e)));
       if (determinant < 0) std::swap(mesh_.corners_of[e][0], mesh_.corners_of[e][1]);
       mesh_.volume_of[e] = std::abs(determinant) / (Dim == 2 ? 2 : 6);
     });
-    const std::size_t bad = first_bad([&](std::size_t e) { return !(mesh_.volume_of[e] > 0); });
-    if (bad != no_index) fail(element_name(bad) + " has no volume; remove or repair it");
+    const std::size_t bad = first_bad(executor_, elements_in<Dim>(any_).size(),
+                                      [&](std::size_t e) { return !(mesh_.volume_of[e] > 0); });
+    if (bad != no_index)
+      fail(entity(element_name<Dim>(), bad) + " has no volume; remove or repair it");
   }
 
   void list_elements() {

@@ -10,6 +10,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/classify.hpp"
+#include "mesh/first_bad.hpp"
 
 namespace ductile::meshadapt {
 
@@ -17,39 +18,6 @@ using runtime::Executor;
 using runtime::parallel_for;
 
 namespace {
-
-constexpr std::size_t no_index = static_cast<std::size_t>(-1);
-
-template <int Dim>
-const Cells<Dim + 1>& element_cells(const AnyMesh& any) {
-  if constexpr (Dim == 2)
-    return any.triangles;
-  else
-    return any.tetrahedra;
-}
-template <int Dim>
-const Cells<Dim>& facet_cells(const AnyMesh& any) {
-  if constexpr (Dim == 2)
-    return any.edges;
-  else
-    return any.triangles;
-}
-template <int Dim>
-const char* element_name() {
-  return Dim == 2 ? "triangle" : "tetrahedron";
-}
-template <int Dim>
-const char* facet_name() {
-  return Dim == 2 ? "edge" : "triangle";
-}
-
-/// The first index below n for which bad(index) holds, or no_index.
-template <class Bad>
-std::size_t first_bad(const Executor& executor, std::size_t n, Bad&& bad) {
-  return runtime::parallel_reduce(
-      executor, n, no_index, [&](std::size_t i) { return bad(i) ? i : no_index; },
-      [](std::size_t a, std::size_t b) { return std::min(a, b); });
-}
 
 template <int Dim>
 class MeshMaker {
@@ -80,12 +48,8 @@ class MeshMaker {
     throw InputError(any_.name + ": " + what);
   }
 
-  std::string entity(const char* kind, std::size_t index) const {
-    return std::string(kind) + " " + std::to_string(index + 1);
-  }
-
   void check_indices() const {
-    const auto& cells = element_cells<Dim>(any_);
+    const auto& cells = elements_in<Dim>(any_);
     if (any_.dimension != Dim) fail("the mesh has the wrong dimension");
     if (cells.size() == 0)
       fail(std::string("no ") + element_name<Dim>() + " in the mesh; there is nothing to adapt");
@@ -98,7 +62,7 @@ class MeshMaker {
     if (bad_vertex != no_index)
       fail(entity("vertex", bad_vertex / Dim) + " has a coordinate that is not a finite number");
     check_cells(cells, element_name<Dim>());
-    check_cells(facet_cells<Dim>(any_), facet_name<Dim>());
+    check_cells(facets_in<Dim>(any_), facet_name<Dim>());
     if constexpr (Dim == 3) check_cells(any_.edges, "edge");
   }
 
@@ -122,12 +86,11 @@ class MeshMaker {
   }
 
   void fill() {
-    const auto& cells = element_cells<Dim>(any_);
+    const auto& cells = elements_in<Dim>(any_);
     mesh_.elements_of.reset(0);
     mesh_.grow(any_.vertex_count(), cells.size());
     parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
-      for (int i = 0; i < Dim; ++i)
-        mesh_.site_of[v].position[i] = any_.coordinates[v * Dim + static_cast<std::size_t>(i)];
+      mesh_.site_of[v].position = position_in<Dim>(any_, v);
       mesh_.reference_of[v] = any_.vertex_reference[v];
     });
     for (const std::uint32_t v : any_.corners)
@@ -293,7 +256,7 @@ class MeshMaker {
   // ---- Facets and edges ----
 
   std::vector<TaggedFacet<Dim>> listed_facets() {
-    const auto& cells = facet_cells<Dim>(any_);
+    const auto& cells = facets_in<Dim>(any_);
     const auto& required_list = Dim == 2 ? any_.required_edges : any_.required_triangles;
     const auto required = marked(cells.size(), required_list, facet_name<Dim>());
     const auto ridge =

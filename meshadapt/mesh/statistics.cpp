@@ -16,14 +16,6 @@ namespace {
 
 using runtime::Executor;
 
-template <int Dim>
-const std::vector<Corners<Dim>>& elements_of(const AnyMesh& mesh) {
-  if constexpr (Dim == 2)
-    return mesh.triangles.vertices;
-  else
-    return mesh.tetrahedra.vertices;
-}
-
 /// Vertices with their metric; the identity where there is none.
 template <int Dim>
 std::vector<Site<Dim>> make_sites(const Executor& executor, const AnyMesh& mesh,
@@ -31,11 +23,9 @@ std::vector<Site<Dim>> make_sites(const Executor& executor, const AnyMesh& mesh,
   constexpr std::size_t stride = Metric<Dim>::size;
   std::vector<Site<Dim>> site_of(mesh.vertex_count());
   runtime::parallel_for(executor, site_of.size(), [&](std::size_t v) {
-    Vector<Dim> position;
-    std::copy_n(&mesh.coordinates[v * Dim], Dim, position.x.begin());
     Metric<Dim> tensor = isotropic<Dim>(1);
     if (metric) std::copy_n(&metric->values[v * stride], stride, tensor.m.begin());
-    site_of[v] = make_site(position, tensor);
+    site_of[v] = make_site(position_in<Dim>(mesh, v), tensor);
   });
   return site_of;
 }
@@ -141,7 +131,7 @@ std::size_t count_if_below(const Executor& executor, const std::vector<double>& 
 template <int Dim>
 MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   const std::vector<Site<Dim>> site_of = make_sites<Dim>(executor, mesh, metric);
-  const auto& elements = elements_of<Dim>(mesh);
+  const auto& elements = elements_in<Dim>(mesh).vertices;
   std::vector<double> lengths =
       edge_lengths<Dim>(executor, site_of, unique_edges<Dim>(executor, elements));
 
@@ -204,8 +194,10 @@ Distribution distribution(const Executor& executor, std::vector<double> values, 
 std::vector<double> element_qualities(const Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric) {
   if (mesh.dimension == 2)
-    return qualities<2>(executor, make_sites<2>(executor, mesh, metric), elements_of<2>(mesh));
-  return qualities<3>(executor, make_sites<3>(executor, mesh, metric), elements_of<3>(mesh));
+    return qualities<2>(executor, make_sites<2>(executor, mesh, metric),
+                        elements_in<2>(mesh).vertices);
+  return qualities<3>(executor, make_sites<3>(executor, mesh, metric),
+                      elements_in<3>(mesh).vertices);
 }
 
 MeshStatistics measure(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {

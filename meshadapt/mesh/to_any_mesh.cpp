@@ -44,12 +44,7 @@ void add_curves(const Mesh<3>& mesh, AnyMesh& any) {
 
 template <int Dim>
 void add_elements(const Mesh<Dim>& mesh, AnyMesh& any) {
-  auto& cells = [&]() -> Cells<Dim + 1>& {
-    if constexpr (Dim == 2)
-      return any.triangles;
-    else
-      return any.tetrahedra;
-  }();
+  Cells<Dim + 1>& cells = elements_in<Dim>(any);
   auto& required = Dim == 2 ? any.required_triangles : any.required_tetrahedra;
   cells.vertices = mesh.corners_of;
   cells.reference.resize(mesh.element_slots());

@@ -9,12 +9,24 @@
 
 namespace ductile::meshadapt {
 
+/// Where the elements of a mesh lie.
+template <int Dim>
+struct Simplices {
+  const std::vector<Corners<Dim>>& corners_of;  // [element]
+  const std::vector<Vector<Dim>>& position_of;  // [vertex]
+
+  std::array<Vector<Dim>, Dim + 1> points(ElementId element) const {
+    std::array<Vector<Dim>, Dim + 1> result;
+    for (std::size_t i = 0; i <= Dim; ++i) result[i] = position_of[corners_of[element][i]];
+    return result;
+  }
+};
+
 /// What a walk needs of a mesh.
 template <int Dim>
 struct Walkable {
-  const std::vector<Corners<Dim>>& corners_of;                      // [element]
+  Simplices<Dim> elements;
   const std::vector<std::array<ElementId, Dim + 1>>& neighbour_of;  // [element][facet]
-  const std::vector<Vector<Dim>>& position_of;                      // [vertex]
 };
 
 template <int Dim>
@@ -36,14 +48,6 @@ Weights<Dim> barycentric(const std::array<Vector<Dim>, Dim + 1>& corner, const V
   }
 }
 
-template <int Dim>
-Weights<Dim> barycentric(const Walkable<Dim>& mesh, ElementId element, const Vector<Dim>& point) {
-  std::array<Vector<Dim>, Dim + 1> corner;
-  for (std::size_t i = 0; i < corner.size(); ++i)
-    corner[i] = mesh.position_of[mesh.corners_of[element][i]];
-  return barycentric<Dim>(corner, point);
-}
-
 /// A point this far outside, as a barycentric weight, still counts as inside: it is on the boundary
 /// up to rounding.
 inline constexpr double walk_tolerance = 1e-9;
@@ -61,7 +65,7 @@ WalkEnd<Dim> walk(const Walkable<Dim>& mesh, const Vector<Dim>& point, ElementId
   constexpr int longest_walk = 2000;  // more go in circles or around a hole
   WalkEnd<Dim> at{near, {}, false};
   for (int step = 0; step < longest_walk; ++step) {
-    at.weight = barycentric(mesh, at.element, point);
+    at.weight = barycentric<Dim>(mesh.elements.points(at.element), point);
     ElementId next = none;
     double lowest = -walk_tolerance;
     bool inside = true;

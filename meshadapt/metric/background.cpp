@@ -1,32 +1,12 @@
 #include "ductile/meshadapt/background.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/box_tree.hpp"
 #include "mesh/walk.hpp"
 
 namespace ductile::meshadapt {
-
-namespace {
-
-/// The element that the point is in, or least outside of.
-template <int Dim>
-WalkEnd<Dim> search(const Walkable<Dim>& mesh, const Vector<Dim>& point) {
-  WalkEnd<Dim> best{0, barycentric(mesh, 0, point), true};
-  double best_lowest = -std::numeric_limits<double>::infinity();
-  for (ElementId e = 0; e < mesh.corners_of.size() && best_lowest < -walk_tolerance; ++e) {
-    const Weights<Dim> weight = barycentric(mesh, e, point);
-    const double lowest = *std::min_element(weight.begin(), weight.end());
-    if (lowest > best_lowest) {
-      best_lowest = lowest;
-      best = {e, weight, true};
-    }
-  }
-  return best;
-}
-
-}  // namespace
 
 template <int Dim>
 Background<Dim>::Background(const runtime::Executor& executor, const Mesh<Dim>& mesh,
@@ -42,29 +22,45 @@ Background<Dim>::Background(const runtime::Executor& executor, const Mesh<Dim>& 
 }
 
 template <int Dim>
+Background<Dim>::~Background() = default;
+
+/// The tree is made by the thread that needs it first, on its own: the others are busy.
+template <int Dim>
+ClosestPoint<Dim> Background<Dim>::closest(const Vector<Dim>& point) const {
+  const auto make = [&] {
+    return std::make_unique<BoxTree<Dim>>(runtime::Executor({.threads = 1}),
+                                          Simplices<Dim>{corners_of_, position_of_});
+  };
+  return tree_.get(make)->closest(point);
+}
+
+template <int Dim>
 auto Background<Dim>::sample(const Vector<Dim>& point, ElementId near) const -> Sample {
-  const Walkable<Dim> mesh{corners_of_, neighbours_, position_of_};
-  WalkEnd<Dim> at = walk(mesh, point, near);
-  if (!at.inside) {
-    const double lowest = *std::min_element(at.weight.begin(), at.weight.end());
-    if (lowest < -1e-5) at = search(mesh, point);
+  constexpr double rounding = 1e-5;  // of a barycentric weight, seen in thin elements
+  const WalkEnd<Dim> end = walk<Dim>({{corners_of_, position_of_}, neighbours_}, point, near);
+  ElementId host = end.element;
+  Weights<Dim> weight = end.weight;
+  if (!end.inside && *std::min_element(weight.begin(), weight.end()) < -rounding) {
+    const ClosestPoint<Dim> found = closest(point);
+    host = found.element;
+    weight = found.weight;
   }
   double sum = 0;
-  for (double& w : at.weight) sum += w = std::max(w, 0.0);
+  for (double& w : weight) sum += w = std::max(w, 0.0);
   Metric<Dim> log_metric;
-  for (std::size_t i = 0; i <= Dim; ++i) {
-    const double w = at.weight[i] / sum;
-    if (w > 0) log_metric += w * log_metric_of_[corners_of_[at.element][i]];
-  }
-  return {at.element, exponential(log_metric)};
+  for (std::size_t i = 0; i <= Dim; ++i)
+    if (weight[i] > 0) log_metric += (weight[i] / sum) * log_metric_of_[corners_of_[host][i]];
+  return {host, exponential(log_metric)};
 }
 
 template <int Dim>
 std::size_t Background<Dim>::bytes() const {
+  const auto* tree = tree_.made();
   return corners_of_.capacity() * sizeof(corners_of_[0]) +
          neighbours_.capacity() * sizeof(neighbours_[0]) +
          position_of_.capacity() * sizeof(position_of_[0]) +
-         log_metric_of_.capacity() * sizeof(log_metric_of_[0]);
+         log_metric_of_.capacity() * sizeof(log_metric_of_[0]) +
+         (tree == nullptr ? 0 : (*tree)->bytes());
 }
 
 template class Background<2>;

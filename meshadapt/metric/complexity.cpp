@@ -1,5 +1,6 @@
 #include "ductile/meshadapt/complexity.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -18,6 +19,46 @@ void expect_metrics(const FixedMesh<Dim>& mesh, const std::vector<Metric<Dim>>& 
     throw InputError("complexity: expected a metric for each of the " +
                      std::to_string(mesh.vertex_count()) + " vertices, found " +
                      std::to_string(metric_of.size()));
+}
+
+/// What is scaled: the metrics on their mesh, and where to.
+template <int Dim>
+struct Scaling {
+  std::vector<Metric<Dim>>& metric_of;
+  const FixedMesh<Dim>& mesh;
+  const ComplexityGoal& goal;
+};
+
+/// The metrics of the spectrum times a factor, graded; returns their complexity.
+template <int Dim>
+double take_graded(const Executor& executor, const Spectrum<Dim>& spectrum, double factor,
+                   const Scaling<Dim>& scaling) {
+  scaling.metric_of = spectrum.metrics(executor, factor);
+  limit_gradation(executor, scaling.metric_of, scaling.mesh, {.factor = scaling.goal.gradation});
+  return complexity(executor, scaling.mesh, scaling.metric_of);
+}
+
+/// Looks for the factor by a secant of logarithms: grading adds the less, in proportion, the finer
+/// the metric is, so the complexity grows with the factor at most to the power d / 2.
+template <int Dim>
+MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, double start,
+                       const Scaling<Dim>& scaling) {
+  constexpr int most_passes = 20;
+  constexpr double tolerance = 0.02, least_slope = 0.1, most_slope = 0.5 * Dim;
+  const double goal = std::log(scaling.goal.complexity);
+  double at = std::log(start), slope = most_slope, last_at = 0, last = 0;
+  MetricFit fit;
+  for (int pass = 0; pass < most_passes && !fit.reached; ++pass) {
+    fit.complexity = take_graded(executor, spectrum, std::exp(at), scaling);
+    fit.reached = std::abs(fit.complexity / scaling.goal.complexity - 1) < tolerance;
+    const double found = std::log(fit.complexity);
+    if (pass > 0 && at != last_at)
+      slope = std::clamp((found - last) / (at - last_at), least_slope, most_slope);
+    last_at = at;
+    last = found;
+    at += (goal - found) / slope;
+  }
+  return fit;
 }
 
 }  // namespace
@@ -46,13 +87,14 @@ MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>
   if (!(goal.complexity > 0) || !std::isfinite(goal.complexity))
     throw InputError("complexity: expected a number above 0, found " +
                      std::to_string(goal.complexity));
-  Spectrum<Dim> spectrum{std::vector<Eigen<Dim>>(metric_of.size()), goal.bounds};
+  Spectrum<Dim> spectrum{std::vector<PrincipalAxes<Dim>>(metric_of.size()), goal.bounds};
   runtime::parallel_for(executor, metric_of.size(),
-                        [&](std::size_t v) { spectrum.axes_of[v] = eigen(metric_of[v]); });
+                        [&](std::size_t v) { spectrum.axes_of[v] = principal_axes(metric_of[v]); });
   const double now = complexity(executor, mesh, metric_of);
-  const double factor =
-      fitting_factor([&](double f) { return spectrum.complexity(executor, mesh, f); },
-                     goal.complexity, now > 0 ? std::pow(goal.complexity / now, 2.0 / Dim) : 1);
+  const double start = now > 0 ? std::pow(goal.complexity / now, 2.0 / Dim) : 1;
+  if (goal.gradation > 0) return scale_graded(executor, spectrum, start, {metric_of, mesh, goal});
+  const double factor = fitting_factor(
+      [&](double f) { return spectrum.complexity(executor, mesh, f); }, goal.complexity, start);
   metric_of = spectrum.metrics(executor, factor);
   MetricFit fit;
   fit.complexity = spectrum.complexity(executor, mesh, factor);

@@ -72,7 +72,7 @@ Metric<Dim> metric_of_element(const std::array<Vector<Dim>, Dim + 1>& corner) {
         for (std::size_t row = 0; row <= column; ++row, ++at)
           sum.m[at] += edge.x[row] * edge.x[column];
     }
-  Eigen<Dim> axes = eigen(sum);
+  PrincipalAxes<Dim> axes = principal_axes(sum);
   for (double& value : axes.value) value = (Dim + 1) / (2 * value);
   return compose(axes);
 }

@@ -50,6 +50,21 @@ double extent(const Executor& executor, const FixedMesh<Dim>& mesh) {
   return norm(diagonal);
 }
 
+/// The L^p norm of what has these values at the vertices, none below 0, over the largest of them so
+/// that no power of it leaves the range of numbers.
+template <int Dim>
+double norm_of(const Executor& executor, const FixedMesh<Dim>& mesh,
+               const std::vector<double>& value_of, double norm) {
+  const double most = parallel_reduce(
+      executor, value_of.size(), 0.0, [&](std::size_t v) { return value_of[v]; }, largest_of);
+  if (most == 0 || std::isinf(norm)) return most;
+  const double sum = parallel_reduce(
+      executor, value_of.size(), 0.0,
+      [&](std::size_t v) { return mesh.share_of[v] * std::pow(value_of[v] / most, norm); },
+      [](double a, double b) { return a + b; });
+  return most * std::pow(sum, 1 / norm);
+}
+
 template <int Dim>
 class HessianMetric {
  public:
@@ -95,7 +110,7 @@ class HessianMetric {
         if (!std::isfinite(component))
           throw InputError("metric of a Hessian: expected finite numbers, found none at vertex " +
                            std::to_string(v + 1));
-      spectrum_.axes_of[v] = eigen(hessian_of[v]);
+      spectrum_.axes_of[v] = principal_axes(hessian_of[v]);
       for (std::size_t i = 0; i < Dim; ++i)
         curvature_of_[v][i] = std::abs(spectrum_.axes_of[v].value[i]);
     });
@@ -123,8 +138,7 @@ class HessianMetric {
     });
   }
 
-  /// The L^p norm of trace(M^-1 |H|) / (4 (d + 2)), over the largest value so that no power of it
-  /// leaves the range of numbers.
+  /// The L^p norm of trace(M^-1 |H|) / (4 (d + 2)).
   double error(double factor) const {
     const auto at = [&](std::size_t v) {
       if (!(mesh_.share_of[v] > 0)) return 0.0;
@@ -133,13 +147,9 @@ class HessianMetric {
       for (std::size_t i = 0; i < Dim; ++i) trace += curvature_of_[v][i] / value[i];
       return trace / (4 * (Dim + 2));
     };
-    const double most = parallel_reduce(executor_, curvature_of_.size(), 0.0, at, largest_of);
-    if (most == 0 || std::isinf(options_.norm)) return most;
-    const double sum = parallel_reduce(
-        executor_, curvature_of_.size(), 0.0,
-        [&](std::size_t v) { return mesh_.share_of[v] * std::pow(at(v) / most, options_.norm); },
-        [](double a, double b) { return a + b; });
-    return most * std::pow(sum, 1 / options_.norm);
+    std::vector<double> error_at(curvature_of_.size());
+    parallel_for(executor_, error_at.size(), [&](std::size_t v) { error_at[v] = at(v); });
+    return norm_of(executor_, mesh_, error_at, options_.norm);
   }
 
   const Executor& executor_;
@@ -149,31 +159,66 @@ class HessianMetric {
   Spectrum<Dim> spectrum_;
 };
 
+/// |H|: the tensor with the absolute values of the eigenvalues.
+template <int Dim>
+Metric<Dim> absolute(const Metric<Dim>& hessian) {
+  PrincipalAxes<Dim> axes = principal_axes(hessian);
+  for (double& value : axes.value) value = std::abs(value);
+  return compose(axes);
+}
+
+/// trace(M^-1 |H|) / (4 (d + 2)).
+template <int Dim>
+double local_error(const Metric<Dim>& metric, const Metric<Dim>& hessian) {
+  const PrincipalAxes<Dim> axes = principal_axes(metric);
+  const Metric<Dim> curvature = absolute(hessian);
+  double trace = 0;
+  for (std::size_t i = 0; i < Dim; ++i)
+    trace += squared_length(curvature, axes.vector[i]) / axes.value[i];
+  return trace / (4 * (Dim + 2));
+}
+
+/// What HessianMetric::error() is, of any metrics.
+template <int Dim>
+double error_of(const Executor& executor, const FixedMesh<Dim>& mesh,
+                const std::vector<Metric<Dim>>& metric_of,
+                const std::vector<Metric<Dim>>& hessian_of, double norm) {
+  std::vector<double> error_at(metric_of.size());
+  parallel_for(executor, error_at.size(), [&](std::size_t v) {
+    error_at[v] = mesh.share_of[v] > 0 ? local_error(metric_of[v], hessian_of[v]) : 0;
+  });
+  return norm_of(executor, mesh, error_at, norm);
+}
+
 template <int Dim>
 SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
                                   const AnyField& field, const SolutionMetricOptions& options) {
   const auto mesh = make_fixed_mesh<Dim>(executor, any);
   const std::size_t stride = stride_of(field);
   FittedMetric<Dim> all;
+  all.fit.reached = true;
+  std::vector<std::vector<Metric<Dim>>> hessians;  // [component][vertex]
   std::vector<double> value_of(field.vertex_count);
   for (std::size_t component = 0; component < stride; ++component) {
     parallel_for(executor, value_of.size(),
                  [&](std::size_t v) { value_of[v] = field.values[v * stride + component]; });
-    const auto hessian_of = recover_hessian<Dim>(executor, mesh, value_of, options.recovery);
-    FittedMetric<Dim> one = hessian_metric<Dim>(executor, mesh, hessian_of, options.goal);
-    if (component == 0) {
-      all = std::move(one);
-      continue;
-    }
-    parallel_for(executor, all.metric_of.size(), [&](std::size_t v) {
-      all.metric_of[v] = intersect(all.metric_of[v], one.metric_of[v]);
-    });
-    all.fit.error = std::max(all.fit.error, one.fit.error);
+    hessians.push_back(recover_hessian<Dim>(executor, mesh, value_of, options.recovery));
+    FittedMetric<Dim> one = hessian_metric<Dim>(executor, mesh, hessians.back(), options.goal);
     all.fit.reached = all.fit.reached && one.fit.reached;
+    if (component == 0)
+      all.metric_of = std::move(one.metric_of);
+    else
+      intersect(executor, all.metric_of, one.metric_of);
   }
-  if (stride > 1 && options.goal.complexity > 0)
-    all.fit = scale_to_complexity<Dim>(executor, all.metric_of, mesh,
-                                       {options.goal.complexity, options.goal.bounds});
+  if (options.goal.complexity > 0 && (stride > 1 || options.gradation > 0))
+    all.fit =
+        scale_to_complexity<Dim>(executor, all.metric_of, mesh,
+                                 {options.goal.complexity, options.goal.bounds, options.gradation});
+  else if (options.gradation > 0)
+    limit_gradation(executor, all.metric_of, mesh, {.factor = options.gradation});
+  for (const auto& hessian_of : hessians)
+    all.fit.error = std::max(
+        all.fit.error, error_of(executor, mesh, all.metric_of, hessian_of, options.goal.norm));
   all.fit.complexity = complexity<Dim>(executor, mesh, all.metric_of);
   return {symmetric_field(executor, all.metric_of, field.name), all.fit};
 }

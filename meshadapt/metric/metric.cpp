@@ -39,7 +39,7 @@ bool negligible(const Matrix<Dim>& a, std::size_t p, std::size_t q) {
 }  // namespace
 
 template <int Dim>
-Eigen<Dim> eigen(const Metric<Dim>& metric) {
+PrincipalAxes<Dim> principal_axes(const Metric<Dim>& metric) {
   Matrix<Dim> a{}, v{};
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j)
@@ -55,7 +55,7 @@ Eigen<Dim> eigen(const Metric<Dim>& metric) {
           done = false;
         }
   }
-  Eigen<Dim> result;
+  PrincipalAxes<Dim> result;
   for (std::size_t i = 0; i < Dim; ++i) {
     result.value[i] = a[i][i];
     for (std::size_t k = 0; k < Dim; ++k) result.vector[i].x[k] = v[k][i];
@@ -64,33 +64,33 @@ Eigen<Dim> eigen(const Metric<Dim>& metric) {
 }
 
 template <int Dim>
-Metric<Dim> compose(const Eigen<Dim>& e) {
+Metric<Dim> compose(const PrincipalAxes<Dim>& axes) {
   Metric<Dim> result;
   for (std::size_t i = 0; i < Dim; ++i)
     for (std::size_t column = 0, at = 0; column < Dim; ++column)
       for (std::size_t row = 0; row <= column; ++row, ++at)
-        result.m[at] += e.value[i] * e.vector[i].x[row] * e.vector[i].x[column];
+        result.m[at] += axes.value[i] * axes.vector[i].x[row] * axes.vector[i].x[column];
   return result;
 }
 
 template <int Dim>
 Metric<Dim> logarithm(const Metric<Dim>& a) {
-  Eigen<Dim> e = eigen(a);
-  for (double& value : e.value) value = std::log(value);
-  return compose(e);
+  PrincipalAxes<Dim> axes = principal_axes(a);
+  for (double& value : axes.value) value = std::log(value);
+  return compose(axes);
 }
 
 template <int Dim>
 Metric<Dim> exponential(const Metric<Dim>& a) {
-  Eigen<Dim> e = eigen(a);
-  for (double& value : e.value) value = std::exp(value);
-  return compose(e);
+  PrincipalAxes<Dim> axes = principal_axes(a);
+  for (double& value : axes.value) value = std::exp(value);
+  return compose(axes);
 }
 
-template Eigen<2> eigen(const Metric<2>&);
-template Eigen<3> eigen(const Metric<3>&);
-template Metric<2> compose(const Eigen<2>&);
-template Metric<3> compose(const Eigen<3>&);
+template PrincipalAxes<2> principal_axes(const Metric<2>&);
+template PrincipalAxes<3> principal_axes(const Metric<3>&);
+template Metric<2> compose(const PrincipalAxes<2>&);
+template Metric<3> compose(const PrincipalAxes<3>&);
 template Metric<2> logarithm(const Metric<2>&);
 template Metric<3> logarithm(const Metric<3>&);
 template Metric<2> exponential(const Metric<2>&);

@@ -91,7 +91,7 @@ Metric<Dim> seen_from(const Matrix<Dim>& lower, const Metric<Dim>& other) {
 template <int Dim>
 bool raise(Metric<Dim>& base, const Metric<Dim>& other, double tolerance) {
   const Matrix<Dim> lower = cholesky(base);
-  const Eigen<Dim> ratio = eigen(seen_from<Dim>(lower, other));
+  const PrincipalAxes<Dim> ratio = principal_axes(seen_from<Dim>(lower, other));
   bool changed = false;
   for (std::size_t i = 0; i < Dim; ++i) {
     const double excess = ratio.value[i] - 1;
@@ -136,13 +136,32 @@ std::string number(double value) {
 double trace(const Metric<2>& a) { return a.m[0] + a.m[2]; }
 double trace(const Metric<3>& a) { return a.m[0] + a.m[2] + a.m[5]; }
 
+// ---- What gradation needs of a mesh, of either kind ----
+
+template <int Dim>
+const Vector<Dim>& place_of(const Mesh<Dim>& mesh, VertexId vertex) {
+  return mesh.site_of[vertex].position;
+}
+template <int Dim>
+const Vector<Dim>& place_of(const FixedMesh<Dim>& mesh, VertexId vertex) {
+  return mesh.position_of[vertex];
+}
+template <int Dim>
+auto elements_around(const Mesh<Dim>& mesh, VertexId vertex) {
+  return mesh.elements_of.of(vertex);
+}
+template <int Dim>
+auto elements_around(const FixedMesh<Dim>& mesh, VertexId vertex) {
+  return mesh.elements_of(vertex);
+}
+
 /// The Jacobi iteration of limit_gradation. After the first sweep only vertices with a neighbour
 /// that changed in the sweep before are looked at, and only against such neighbours: metrics never
 /// get coarser, so a bound that held still does.
-template <int Dim>
+template <int Dim, class AMesh>
 class Gradation {
  public:
-  Gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of, const Mesh<Dim>& mesh,
+  Gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of, const AMesh& mesh,
             const GradationOptions& options)
       : executor_(executor),
         metric_of_(metric_of),
@@ -211,7 +230,7 @@ class Gradation {
 
   /// The metric at `from` as it may be at `to` at most.
   Metric<Dim> grown(VertexId from, VertexId to) const {
-    const Vector<Dim> edge = mesh_.site_of[to].position - mesh_.site_of[from].position;
+    const Vector<Dim> edge = place_of(mesh_, to) - place_of(mesh_, from);
     const double length = std::sqrt(std::max(0.0, squared_length(metric_of_[from], edge)));
     const double growth = 1 + length * rate_;
     return 1 / (growth * growth) * metric_of_[from];
@@ -221,7 +240,7 @@ class Gradation {
   std::span<const VertexId> neighbours(VertexId vertex) {
     std::vector<VertexId>& found = neighbours_.mine();
     found.clear();
-    for (const ElementId element : mesh_.elements_of.of(vertex))
+    for (const ElementId element : elements_around(mesh_, vertex))
       for (const VertexId corner : mesh_.corners_of[element])
         if (corner != vertex) found.push_back(corner);
     std::sort(found.begin(), found.end());
@@ -241,7 +260,7 @@ class Gradation {
 
   const Executor& executor_;
   std::vector<Metric<Dim>>& metric_of_;  // [vertex]
-  const Mesh<Dim>& mesh_;
+  const AMesh& mesh_;
   GradationOptions options_;
   double rate_;                            // growth per unit length
   std::vector<VertexId> changed_;          // in the last sweep, all before the first
@@ -249,6 +268,14 @@ class Gradation {
   runtime::PerThread<std::vector<VertexId>> neighbours_;
   runtime::Worklist<VertexId> wake_;
 };
+
+void expect_gradable(std::size_t metrics, std::size_t vertices, const GradationOptions& options) {
+  if (!(options.factor >= 1) || !std::isfinite(options.factor))
+    throw InputError("gradation: expected a factor of 1 or more, found " + number(options.factor));
+  if (metrics != vertices)
+    throw InputError("gradation: expected a metric for each of the " + std::to_string(vertices) +
+                     " vertices, found " + std::to_string(metrics));
+}
 
 }  // namespace
 
@@ -274,11 +301,22 @@ Metric<Dim> intersect(const Metric<Dim>& a, const Metric<Dim>& b) {
 }
 
 template <int Dim>
+void intersect(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
+               const std::vector<Metric<Dim>>& other_of) {
+  if (metric_of.size() != other_of.size())
+    throw InputError("expected as many metrics as the " + std::to_string(metric_of.size()) +
+                     " to intersect with, found " + std::to_string(other_of.size()));
+  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
+    metric_of[v] = intersect(metric_of[v], other_of[v]);
+  });
+}
+
+template <int Dim>
 void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds) {
   expect_bounds(bounds);
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    Eigen<Dim> axes = eigen(metric_of[v]);
+    PrincipalAxes<Dim> axes = principal_axes(metric_of[v]);
     const auto within = bounded(axes.value, bounds);
     if (within == axes.value) return;
     axes.value = within;
@@ -289,19 +327,29 @@ void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
 template <int Dim>
 GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                                 const Mesh<Dim>& mesh, const GradationOptions& options) {
-  if (!(options.factor >= 1) || !std::isfinite(options.factor))
-    throw InputError("gradation: expected a factor of 1 or more, found " + number(options.factor));
-  if (metric_of.size() != mesh.vertex_slots())
-    throw InputError("gradation: expected a metric for each of the " +
-                     std::to_string(mesh.vertex_slots()) + " vertices, found " +
-                     std::to_string(metric_of.size()));
-  return Gradation<Dim>(executor, metric_of, mesh, options).run();
+  expect_gradable(metric_of.size(), mesh.vertex_slots(), options);
+  return Gradation<Dim, Mesh<Dim>>(executor, metric_of, mesh, options).run();
+}
+
+template <int Dim>
+GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
+                                const FixedMesh<Dim>& mesh, const GradationOptions& options) {
+  expect_gradable(metric_of.size(), mesh.vertex_count(), options);
+  return Gradation<Dim, FixedMesh<Dim>>(executor, metric_of, mesh, options).run();
 }
 
 template Metric<2> intersect(const Metric<2>&, const Metric<2>&);
 template Metric<3> intersect(const Metric<3>&, const Metric<3>&);
+template void intersect(const runtime::Executor&, std::vector<Metric<2>>&,
+                        const std::vector<Metric<2>>&);
+template void intersect(const runtime::Executor&, std::vector<Metric<3>>&,
+                        const std::vector<Metric<3>>&);
 template void bound_sizes(const Executor&, std::vector<Metric<2>>&, const SizeBounds&);
 template void bound_sizes(const Executor&, std::vector<Metric<3>>&, const SizeBounds&);
+template GradationReport limit_gradation(const Executor&, std::vector<Metric<2>>&,
+                                         const FixedMesh<2>&, const GradationOptions&);
+template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>&,
+                                         const FixedMesh<3>&, const GradationOptions&);
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<2>>&, const Mesh<2>&,
                                          const GradationOptions&);
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>&, const Mesh<3>&,

@@ -34,7 +34,7 @@ std::array<double, N> bounded(std::array<double, N> value, const SizeBounds& bou
 
 template <int Dim>
 struct Spectrum {
-  std::vector<Eigen<Dim>> axes_of;  // [vertex]
+  std::vector<PrincipalAxes<Dim>> axes_of;  // [vertex]
   SizeBounds bounds;
 
   std::array<double, Dim> scaled(std::size_t vertex, double factor) const {
@@ -58,7 +58,7 @@ struct Spectrum {
   std::vector<Metric<Dim>> metrics(const runtime::Executor& executor, double factor) const {
     std::vector<Metric<Dim>> metric_of(axes_of.size());
     runtime::parallel_for(executor, axes_of.size(), [&](std::size_t v) {
-      Eigen<Dim> axes = axes_of[v];
+      PrincipalAxes<Dim> axes = axes_of[v];
       axes.value = scaled(v, factor);
       metric_of[v] = compose(axes);
     });

@@ -214,7 +214,7 @@ Vector<Dim> Smooth<Dim>::shape_gradient(const Base<Dim>& base, const Site<Dim>& 
 template <int Dim>
 Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Bases& bases, Aim aim,
                                 const Place& at) const {
-  const Eigen<Dim> axes = eigen(at.site.metric);
+  const PrincipalAxes<Dim> axes = principal_axes(at.site.metric);
   Buffer<Vector<Dim>, 16> gradients;
   for (const Base<Dim>& base : bases) {
     const double value = shape_over(base, at.site);

@@ -8,8 +8,8 @@
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/box_tree.hpp"
 #include "mesh/walk.hpp"
-#include "transfer/box_tree.hpp"
 
 namespace ductile::meshadapt {
 
@@ -25,12 +25,12 @@ class Locator {
  public:
   /// Refers to the mesh.
   Locator(const runtime::Executor& executor, const FixedMesh<Dim>& mesh)
-      : mesh_(mesh), tree_(executor, mesh) {}
+      : mesh_(mesh), tree_(executor, {mesh.corners_of, mesh.position_of}) {}
 
   /// Thread safety: any thread.
   Place<Dim> find(const Vector<Dim>& point, ElementId near) const {
     if (near == none) near = tree_.closest(point).element;
-    const Walkable<Dim> view{mesh_.corners_of, mesh_.neighbour_of, mesh_.position_of};
+    const Walkable<Dim> view{{mesh_.corners_of, mesh_.position_of}, mesh_.neighbour_of};
     WalkEnd<Dim> end = walk(view, point, near);
     if (!end.inside) return closest(point);
     double sum = 0;

@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "cases/box_mesh.hpp"
 #include "cases/formulas.hpp"
+#include "cases/unit_box.hpp"
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
@@ -29,7 +30,8 @@ template <int Dim>
 double least_eigenvalue(const Executor& executor, const AnyField& field) {
   double least = INFINITY;
   for (const Metric<Dim>& metric : meshadapt::tensors_of<Dim>(executor, field))
-    for (const double value : meshadapt::eigen(metric).value) least = std::min(least, value);
+    for (const double value : meshadapt::principal_axes(metric).value)
+      least = std::min(least, value);
   return least;
 }
 
@@ -129,7 +131,8 @@ TEST(AdaptCase, RefusesUnknownNamesAndFactors) {
 }
 
 TEST(BoxMesh, IsNotedToLeaveTheBox) {
-  for (const auto& whole : {rectangle_mesh({1, 1}, {3, 3}), box_mesh({1, 1, 1}, {3, 3, 3})}) {
+  for (const auto& whole :
+       {meshadapt::rectangle_mesh({1, 1}, {3, 3}), meshadapt::box_mesh({1, 1, 1}, {3, 3, 3})}) {
     const auto dim = static_cast<std::size_t>(whole.dimension);
     EXPECT_TRUE(fills_unit_box(whole));
     meshadapt::AnyMesh moved = whole;  // (1/3, 0, ...) sinks below the bottom
@@ -155,10 +158,10 @@ TEST(Formulas, LayersHaveThePublishedSizes) {
 
 TEST(Formulas, CurvedLayerIsAHundredTimesThinnerThanWide) {
   const auto formula = curved_layer_metric(Executor({.threads = 1}), 1000);
-  const auto on_layer = meshadapt::eigen(formula({{0.5, 0.25, 0.5}})).value;
+  const auto on_layer = meshadapt::principal_axes(formula({{0.5, 0.25, 0.5}})).value;
   const auto [least, most] = std::minmax_element(on_layer.begin(), on_layer.end());
   EXPECT_NEAR(std::sqrt(*most / *least), 100, 1e-6);
-  const auto far_off = meshadapt::eigen(formula({{0.5, 0.25, 1}})).value;
+  const auto far_off = meshadapt::principal_axes(formula({{0.5, 0.25, 1}})).value;
   EXPECT_NEAR(far_off[0] / far_off[2], 1, 1e-9);
 }
 

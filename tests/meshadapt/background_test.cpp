@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ductile/runtime/parallel_for.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
@@ -101,6 +102,34 @@ TYPED_TEST(BackgroundIn, TakesAPointOutsideToBeInTheClosestElement) {
       EXPECT_GT(sample.metric(i, i), 0);
     }
   }
+}
+
+/// Points of a facet of the outer boundary, moved straight out of the unit box, are closest to
+/// where they came from.
+TYPED_TEST(BackgroundIn, GivesAPointOutsideTheMetricOfTheClosestPoint) {
+  constexpr int Dim = TypeParam::value;
+  Random random(6);
+  const Scene<Dim> scene(random);
+  constexpr std::size_t points = 3000;
+  std::vector<Vector<Dim>> on(points), beyond(points);
+  std::vector<ElementId> near(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    for (int axis = 0; axis < Dim; ++axis) on[i][axis] = uniform(random, 0, 1);
+    const int axis = static_cast<int>(i) % Dim;
+    on[i][axis] = i % 2 == 0 ? 0 : 1;
+    beyond[i] = on[i];
+    beyond[i][axis] += (i % 2 == 0 ? -1 : 1) * std::pow(10.0, uniform(random, -3, 1));
+    near[i] = static_cast<ElementId>(test::below(random, scene.mesh.element_slots()));
+  }
+  const std::size_t before = scene.background->bytes();
+  std::vector<double> difference_of(points);
+  runtime::parallel_for(Executor({.threads = 4}), points, [&](std::size_t i) {
+    const auto at = scene.background->sample(on[i], near[i]);
+    const auto outside = scene.background->sample(beyond[i], near[i]);
+    difference_of[i] = difference(at.metric, outside.metric);
+  });
+  EXPECT_LT(*std::max_element(difference_of.begin(), difference_of.end()), 1e-6);
+  EXPECT_GT(scene.background->bytes(), before);
 }
 
 }  // namespace

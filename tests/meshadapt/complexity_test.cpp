@@ -68,7 +68,7 @@ TYPED_TEST(ComplexityIn, IsReachedWithBoundsInForce) {
     EXPECT_TRUE(fit.reached);
     EXPECT_NEAR(complexity<Dim>(executor, scene.mesh, scene.metric_of), wanted, 1e-6 * wanted);
     for (const Metric<Dim>& metric : scene.metric_of) {
-      const auto value = eigen(metric).value;
+      const auto value = principal_axes(metric).value;
       const auto [low, high] = std::minmax_element(value.begin(), value.end());
       EXPECT_LE(*high, (1 + 1e-9) / (0.03 * 0.03));
       EXPECT_GE(*low, (1 - 1e-9) / (0.3 * 0.3));

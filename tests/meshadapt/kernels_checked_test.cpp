@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -25,7 +26,7 @@ const runtime::Executor executor({.threads = 2});
 template <int Dim>
 struct Case {
   Mesh<Dim> mesh;
-  Background<Dim> background;
+  std::unique_ptr<Background<Dim>> background;
 
   static Case make(std::uint64_t seed, double complexity) {
     test::Random random(seed);
@@ -41,7 +42,7 @@ struct Case {
     Neighbours<Dim> neighbours;
     std::vector<std::string> warnings;
     auto mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
-    Background<Dim> background(executor, mesh, neighbours, metric_of);
+    auto background = std::make_unique<Background<Dim>>(executor, mesh, neighbours, metric_of);
     for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
       mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
       mesh.host_of[v] = mesh.elements_of.of(v).front();
@@ -84,7 +85,7 @@ TYPED_TEST(KernelsChecked, RefineKeepsItsContract) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 500 : 250);
     const Rules rules;
-    expect_sound(mesh, Refine<Dim>(mesh, background, rules),
+    expect_sound(mesh, Refine<Dim>(mesh, *background, rules),
                  Refine<Dim>::long_edges(executor, mesh, rules.long_edge, 0));
   }
 }
@@ -101,7 +102,7 @@ TYPED_TEST(KernelsChecked, SmoothKeepsItsContract) {
   constexpr int Dim = TypeParam::value;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 80 : 60);
-    expect_sound(mesh, Smooth<Dim>(mesh, background, {.optimise_below = 0.6}),
+    expect_sound(mesh, Smooth<Dim>(mesh, *background, {.optimise_below = 0.6}),
                  Smooth<Dim>::movable_vertices(executor, mesh, 0), {.most_rounds = 4});
   }
 }

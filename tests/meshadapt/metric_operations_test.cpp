@@ -42,7 +42,7 @@ template <int Dim>
 Metric<Dim> random_metric(Random& random, double anisotropy) {
   Metric<Dim> any;
   for (double& component : any.m) component = uniform(random, -1, 1);
-  Eigen<Dim> axes = eigen(any);
+  PrincipalAxes<Dim> axes = principal_axes(any);
   const double spread = std::log(anisotropy);
   for (double& value : axes.value) value = std::exp(-2 * uniform(random, 0, spread));
   axes.value[0] = 1;
@@ -69,7 +69,7 @@ std::vector<Vector<Dim>> directions(Random& random, const Metric<Dim>& a, const 
   std::vector<Vector<Dim>> all(20);
   for (Vector<Dim>& d : all) d = random_direction<Dim>(random);
   for (const Metric<Dim>& metric : {a, b})
-    for (const Vector<Dim>& axis : eigen(metric).vector) all.push_back(axis);
+    for (const Vector<Dim>& axis : principal_axes(metric).vector) all.push_back(axis);
   return all;
 }
 
@@ -149,7 +149,7 @@ TYPED_TEST(MetricOperations, BoundsClampSizesAndKeepAxes) {
   std::vector<Metric<Dim>> bounded = metrics;
   bound_sizes(executor, bounded, {.smallest = 2, .largest = 50});
   for (std::size_t i = 0; i < metrics.size(); ++i) {
-    const Eigen<Dim> before = eigen(metrics[i]);
+    const PrincipalAxes<Dim> before = principal_axes(metrics[i]);
     for (int k = 0; k < Dim; ++k) {
       const Vector<Dim>& axis = before.vector[static_cast<std::size_t>(k)];
       const double size = 1 / std::sqrt(before.value[static_cast<std::size_t>(k)]);
@@ -226,7 +226,7 @@ double worst_excess(const Mesh<Dim>& mesh, const std::vector<Metric<Dim>>& metri
     const double growth = 1 + std::sqrt(squared_length(metric_of[p], edge)) * std::log(factor);
     std::vector<Vector<Dim>> all{edge};
     for (const VertexId v : {p, q})
-      for (const Vector<Dim>& axis : eigen(metric_of[v]).vector) all.push_back(axis);
+      for (const Vector<Dim>& axis : principal_axes(metric_of[v]).vector) all.push_back(axis);
     for (const Vector<Dim>& d : all)
       worst = std::max(worst, squared_length(metric_of[p], d) / (growth * growth) /
                                       squared_length(metric_of[q], d) -
@@ -272,6 +272,31 @@ TYPED_TEST(MetricOperations, GradationBoundsGrowthAlongEveryEdge) {
   }
 }
 
+TYPED_TEST(MetricOperations, GradationIsTheSameOnBothKindsOfMesh) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 2});
+  const Mesh<Dim> mesh = grid_mesh<Dim>(cells<Dim>);
+  const auto fixed = make_fixed_mesh<Dim>(executor, to_any_mesh(mesh));
+  auto metric_of = spots<Dim>(mesh.vertex_slots(), 7, 20);
+  auto other_of = metric_of;
+  limit_gradation(executor, metric_of, mesh, {.factor = 1.3});
+  limit_gradation(executor, other_of, fixed, {.factor = 1.3});
+  EXPECT_EQ(metric_of, other_of);
+  other_of.pop_back();
+  EXPECT_THROW(limit_gradation(executor, other_of, fixed), InputError);
+}
+
+TYPED_TEST(MetricOperations, IntersectsAtEveryVertex) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 3});
+  const auto a = spots<Dim>(2000, 1, 20), b = spots<Dim>(2000, 2, 5);
+  auto both = a;
+  intersect(executor, both, b);
+  for (std::size_t v = 0; v < a.size(); ++v) EXPECT_EQ(both[v], intersect(a[v], b[v]));
+  both.pop_back();
+  EXPECT_THROW(intersect(executor, both, b), InputError);
+}
+
 TYPED_TEST(MetricOperations, GradationOfSizesFollowsTheDistance) {
   constexpr int Dim = TypeParam::value;
   const Mesh<Dim> mesh = grid_mesh<Dim>(cells<Dim>);
@@ -292,7 +317,7 @@ TYPED_TEST(MetricOperations, GradationLeavesASmoothFieldAlone) {
   std::vector<Metric<Dim>> metric_of(mesh.vertex_slots());
   for (std::size_t v = 0; v < metric_of.size(); ++v) {
     const Vector<Dim>& x = mesh.site_of[v].position;
-    Eigen<Dim> axes = eigen(isotropic<Dim>(0.05 + 0.1 * x[0]));
+    PrincipalAxes<Dim> axes = principal_axes(isotropic<Dim>(0.05 + 0.1 * x[0]));
     axes.value[0] *= 25;
     metric_of[v] = compose(axes);
   }
@@ -359,7 +384,7 @@ TYPED_TEST(MetricOperations, GradationComesToAnEndOnWildMetrics) {
   EXPECT_TRUE(report.converged);
   EXPECT_LT(worst_excess(mesh, metric_of, 1.3), 1.1e-3);
   for (const Metric<Dim>& metric : metric_of)
-    for (const double value : eigen(metric).value) {
+    for (const double value : principal_axes(metric).value) {
       EXPECT_GT(value, 0);
       EXPECT_LT(value, 1e7);
     }

@@ -57,7 +57,7 @@ TYPED_TEST(MetricIn, EigenvectorsAreOrthonormalAndMakeTheMetricUp) {
   Random random(3);
   for (int trial = 0; trial < 300; ++trial) {
     const auto metric = random_metric<Dim>(random, std::pow(10.0, uniform(random, 0, 6)));
-    const auto axes = eigen(metric);
+    const auto axes = principal_axes(metric);
     for (std::size_t i = 0; i < Dim; ++i)
       for (std::size_t j = 0; j <= i; ++j)
         EXPECT_NEAR(dot(axes.vector[i], axes.vector[j]), i == j ? 1 : 0, 1e-14);

@@ -62,7 +62,7 @@ void expect_regular_in(const Sites<Dim>& regular, double anisotropy) {
     std::array<double, Dim> sizes;
     for (double& h : sizes) h = std::pow(anisotropy, uniform(random, 0, 1));
     const auto metric = test::random_metric<Dim>(random, sizes);
-    const auto axes = eigen(metric);
+    const auto axes = principal_axes(metric);
     Sites<Dim> sites;
     for (std::size_t i = 0; i <= Dim; ++i) {
       Vector<Dim> p;

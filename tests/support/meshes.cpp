@@ -18,24 +18,16 @@ std::size_t below(Random& random, std::size_t limit) { return random() % limit; 
 
 template <int Dim>
 const Cells<Dim + 1>& elements(const AnyMesh& mesh) {
-  if constexpr (Dim == 2)
-    return mesh.triangles;
-  else
-    return mesh.tetrahedra;
+  return elements_in<Dim>(mesh);
 }
 template <int Dim>
 const Cells<Dim>& facets(const AnyMesh& mesh) {
-  if constexpr (Dim == 2)
-    return mesh.edges;
-  else
-    return mesh.triangles;
+  return facets_in<Dim>(mesh);
 }
 
 template <int Dim>
 Vector<Dim> point(const AnyMesh& mesh, std::uint32_t vertex) {
-  Vector<Dim> p;
-  std::copy_n(&mesh.coordinates[std::size_t{vertex} * Dim], Dim, p.x.begin());
-  return p;
+  return position_in<Dim>(mesh, vertex);
 }
 
 template <int Dim>
@@ -191,12 +183,7 @@ std::int32_t direction(const AnyMesh& mesh, const Facet<Dim>& facet) {
 
 template <int Dim>
 void list_facets(AnyMesh& mesh, bool interfaces) {
-  auto& listed = [&]() -> Cells<Dim>& {
-    if constexpr (Dim == 2)
-      return mesh.edges;
-    else
-      return mesh.triangles;
-  }();
+  Cells<Dim>& listed = facets_in<Dim>(mesh);
   const auto& cells = elements<Dim>(mesh);
   const auto owners_of = facet_elements<Dim>(mesh);
   for (ElementId e = 0; e < cells.size(); ++e)

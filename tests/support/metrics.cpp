@@ -73,7 +73,7 @@ AnyField layer_in(const AnyMesh& mesh, Random& random, double thin) {
 
 template <int Dim>
 Metric<Dim> random_metric(Random& random, const std::array<double, Dim>& sizes) {
-  Eigen<Dim> axes;
+  PrincipalAxes<Dim> axes;
   for (std::size_t i = 0; i < Dim; ++i) axes.value[i] = 1 / (sizes[i] * sizes[i]);
   axes.vector[0] = random_direction<Dim>(random);
   if constexpr (Dim == 2) {

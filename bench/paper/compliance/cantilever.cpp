@@ -12,19 +12,11 @@ using meshadapt::VertexId;
 
 namespace {
 
-template <int Dim>
-auto& facets_in(auto& mesh) {
-  if constexpr (Dim == 2)
-    return mesh.edges;
-  else
-    return mesh.triangles;
-}
-
 AnyMesh box(std::integral_constant<int, 2> /*dimension*/, int cells) {
-  return bench::rectangle_mesh({1, height}, {2 * cells, cells});
+  return meshadapt::rectangle_mesh({1, height}, {2 * cells, cells});
 }
 AnyMesh box(std::integral_constant<int, 3> /*dimension*/, int cells) {
-  return bench::box_mesh({1, height, width}, {2 * cells, cells, cells / 2});
+  return meshadapt::box_mesh({1, height, width}, {2 * cells, cells, cells / 2});
 }
 
 }  // namespace
@@ -32,11 +24,12 @@ AnyMesh box(std::integral_constant<int, 3> /*dimension*/, int cells) {
 template <int Dim>
 AnyMesh cantilever_mesh(int cells) {
   AnyMesh mesh = box(std::integral_constant<int, Dim>{}, cells);
-  auto& facets = facets_in<Dim>(mesh);
+  auto& facets = meshadapt::facets_in<Dim>(mesh);
   for (std::size_t f = 0; f < facets.size(); ++f) {
     double middle = 0;
     for (const VertexId v : facets.vertices[f]) middle += mesh.coordinates[v * Dim + 1] / Dim;
-    if (facets.reference[f] == bench::Side::right && std::abs(middle - height / 2) < height / 10)
+    if (facets.reference[f] == meshadapt::Side::right &&
+        std::abs(middle - height / 2) < height / 10)
       facets.reference[f] = pulled_reference;
   }
   return mesh;
@@ -45,7 +38,7 @@ AnyMesh cantilever_mesh(int cells) {
 template <int Dim>
 std::vector<Facet<Dim>> facets_with(const AnyMesh& mesh, int reference) {
   std::vector<Facet<Dim>> result;
-  const auto& facets = facets_in<Dim>(mesh);
+  const auto& facets = meshadapt::facets_in<Dim>(mesh);
   for (std::size_t f = 0; f < facets.size(); ++f)
     if (facets.reference[f] == reference) result.push_back(facets.vertices[f]);
   return result;

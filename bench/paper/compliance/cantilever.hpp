@@ -5,13 +5,13 @@
 
 #include <vector>
 
-#include "cases/box_mesh.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::paper {
 
-inline constexpr int held_reference = bench::Side::left;
+inline constexpr int held_reference = meshadapt::Side::left;
 inline constexpr int pulled_reference = 7;
 
 /// Cells of equal sides, `cells` across the height, a multiple of 10.

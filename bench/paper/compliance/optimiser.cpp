@@ -7,6 +7,7 @@
 
 #include "cantilever.hpp"
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 
@@ -15,6 +16,8 @@ namespace ductile::paper {
 using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using meshadapt::FixedMesh;
+using meshadapt::scalar_field;
+using meshadapt::vector_field;
 using meshadapt::VertexId;
 
 namespace {
@@ -66,6 +69,13 @@ double sharpness_at(const Path& path, int iteration) {
   return std::exp2(std::min(doublings, std::floor((doublings + 1) * done)));
 }
 
+double length_at(const Path& path, double minimum_length, int iteration) {
+  if (path.first_length <= minimum_length) return minimum_length;
+  const double done =
+      std::log2(sharpness_at(path, iteration)) / std::log2(path.last_sharpness);  // 0 to 1
+  return path.first_length * std::pow(minimum_length / path.first_length, done);
+}
+
 template <int Dim>
 Optimiser<Dim>::Optimiser(const runtime::Executor& executor, const Settings& settings)
     : executor_(executor), settings_(settings) {
@@ -79,39 +89,38 @@ void Optimiser<Dim>::use(AnyMesh any) {
   fixed_ = std::make_unique<FixedMesh<Dim>>(meshadapt::make_fixed_mesh<Dim>(executor_, any_));
   elasticity_ =
       std::make_unique<Elasticity<Dim>>(executor_, any_, *fixed_, settings_.problem.poisson);
-  filter_ = std::make_unique<HelmholtzFilter<Dim>>(*fixed_, settings_.problem.minimum_length);
+  length_ = 0;
   domain_volume_ = std::accumulate(fixed_->share_of.begin(), fixed_->share_of.end(), 0.0);
+}
+
+template <int Dim>
+void Optimiser<Dim>::use_filter(double length) {
+  if (length == length_) return;
+  filter_ = std::make_unique<HelmholtzFilter<Dim>>(*fixed_, length);
+  length_ = length;
 }
 
 /// Design and displacement are carried over, the displacement as a first guess.
 template <int Dim>
 void Optimiser<Dim>::adapt_mesh() {
   const Adaptation& wanted = settings_.adaptation;
-  const double unit = settings_.problem.minimum_length;
-  AnyField features{
-      Dim, any_.vertex_count(), {AnyField::Type::scalar, AnyField::Type::scalar}, {}, "features"};
-  AnyField carried{
-      Dim, any_.vertex_count(), {AnyField::Type::scalar, AnyField::Type::vector}, {}, "design"};
-  for (VertexId v = 0; v < any_.vertex_count(); ++v) {
-    features.values.insert(features.values.end(), {density_of_[v], derivatives_.gain_of[v]});
-    carried.values.push_back(design_of_[v]);
-    for (int i = 0; i < Dim; ++i) carried.values.push_back(displacement_of_[v][i]);
-  }
+  const double smallest =
+      wanted.smallest * length_at(settings_.path, settings_.problem.minimum_length, iteration_);
+  const AnyField features = joined(scalar_field(Dim, density_of_, "density"),
+                                   scalar_field(Dim, derivatives_.gain_of, "derivative"));
+  const AnyField carried = joined(scalar_field(Dim, design_of_, "design"),
+                                  vector_field<Dim>(displacement_of_, "displacement"));
   const meshadapt::SolutionMetric metric = meshadapt::solution_metric(
       executor_, any_, features,
       {.goal = {.complexity = meshadapt::complexity_of_elements(Dim, wanted.elements),
-                .bounds = {wanted.smallest * unit, wanted.largest * unit, wanted.anisotropy}}});
+                .bounds = {smallest, wanted.largest, wanted.anisotropy}}});
   AnyMesh adapted =
       meshadapt::adapt(executor_, any_, metric.metric, {.gradation = wanted.gradation}).mesh;
   const AnyField moved = meshadapt::project_field(executor_, {any_, carried}, adapted).field;
   use(std::move(adapted));
-  design_of_.resize(any_.vertex_count());
-  displacement_of_.resize(any_.vertex_count());
-  for (VertexId v = 0; v < any_.vertex_count(); ++v) {
-    const double* values = &moved.values[v * (1 + Dim)];
-    design_of_[v] = std::clamp(values[0], least_density, 1.0);
-    for (int i = 0; i < Dim; ++i) displacement_of_[v][i] = values[1 + i];
-  }
+  design_of_ = meshadapt::scalars_of(moved, 0);
+  displacement_of_ = meshadapt::vectors_of<Dim>(moved, 1);
+  for (double& density : design_of_) density = std::clamp(density, least_density, 1.0);
 }
 
 /// Filters and projects the design; returns it as it was between the two.
@@ -163,8 +172,10 @@ template <int Dim>
 Iteration Optimiser<Dim>::iterate() {
   const Clock whole;
   Iteration found{.number = iteration_, .sharpness = sharpness_at(settings_.path, iteration_)};
+  found.length = length_at(settings_.path, settings_.problem.minimum_length, iteration_);
   const Adaptation& wanted = settings_.adaptation;
   if (wanted.elements > 0 && iteration_ > 0 && iteration_ % wanted.interval == 0) adapt_mesh();
+  use_filter(found.length);
   found.adapt_seconds = whole.seconds();
   const std::vector<double> smooth_of = project(found.sharpness);
   const Clock analysis;
@@ -183,8 +194,7 @@ Iteration Optimiser<Dim>::iterate() {
 template <int Dim>
 Judgement judge(const runtime::Executor& executor, const DensityOnMesh<Dim>& found,
                 const AnyMesh& fine, const Problem& problem) {
-  const AnyField density{
-      Dim, found.mesh.vertex_count(), {AnyField::Type::scalar}, found.density_of, "density"};
+  const AnyField density = scalar_field(Dim, found.density_of, "density");
   const AnyField there = meshadapt::interpolate_field(executor, {found.mesh, density}, fine).field;
   const auto mesh = meshadapt::make_fixed_mesh<Dim>(executor, fine);
   Elasticity<Dim> elasticity(executor, fine, mesh, problem.poisson);

@@ -22,6 +22,7 @@ struct Iteration {
   int number = 0;
   std::size_t elements = 0;
   double sharpness = 0;
+  double length = 0;  ///< of the filter
   double compliance = 0;
   double volume_fraction = 0;
   double change = 0;  ///< largest of a density
@@ -45,6 +46,7 @@ class Optimiser {
 
  private:
   void use(meshadapt::AnyMesh any);
+  void use_filter(double length);
   void adapt_mesh();
   std::vector<double> project(double sharpness);
   double analyse();
@@ -53,6 +55,7 @@ class Optimiser {
   const runtime::Executor& executor_;
   const Settings& settings_;
   int iteration_ = 0;
+  double length_ = 0;  ///< of the filter; 0: there is none for this mesh
   meshadapt::AnyMesh any_;
   std::unique_ptr<meshadapt::FixedMesh<Dim>> fixed_;
   std::unique_ptr<Elasticity<Dim>> elasticity_;

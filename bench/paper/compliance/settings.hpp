@@ -22,15 +22,20 @@ struct Path {
   int iterations = 120;
   double move_limit = 0.2;     ///< most that a density changes in an iteration
   double last_sharpness = 16;  ///< of the projection; doubles from 1 on, see sharpness_at
+  double first_length = 0;     ///< of the filter, if more than the minimum length; see length_at
 };
 
 /// Sharpness doubles in equal steps; the last third of the iterations has the last one.
 double sharpness_at(const Path& path, int iteration);
+/// The length of the filter: shrinks by the same factor whenever sharpness doubles, from the first
+/// one to the minimum length.
+double length_at(const Path& path, double minimum_length, int iteration);
 
 struct Adaptation {
-  double elements = 0;                  ///< of the adapted meshes, about; 0: the start mesh is kept
-  int interval = 5;                     ///< iterations from one mesh to the next
-  double smallest = 0.1, largest = 10;  ///< sizes, in units of the minimum length
+  double elements = 0;    ///< of the adapted meshes, about; 0: the start mesh is kept
+  int interval = 5;       ///< iterations from one mesh to the next
+  double smallest = 0.1;  ///< size, in units of the filter's length
+  double largest = 0.1;   ///< size
   double anisotropy = 10;
   double gradation = 1.5;
 };

@@ -44,7 +44,8 @@ void draw_frames(const std::filesystem::path& path, const std::vector<Frame>& fr
   for (const Frame& frame : frames) panels.push_back(panel_of(frame, false));
   for (const Frame& frame : frames) panels.push_back(panel_of(frame, true));
   const auto columns = static_cast<int>(frames.size());
-  write_png(path, panels, {.columns = columns, .panel_width = 360});
+  write_png(path, panels,
+            {.columns = columns, .panel_width = 360, .bar = {"density", 0, 1, material_colour}});
 }
 
 /// Iterations whose meshes are shown: four, closer to each other at the beginning.
@@ -59,6 +60,11 @@ std::string words_for(const Iteration& found) {
   std::snprintf(text.data(), text.size(), "iteration %d: %zu elements, compliance %.4g",
                 found.number + 1, found.elements, found.compliance);
   return text.data();
+}
+
+/// "adapted_2d" stands for files; readers see "adapted".
+std::string title_of(const Outcome& outcome) {
+  return outcome.name.substr(0, outcome.name.find('_')) + " mesh, " + words_for(outcome.last);
 }
 
 std::string report_of(const Iteration& found) {
@@ -130,18 +136,19 @@ void draw_outcomes<2>(Experiment& experiment, const std::string& name,
   std::vector<Frame> frames;
   frames.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes)
-    frames.push_back(
-        {outcome.name + ", " + words_for(outcome.last), outcome.mesh, outcome.density_of});
+    frames.push_back({title_of(outcome), outcome.mesh, outcome.density_of});
   std::vector<FieldPanel> panels;
   panels.reserve(2 * frames.size());
   for (const Frame& frame : frames) panels.push_back(panel_of(frame, false));
   for (const Frame& frame : frames) {
     panels.push_back(panel_of(frame, true));
-    panels.back().title = "its mesh, close";
+    panels.back().title = "its mesh, x from 0.5 to 0.8, y from 0.15 to 0.3";
     panels.back().window = {0.5, 0.15, 0.8, 0.3};
   }
   write_png(experiment.file(name), panels,
-            {.columns = static_cast<int>(frames.size()), .panel_width = 600});
+            {.columns = static_cast<int>(frames.size()),
+             .panel_width = 600,
+             .bar = {"density", 0, 1, material_colour}});
 }
 
 template <>
@@ -150,7 +157,7 @@ void draw_outcomes<3>(Experiment& experiment, const std::string& name,
   cli::Scene scene;
   for (const Outcome& outcome : outcomes) {
     scene.panels.push_back(cli::surface_panel(material_of(outcome), cli::camera_along(2)));
-    scene.panels.back().title = outcome.name + ", " + words_for(outcome.last);
+    scene.panels.back().title = title_of(outcome);
   }
   meshadapt::AtomicOutputs outputs;
   outputs.stage(experiment.file(name)).write(cli::draw(scene, cli::PictureFormat::png, 700));

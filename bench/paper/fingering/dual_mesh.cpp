@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "cases/box_mesh.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::paper {
@@ -68,9 +68,9 @@ void find_sides(DualMesh& dual, const AnyMesh& mesh) {
   for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
     const auto [a, b] = mesh.edges.vertices[e];
     const double length = norm(dual.mesh.position_of[a] - dual.mesh.position_of[b]);
-    if (mesh.edges.reference[e] == bench::Side::left)
+    if (mesh.edges.reference[e] == meshadapt::Side::left)
       for (const VertexId v : {a, b}) dual.inflow_of[v] += length / 2;
-    if (mesh.edges.reference[e] == bench::Side::right)
+    if (mesh.edges.reference[e] == meshadapt::Side::right)
       for (const VertexId v : {a, b}) dual.outlet.push_back(v);
   }
   std::sort(dual.outlet.begin(), dual.outlet.end());

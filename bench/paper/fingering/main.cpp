@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -123,6 +124,23 @@ class Comparison {
 
 // ---- The fingers ----
 
+ColourBar saturation_bar() { return {"saturation phi, domain 2 x 1", 0, 1}; }
+
+/// What a frame of the strip shows, kept until all are there.
+struct Frame {
+  meshadapt::AnyMesh mesh;
+  std::vector<double> saturation_of;
+  std::string title;
+};
+
+void draw_strip(const std::filesystem::path& path, const std::vector<Frame>& frames) {
+  std::vector<FieldPanel> panels;
+  panels.reserve(frames.size());
+  for (const Frame& frame : frames)
+    panels.push_back({.mesh = frame.mesh, .value_of = frame.saturation_of, .title = frame.title});
+  write_png(path, panels, {.columns = 3, .panel_width = 330, .bar = saturation_bar()});
+}
+
 class Show {
  public:
   explicit Show(Experiment& experiment)
@@ -135,7 +153,11 @@ class Show {
       progress_.show(run.time() / options.end,
                      std::to_string(run.mesh().triangles.size()) + " triangles");
       if (intervals_++ % 8 == 0) record(run);
+      const double strip_at = options.end * static_cast<double>(strip_.size() + 1) / strip_frames;
+      if (run.time() > strip_at - options.interval / 2)
+        strip_.push_back({run.mesh(), run.saturation(), "time " + text("%.2f", run.time())});
     });
+    draw_strip(experiment_.file("strip.png"), strip_);
     history_.write_csv(experiment_.file("history.csv"));
     const Timings& timings = end->timings();
     experiment_.say(
@@ -157,15 +179,15 @@ class Show {
     history_.add({run.time(), static_cast<double>(run.mesh().triangles.size()), now.root, now.tip,
                   static_cast<double>(now.count), run.mass_error(), run.overshoot()});
     const std::string number = std::to_string(1000 + history_.size() - 1).substr(1);
-    const FieldPanel saturation{.mesh = run.mesh(), .value_of = run.saturation()};
+    const FieldPanel saturation{.mesh = run.mesh(),
+                                .value_of = run.saturation(),
+                                .title = "time " + text("%.2f", run.time())};
     write_png(experiment_.file("animation/" + number + ".png"), {saturation}, {.panel_width = 480});
     if (history_.size() % 5 != 1) return;
-    FieldPanel titled = saturation;
-    titled.title = "saturation at time " + text("%.2f", run.time());
     const std::string count = std::to_string(run.mesh().triangles.size());
     write_png(experiment_.file("frames/" + number + ".png"),
-              {titled, {.mesh = run.mesh(), .lines = true, .title = count + " triangles"}},
-              {.panel_width = 560});
+              {saturation, {.mesh = run.mesh(), .lines = true, .title = count + " triangles"}},
+              {.panel_width = 560, .bar = saturation_bar()});
     series_.add(run.time(), run.mesh(),
                 {{"saturation", meshadapt::AnyField::Type::scalar, run.saturation()},
                  {"pressure", meshadapt::AnyField::Type::scalar, run.pressure()}});
@@ -175,6 +197,8 @@ class Show {
   ProgressLine progress_;
   VtuSeries series_;
   bench::Table history_{{"time", "triangles", "root", "tip", "fingers", "mass_error", "overshoot"}};
+  static constexpr int strip_frames = 6;
+  std::vector<Frame> strip_;
   int intervals_ = 0;
 };
 

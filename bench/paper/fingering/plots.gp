@@ -43,15 +43,7 @@ set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0
 set autoscale
 set size ratio -1
 
-set term pngcairo size 1000,345 background 'white'
-set output 'strip.png'
-set multiplot layout 2,3 spacing 0.005,0.01
-do for [i = 1:6] {
-  plot word(frames, 1 + i * (words(frames) - 1) / 6) binary filetype=png with rgbimage
-}
-unset multiplot
-
-set term gif animate delay 12 loop 0 size 496,256
+set term gif animate delay 12 loop 0 size 496,276
 set output 'fingers.gif'
 do for [frame in frames] {
   plot frame binary filetype=png with rgbimage

@@ -6,11 +6,11 @@
 #include <ctime>
 
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/meshadapt/transfer.hpp"
-#include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::paper {
 
@@ -36,23 +36,7 @@ class Stopwatch {
 
 using Metric = meshadapt::Metric<2>;
 
-void intersect_all(const runtime::Executor& executor, std::vector<Metric>& metric_of,
-                   const std::vector<Metric>& other_of) {
-  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    metric_of[v] = meshadapt::intersect(metric_of[v], other_of[v]);
-  });
-}
-
 }  // namespace
-
-meshadapt::AnyField scalar_field(std::vector<double> value_of) {
-  meshadapt::AnyField field;
-  field.dimension = 2;
-  field.vertex_count = value_of.size();
-  field.types = {meshadapt::AnyField::Type::scalar};
-  field.values = std::move(value_of);
-  return field;
-}
 
 Simulation::Simulation(const runtime::Executor& executor, const Fluids& fluids, const AnyMesh& mesh,
                        Start start)
@@ -127,7 +111,8 @@ std::vector<Metric> Simulation::wanted_metric(const AdaptGoal& goal) {
   const std::vector<double>& pressure_of = flow_.pressure_of;
   const double highest = *std::max_element(pressure_of.begin(), pressure_of.end());
   std::vector<Metric> metric_of = metric_for(saturation_of_, goal.saturation_error);
-  intersect_all(executor_, metric_of, metric_for(pressure_of, goal.pressure_error * highest));
+  meshadapt::intersect(executor_, metric_of,
+                       metric_for(pressure_of, goal.pressure_error * highest));
   return metric_of;
 }
 
@@ -156,7 +141,7 @@ void Simulation::adapt(const AdaptGoal& goal) {
   ++adaptations_;
   const Stopwatch stopwatch(timings_.transfer);
   const double before = mass();
-  const meshadapt::AnyField field = scalar_field(std::move(saturation_of_));
+  const meshadapt::AnyField field = meshadapt::scalar_field(2, std::move(saturation_of_));
   saturation_of_ =
       meshadapt::project_field(executor_, {.mesh = mesh_, .field = field}, next).field.values;
   take_mesh(std::move(next));

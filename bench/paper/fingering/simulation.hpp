@@ -42,9 +42,6 @@ struct Timings {
   Seconds total() const { return solving() + adaptation + transfer; }
 };
 
-/// One value for each vertex, as the library's functions on AnyMesh take it.
-meshadapt::AnyField scalar_field(std::vector<double> value_of);
-
 class Simulation {
  public:
   Simulation(const runtime::Executor& executor, const Fluids& fluids, const AnyMesh& mesh,

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/box_mesh.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 
 namespace ductile::paper {
@@ -24,7 +25,7 @@ double saturation_at_start(const meshadapt::Vector<2>& point) {
 std::unique_ptr<Simulation> run_case(const runtime::Executor& executor, const RunOptions& options,
                                      const Watch& watch) {
   auto run = std::make_unique<Simulation>(
-      executor, Fluids{}, bench::rectangle_mesh({2, 1}, {2 * options.cells, options.cells}),
+      executor, Fluids{}, meshadapt::rectangle_mesh({2, 1}, {2 * options.cells, options.cells}),
       saturation_at_start);
   const bool adapts = options.adapt_every > 0;
   if (adapts) run->adapt_to_start(options.goal, saturation_at_start);
@@ -40,7 +41,7 @@ std::unique_ptr<Simulation> run_case(const runtime::Executor& executor, const Ru
 
 Outcome compare(const runtime::Executor& executor, const Simulation& run,
                 const Simulation& reference) {
-  const meshadapt::AnyField field = scalar_field(run.saturation());
+  const meshadapt::AnyField field = meshadapt::scalar_field(2, run.saturation());
   std::vector<double> difference_of =
       meshadapt::interpolate_field(executor, {.mesh = run.mesh(), .field = field}, reference.mesh())
           .field.values;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <numeric>
 
@@ -186,12 +187,42 @@ std::vector<int> row_heights(const std::vector<Canvas>& canvases, std::size_t co
   return heights;
 }
 
+std::string short_number(double value) {
+  std::array<char, 30> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+/// From its lower left corner: the value at its start, the colours, the value at the end, the
+/// label.
+void draw_bar(cairo_t* pen, const ColourBar& bar, const Pixel& corner) {
+  constexpr int length = 160, height = 12, space = 6;
+  const auto write = [&](const std::string& text, double x) {
+    cairo_set_source_rgb(pen, 0, 0, 0);
+    cairo_move_to(pen, x, corner.y - 1);
+    cairo_show_text(pen, text.c_str());
+    cairo_text_extents_t extents;
+    cairo_text_extents(pen, text.c_str(), &extents);
+    return x + extents.x_advance + space;
+  };
+  const double start = write(short_number(bar.from), corner.x);
+  for (int i = 0; i < length; ++i) {
+    const cli::Colour colour = bar.colour((i + 0.5) / length);
+    cairo_set_source_rgb(pen, colour.red, colour.green, colour.blue);
+    cairo_rectangle(pen, std::round(start) + i, corner.y - height, 1, height);
+    cairo_fill(pen);
+  }
+  const double after = write(short_number(bar.to), std::round(start) + length + space);
+  write(bar.label, after + space);
+}
+
 Surface compose(const std::vector<Canvas>& canvases, const PictureOptions& options) {
   const auto columns = static_cast<std::size_t>(std::max(options.columns, 1));
   const std::vector<int> heights = row_heights(canvases, columns);
   const int step = options.panel_width + gap;
-  Surface page = new_surface(gap + static_cast<int>(columns) * step,
-                             gap + std::accumulate(heights.begin(), heights.end(), 0));
+  const int bar_height = options.bar.label.empty() ? 0 : title_height;
+  const int page_height = gap + std::accumulate(heights.begin(), heights.end(), bar_height);
+  Surface page = new_surface(gap + static_cast<int>(columns) * step, page_height);
   const Pen pen(cairo_create(page.get()), cairo_destroy);
   cairo_select_font_face(pen.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                          CAIRO_FONT_WEIGHT_NORMAL);
@@ -203,6 +234,7 @@ Surface compose(const std::vector<Canvas>& canvases, const PictureOptions& optio
     place(pen.get(), canvases[i], {1.0 * left, 1.0 * top + title});
     if (i % columns == columns - 1) top += heights[i / columns];
   }
+  if (bar_height > 0) draw_bar(pen.get(), options.bar, {gap, 1.0 * page_height - gap});
   return page;
 }
 

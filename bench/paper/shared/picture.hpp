@@ -30,9 +30,17 @@ struct FieldPanel {
   cli::Colour (*colour)(double fraction) = cli::size_colour;
 };
 
+/// A bar of colours below the panels, with the values at its ends.
+struct ColourBar {
+  std::string label = {};  ///< what the colours mean; none: no bar
+  double from = 0, to = 1;
+  cli::Colour (*colour)(double fraction) = cli::size_colour;
+};
+
 struct PictureOptions {
   int columns = 1;
   int panel_width = 800;  ///< pixels
+  ColourBar bar = {};
 };
 
 /// The file appears whole or not at all. Throws Error if cairo cannot do it, InputError for a mesh

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "cases/psi.hpp"
 #include "ductile/meshadapt/atomic_file.hpp"
@@ -20,16 +21,20 @@ using namespace ductile;
 using meshadapt::AnyMesh;
 using paper::Experiment;
 
-constexpr std::array<cli::Option, 3> options{{
+constexpr std::array<cli::Option, 5> options{{
     {"--dimension", "2|3", "only this one (default: both)"},
-    {"--elements", "N",
-     "of the meshes that are timed (default: 60000, 3D: 40000; the paper: 550000, 210000)"},
-    {"--steps", "N", "of time (default: 25, 3D: 8; the paper: 50)"},
+    {"--full", "",
+     "times the paper's sizes: from 200 x 200 cells to 550,000 triangles, from 50^3 to 210,000 "
+     "tetrahedra, 50 steps"},
+    {"--elements", "N", "of the meshes that are timed (default: 60000, 3D: 40000)"},
+    {"--steps", "N", "of time (default: 25, 3D: 8)"},
+    {"--part", "errors|kernels", "only this one (default: both)"},
 }};
 
 struct Size {
   double elements = 0;
   int steps = 0;
+  int start_cells = 0;  ///< along each axis of the mesh to start from; 0: of as many elements
 };
 
 Size usual_size(const Experiment& experiment, int dimension) {
@@ -37,11 +42,17 @@ Size usual_size(const Experiment& experiment, int dimension) {
   return dimension == 2 ? Size{60000, 25} : Size{40000, 8};
 }
 
+/// What the paper ran.
+Size paper_size(int dimension) {
+  return dimension == 2 ? Size{550000, 50, 200} : Size{210000, 50, 50};
+}
+
 Size size_of_march(const Experiment& experiment, int dimension) {
-  const Size usual = usual_size(experiment, dimension);
+  const bool full = experiment.arguments().has("--full");
+  const Size usual = full ? paper_size(dimension) : usual_size(experiment, dimension);
   const cli::Arguments& given = experiment.arguments();
   return {given.positive("--elements").value_or(usual.elements),
-          given.integer("--steps", 1, 10000).value_or(usual.steps)};
+          given.integer("--steps", 1, 10000).value_or(usual.steps), usual.start_cells};
 }
 
 paper::MeshGoal goal_of(int dimension, double elements) {
@@ -78,19 +89,27 @@ paper::Window window_on_jump(double phase) {
   return {x - half, y - half, x + half, y + half};
 }
 
+std::string words_for(const paper::Window& window) {
+  std::array<char, 100> text{};
+  std::snprintf(text.data(), text.size(), "x from %.2f to %.2f, y from %.2f to %.2f", window.left,
+                window.right, window.bottom, window.top);
+  return text.data();
+}
+
 void draw_plane(Experiment& experiment, const std::vector<Frame>& frames) {
   std::vector<paper::FieldPanel> panels;
   panels.reserve(3 * frames.size());
   for (const Frame& frame : frames)
     panels.push_back({frame.mesh, frame.value_of, -1.6, 1.6, false, title_of(frame)});
-  for (const Frame& frame : frames) panels.push_back({.mesh = frame.mesh, .lines = true});
-  for (const Frame& frame : frames)
-    panels.push_back({.mesh = frame.mesh,
-                      .lines = true,
-                      .title = "close",
-                      .window = window_on_jump(frame.phase)});
+  for (const Frame& frame : frames) {
+    const paper::Window window = window_on_jump(frame.phase);
+    panels.push_back(
+        {.mesh = frame.mesh, .lines = true, .title = words_for(window), .window = window});
+  }
   write_png(experiment.file("frames_2d.png"), panels,
-            {.columns = static_cast<int>(frames.size()), .panel_width = 330});
+            {.columns = static_cast<int>(frames.size()),
+             .panel_width = 300,
+             .bar = {"psi, in the unit square", -1.6, 1.6}});
 }
 
 void draw_solid(Experiment& experiment, const Frame& frame) {
@@ -144,7 +163,8 @@ std::vector<int> thread_counts(int last) {
 void time_kernels(Experiment& experiment, int dimension) {
   const std::string name = std::to_string(dimension) + "d";
   const Size size = size_of_march(experiment, dimension);
-  const AnyMesh start = paper::start_mesh(dimension, size.elements);
+  const AnyMesh start = size.start_cells > 0 ? paper::start_mesh_of(dimension, size.start_cells)
+                                             : paper::start_mesh(dimension, size.elements);
   const int most = experiment.executor().threads();
   Watcher watcher(experiment, name, size.steps);
   std::vector<paper::ThreadRow> rows;
@@ -201,10 +221,13 @@ void measure_errors(Experiment& experiment, int dimension) {
 
 void run(Experiment& experiment) {
   const int only = experiment.arguments().integer("--dimension", 2, 3).value_or(0);
+  const std::string part = experiment.arguments().text("--part").value_or("");
+  if (!part.empty() && part != "errors" && part != "kernels")
+    throw cli::UsageError("expected --part errors or --part kernels, found '" + part + "'");
   for (const int dimension : {2, 3})
     if (only == 0 || only == dimension) {
-      measure_errors(experiment, dimension);
-      time_kernels(experiment, dimension);
+      if (part != "kernels") measure_errors(experiment, dimension);
+      if (part != "errors") time_kernels(experiment, dimension);
     }
 }
 

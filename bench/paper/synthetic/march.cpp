@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cases/box_mesh.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "solution.hpp"
 
@@ -59,13 +59,14 @@ std::size_t element_count(const AnyMesh& mesh) {
   return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
+AnyMesh start_mesh_of(int dimension, int cells) {
+  return dimension == 2 ? meshadapt::rectangle_mesh({1, 1}, {cells, cells})
+                        : meshadapt::box_mesh({1, 1, 1}, {cells, cells, cells});
+}
+
 AnyMesh start_mesh(int dimension, double elements) {
-  if (dimension == 2) {
-    const int cells = std::max(2, static_cast<int>(std::sqrt(elements / 2)));
-    return bench::rectangle_mesh({1, 1}, {cells, cells});
-  }
-  const int cells = std::max(2, static_cast<int>(std::cbrt(elements / 6)));
-  return bench::box_mesh({1, 1, 1}, {cells, cells, cells});
+  const double cells = dimension == 2 ? std::sqrt(elements / 2) : std::cbrt(elements / 6);
+  return start_mesh_of(dimension, std::max(2, static_cast<int>(cells)));
 }
 
 }  // namespace ductile::paper

@@ -56,7 +56,9 @@ MarchReport march(const runtime::Executor& executor, meshadapt::AnyMesh mesh, co
 /// Triangles or tetrahedra.
 std::size_t element_count(const meshadapt::AnyMesh& mesh);
 
-/// The unit square or cube to start from, with about as many elements.
+/// The unit square or cube to start from, with so many cells along each axis.
+meshadapt::AnyMesh start_mesh_of(int dimension, int cells);
+/// The same with about as many elements.
 meshadapt::AnyMesh start_mesh(int dimension, double elements);
 
 }  // namespace ductile::paper

@@ -13,9 +13,10 @@ do for [d in "2d 3d"] {
     set ylabel "seconds per step"
     set key outside below horizontal
     plot for [k=2:5] "seconds_".d.".csv" using 1:k with linespoints lw 2 pt 7 title columnheader(k)
-    set yrange [0:1.4]
+    set yrange [0:1.2]
     set ylabel "parallel efficiency"
-    plot for [k=2:5] "efficiency_".d.".csv" using 1:k with linespoints lw 2 pt 7 title columnheader(k)
+    plot for [k=2:5] "efficiency_".d.".csv" using 1:k with linespoints lw 2 pt 7 title columnheader(k), \
+         1 with lines dt 2 lc rgb "black" title "ideal"
     unset multiplot
     set autoscale
   }
@@ -29,7 +30,7 @@ do for [d in "2d 3d"] {
     set key inside vertical bottom left
     plot "errors_".d.".csv" skip 1 using 1:2 with linespoints lw 2 pt 7 title "L2 beside the jump", \
          "" skip 1 using 1:4 with linespoints lw 2 pt 7 title "L1 everywhere", \
-         first(2) * (x / first(1))**rate with lines dt 2 lc rgb "black" title "elements^{-2/d}"
+         (x < first(1) ? NaN : first(2) * (x / first(1))**rate) with lines dt 2 lc rgb "black" title "elements^{-2/d}"
     unset logscale
   }
 }

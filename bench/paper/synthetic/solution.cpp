@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cases/psi.hpp"
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::paper {
@@ -47,13 +48,13 @@ InterpolationError sum(InterpolationError a, const InterpolationError& b) {
 }  // namespace
 
 AnyField sampled_solution(const AnyMesh& mesh, double phase) {
-  AnyField field{mesh.dimension, mesh.vertex_count(), {AnyField::Type::scalar}, {}, "solution"};
-  field.values.reserve(mesh.vertex_count());
+  std::vector<double> value_of;
+  value_of.reserve(mesh.vertex_count());
   const auto stride = static_cast<std::size_t>(mesh.dimension);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-    field.values.push_back(
+    value_of.push_back(
         bench::psi(mesh.coordinates[stride * v], mesh.coordinates[stride * v + 1], phase));
-  return field;
+  return meshadapt::scalar_field(mesh.dimension, std::move(value_of), "solution");
 }
 
 template <int Dim>

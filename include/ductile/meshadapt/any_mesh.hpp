@@ -5,11 +5,15 @@
 /// here beyond what the file format itself demands; make_mesh checks that it is a mesh.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "ductile/meshadapt/vector.hpp"
 
 namespace ductile::meshadapt {
 
@@ -43,6 +47,40 @@ struct AnyMesh {
 
   std::size_t vertex_count() const { return vertex_reference.size(); }
 };
+
+/// The elements of a mesh of dimension Dim: its triangles or its tetrahedra.
+template <int Dim>
+const Cells<Dim + 1>& elements_in(const AnyMesh& mesh) {
+  if constexpr (Dim == 2)
+    return mesh.triangles;
+  else
+    return mesh.tetrahedra;
+}
+template <int Dim>
+Cells<Dim + 1>& elements_in(AnyMesh& mesh) {
+  return const_cast<Cells<Dim + 1>&>(elements_in<Dim>(std::as_const(mesh)));
+}
+
+/// The facets of a mesh of dimension Dim that are listed: its edges or its triangles.
+template <int Dim>
+const Cells<Dim>& facets_in(const AnyMesh& mesh) {
+  if constexpr (Dim == 2)
+    return mesh.edges;
+  else
+    return mesh.triangles;
+}
+template <int Dim>
+Cells<Dim>& facets_in(AnyMesh& mesh) {
+  return const_cast<Cells<Dim>&>(facets_in<Dim>(std::as_const(mesh)));
+}
+
+/// Where a vertex of a mesh of dimension Dim lies.
+template <int Dim>
+Vector<Dim> position_in(const AnyMesh& mesh, std::size_t vertex) {
+  Vector<Dim> position;
+  std::copy_n(&mesh.coordinates[vertex * Dim], Dim, position.x.begin());
+  return position;
+}
 
 /// Values at the vertices of a mesh, all components of all fields of one vertex together.
 struct AnyField {

@@ -1,16 +1,23 @@
 /// @file
 /// Background<Dim>: the input mesh with its metric, kept while the mesh is adapted. Whatever vertex
 /// the adaptation makes or moves gets its metric from here, so repeated passes do not blur it.
-/// Points are located by walking from an element nearby.
+/// Points are located by walking from an element nearby; what a walk does not find, by a tree.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
+#include "ductile/runtime/lazy.hpp"
 
 namespace ductile::meshadapt {
+
+template <int Dim>
+class BoxTree;
+template <int Dim>
+struct ClosestPoint;
 
 template <int Dim>
 class Background {
@@ -18,6 +25,9 @@ class Background {
   /// Takes over the neighbours that make_mesh found and the logarithms of metric_of[vertex].
   Background(const runtime::Executor& executor, const Mesh<Dim>& mesh, Neighbours<Dim> neighbours,
              const std::vector<Metric<Dim>>& metric_of);
+  ~Background();
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
 
   /// Where a point lies, and the metric there: log-Euclidean interpolation (Arsigny, Fillard,
   /// Pennec & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007) of the element's vertices.
@@ -26,18 +36,24 @@ class Background {
     Metric<Dim> metric;
   };
 
-  /// The metric at a point, found by walking from the element `near`. A point that is outside by
-  /// rounding is taken to lie in the closest element found. Thread safety: any thread.
+  /// The metric at a point, found by walking from the element `near`. Of a point outside, the
+  /// metric is that of the closest point of the mesh, and so is the host. Thread safety: any
+  /// thread.
   Sample sample(const Vector<Dim>& point, ElementId near) const;
 
   std::size_t element_count() const { return corners_of_.size(); }
+  /// Memory in use. Thread safety: any thread.
   std::size_t bytes() const;
 
  private:
+  ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
+
   std::vector<Corners<Dim>> corners_of_;    // [element]
   Neighbours<Dim> neighbours_;              // [element][facet]
   std::vector<Vector<Dim>> position_of_;    // [vertex]
   std::vector<Metric<Dim>> log_metric_of_;  // [vertex]
+  // Seldom needed: few walks end at a hole or outside.
+  mutable runtime::Lazy<std::unique_ptr<BoxTree<Dim>>> tree_;
 };
 
 extern template class Background<2>;

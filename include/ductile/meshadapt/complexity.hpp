@@ -26,6 +26,8 @@ double complexity_of_elements(int dimension, double elements);
 struct ComplexityGoal {
   double complexity = 0;
   SizeBounds bounds = {};  ///< the scaled metric keeps within them
+  double gradation = 0;    ///< sizes grow by at most this factor per unit of metric length (see
+                           ///< limit_gradation); 0: however fast they do
 };
 
 /// How far a metric got in being what was asked for.
@@ -36,8 +38,10 @@ struct MetricFit {
 };
 
 /// Multiplies all metrics by one factor and bounds them, so that the complexity is the one wanted,
-/// or as near to it as the bounds let it be. Throws InputError if the goal is not above 0, bounds
-/// are not in order, or there is not a metric for each vertex.
+/// or as near to it as the bounds let it be. With a gradation, the metrics are graded as well, and
+/// scaled so that the complexity afterwards is the one wanted, within 2 %. Throws InputError if the
+/// goal is not above 0, bounds or gradation are out of range, or there is not a metric for each
+/// vertex.
 template <int Dim>
 MetricFit scale_to_complexity(const runtime::Executor& executor,
                               std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,

@@ -42,6 +42,7 @@ FittedMetric<Dim> hessian_metric(const runtime::Executor& executor, const FixedM
 
 struct SolutionMetricOptions {
   HessianMetricOptions goal = {};
+  double gradation = 0;  ///< as in ComplexityGoal: the complexity is that of the graded metric
   Recovery recovery = Recovery::least_squares;
 };
 
@@ -51,9 +52,10 @@ struct SolutionMetric {
 };
 
 /// All in one: the metric that suits every component of every field at the vertices of the mesh.
-/// Each gets a metric from its Hessian; they are intersected, and with a complexity as the goal
-/// scaled to it once more. With an error as the goal, it is that of each; the one reported is the
-/// largest. Throws InputError as above, or if the field is not of this mesh.
+/// Each gets a metric from its Hessian; they are intersected, graded if wanted, and with a
+/// complexity as the goal scaled to it once more. With an error as the goal, it is that of each
+/// before grading. The error reported is the largest, of the metric returned. Throws InputError as
+/// above, or if the field is not of this mesh.
 /// Thread safety: one caller; runs on the executor.
 SolutionMetric solution_metric(const runtime::Executor& executor, const AnyMesh& mesh,
                                const AnyField& field, const SolutionMetricOptions& options);

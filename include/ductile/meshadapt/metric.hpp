@@ -84,19 +84,22 @@ inline double mean_length(double at_one_end, double at_other) {
   return difference / std::log(at_one_end / at_other);
 }
 
-/// Eigenvalues and unit eigenvectors (vector[i] belongs to value[i]) by cyclic Jacobi rotations,
-/// which keep small eigenvalues accurate beside large ones (Demmel & Veselic, 1992).
+/// A symmetric tensor taken apart: its eigenvalues, in no order, and unit eigenvectors; vector[i]
+/// belongs to value[i]. Of a metric, 1/sqrt(value[i]) is the size along vector[i].
 template <int Dim>
-struct Eigen {
+struct PrincipalAxes {
   std::array<double, Dim> value;
   std::array<Vector<Dim>, Dim> vector;
 };
-template <int Dim>
-Eigen<Dim> eigen(const Metric<Dim>& a);
 
-/// Sum of value[i] vector[i] vector[i]'.
+/// By cyclic Jacobi rotations, which keep small eigenvalues accurate beside large ones (Demmel &
+/// Veselic, 1992). Thread safety: any thread.
 template <int Dim>
-Metric<Dim> compose(const Eigen<Dim>& e);
+PrincipalAxes<Dim> principal_axes(const Metric<Dim>& a);
+
+/// Puts a tensor together: the sum of value[i] vector[i] vector[i]'.
+template <int Dim>
+Metric<Dim> compose(const PrincipalAxes<Dim>& axes);
 
 /// Matrix logarithm of a positive definite tensor, and the exponential that undoes it.
 template <int Dim>
@@ -112,10 +115,10 @@ Metric<Dim> isotropic(double size) {
   return a;
 }
 
-extern template Eigen<2> eigen(const Metric<2>&);
-extern template Eigen<3> eigen(const Metric<3>&);
-extern template Metric<2> compose(const Eigen<2>&);
-extern template Metric<3> compose(const Eigen<3>&);
+extern template PrincipalAxes<2> principal_axes(const Metric<2>&);
+extern template PrincipalAxes<3> principal_axes(const Metric<3>&);
+extern template Metric<2> compose(const PrincipalAxes<2>&);
+extern template Metric<3> compose(const PrincipalAxes<3>&);
 extern template Metric<2> logarithm(const Metric<2>&);
 extern template Metric<3> logarithm(const Metric<3>&);
 extern template Metric<2> exponential(const Metric<2>&);

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -20,6 +21,12 @@ namespace ductile::meshadapt {
 /// for bit. Both are positive definite. Thread safety: any thread.
 template <int Dim>
 Metric<Dim> intersect(const Metric<Dim>& a, const Metric<Dim>& b);
+
+/// The same at every vertex: metric_of[vertex] becomes fine enough for other_of[vertex], too.
+/// Throws InputError unless there are as many. Thread safety: one caller; runs on the executor.
+template <int Dim>
+void intersect(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
+               const std::vector<Metric<Dim>>& other_of);
 
 /// Edge lengths that a metric may ask for; 0 is no bound.
 struct SizeBounds {
@@ -59,15 +66,28 @@ struct GradationReport {
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 GradationReport limit_gradation(const runtime::Executor& executor,
+                                std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,
+                                const GradationOptions& options = {});
+/// The same on a mesh that is being adapted.
+template <int Dim>
+GradationReport limit_gradation(const runtime::Executor& executor,
                                 std::vector<Metric<Dim>>& metric_of, const Mesh<Dim>& mesh,
                                 const GradationOptions& options = {});
 
 extern template Metric<2> intersect(const Metric<2>&, const Metric<2>&);
 extern template Metric<3> intersect(const Metric<3>&, const Metric<3>&);
+extern template void intersect(const runtime::Executor&, std::vector<Metric<2>>&,
+                               const std::vector<Metric<2>>&);
+extern template void intersect(const runtime::Executor&, std::vector<Metric<3>>&,
+                               const std::vector<Metric<3>>&);
 extern template void bound_sizes(const runtime::Executor&, std::vector<Metric<2>>&,
                                  const SizeBounds&);
 extern template void bound_sizes(const runtime::Executor&, std::vector<Metric<3>>&,
                                  const SizeBounds&);
+extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<2>>&,
+                                                const FixedMesh<2>&, const GradationOptions&);
+extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
+                                                const FixedMesh<3>&, const GradationOptions&);
 extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<2>>&,
                                                 const Mesh<2>&, const GradationOptions&);
 extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,

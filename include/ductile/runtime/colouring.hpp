@@ -53,12 +53,13 @@ std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> byte
 /// One more than the greatest colour.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
 
-/// Colours all by a method, with words of one byte. Returns one more than the greatest colour.
+/// Colours all, in this order, by a method, with words of one byte. Returns one more than the
+/// greatest colour.
 template <class Method, class Width, Graph G>
 std::uint32_t colour_in_bytes(const Executor& executor, const G& graph,
-                              std::vector<std::uint32_t>& colour_of) {
+                              std::vector<std::uint32_t>& colour_of, VertexSet vertices) {
   std::vector<std::uint8_t> bytes(colour_of.size(), Colours<Width>::none);
-  Method::run(executor, graph, VertexSet{bytes.size()}, Colours<Width>(bytes));
+  Method::run(executor, graph, vertices, Colours<Width>(bytes));
   return widen(executor, bytes, colour_of);
 }
 
@@ -66,17 +67,17 @@ std::uint32_t colour_in_bytes(const Executor& executor, const G& graph,
 /// first, so that it shows soon what does not.
 template <class Method, Graph G>
 std::uint32_t colour_all(const Executor& executor, const G& graph,
-                         std::vector<std::uint32_t>& colour_of) {
+                         std::vector<std::uint32_t>& colour_of, VertexSet vertices) {
   try {
-    return colour_in_bytes<Method, Narrow>(executor, graph, colour_of);
+    return colour_in_bytes<Method, Narrow>(executor, graph, colour_of, vertices);
   } catch (const TooManyColours&) {
   }
   try {
-    return colour_in_bytes<Method, OneByte>(executor, graph, colour_of);
+    return colour_in_bytes<Method, OneByte>(executor, graph, colour_of, vertices);
   } catch (const TooManyColours&) {
   }
   std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
-  Method::run(executor, graph, VertexSet{colour_of.size()}, Colours<FourBytes>(colour_of));
+  Method::run(executor, graph, vertices, Colours<FourBytes>(colour_of));
   return colour_count(executor, colour_of);
 }
 
@@ -95,7 +96,8 @@ Colouring colour(const Executor& executor, const G& graph,
       method == ColouringMethod::largest_first || method == ColouringMethod::largest_log_first;
   if (colour_of.size() < detail::few_vertices && !by_degree) method = ColouringMethod::serial;
   const auto by = [&]<class Method>(Method) {
-    colouring.count = detail::colour_all<Method>(executor, graph, colour_of);
+    colouring.count =
+        detail::colour_all<Method>(executor, graph, colour_of, detail::VertexSet{colour_of.size()});
   };
   switch (method) {
     case ColouringMethod::serial:

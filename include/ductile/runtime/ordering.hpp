@@ -63,9 +63,9 @@ std::vector<std::uint32_t> degrees(const Executor& executor, const G& graph) {
 
 /// Serial first-fit in the given order.
 struct InOrder {
-  template <class Word, Graph G>
+  template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
-                  Colours<Word> colours) {
+                  Colours<Width> colours) {
     if (executor.threads() == 1) return Serial::run(executor, graph, vertices, colours);
     std::vector<std::uint32_t> place_of(colours.vertex_count());
     for (std::size_t i = 0; i < vertices.count; ++i)
@@ -114,8 +114,8 @@ Colouring colour_in_order(const Executor& executor, const G& graph,
   colouring.colour_of.resize(graph.vertex_count());
   if (order.size() != colouring.colour_of.size())
     throw std::invalid_argument("colour_in_order: expected each vertex once");
-  detail::colour_all<detail::InOrder>(executor, graph, colouring.colour_of, order.data());
-  colouring.count = detail::colour_count(executor, colouring.colour_of);
+  colouring.count = detail::colour_all<detail::InOrder>(executor, graph, colouring.colour_of,
+                                                        {order.size(), order.data()});
   return colouring;
 }
 

@@ -1,4 +1,4 @@
-#include "transfer/box_tree.hpp"
+#include "mesh/box_tree.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -95,12 +95,12 @@ ClosestPoint<Dim> closest_in(std::array<Vector<Dim>, Dim + 1> corner, const Vect
 }  // namespace
 
 template <int Dim>
-BoxTree<Dim>::BoxTree(const Executor& executor, const FixedMesh<Dim>& mesh) : mesh_(mesh) {
+BoxTree<Dim>::BoxTree(const Executor& executor, const Simplices<Dim>& mesh) : mesh_(mesh) {
   const auto all = runtime::parallel_reduce(
-      executor, mesh.element_count(), Box<Dim>::empty(),
+      executor, mesh.corners_of.size(), Box<Dim>::empty(),
       [&](std::size_t e) { return box_of<Dim>(mesh.points(static_cast<ElementId>(e))); },
       [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
-  std::vector<Keyed> keyed(mesh.element_count());
+  std::vector<Keyed> keyed(mesh.corners_of.size());
   runtime::parallel_for(executor, keyed.size(), [&](std::size_t e) {
     const Box<Dim> box = box_of<Dim>(mesh.points(static_cast<ElementId>(e)));
     keyed[e] = {hilbert_key(0.5 * (box.low + box.high), all), static_cast<ElementId>(e)};
@@ -149,6 +149,13 @@ ClosestPoint<Dim> BoxTree<Dim>::closest(const Vector<Dim>& point) const {
   best.squared_distance = std::numeric_limits<double>::infinity();
   look_into(boxes_of_.size() - 1, 0, point, best);
   return best;
+}
+
+template <int Dim>
+std::size_t BoxTree<Dim>::bytes() const {
+  std::size_t sum = order_.capacity() * sizeof(order_[0]);
+  for (const auto& boxes : boxes_of_) sum += boxes.capacity() * sizeof(boxes[0]);
+  return sum;
 }
 
 template class BoxTree<2>;

@@ -1,17 +1,23 @@
-#include "cases/box_mesh.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/error.hpp"
 
-namespace ductile::bench {
+namespace ductile::meshadapt {
 
 namespace {
 
-using meshadapt::AnyMesh;
+template <std::size_t N>
+void expect_box(const std::array<double, N>& extent, const std::array<int, N>& cells) {
+  for (std::size_t axis = 0; axis < N; ++axis)
+    if (!(extent[axis] > 0) || cells[axis] < 1)
+      throw InputError("expected a positive extent and at least one cell along each axis, found " +
+                       std::to_string(extent[axis]) + " and " + std::to_string(cells[axis]));
+}
 
 /// Numbers of the vertices of a grid, x running fastest.
 struct GridNumbers {
@@ -80,33 +86,10 @@ void add_sides(AnyMesh& mesh, const std::array<int, 3>& cells, std::size_t axis)
       }
 }
 
-template <int Dim>
-double measure_of(const AnyMesh& mesh, const std::array<std::uint32_t, Dim + 1>& corners) {
-  std::array<meshadapt::Vector<Dim>, Dim + 1> place;
-  for (std::size_t i = 0; i <= Dim; ++i)
-    std::copy_n(&mesh.coordinates[corners[i] * Dim], Dim, place[i].x.begin());
-  const auto u = place[1] - place[0], v = place[2] - place[0];
-  if constexpr (Dim == 2)
-    return (u[0] * v[1] - u[1] * v[0]) / 2;
-  else
-    return dot(cross(u, v), place[3] - place[0]) / 6;
-}
-
 }  // namespace
 
-bool fills_unit_box(const AnyMesh& mesh) {
-  constexpr double tolerance = 1e-9;
-  const bool inside = std::all_of(mesh.coordinates.begin(), mesh.coordinates.end(),
-                                  [&](double x) { return x >= -tolerance && x <= 1 + tolerance; });
-  double measure = 0;
-  if (mesh.dimension == 2)
-    for (const auto& corners : mesh.triangles.vertices) measure += measure_of<2>(mesh, corners);
-  else
-    for (const auto& corners : mesh.tetrahedra.vertices) measure += measure_of<3>(mesh, corners);
-  return inside && std::abs(measure - 1) < tolerance;
-}
-
 AnyMesh rectangle_mesh(const std::array<double, 2>& extent, const std::array<int, 2>& cells) {
+  expect_box(extent, cells);
   AnyMesh mesh;
   mesh.dimension = 2;
   mesh.name = "rectangle";
@@ -132,6 +115,7 @@ AnyMesh rectangle_mesh(const std::array<double, 2>& extent, const std::array<int
 }
 
 AnyMesh box_mesh(const std::array<double, 3>& extent, const std::array<int, 3>& cells) {
+  expect_box(extent, cells);
   AnyMesh mesh;
   mesh.dimension = 3;
   mesh.name = "box";
@@ -141,4 +125,4 @@ AnyMesh box_mesh(const std::array<double, 3>& extent, const std::array<int, 3>& 
   return mesh;
 }
 
-}  // namespace ductile::bench
+}  // namespace ductile::meshadapt

@@ -5,7 +5,8 @@
 
 #include <vector>
 
-#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "mesh/hilbert.hpp"
 #include "mesh/walk.hpp"
 
@@ -21,17 +22,19 @@ struct ClosestPoint {
 template <int Dim>
 class BoxTree {
  public:
-  /// Refers to the mesh. Throws std::bad_alloc.
-  BoxTree(const runtime::Executor& executor, const FixedMesh<Dim>& mesh);
+  /// Refers to what `mesh` refers to. Throws std::bad_alloc.
+  BoxTree(const runtime::Executor& executor, const Simplices<Dim>& mesh);
 
   /// Thread safety: any thread.
   ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
+
+  std::size_t bytes() const;
 
  private:
   void look_into(std::size_t level, std::size_t index, const Vector<Dim>& point,
                  ClosestPoint<Dim>& best) const;
 
-  const FixedMesh<Dim>& mesh_;
+  Simplices<Dim> mesh_;
   std::vector<ElementId> order_;                 // along a space-filling curve
   std::vector<std::vector<Box<Dim>>> boxes_of_;  // [level][index]: of `width` boxes a level below
 };

@@ -1,0 +1,86 @@
+#include "ductile/meshadapt/fields.hpp"
+
+#include <algorithm>
+
+#include "ductile/meshadapt/error.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// The first component of a field among those of a vertex. Throws unless it is of this type.
+std::size_t first_component(const AnyField& field, std::size_t index, AnyField::Type type) {
+  if (index >= field.types.size() || field.types[index] != type)
+    throw InputError(field.name + ": expected a field of " +
+                     (type == AnyField::Type::scalar ? "scalars" : "vectors") + " with index " +
+                     std::to_string(index) + ", found " +
+                     (index < field.types.size() ? "one of another type"
+                                                 : std::to_string(field.types.size()) + " fields"));
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < index; ++i)
+    first += static_cast<std::size_t>(component_count(field.types[i], field.dimension));
+  return first;
+}
+
+}  // namespace
+
+AnyField scalar_field(int dimension, std::vector<double> value_of, const std::string& name) {
+  const std::size_t count = value_of.size();
+  return {dimension, count, {AnyField::Type::scalar}, std::move(value_of), name};
+}
+
+template <int Dim>
+AnyField vector_field(const std::vector<Vector<Dim>>& vector_of, const std::string& name) {
+  AnyField field{Dim, vector_of.size(), {AnyField::Type::vector}, {}, name};
+  field.values.reserve(vector_of.size() * Dim);
+  for (const Vector<Dim>& vector : vector_of)
+    field.values.insert(field.values.end(), vector.x.begin(), vector.x.end());
+  return field;
+}
+
+AnyField joined(const AnyField& first, const AnyField& second) {
+  if (first.dimension != second.dimension || first.vertex_count != second.vertex_count)
+    throw InputError(second.name + ": expected a field of dimension " +
+                     std::to_string(first.dimension) + " with " +
+                     std::to_string(first.vertex_count) + " vertices, as " + first.name +
+                     " is, found one of dimension " + std::to_string(second.dimension) + " with " +
+                     std::to_string(second.vertex_count));
+  AnyField both{first.dimension, first.vertex_count, first.types, {}, first.name};
+  both.types.insert(both.types.end(), second.types.begin(), second.types.end());
+  both.values.resize(first.values.size() + second.values.size());
+  const std::size_t a = stride_of(first), b = stride_of(second);
+  for (std::size_t v = 0; v < both.vertex_count; ++v) {
+    double* const here = both.values.data() + v * (a + b);
+    std::copy_n(first.values.data() + v * a, a, here);
+    std::copy_n(second.values.data() + v * b, b, here + a);
+  }
+  return both;
+}
+
+std::vector<double> scalars_of(const AnyField& field, std::size_t index) {
+  const std::size_t first = first_component(field, index, AnyField::Type::scalar);
+  const std::size_t stride = stride_of(field);
+  std::vector<double> value_of(field.vertex_count);
+  for (std::size_t v = 0; v < value_of.size(); ++v) value_of[v] = field.values[v * stride + first];
+  return value_of;
+}
+
+template <int Dim>
+std::vector<Vector<Dim>> vectors_of(const AnyField& field, std::size_t index) {
+  if (field.dimension != Dim)
+    throw InputError(field.name + ": expected dimension " + std::to_string(Dim) + ", found " +
+                     std::to_string(field.dimension));
+  const std::size_t first = first_component(field, index, AnyField::Type::vector);
+  const std::size_t stride = stride_of(field);
+  std::vector<Vector<Dim>> vector_of(field.vertex_count);
+  for (std::size_t v = 0; v < vector_of.size(); ++v)
+    std::copy_n(&field.values[v * stride + first], Dim, vector_of[v].x.begin());
+  return vector_of;
+}
+
+template AnyField vector_field(const std::vector<Vector<2>>&, const std::string&);
+template AnyField vector_field(const std::vector<Vector<3>>&, const std::string&);
+template std::vector<Vector<2>> vectors_of<2>(const AnyField&, std::size_t);
+template std::vector<Vector<3>> vectors_of<3>(const AnyField&, std::size_t);
+
+}  // namespace ductile::meshadapt
