@@ -107,7 +107,7 @@ double shape_over(const Base<Dim>& base, const Site<Dim>& apex, bool under = fal
       squares_over(base, apex.position, judge.metric,
                    apex_judges ? base_squares(base, judge.metric) : base.squares);
   const double value = shape_from<Dim>(judge.density * determinant, squares);
-  if (value > doubtful_shape) return value;
+  if (value > doubtful_shape<Dim>) return value;
   return shape_from<Dim>(judge.density * determinant,
                          squares_at(base, apex.position, strictest(base, apex)));
 }

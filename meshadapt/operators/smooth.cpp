@@ -201,7 +201,7 @@ Vector<Dim> Smooth<Dim>::shape_gradient(const Base<Dim>& base, const Site<Dim>& 
   const Vector<Dim> up = apex.position - base.centre;
   const Site<Dim>& densest = apex.density > base.judge->density ? apex : *base.judge;
   const Metric<Dim>& metric =
-      (shape_here > doubtful_shape ? densest : strictest(base, apex)).metric;
+      (shape_here > doubtful_shape<Dim> ? densest : strictest(base, apex)).metric;
   const double squares = squares_over(base, apex.position, metric, base_squares(base, metric));
   constexpr double power = Dim == 2 ? 1.0 : 1.5;
   return shape_here * ((1 / dot(base.normal, up)) * base.normal -

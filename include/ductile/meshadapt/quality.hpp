@@ -81,7 +81,9 @@ double shape_from(double volume, double squares) {
 }
 
 /// Elements of a shape below this are judged with caution. Good ones look alike from every corner.
-inline constexpr double doubtful_shape = 0.65;
+/// In 3D none are: it takes 4 to 17 % more time there, and what it gains is within the noise.
+template <int Dim>
+inline constexpr double doubtful_shape = Dim == 2 ? 0.65 : 0;
 
 /// The largest sum of squared lengths that an element has in the metric of any of its corners.
 template <int Dim>
@@ -109,7 +111,7 @@ double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   const Site<Dim>& judge = densest<Dim>(corner);
   const double volume = judge.density * determinant;
   const double value = shape_from<Dim>(volume, sum_of_squared_lengths<Dim>(judge.metric, corner));
-  if (value > doubtful_shape) return value;
+  if (value > doubtful_shape<Dim>) return value;
   return shape_from<Dim>(volume, largest_sum_of_squares<Dim>(corner));
 }
 
@@ -129,7 +131,7 @@ bool shape_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar
       return 432 * volume * volume > limit * limit * (squares * squares * squares);
   };
   const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
-  if (above(std::max(bar, doubtful_shape), squares)) return true;
+  if (above(std::max(bar, doubtful_shape<Dim>), squares)) return true;
   return above(bar, squares) && above(bar, largest_sum_of_squares<Dim>(corner));
 }
 
