@@ -104,7 +104,7 @@ std::vector<std::uint32_t> boost_core_numbers(runtime::CsrGraph<> graph) {
 }
 
 void compare(const example::Arguments& arguments) {
-  const example::GraphArrays random_graph =
+  const runtime::CsrRows random_graph =
       example::random_graph(runtime::Executor(), arguments.size, 8 * arguments.size);
   const runtime::CsrGraph<> graph = random_graph.view();
   std::printf("Core numbers of %zu vertices with %zu edges\n", graph.vertex_count(),

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/runtime/csr_rows.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -20,15 +21,9 @@ namespace example {
 
 using Vertex = std::uint32_t;
 
-/// The arrays behind a CsrGraph.
-struct GraphArrays {
-  std::vector<std::uint32_t> offset, neighbour;
-  ductile::runtime::CsrGraph<> view() const { return {offset, neighbour}; }
-};
-
 /// A random graph with almost `edge_count` edges: repetitions and loops are dropped.
-inline GraphArrays random_graph(const ductile::runtime::Executor& executor,
-                                std::size_t vertex_count, std::size_t edge_count) {
+inline ductile::runtime::CsrRows random_graph(const ductile::runtime::Executor& executor,
+                                              std::size_t vertex_count, std::size_t edge_count) {
   namespace runtime = ductile::runtime;
   const auto vertex = [&](std::uint64_t seed) -> std::uint64_t {
     const double chance = static_cast<double>(runtime::mix64(seed) >> 11U) * 0x1p-53;
@@ -45,8 +40,8 @@ inline GraphArrays random_graph(const ductile::runtime::Executor& executor,
   runtime::parallel_sort(executor, std::span(arcs));
   arcs.resize(runtime::parallel_unique(executor, std::span(arcs)));
 
-  GraphArrays graph{std::vector<std::uint32_t>(vertex_count + 1),
-                    std::vector<std::uint32_t>(arcs.size())};
+  ductile::runtime::CsrRows graph{std::vector<std::uint32_t>(vertex_count + 1),
+                                  std::vector<std::uint32_t>(arcs.size())};
   runtime::parallel_for(executor, vertex_count + 1, [&](std::size_t v) {
     const auto begin = std::lower_bound(arcs.begin(), arcs.end(), std::uint64_t{v} << 32U);
     graph.offset[v] = static_cast<std::uint32_t>(begin - arcs.begin());
@@ -58,9 +53,9 @@ inline GraphArrays random_graph(const ductile::runtime::Executor& executor,
 }
 
 /// A square grid of about `vertex_count`.
-inline GraphArrays grid_graph(std::size_t vertex_count) {
+inline ductile::runtime::CsrRows grid_graph(std::size_t vertex_count) {
   const auto width = static_cast<Vertex>(std::sqrt(static_cast<double>(vertex_count)));
-  GraphArrays graph{{0}, {}};
+  ductile::runtime::CsrRows graph{{0}, {}};
   for (Vertex v = 0; v < width * width; ++v) {
     if (v >= width) graph.neighbour.push_back(v - width);
     if (v % width > 0) graph.neighbour.push_back(v - 1);

@@ -58,7 +58,7 @@ bool is_maximal_independent(runtime::CsrGraph<> graph, const std::vector<std::ui
 }
 
 void compare(const example::Arguments& arguments) {
-  const example::GraphArrays random_graph =
+  const runtime::CsrRows random_graph =
       example::random_graph(runtime::Executor(), arguments.size, 4 * arguments.size);
   const runtime::CsrGraph<> graph = random_graph.view();
   std::vector<Vertex> vertices(graph.vertex_count());

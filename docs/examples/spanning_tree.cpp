@@ -111,7 +111,7 @@ class Contraction {
 };
 
 void compare(const example::Arguments& arguments) {
-  const example::GraphArrays grid = example::grid_graph(arguments.size);
+  const runtime::CsrRows grid = example::grid_graph(arguments.size);
   const runtime::CsrGraph<> graph = grid.view();
   std::vector<Vertex> vertices(graph.vertex_count());
   std::iota(vertices.begin(), vertices.end(), Vertex{0});

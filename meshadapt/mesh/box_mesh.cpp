@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/box_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -11,12 +12,20 @@ namespace ductile::meshadapt {
 
 namespace {
 
+constexpr double most_vertices = 4e9;  // fit numbers of 32 bits
+
 template <std::size_t N>
 void expect_box(const std::array<double, N>& extent, const std::array<int, N>& cells) {
-  for (std::size_t axis = 0; axis < N; ++axis)
-    if (!(extent[axis] > 0) || cells[axis] < 1)
+  double vertices = 1;
+  for (std::size_t axis = 0; axis < N; ++axis) {
+    if (!(extent[axis] > 0) || !std::isfinite(extent[axis]) || cells[axis] < 1)
       throw InputError("expected a positive extent and at least one cell along each axis, found " +
                        std::to_string(extent[axis]) + " and " + std::to_string(cells[axis]));
+    vertices *= cells[axis] + 1.0;
+  }
+  if (vertices > most_vertices)
+    throw InputError("expected at most " + std::to_string(most_vertices) + " vertices, found " +
+                     std::to_string(vertices));
 }
 
 /// Numbers of the vertices of a grid, x running fastest.
@@ -24,7 +33,9 @@ struct GridNumbers {
   std::array<int, 3> cells;
 
   std::uint32_t operator()(const std::array<int, 3>& at) const {
-    return static_cast<std::uint32_t>((at[2] * (cells[1] + 1) + at[1]) * (cells[0] + 1) + at[0]);
+    const auto at_32 = [&](std::size_t axis) { return static_cast<std::uint32_t>(at[axis]); };
+    const auto row = [&](std::size_t axis) { return static_cast<std::uint32_t>(cells[axis]) + 1; };
+    return (at_32(2) * row(1) + at_32(1)) * row(0) + at_32(0);
   }
 };
 

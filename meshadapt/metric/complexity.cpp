@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "ductile/meshadapt/error.hpp"
@@ -47,6 +48,7 @@ MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, 
   constexpr double tolerance = 0.02, least_slope = 0.1, most_slope = 0.5 * Dim;
   const double goal = std::log(scaling.goal.complexity);
   double at = std::log(start), slope = most_slope, last_at = 0, last = 0;
+  double best_at = at, least_miss = std::numeric_limits<double>::infinity();
   MetricFit fit;
   for (int pass = 0; pass < most_passes && !fit.reached; ++pass) {
     fit.complexity = take_graded(executor, spectrum, std::exp(at), scaling);
@@ -56,8 +58,14 @@ MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, 
       slope = std::clamp((found - last) / (at - last_at), least_slope, most_slope);
     last_at = at;
     last = found;
+    if (std::abs(goal - found) < least_miss) {
+      least_miss = std::abs(goal - found);
+      best_at = at;
+    }
     at += (goal - found) / slope;
   }
+  if (best_at != last_at)
+    fit.complexity = take_graded(executor, spectrum, std::exp(best_at), scaling);
   return fit;
 }
 
@@ -84,6 +92,7 @@ MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>
                               const FixedMesh<Dim>& mesh, const ComplexityGoal& goal) {
   expect_metrics(mesh, metric_of);
   expect_bounds(goal.bounds);
+  expect_gradation(goal.gradation);
   if (!(goal.complexity > 0) || !std::isfinite(goal.complexity))
     throw InputError("complexity: expected a number above 0, found " +
                      std::to_string(goal.complexity));

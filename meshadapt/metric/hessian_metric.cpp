@@ -193,6 +193,7 @@ double error_of(const Executor& executor, const FixedMesh<Dim>& mesh,
 template <int Dim>
 SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
                                   const AnyField& field, const SolutionMetricOptions& options) {
+  expect_gradation(options.gradation);
   const auto mesh = make_fixed_mesh<Dim>(executor, any);
   const std::size_t stride = stride_of(field);
   FittedMetric<Dim> all;

@@ -269,9 +269,12 @@ class Gradation {
   runtime::Worklist<VertexId> wake_;
 };
 
+[[noreturn]] void refuse_gradation(double factor) {
+  throw InputError("gradation: expected a factor of 1 or more, found " + number(factor));
+}
+
 void expect_gradable(std::size_t metrics, std::size_t vertices, const GradationOptions& options) {
-  if (!(options.factor >= 1) || !std::isfinite(options.factor))
-    throw InputError("gradation: expected a factor of 1 or more, found " + number(options.factor));
+  if (!(options.factor >= 1) || !std::isfinite(options.factor)) refuse_gradation(options.factor);
   if (metrics != vertices)
     throw InputError("gradation: expected a metric for each of the " + std::to_string(vertices) +
                      " vertices, found " + std::to_string(metrics));
@@ -289,6 +292,10 @@ void expect_bounds(const SizeBounds& bounds) {
   if (!(anisotropy == 0 || anisotropy >= 1))
     throw InputError("bound on the anisotropy: expected 0 (none) or 1 or more, found " +
                      number(anisotropy));
+}
+
+void expect_gradation(double factor) {
+  if (!(factor <= 0 || (factor >= 1 && std::isfinite(factor)))) refuse_gradation(factor);
 }
 
 template <int Dim>

@@ -64,13 +64,15 @@ auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
     best.score.worst = std::min<double>(best.score.worst, mesh_.shape_of[e]);
     best.score.sum += mesh_.shape_of[e];
   }
+  constexpr double sound = 1e-6;  // the inverse of a shape tells something
   const double good_enough = shape_of_mean_ratio<Dim>(options_.optimise_below);
   if (!options_.laplacian && best.score.worst >= good_enough) return {};
   const Bases bases = bases_around(vertex);
   bool moved = options_.laplacian && relax(vertex, bases, best);
   if (best.score.worst < good_enough) {
     const double poor = shape_of_mean_ratio<Dim>(options_.mean_below);
-    const bool all_poor = best.score.sum < poor * static_cast<double>(ball.size());
+    const bool all_poor =
+        best.score.worst > sound && best.score.sum < poor * static_cast<double>(ball.size());
     moved = optimise(vertex, bases, all_poor ? Aim::mean : Aim::worst, best) || moved;
   }
   if (!moved) return {};

@@ -28,7 +28,8 @@ struct VertexMove {
 struct SmoothOptions {
   bool laplacian = true;
   double optimise_below = 0.4;  ///< optimise where the worst mean ratio around is below this
-  double mean_below = 0;        ///< ... for all of them where their mean is below this
+  double mean_below = 0;        ///< ... where their mean is below this: the harmonic mean of all,
+                                ///< though the worst may get worse
   double far = 0.08;            ///< metric length of a move that neighbours take notice of
   bool again = true;            ///< wake whoever has a neighbour that moved far
 };

@@ -32,8 +32,9 @@ class Swap {
 
   explicit Swap(Mesh<Dim>& mesh) : mesh_(mesh) {}
 
-  /// All edges and faces of elements changed after an epoch whose swap would be an improvement now,
-  /// where the worst mean ratio is below a bound.
+  /// Edges and faces of elements changed after an epoch whose swap would be an improvement now,
+  /// where the worst mean ratio is below a bound. Only such as are likely to be worth a swap are
+  /// looked at: in 2D edges opposite to a wide angle, in 3D long edges and large faces.
   static std::vector<Swappable> improvements(const runtime::Executor& executor, Mesh<Dim>& mesh,
                                              std::uint32_t after, double below);
 

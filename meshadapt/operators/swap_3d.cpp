@@ -320,10 +320,11 @@ std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, 
   const auto poor = [&](ElementId e) { return mesh.shape_of[e] < good_enough; };
   const double flat = std::min<double>(good_enough, shape_of_mean_ratio<3>(0.5));
   const auto near_change = mark_changed(executor, mesh, after);
-  const auto vertices = runtime::parallel_collect<VertexId>(
-      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
-        if (near_change[v]) append(static_cast<VertexId>(v));
-      });
+  const auto vertices = runtime::parallel_collect<VertexId>(executor, mesh.vertex_slots(),
+                                                            [&](std::size_t v, auto&& append) {
+                                                              if (near_change[v])
+                                                                append(static_cast<VertexId>(v));
+                                                            });
   auto found = runtime::parallel_collect<Swappable>(
       executor, vertices.size(), [&](std::size_t i, auto&& append) {
         for (const int stage : {2, 1, 0})

@@ -52,6 +52,8 @@ TEST(BoxMesh, RefusesBoxesWithoutExtentOrCells) {
   EXPECT_THROW(rectangle_mesh({1, 0}, {1, 1}), InputError);
   EXPECT_THROW(rectangle_mesh({1, 1}, {0, 1}), InputError);
   EXPECT_THROW(box_mesh({1, 1, -1}, {1, 1, 1}), InputError);
+  EXPECT_THROW(box_mesh({1, 1, 1.0 / 0.0}, {1, 1, 1}), InputError);
+  EXPECT_THROW(box_mesh({1, 1, 1}, {2000, 2000, 2000}), InputError);
 }
 
 }  // namespace

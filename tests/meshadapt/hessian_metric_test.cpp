@@ -205,6 +205,15 @@ TYPED_TEST(HessianMetricIn, ReachesAComplexityWithGradation) {
       executor, solution_metric(executor, any, layer, {.goal = options.goal}).metric);
   limit_gradation(executor, after_of, mesh, {.factor = 1.5});
   EXPECT_GT(complexity<Dim>(executor, mesh, after_of), 5 * 1500);
+  for (const double wrong : {0.5, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const auto before = metric_of;
+    EXPECT_THROW(solution_metric(executor, any, layer, {.goal = options.goal, .gradation = wrong}),
+                 InputError);
+    EXPECT_THROW(scale_to_complexity<Dim>(executor, metric_of, mesh,
+                                          {.complexity = 100, .gradation = wrong}),
+                 InputError);
+    EXPECT_EQ(metric_of, before);
+  }
 }
 
 TYPED_TEST(HessianMetricIn, DoesNotDependOnThreads) {

@@ -52,6 +52,29 @@ TEST(Colouring, IsTheSameAtAnyThreadCountUnlessItSpeculates) {
     }
 }
 
+TEST(Colouring, LetsNeighboursBeRepeatedOnOneSideOnly) {
+  // A ring with chords, whose even vertices name each neighbour thrice and whose odd ones once.
+  const std::uint32_t n = 4000;
+  const auto graph = callback_graph(n, [](std::uint32_t v, auto&& visit) {
+    for (int repetition = 0; repetition < (v % 2 == 0 ? 3 : 1); ++repetition)
+      for (const std::uint32_t step : {1U, 7U, 100U}) {
+        visit((v + step) % n);
+        visit((v + n - step) % n);
+      }
+  });
+  for (const ColouringMethod method : methods)
+    for (int threads : {1, 2, 8}) {
+      const Executor executor({.threads = threads});
+      Colouring colouring = colour(executor, graph, method);
+      EXPECT_TRUE(is_proper(executor, graph, colouring)) << static_cast<int>(method);
+      EXPECT_LE(colouring.count, 7U);
+      std::vector<std::uint32_t> some;
+      for (std::uint32_t v = 0; v < n; v += 20) some.push_back(v), some.push_back(v + 1);
+      recolour(executor, graph, some, colouring);
+      EXPECT_TRUE(is_proper(executor, graph, colouring)) << static_cast<int>(method);
+    }
+}
+
 TEST(Colouring, IsTheSameInEveryRun) {
   const auto graph = test::shuffled(test::mesh_graph(90), 6);
   const Executor executor({.threads = 4});

@@ -95,10 +95,12 @@ TEST(ColourInOrder, SmallestLastNeedsFewColours) {
   EXPECT_LE(count(skewed, VertexOrder::smallest_last), count(skewed, VertexOrder::natural));
 }
 
-TEST(ColourInOrder, RefusesAnOrderOfAnotherLength) {
-  const auto path = test::path_graph(9);
-  EXPECT_THROW(colour_in_order(Executor({.threads = 1}), path.view(), std::vector{0U, 1U}),
-               std::invalid_argument);
+TEST(ColourInOrder, RefusesWhatDoesNotNameEachVertexOnce) {
+  const auto path = test::path_graph(3);
+  for (const auto& order : {std::vector{0U, 1U}, std::vector{0U, 1U, 2U, 2U},
+                            std::vector{0U, 1U, 1U}, std::vector{0U, 1U, 3U}})
+    EXPECT_THROW(colour_in_order(Executor({.threads = 1}), path.view(), order),
+                 std::invalid_argument);
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ double length_at(const Path& path, double minimum_length, int iteration);
 struct Adaptation {
   double elements = 0;    ///< of the adapted meshes, about; 0: the start mesh is kept
   int interval = 5;       ///< iterations from one mesh to the next
-  double smallest = 0.1;  ///< size, in units of the filter's length
-  double largest = 0.1;   ///< size
+  double smallest = 0.1;  ///< edge length, in units of the filter's length
+  double largest = 0.1;   ///< edge length, as the height of the cantilever is 0.5
   double anisotropy = 10;
   double gradation = 1.5;
 };

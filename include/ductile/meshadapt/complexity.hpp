@@ -27,7 +27,7 @@ struct ComplexityGoal {
   double complexity = 0;
   SizeBounds bounds = {};  ///< the scaled metric keeps within them
   double gradation = 0;    ///< sizes grow by at most this factor per unit of metric length (see
-                           ///< limit_gradation); 0: however fast they do
+                           ///< limit_gradation); 0 or less: however fast they do
 };
 
 /// How far a metric got in being what was asked for.

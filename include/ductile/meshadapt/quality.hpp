@@ -99,9 +99,9 @@ double largest_sum_of_squares(const std::array<const Site<Dim>*, Dim + 1>& corne
 /// (Parthasarathy, Graichen & Hathaway, Finite Elem. Anal. Des. 15, 1994). 1 for a regular element,
 /// 0 or less for one that is not certain to have a positive volume.
 ///
-/// If that is doubtful, the lengths are taken where they are largest: of corners that are nearly as
-/// dense but turned, the least change of the metric may make another one the densest, from which
-/// the element is a sliver.
+/// If that is doubtful, in 2D only, the lengths are taken where they are largest: of corners that
+/// are nearly as dense but turned, the least change of the metric may make another one the densest,
+/// from which the element is a sliver.
 template <int Dim>
 double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   std::array<Vector<Dim>, Dim + 1> p;

@@ -30,7 +30,8 @@ class ChunkList {
   template <class... Arguments>
   void append(Arguments&&... arguments) {
     // Where many lists grow in turn, the processor does not see by itself what comes next in each.
-    __builtin_prefetch(reinterpret_cast<const char*>(next_) + write_ahead, 1);
+    const auto ahead = reinterpret_cast<std::uintptr_t>(next_) + write_ahead;
+    __builtin_prefetch(reinterpret_cast<const void*>(ahead), 1);
     ::new (static_cast<void*>(next_)) T{std::forward<Arguments>(arguments)...};
     ++next_;
   }

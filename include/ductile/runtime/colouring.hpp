@@ -22,7 +22,7 @@
 namespace ductile::runtime {
 
 enum class ColouringMethod {
-  automatic,          ///< the fastest that keeps the executor's promise about determinism
+  automatic,          ///< blocked: parallel, and the same at any thread count
   serial,             ///< first-fit in vertex order on the calling thread
   blocked,            ///< strided blocks side by side, clashes repaired by priority; deterministic
   by_priority,        ///< hashed priority decides who waits for whom; deterministic, a yardstick

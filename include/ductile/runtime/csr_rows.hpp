@@ -16,7 +16,7 @@ namespace ductile::runtime {
 struct CsrRows {
   std::vector<std::uint32_t> offset, neighbour;  ///< [vertex + 1]; [offset.back()]
 
-  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(offset.size() - 1); }
+  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(view().vertex_count()); }
   CsrGraph<> view() const { return {offset, neighbour}; }
 };
 

@@ -61,6 +61,13 @@ std::vector<std::uint32_t> degrees(const Executor& executor, const G& graph) {
   return degree_of;
 }
 
+inline bool names_each_once(std::span<const std::uint32_t> order, std::size_t vertex_count) {
+  std::vector<std::uint8_t> named(vertex_count);
+  for (const std::uint32_t v : order)
+    if (v >= vertex_count || named[v]++ != 0) return false;
+  return order.size() == vertex_count;
+}
+
 /// Serial first-fit in the given order.
 struct InOrder {
   template <class Width, Graph G>
@@ -105,14 +112,14 @@ std::vector<std::uint32_t> vertex_order(const Executor& executor, const G& graph
 /// First-fit in the given order, which names every vertex once; the colours are those of the serial
 /// algorithm at any thread count. On more than one thread by Jones and Plassmann's scheme, which is
 /// slow where the order runs along the graph, as the natural order of a mesh does.
-/// Throws std::invalid_argument if the order is too short or too long, std::bad_alloc and what the
-/// graph throws. Thread safety: any thread.
+/// Throws std::invalid_argument if the order is another, std::bad_alloc and what the graph throws.
+/// Thread safety: any thread.
 template <Graph G>
 Colouring colour_in_order(const Executor& executor, const G& graph,
                           std::span<const std::uint32_t> order) {
   Colouring colouring;
   colouring.colour_of.resize(graph.vertex_count());
-  if (order.size() != colouring.colour_of.size())
+  if (!detail::names_each_once(order, colouring.colour_of.size()))
     throw std::invalid_argument("colour_in_order: expected each vertex once");
   colouring.count = detail::colour_all<detail::InOrder>(executor, graph, colouring.colour_of,
                                                         {order.size(), order.data()});

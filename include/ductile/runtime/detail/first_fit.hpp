@@ -33,8 +33,7 @@ struct VertexSet {
 /// There is no such colour in these words; the colouring starts again with longer ones.
 struct TooManyColours {};
 
-// ---- Widths: the words that hold colours, and the greatest colour, which leaves room for two
-// marks
+// ---- Widths: words that hold colours, and the greatest colour; two marks are above it
 
 /// So few colours that TakenColours has room for them all: no look at how great a colour is.
 struct Narrow {

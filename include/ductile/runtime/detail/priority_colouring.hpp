@@ -1,8 +1,8 @@
 /// @file
 /// First-fit in order of priority, on many threads (Jones and Plassmann, SIAM J. Sci. Comput. 14,
 /// 1993): a vertex waits for its uncoloured neighbours of higher priority and ignores those of
-/// lower, which wait for it. It counts whom it waits for; the last of them hands it on, so that a
-/// neighbour is looked at twice, however long the wait is. A thread goes on with the vertices it
+/// lower, which wait for it. It is counted whom it waits for; the last of them hands it on, so that
+/// a neighbour is looked at twice, however long the wait is. A thread goes on with the vertices it
 /// has set free itself, but for more than it can take, which all share in the next round.
 /// The result is that of serial first-fit in descending order of priority.
 #pragma once
@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
@@ -42,8 +43,14 @@ class PriorityRun {
         free_(executor, {.order = WorkOrder::arrival}) {}
 
   void run(std::span<const std::uint32_t> vertices) {
-    for_each(vertices, [&](std::uint32_t v) { colours_.set(v, Colours<Width>::waiting); });
-    for_each(vertices, [&](std::uint32_t v) { colour_or_count(v); });
+    for_each(vertices, [&](std::uint32_t v) {
+      colours_.set(v, Colours<Width>::waiting);
+      awaited_[v] = 0;
+    });
+    for_each(vertices, [&](std::uint32_t v) { colour_or_announce(v); });
+    for_each(vertices, [&](std::uint32_t v) {
+      if (colours_[v] == Colours<Width>::waiting && awaited_[v] == 0) free_.append(v);
+    });
     for (free_.collect(); !free_.empty(); free_.collect()) {
       const std::vector<std::uint32_t> now = free_.take();
       for_each(now, [&](std::uint32_t v) { colour_from(v); });
@@ -61,23 +68,19 @@ class PriorityRun {
                  {.grain = 64, .serial_below = 128});
   }
 
-  /// Counts whom v waits for. If no neighbour waits at all, nobody misses v and it is coloured.
-  void colour_or_count(std::uint32_t v) {
-    std::uint32_t awaited = 0, waiting = 0;
+  /// Tells who waits for v as often as v will hand on to them: its row may repeat a neighbour more
+  /// often than that one's repeats v. If no neighbour waits at all, v is coloured at once.
+  void colour_or_announce(std::uint32_t v) {
+    bool missed = false;
     TakenColours<Colours<Width>> seen;
     graph_.for_each_neighbour(v, [&](std::uint32_t u) {
       const std::uint32_t colour = colours_[u];
       seen.add(colour);
       if (colour != Colours<Width>::waiting || u == v) return;
-      ++waiting;
-      if (before_(u, v)) ++awaited;
+      missed = true;
+      if (before_(v, u)) atomic_count(awaited_[u]);
     });
-    awaited_[v] = awaited;
-    if (waiting == 0) {
-      colours_.set(v, least_free(graph_, v, colours_, seen));
-    } else if (awaited == 0) {
-      free_.append(v);
-    }
+    if (!missed) colours_.set(v, least_free(graph_, v, colours_, seen));
   }
 
   /// Colours v, and whom it sets free.

@@ -50,11 +50,14 @@ void scatter_singly(std::span<const T> values, T* to, const DigitPass& pass,
   for (const T value : values) to[place_of[pass.digit(value)]++] = value;
 }
 
-/// The same, but gathers cache lines and writes whole ones.
 template <std::unsigned_integral T>
-void scatter_lines(std::span<const T> values, T* to, const DigitPass& pass, DigitCounts& place_of) {
-  constexpr std::size_t line = 64 / sizeof(T);
-  const auto gathered = std::make_unique_for_overwrite<std::array<T, line>[]>(digit_count);
+using Line = std::array<T, 64 / sizeof(T)>;
+
+/// The same, but gathers cache lines, one of each digit, and writes whole ones.
+template <std::unsigned_integral T>
+void scatter_lines(std::span<const T> values, T* to, const DigitPass& pass, DigitCounts& place_of,
+                   Line<T>* gathered) {
+  constexpr std::size_t line = Line<T>().size();
   const DigitCounts first = place_of;
   const auto flush = [&](std::size_t digit, std::size_t end) {
     const std::size_t line_begin = (end - 1) / line * line;
@@ -86,18 +89,19 @@ inline bool crowd_a_cache_set(const DigitCounts& place_of, std::size_t bytes) {
   return *std::max_element(digits_in.begin(), digits_in.end()) > 4 * (used / sets + 4);
 }
 
-/// Stable: sorts `from` by the pass's digit into `to`.
+/// Stable: sorts `from` by the pass's digit into `to`. `lines` has room for one of each digit for
+/// every block, or is null if there are too few values for that to be of use.
 template <std::unsigned_integral T>
 void scatter_by_digit(const Executor& executor, std::span<const T> from, std::span<T> to,
-                      DigitPass& pass) {
+                      DigitPass& pass, Line<T>* lines) {
   const auto count = [&](std::size_t b, std::size_t begin, std::size_t end) {
     pass.counts[b].fill(0);
     for (std::size_t i = begin; i < end; ++i) ++pass.counts[b][pass.digit(from[i])];
   };
   const auto scatter = [&](std::size_t b, std::size_t begin, std::size_t end) {
     const std::span values = from.subspan(begin, end - begin);
-    if (to.size_bytes() > 262144 && crowd_a_cache_set(pass.counts[b], sizeof(T))) {
-      scatter_lines(values, to.data(), pass, pass.counts[b]);
+    if (lines != nullptr && crowd_a_cache_set(pass.counts[b], sizeof(T))) {
+      scatter_lines(values, to.data(), pass, pass.counts[b], lines + b * digit_count);
     } else {
       scatter_singly(values, to.data(), pass, pass.counts[b]);
     }
@@ -119,9 +123,13 @@ void radix_sort(const Executor& executor, std::span<T> values) {
   const std::size_t block = std::max(radix_block, (values.size() + most_blocks - 1) / most_blocks);
   DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block)};
   std::vector<T> scratch(values.size());
+  // All memory is taken before the first pass: later, running out of it would lose values.
+  std::unique_ptr<Line<T>[]> lines;
+  if (values.size_bytes() > 262144)
+    lines = std::make_unique_for_overwrite<Line<T>[]>(pass.counts.size() * digit_count);
   std::span<T> from = values, to = scratch;
   for (; pass.shift < bits; pass.shift += digit_bits) {
-    scatter_by_digit<T>(executor, from, to, pass);
+    scatter_by_digit<T>(executor, from, to, pass, lines.get());
     std::swap(from, to);
   }
   if (from.data() != values.data()) copy<T>(executor, from, values);
