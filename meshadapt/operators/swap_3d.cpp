@@ -169,29 +169,24 @@ std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappabl
   return result;
 }
 
-std::optional<Replacement<3>> plan_edge(const Mesh<3>& mesh, const Swappable& edge,
-                                        const Shell& shell) {
-  Ring ring;
-  if (!ring.close(shell.size(), edge.a, edge.b,
-                  [&](std::size_t i) { return mesh.corners_of[shell[i]]; }) ||
-      ring.vertices.size() > largest_ring)
-    return {};
-  return plan_edge_removal(mesh, edge, shell, ring, Swap<3>::bar(edge.worst));
-}
-
 }  // namespace
 
 template <>
 std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
   Shell shell;
-  Swappable now = item;
-  now.worst = 1;
+  float worst = 1;
   footprint(item, [&](ElementId e) {
     shell.push_back(e);
-    now.worst = std::min(now.worst, mesh_.shape_of[e]);
+    worst = std::min(worst, mesh_.shape_of[e]);
   });
-  if (item.c == none) return plan_edge(mesh_, now, shell);
-  return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(now.worst)) : std::nullopt;
+  if (item.c != none)
+    return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(worst)) : std::nullopt;
+  Ring ring;
+  if (!ring.close(shell.size(), item.a, item.b,
+                  [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }) ||
+      ring.vertices.size() > largest_ring)
+    return {};
+  return plan_edge_removal(mesh_, item, shell, ring, bar(worst));
 }
 
 template <>
@@ -320,20 +315,13 @@ std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, 
   const auto poor = [&](ElementId e) { return mesh.shape_of[e] < good_enough; };
   const double flat = std::min<double>(good_enough, shape_of_mean_ratio<3>(0.5));
   const auto near_change = mark_changed(executor, mesh, after);
-  const auto vertices = runtime::parallel_collect<VertexId>(executor, mesh.vertex_slots(),
-                                                            [&](std::size_t v, auto&& append) {
-                                                              if (near_change[v])
-                                                                append(static_cast<VertexId>(v));
-                                                            });
   auto found = runtime::parallel_collect<Swappable>(
-      executor, vertices.size(), [&](std::size_t i, auto&& append) {
-        for (const int stage : {2, 1, 0})
-          if (const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
-              ahead < vertices.size())
-            prefetch_ball(mesh, vertices[ahead], stage);
-        const auto ball = mesh.elements_of.of(vertices[i]);
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        if (!near_change[v]) return;
+        const auto vertex = static_cast<VertexId>(v);
+        const auto ball = mesh.elements_of.of(vertex);
         if (std::any_of(ball.begin(), ball.end(), poor))
-          EdgeSearch(mesh, vertices[i], after, good_enough).run(append);
+          EdgeSearch(mesh, vertex, after, good_enough).run(append);
       });
   const auto faces = runtime::parallel_collect<Swappable>(
       executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {

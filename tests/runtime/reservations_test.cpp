@@ -1,0 +1,171 @@
+/// @file
+/// run_rounds with operators that reserve; run_rounds_test.cpp has those that colour.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+#include "rounds_support.hpp"
+
+namespace ductile::runtime {
+namespace {
+
+using test::all_items;
+using test::thread_counts;
+using test::Vertex;
+
+// ---- Matching: by reservations, heavier edges first, each match makes a new vertex ----
+
+struct Edge {
+  Vertex a, b;
+  std::uint32_t weight;
+  friend auto operator<=>(const Edge&, const Edge&) = default;
+};
+
+/// An edge between two free vertices is contracted to a new vertex.
+class Matching {
+ public:
+  using Item = Edge;
+  using Plan = Edge;
+  struct Update {
+    Vertex parent;
+  };
+
+  explicit Matching(std::size_t n) : parent(n, free) {}
+
+  std::optional<Plan> plan(const Edge& edge) const {
+    if (parent[edge.a] != free || parent[edge.b] != free) return {};
+    return edge;
+  }
+  void footprint(const Edge& edge, auto&& visit) const {
+    if (parent[edge.a] != free || parent[edge.b] != free) return;
+    visit(edge.a);
+    visit(edge.b);
+  }
+  std::size_t resource_count() const { return parent.size(); }
+  std::uint8_t priority(const Edge& edge) const {
+    return static_cast<std::uint8_t>(255 - edge.weight);
+  }
+  std::array<std::uint32_t, 1> demand(const Plan&) const { return {1}; }
+  std::array<std::uint32_t, 1> grow(const std::array<std::uint32_t, 1>& total) {
+    const auto first = static_cast<std::uint32_t>(parent.size());
+    parent.resize(parent.size() + total[0], free);
+    matched.resize(matched.size() + total[0]);
+    return {first};
+  }
+  void apply(const Plan& edge, Commit<Matching>& commit) {
+    const Vertex fresh = commit.fresh();
+    matched[fresh - (parent.size() - matched.size())] = edge;
+    commit.defer(edge.a, {fresh});
+    commit.defer(edge.b, {fresh});
+  }
+  void commit(std::uint32_t owner, const Update& update) { parent[owner] = update.parent; }
+
+  static constexpr Vertex free = 0xffffffffU;
+  std::vector<Vertex> parent;  // [vertex], new ones at the end
+  std::vector<Edge> matched;   // [new vertex]
+};
+
+std::vector<Edge> random_edges(Vertex n, bool distinct) {
+  std::vector<Edge> edges;
+  for (std::uint32_t i = 0; i < 4 * n; ++i) {
+    const Vertex a = mix32(2 * i) % n, b = mix32(2 * i + 1) % n;
+    if (a != b) edges.push_back({a, b, distinct ? i % 256 : mix32(i) % 256});
+  }
+  return edges;
+}
+
+void expect_maximal(const Matching& result, const std::vector<Edge>& edges) {
+  std::vector<int> uses(result.parent.size(), 0);
+  for (const Edge& edge : result.matched) ++uses[edge.a], ++uses[edge.b];
+  EXPECT_LE(*std::max_element(uses.begin(), uses.end()), 1);
+  for (const Edge& edge : edges) EXPECT_TRUE(uses[edge.a] == 1 || uses[edge.b] == 1);
+  for (std::size_t i = 0; i < result.matched.size(); ++i) {
+    const auto fresh = static_cast<Vertex>(result.parent.size() - result.matched.size() + i);
+    EXPECT_EQ(result.parent[result.matched[i].a], fresh);
+    EXPECT_EQ(result.parent[result.matched[i].b], fresh);
+  }
+}
+
+TEST(RunRounds, MatchesByReservationTheSameAtEachThreadCount) {
+  const auto edges = random_edges(3000, false);
+  std::vector<Edge> first;
+  for (const int threads : thread_counts)
+    for (int run = 0; run < 2; ++run) {
+      Matching matching(3000);
+      const RoundsReport report = run_rounds(Executor({.threads = threads}), matching, edges);
+      expect_maximal(matching, edges);
+      EXPECT_EQ(report.applied, matching.matched.size());
+      EXPECT_GT(report.lost, 0U);
+      if (first.empty()) first = matching.matched;
+      EXPECT_EQ(matching.matched, first) << threads << " threads";
+    }
+}
+
+TEST(RunRounds, MatchesByReservationInArrivalOrder) {
+  const auto edges = random_edges(3000, false);
+  for (int run = 0; run < 5; ++run) {
+    Matching matching(3000);
+    run_rounds(Executor({.threads = 4, .deterministic = false}), matching, edges);
+    expect_maximal(matching, edges);
+  }
+}
+
+/// With priorities that all differ, reservations give what greed in the order of priority gives.
+TEST(RunRounds, ThePriorityDecides) {
+  std::vector<Edge> edges = random_edges(100, true);
+  edges.resize(200);
+  std::vector<bool> used(100, false);
+  std::vector<Edge> greedy = edges, expected;
+  for (std::uint32_t i = 0; i < edges.size(); ++i) edges[i].weight = greedy[i].weight = i;
+  std::reverse(greedy.begin(), greedy.end());
+  for (const Edge& edge : greedy) {
+    if (used[edge.a] || used[edge.b]) continue;
+    used[edge.a] = used[edge.b] = true;
+    expected.push_back(edge);
+  }
+  Matching matching(100);
+  run_rounds(Executor({.threads = 3}), matching, edges);
+  std::sort(expected.begin(), expected.end());
+  std::sort(matching.matched.begin(), matching.matched.end());
+  EXPECT_EQ(matching.matched, expected);
+}
+
+/// Fifty items share each list, and every one appends itself once: one in fifty can win a round.
+class TakeTurns {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  explicit TakeTurns(std::size_t n) : lists(n / 50) {}
+  std::optional<Plan> plan(Vertex v) const { return v; }
+  void footprint(Vertex v, auto&& visit) const { visit(v / 50); }
+  std::size_t resource_count() const { return lists.size(); }
+  void apply(const Plan& v, Commit<TakeTurns>&) { lists[v / 50].push_back(v); }
+  void commit(std::uint32_t, const Update&) {}
+
+  std::vector<std::vector<Vertex>> lists;  // [resource]
+};
+
+TEST(RunRounds, FewerAskWhereTooFewWin) {
+  constexpr std::size_t n = 50000;
+  TakeTurns all_ask(n);
+  const RoundsReport wasteful = run_rounds(Executor({.threads = 2}), all_ask, all_items(n));
+  std::vector<std::vector<Vertex>> first;
+  for (const int threads : thread_counts) {
+    TakeTurns turns(n);
+    const RoundsReport report =
+        run_rounds(Executor({.threads = threads}), turns, all_items(n), {.least_won = 0.5});
+    EXPECT_EQ(report.applied, n);
+    EXPECT_EQ(report.left, 0U);
+    EXPECT_LT(10 * report.lost, wasteful.lost);
+    if (first.empty()) first = turns.lists;
+    EXPECT_EQ(turns.lists, first) << threads << " threads";
+  }
+}
+
+}  // namespace
+}  // namespace ductile::runtime
