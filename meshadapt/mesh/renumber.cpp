@@ -88,14 +88,31 @@ void renumber_links(const Executor& executor, Mesh<3>& mesh, const Order& order,
   std::swap(mesh.links_of, moved);
 }
 
-}  // namespace
+/// The place of each id in an order, or none.
+template <class Order>
+std::vector<std::uint32_t> places(const Executor& executor, const Order& order, std::size_t slots) {
+  std::vector<std::uint32_t> place_of(slots, none);
+  parallel_for(executor, order.size(),
+               [&](std::size_t i) { place_of[order[i].id] = static_cast<std::uint32_t>(i); });
+  return place_of;
+}
 
+template <int Dim, class Order>
+void renumber_neighbours(const Executor& executor, Neighbours<Dim>& neighbours,
+                         const Order& elements) {
+  const auto new_id = places(executor, elements, neighbours.size());
+  permute(executor, neighbours, elements);
+  parallel_for(executor, neighbours.size(), [&](std::size_t e) {
+    for (ElementId& other : neighbours[e])
+      if (other != none) other = new_id[other];
+  });
+}
+
+/// The neighbours may be missing.
 template <int Dim>
-void renumber(const Executor& executor, Mesh<Dim>& mesh) {
+void renumber_all(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>* neighbours) {
   const auto vertices = sorted_vertices(executor, mesh);
-  std::vector<VertexId> new_id(mesh.vertex_slots(), none);
-  parallel_for(executor, vertices.size(),
-               [&](std::size_t i) { new_id[vertices[i].id] = static_cast<VertexId>(i); });
+  const auto new_id = places(executor, vertices, mesh.vertex_slots());
   const auto elements = sorted_elements(executor, mesh, new_id);
   permute(executor, mesh.corners_of, elements);
   permute(executor, mesh.patches_of, elements);
@@ -112,9 +129,24 @@ void renumber(const Executor& executor, Mesh<Dim>& mesh) {
   permute(executor, mesh.host_of, vertices);
   if constexpr (Dim == 3) renumber_links(executor, mesh, vertices, new_id);
   rebuild_elements_of(executor, mesh);
+  if (neighbours != nullptr) renumber_neighbours<Dim>(executor, *neighbours, elements);
+}
+
+}  // namespace
+
+template <int Dim>
+void renumber(const Executor& executor, Mesh<Dim>& mesh) {
+  renumber_all<Dim>(executor, mesh, nullptr);
+}
+
+template <int Dim>
+void renumber(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>& neighbours) {
+  renumber_all<Dim>(executor, mesh, &neighbours);
 }
 
 template void renumber(const Executor&, Mesh<2>&);
 template void renumber(const Executor&, Mesh<3>&);
+template void renumber(const Executor&, Mesh<2>&, Neighbours<2>&);
+template void renumber(const Executor&, Mesh<3>&, Neighbours<3>&);
 
 }  // namespace ductile::meshadapt

@@ -10,14 +10,14 @@ namespace ductile::meshadapt {
 
 template <int Dim>
 Background<Dim>::Background(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                            Neighbours<Dim> neighbours, const std::vector<Metric<Dim>>& metric_of)
+                            Neighbours<Dim> neighbours)
     : corners_of_(mesh.corners_of),
       neighbours_(std::move(neighbours)),
       position_of_(mesh.vertex_slots()),
       log_metric_of_(mesh.vertex_slots()) {
   runtime::parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
     position_of_[v] = mesh.site_of[v].position;
-    log_metric_of_[v] = logarithm(metric_of[v]);
+    log_metric_of_[v] = logarithm(mesh.site_of[v].metric);
   });
 }
 

@@ -75,6 +75,21 @@ class KernelTimer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// The mesh in an order in which what is near in space is near in memory, every vertex with its
+/// metric and with one of its elements as its host.
+template <int Dim>
+Mesh<Dim> with_metrics(const runtime::Executor& executor, Mesh<Dim> mesh,
+                       const std::vector<Metric<Dim>>& metric_of, Neighbours<Dim>& neighbours) {
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
+    mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
+  });
+  renumber(executor, mesh, neighbours);
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
+    mesh.host_of[v] = mesh.elements_of.of(static_cast<VertexId>(v)).front();
+  });
+  return mesh;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -83,15 +98,9 @@ Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& opt
                       const std::vector<Metric<Dim>>& metric_of)
     : executor_(executor),
       options_(options),
-      mesh_(std::move(mesh)),
-      background_(executor, mesh_, std::move(neighbours), metric_of) {
-  parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t v) {
-    const auto elements = mesh_.elements_of.of(static_cast<VertexId>(v));
-    mesh_.site_of[v] = make_site(mesh_.site_of[v].position, metric_of[v]);
-    mesh_.host_of[v] = elements.empty() ? 0 : elements.front();
-  });
+      mesh_(with_metrics(executor, std::move(mesh), metric_of, neighbours)),
+      background_(executor, mesh_, std::move(neighbours)) {
   update_shapes(executor_, mesh_);
-  renumber(executor_, mesh_);
 }
 
 template <int Dim>

@@ -7,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/lazy.hpp"
@@ -22,9 +21,8 @@ struct ClosestPoint;
 template <int Dim>
 class Background {
  public:
-  /// Takes over the neighbours that make_mesh found and the logarithms of metric_of[vertex].
-  Background(const runtime::Executor& executor, const Mesh<Dim>& mesh, Neighbours<Dim> neighbours,
-             const std::vector<Metric<Dim>>& metric_of);
+  /// Copies elements, positions and metrics of the mesh; takes over its neighbours.
+  Background(const runtime::Executor& executor, const Mesh<Dim>& mesh, Neighbours<Dim> neighbours);
   ~Background();
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;

@@ -19,10 +19,6 @@ struct MakeMeshOptions {
   bool lock_boundary = false;  ///< treat every boundary and interface facet as required
 };
 
-/// The element across each facet, or none: [element][facet].
-template <int Dim>
-using Neighbours = std::vector<std::array<ElementId, Dim + 1>>;
-
 /// Classifies vertices and finds patches and curves; metrics are left unset, hosts are the element
 /// numbers themselves. Vertices and elements keep their numbers. `neighbours` receives the element
 /// neighbours. Warnings (reoriented, unused vertices) are appended. Throws InputError naming the

@@ -49,6 +49,10 @@ struct CurveLink {
   friend auto operator<=>(const CurveLink&, const CurveLink&) = default;
 };
 
+/// The element across each facet, or none: [element][facet].
+template <int Dim>
+using Neighbours = std::vector<std::array<ElementId, Dim + 1>>;
+
 /// What a vertex may do. `freedom` is the dimension of the space it may move in: 0 never moves and
 /// is never removed (corner or required), 1 moves along a straight line, 2 in a flat patch or, in
 /// 2D, anywhere, 3 anywhere.
@@ -133,6 +137,10 @@ void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
 /// near in space is near in memory. The result does not depend on the number of threads.
 template <int Dim>
 void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh);
+
+/// The same, for the neighbours of its elements too. None may be gone.
+template <int Dim>
+void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>& neighbours);
 
 /// Marks the vertices next to an element that changed after this epoch.
 template <int Dim>
