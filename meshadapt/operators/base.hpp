@@ -14,20 +14,37 @@ struct Base {
   Vector<Dim>
       normal;  ///< towards the side of the element; as long as the facet is large, twice in 3D
   Vector<Dim> centre;
-  std::array<Vector<Dim>, Dim - 1> side;  ///< from the facet's first corner to the others
+  Metric<Dim> spread;  ///< of its edges, see spread_of()
   std::array<const Site<Dim>*, Dim> corner{};
   const Site<Dim>* judge = nullptr;  ///< the densest of them
   double squares = 0;                ///< sum of its squared edge lengths there, once weighed
 };
 
+/// The tensor whose contraction() with a metric is the sum of the squared lengths of a facet's
+/// edges: the sum of their tensor products with themselves. 2D: the facet is one edge.
+inline Metric<2> spread_of(const Vector<2>& u) {
+  return {{u[0] * u[0], 2 * u[0] * u[1], u[1] * u[1]}};
+}
+/// 3D: of the triangle that u and v span.
+inline Metric<3> spread_of(const Vector<3>& u, const Vector<3>& v) {
+  const auto both = [&](int i, int j) {  // of u, v and v - u
+    return 2 * (u[i] * u[j] + v[i] * v[j]) - (u[i] * v[j] + u[j] * v[i]);
+  };
+  return {{both(0, 0), 2 * both(0, 1), both(1, 1), 2 * both(0, 2), 2 * both(1, 2), both(2, 2)}};
+}
+
+/// Of a metric with a spread, in which what is off the diagonal is there twice already.
+template <int Dim>
+double contraction(const Metric<Dim>& metric, const Metric<Dim>& spread) {
+  double sum = 0;
+  for (std::size_t i = 0; i < metric.m.size(); ++i) sum += metric.m[i] * spread.m[i];
+  return sum;
+}
+
 /// Sum of the squared lengths of the base's edges.
 template <int Dim>
 double base_squares(const Base<Dim>& base, const Metric<Dim>& metric) {
-  if constexpr (Dim == 2)
-    return squared_length(metric, base.side[0]);
-  else
-    return squared_length(metric, base.side[0]) + squared_length(metric, base.side[1]) +
-           squared_length(metric, base.side[1] - base.side[0]);
+  return contraction(metric, base.spread);
 }
 
 /// The base whose element lies behind the facet, of which these are the corners in outward order.
@@ -39,16 +56,20 @@ Base<Dim> make_base(const std::array<const Site<Dim>*, Dim>& corner) {
   base.corner = corner;
   base.judge = corner[0];
   Vector<Dim> sum = corner[0]->position;
+  std::array<Vector<Dim>, Dim - 1> side;
   for (std::size_t i = 1; i < Dim; ++i) {
-    base.side[i - 1] = corner[i]->position - corner[0]->position;
+    side[i - 1] = corner[i]->position - corner[0]->position;
     sum += corner[i]->position;
     if (corner[i]->density > base.judge->density) base.judge = corner[i];
   }
   base.centre = (1.0 / Dim) * sum;
-  if constexpr (Dim == 2)
-    base.normal = {{-base.side[0][1], base.side[0][0]}};
-  else
-    base.normal = cross(base.side[1], base.side[0]);
+  if constexpr (Dim == 2) {
+    base.normal = {{-side[0][1], side[0][0]}};
+    base.spread = spread_of(side[0]);
+  } else {
+    base.normal = cross(side[1], side[0]);
+    base.spread = spread_of(side[0], side[1]);
+  }
   return base;
 }
 

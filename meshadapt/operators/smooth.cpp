@@ -57,56 +57,28 @@ std::vector<VertexId> Smooth<Dim>::movable_vertices_of_poor(const runtime::Execu
 
 template <int Dim>
 auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
-  const auto ball = mesh_.elements_of.of(vertex);
-  if (ball.empty() || ball.size() > mesh_.largest_ball) return {};
+  const auto elements = mesh_.elements_of.of(vertex);
+  if (elements.empty() || elements.size() > mesh_.largest_ball) return {};
   Place best{mesh_.site_of[vertex], mesh_.host_of[vertex], {1, 0}};
-  for (const ElementId e : ball) {
+  for (const ElementId e : elements) {
     best.score.worst = std::min<double>(best.score.worst, mesh_.shape_of[e]);
     best.score.sum += mesh_.shape_of[e];
   }
   constexpr double sound = 1e-6;  // the inverse of a shape tells something
   const double good_enough = shape_of_mean_ratio<Dim>(options_.optimise_below);
   if (!options_.laplacian && best.score.worst >= good_enough) return {};
-  const Bases bases = bases_around(vertex);
-  bool moved = options_.laplacian && relax(vertex, bases, best);
+  const Ball<Dim> ball(mesh_, vertex);
+  bool moved = options_.laplacian && relax(vertex, ball, best);
   if (best.score.worst < good_enough) {
     const double poor = shape_of_mean_ratio<Dim>(options_.mean_below);
     const bool all_poor =
         best.score.worst > sound && best.score.sum < poor * static_cast<double>(ball.size());
-    moved = optimise(vertex, bases, all_poor ? Aim::mean : Aim::worst, best) || moved;
+    moved = optimise(vertex, ball, all_poor ? Aim::mean : Aim::worst, best) || moved;
   }
   if (!moved) return {};
   const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
   const bool far = squared_length(best.site.metric, step) > options_.far * options_.far;
-  return Plan{vertex, best.host, best.site, far};
-}
-
-template <int Dim>
-auto Smooth<Dim>::bases_around(VertexId vertex) const -> Bases {
-  Bases bases;
-  for (const ElementId e : mesh_.elements_of.of(vertex)) {
-    const Corners<Dim>& corners = mesh_.corners_of[e];
-    std::array<const Site<Dim>*, Dim> sites;
-    const Facet<Dim> facet = facet_of<Dim>(corners, corner_of(corners, vertex));
-    for (std::size_t k = 0; k < Dim; ++k) sites[k] = &mesh_.site_of[facet[k]];
-    bases.push_back(make_base<Dim>(sites));
-    weigh(bases.back());
-  }
-  return bases;
-}
-
-/// Worst and summed shape of the elements around the vertex if it were at this site; stops at the
-/// first element below a bound.
-template <int Dim>
-auto Smooth<Dim>::score(const Bases& bases, const Site<Dim>& site, double give_up_below) -> Score {
-  Score result{1, 0};
-  for (const Base<Dim>& base : bases) {
-    const double value = shape_over(base, site);
-    if (!(value > 0) || value < give_up_below) return {-1, 0};
-    result.worst = std::min(result.worst, value);
-    result.sum += value;
-  }
-  return result;
+  return Plan{vertex, best.host, best.site, ball.shapes(best.site), far};
 }
 
 /// Is it certain that every element around the vertex has a positive volume if it moves there, and
@@ -126,18 +98,18 @@ bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) co
   return true;
 }
 
-/// A place that scores better than a bar, if this is one. Volumes are looked at first: that needs
-/// no metric, and a place with positive volumes lies inside the domain.
+/// A place that scores better than a bar, if this is one. It is looked at first as if the metric
+/// were the same there as nearby, as that needs no search; and a place with positive volumes lies
+/// inside the domain.
 template <int Dim>
-auto Smooth<Dim>::place(VertexId vertex, const Bases& bases, const Vector<Dim>& position,
+auto Smooth<Dim>::place(VertexId vertex, const Ball<Dim>& ball, const Vector<Dim>& position,
                         const Place& near, const Score& bar) const -> std::optional<Place> {
-  for (const Base<Dim>& base : bases)
-    if (!(volume_over(base, position) > 0)) return {};
+  const auto beats_bar = [&](const Score& score) { return score.worst > 0 && score.sum > bar.sum; };
+  if (!beats_bar(ball.score({position, near.site.metric, near.site.density}, bar.worst))) return {};
   const auto sample = background_.sample(position, near.host);
   Place result{make_site(position, sample.metric), sample.host, {}};
-  result.score = score(bases, result.site, bar.worst);
-  if (!(result.score.worst > 0 && result.score.sum > bar.sum) || !keeps_volumes(vertex, position))
-    return {};
+  result.score = ball.score(result.site, bar.worst);
+  if (!beats_bar(result.score) || !keeps_volumes(vertex, position)) return {};
   return result;
 }
 
@@ -155,40 +127,18 @@ Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) cons
   return displacement - dot(displacement, normal) * normal;
 }
 
-/// Every element around pulls the vertex to where it would be regular over its opposite facet, or
-/// half-way from there to where its edges have unit length; bad elements pull harder. This is the
-/// mean pull.
-template <int Dim>
-Vector<Dim> Smooth<Dim>::regular_displacement(VertexId vertex, const Bases& bases) const {
-  const Site<Dim>& here = mesh_.site_of[vertex];
-  const Metric<Dim> dual = inverse(here.metric);
-  const auto ball = mesh_.elements_of.of(vertex);
-  Vector<Dim> sum;
-  double total = 0;
-  for (std::size_t i = 0; i < bases.size(); ++i) {
-    const Base<Dim>& base = bases[i];
-    const double square = base_squares(base, here.metric) / (Dim == 2 ? 1 : 3);
-    const double size = std::sqrt(std::sqrt(square));  // geometric mean of the facet's and 1
-    const double height = size * std::sqrt(Dim == 2 ? 0.75 : 2.0 / 3);
-    const Vector<Dim> up = product(dual, base.normal);
-    const double weight = 1 / std::max(0.01F, mesh_.shape_of[ball[i]]);
-    const double stretch = height / std::sqrt(dot(base.normal, up));
-    sum += weight * (base.centre + stretch * up - here.position);
-    total += weight;
-  }
-  return allowed(vertex, (1 / total) * sum);
-}
-
 /// Goes towards where the elements want it as far as their shapes get better.
 template <int Dim>
-bool Smooth<Dim>::relax(VertexId vertex, const Bases& bases, Place& best) const {
-  const Vector<Dim> step = regular_displacement(vertex, bases);
+bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, Place& best) const {
+  const auto elements = mesh_.elements_of.of(vertex);
+  const auto shape_of = [&](std::size_t i) { return mesh_.shape_of[elements[i]]; };
+  const Vector<Dim> step = allowed(vertex, ball.mean_pull(best.site.metric, shape_of));
   if (squared_length(best.site.metric, step) < 1e-4) return false;
   const Score bar{std::min(best.score.worst, shape_of_mean_ratio<Dim>(0.7)),
                   best.score.sum * (1 + 1e-4)};
   for (const double fraction : {1.0, 0.5, 0.25}) {
     const Vector<Dim> position = mesh_.site_of[vertex].position + fraction * step;
-    const auto trial = place(vertex, bases, position, best, bar);
+    const auto trial = place(vertex, ball, position, best, bar);
     if (!trial) continue;
     best = *trial;
     return true;
@@ -196,40 +146,25 @@ bool Smooth<Dim>::relax(VertexId vertex, const Bases& bases, Place& best) const 
   return false;
 }
 
-/// Gradient of an element's shape by the position of its apex, in the metric that judges it now.
-template <int Dim>
-Vector<Dim> Smooth<Dim>::shape_gradient(const Base<Dim>& base, const Site<Dim>& apex,
-                                        double shape_here) {
-  const Vector<Dim> up = apex.position - base.centre;
-  const Site<Dim>& densest = apex.density > base.judge->density ? apex : *base.judge;
-  const Metric<Dim>& metric =
-      (shape_here > doubtful_shape<Dim> ? densest : strictest(base, apex)).metric;
-  const double squares = squares_over(base, apex.position, metric, base_squares(base, metric));
-  constexpr double power = Dim == 2 ? 1.0 : 1.5;
-  return shape_here * ((1 / dot(base.normal, up)) * base.normal -
-                       (2 * power * Dim / squares) * product(metric, up));
-}
-
 /// A direction in which all of the worst elements get better, or nearly 0 if there is none; or that
 /// in which the harmonic mean of all shapes rises most. It is sought in the space where the metric
 /// is the identity, lest the thin direction hide the others.
 template <int Dim>
-Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Bases& bases, Aim aim,
+Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim,
                                 const Place& at) const {
   const PrincipalAxes<Dim> axes = principal_axes(at.site.metric);
   Buffer<Vector<Dim>, 16> gradients;
-  for (const Base<Dim>& base : bases) {
-    const double value = shape_over(base, at.site);
-    if (aim == Aim::worst && value > at.score.worst * 1.15 + 0.01) continue;
-    const double weight = aim == Aim::worst ? 1 : 1 / (value * value);
-    const Vector<Dim> free = allowed(vertex, shape_gradient(base, at.site, value));
+  ball.visit_shapes(at.site, [&](std::size_t element, double shape) {
+    if (aim == Aim::worst && shape > at.score.worst * 1.15 + 0.01) return;
+    const double weight = aim == Aim::worst ? 1 : 1 / (shape * shape);
+    const Vector<Dim> free = allowed(vertex, ball.gradient(element, at.site, shape));
     Vector<Dim> unit;
     for (int i = 0; i < Dim; ++i) {
       const auto k = static_cast<std::size_t>(i);
       unit[i] = weight * dot(free, axes.vector[k]) / std::sqrt(axes.value[k]);
     }
     gradients.push_back(unit);
-  }
+  });
   if (gradients.empty()) return {};
   Vector<Dim> unit;
   if (aim == Aim::worst)
@@ -246,31 +181,31 @@ Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Bases& bases, Aim aim,
 
 /// The sum of the inverse shapes around the vertex if it were at this site.
 template <int Dim>
-double Smooth<Dim>::inverse_shapes(const Bases& bases, const Site<Dim>& site) {
+double Smooth<Dim>::inverse_shapes(const Ball<Dim>& ball, const Site<Dim>& site) {
   double sum = 0;
-  for (const Base<Dim>& base : bases) sum += 1 / shape_over(base, site);
+  ball.visit_shapes(site, [&](std::size_t, double shape) { sum += 1 / shape; });
   return sum;
 }
 
 /// Climbs the worst shape around the vertex, or the harmonic mean of all, by line searches.
 template <int Dim>
-bool Smooth<Dim>::optimise(VertexId vertex, const Bases& bases, Aim aim, Place& best) const {
+bool Smooth<Dim>::optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const {
   constexpr int climbs = 4, halvings = 5;
   bool moved = false;
   double reach = 0.3;  // metric length of the first trial step
   for (int climb = 0; climb < climbs; ++climb) {
-    const Vector<Dim> direction = ascent(vertex, bases, aim, best);
+    const Vector<Dim> direction = ascent(vertex, ball, aim, best);
     const double length = std::sqrt(squared_length(best.site.metric, direction));
     if (!(length > 0) || !std::isfinite(length)) break;
     bool better = false;
     const double bar = aim == Aim::worst ? best.score.worst * 1.001 : 0;
-    const double most = aim == Aim::worst ? 0 : inverse_shapes(bases, best.site) * 0.999;
+    const double most = aim == Aim::worst ? 0 : inverse_shapes(ball, best.site) * 0.999;
     for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
       // What is left of a direction that was nearly normal to its patch is rounding, still normal.
       const Vector<Dim> step = allowed(vertex, (reach / length) * direction);
       const Vector<Dim> position = best.site.position + step;
-      const auto trial = place(vertex, bases, position, best, {bar, 0});
-      if (!trial || (aim == Aim::mean && inverse_shapes(bases, trial->site) > most)) continue;
+      const auto trial = place(vertex, ball, position, best, {bar, 0});
+      if (!trial || (aim == Aim::mean && inverse_shapes(ball, trial->site) > most)) continue;
       best = *trial;
       better = moved = true;
     }
@@ -284,10 +219,10 @@ template <int Dim>
 void Smooth<Dim>::apply(const Plan& plan, runtime::Commit<Smooth>& commit) {
   mesh_.site_of[plan.vertex] = plan.site;
   mesh_.host_of[plan.vertex] = plan.host;
-  for (const ElementId e : mesh_.elements_of.of(plan.vertex)) {
-    const std::uint32_t changed_at = mesh_.changed_at[e];
-    update_element(mesh_, e);
-    if (!plan.far) mesh_.changed_at[e] = changed_at;  // too little to reconsider anything
+  const auto elements = mesh_.elements_of.of(plan.vertex);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    mesh_.shape_of[elements[i]] = plan.shapes[i];
+    if (plan.far) mesh_.changed_at[elements[i]] = mesh_.epoch;  // else it is too little to matter
   }
   if (!plan.far || !options_.again) return;
   commit.wake(plan.vertex);

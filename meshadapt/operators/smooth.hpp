@@ -11,8 +11,7 @@
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/run_rounds.hpp"
-#include "operators/base.hpp"
-#include "operators/cavity.hpp"
+#include "operators/ball.hpp"
 
 namespace ductile::meshadapt {
 
@@ -21,7 +20,8 @@ struct VertexMove {
   VertexId vertex;
   ElementId host;
   Site<Dim> site;
-  bool far;  // far enough for the neighbours to be worth another look
+  typename Ball<Dim>::Shapes shapes;  // of the elements around, as they will be
+  bool far;                           // far enough for the neighbours to be worth another look
   friend bool operator==(const VertexMove&, const VertexMove&) = default;
 };
 
@@ -75,28 +75,20 @@ class Smooth {
  private:
   /// What is climbed: the worst shape around, or the harmonic mean of all.
   enum class Aim : std::uint8_t { worst, mean };
-  struct Score {
-    double worst = 0, sum = 0;
-  };
+  using Score = typename Ball<Dim>::Score;
   struct Place {
     Site<Dim> site;
     ElementId host;
     Score score;
   };
-  using Bases = Buffer<Base<Dim>, 40>;  // the facets opposite a vertex, in the order of its list
-  Bases bases_around(VertexId vertex) const;
-  static Score score(const Bases& bases, const Site<Dim>& site, double give_up_below);
   bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
-  std::optional<Place> place(VertexId vertex, const Bases& bases, const Vector<Dim>& position,
+  std::optional<Place> place(VertexId vertex, const Ball<Dim>& ball, const Vector<Dim>& position,
                              const Place& near, const Score& bar) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
-  Vector<Dim> regular_displacement(VertexId vertex, const Bases& bases) const;
-  bool relax(VertexId vertex, const Bases& bases, Place& best) const;
-  bool optimise(VertexId vertex, const Bases& bases, Aim aim, Place& best) const;
-  Vector<Dim> ascent(VertexId vertex, const Bases& bases, Aim aim, const Place& at) const;
-  static double inverse_shapes(const Bases& bases, const Site<Dim>& site);
-  static Vector<Dim> shape_gradient(const Base<Dim>& base, const Site<Dim>& apex,
-                                    double shape_here);
+  bool relax(VertexId vertex, const Ball<Dim>& ball, Place& best) const;
+  bool optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const;
+  Vector<Dim> ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim, const Place& at) const;
+  static double inverse_shapes(const Ball<Dim>& ball, const Site<Dim>& site);
 
   Mesh<Dim>& mesh_;
   const Background<Dim>& background_;
