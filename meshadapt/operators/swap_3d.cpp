@@ -218,20 +218,22 @@ struct Gauge {
 class EdgeSearch {
  public:
   EdgeSearch(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after, float good_enough)
-      : mesh_(mesh), vertex_(vertex), star_(mesh, vertex, after) {
-    for (const Star::Entry& entry : star_.entries)
-      gauge_of_.push_back(entry.shape < good_enough ? Gauge(mesh, entry.corners) : Gauge());
+      : mesh_(mesh), vertex_(vertex), good_enough_(good_enough), star_(mesh, vertex, after) {
+    gauge_of_.resize(star_.entries.size());
   }
 
-  void run(auto&& append) const {
+  void run(auto&& append) {
     for (const Star::Edge& edge : star_.edges)
       if (edge.count <= Star::most_around && worth_a_look(edge)) try_edge(edge, append);
   }
 
  private:
-  static constexpr double long_edge = 0.9;
+  /// The more elements are around an edge, the longer are those worth removing.
+  static double long_edge(std::size_t elements) {
+    return elements < 5 ? 0.9 : elements == 5 ? 1.1 : 1.3;
+  }
 
-  bool worth_a_look(const Star::Edge& edge) const {
+  bool worth_a_look(const Star::Edge& edge) {
     bool changed = false;
     std::size_t worst = edge.around[0];
     for (std::uint32_t i = 0; i < edge.count; ++i) {
@@ -239,9 +241,11 @@ class EdgeSearch {
       changed = changed || star_.entries[entry].changed;
       if (star_.entries[entry].shape < star_.entries[worst].shape) worst = entry;
     }
-    if (!changed || gauge_of_[worst].metric == nullptr) return false;
+    if (!changed || !(star_.entries[worst].shape < good_enough_)) return false;
+    Gauge& gauge = gauge_of_[worst];
+    if (gauge.metric == nullptr) gauge = Gauge(mesh_, star_.entries[worst].corners);
     const Vector<3> along = mesh_.site_of[edge.to].position - mesh_.site_of[vertex_].position;
-    return gauge_of_[worst].relative_square(along) > long_edge;
+    return gauge.relative_square(along) > long_edge(edge.count);
   }
 
   void try_edge(const Star::Edge& edge, auto&& append) const {
@@ -262,8 +266,9 @@ class EdgeSearch {
 
   const Mesh<3>& mesh_;
   VertexId vertex_;
+  float good_enough_;
   Star star_;
-  Buffer<Gauge, 64> gauge_of_;  // [entry], none of a good one
+  Buffer<Gauge, 64> gauge_of_;  // [entry], made when first needed
 };
 
 /// The facet whose opposite corner is the lowest over it: the largest, by Heron's formula in
