@@ -27,10 +27,10 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   const auto ball = mesh_.elements_of.of(gone);
   if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].freedom == 0)
     return {};
-  const VertexBuffer ring = neighbours_of(mesh_, gone);
+  const Ring ring = ring_around(gone);
   const auto choices = candidates(gone, ring);
   if (choices.empty()) return {};
-  const double longest = longest_allowed(gone, ring);
+  const double longest = longest_allowed(ring);
   double worst = 1;
   for (const ElementId e : ball) {
     if (mesh_.required_element(e)) return {};
@@ -43,15 +43,23 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   return {};
 }
 
-/// The neighbours it is short of, and may move to, the closest first.
 template <int Dim>
-auto Coarsen<Dim>::candidates(VertexId gone, const VertexBuffer& ring) const
-    -> Buffer<Candidate, 32> {
+auto Coarsen<Dim>::ring_around(VertexId gone) const -> Ring {
+  Ring ring{neighbours_of(mesh_, gone), {}};
+  for (const VertexId v : ring.vertices)
+    ring.edges.push_back(end_squares(mesh_.site_of[gone], mesh_.site_of[v]));
+  return ring;
+}
+
+/// The neighbours to which it is short, and may move, the closest first.
+template <int Dim>
+auto Coarsen<Dim>::candidates(VertexId gone, const Ring& ring) const -> Buffer<Candidate, 32> {
   Buffer<Candidate, 32> found;
-  for (const VertexId kept : ring) {
-    if (shorter_than(mesh_.site_of[gone], mesh_.site_of[kept], rules_.short_edge) &&
-        keeps_geometry({gone, kept}))
-      found.push_back({mesh_.length(gone, kept), kept});
+  for (std::size_t i = 0; i < ring.edges.size(); ++i) {
+    const EndSquares& edge = ring.edges[i];
+    const VertexId kept = ring.vertices[i];
+    if (shorter_than(edge, rules_.short_edge) && keeps_geometry({gone, kept}))
+      found.push_back({edge.at_a * edge.at_b, kept});
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -78,20 +86,18 @@ bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
 
 /// Where edges are too long already, new ones may be as long as the longest of them, nearly.
 template <int Dim>
-double Coarsen<Dim>::longest_allowed(VertexId gone, const VertexBuffer& ring) const {
+double Coarsen<Dim>::longest_allowed(const Ring& ring) const {
   if (!rules_.extends_long_edges) return rules_.stretched_edge;
   double longest = rules_.long_edge / 1.02;
-  for (const VertexId v : ring)
-    if (!shorter_than(mesh_.site_of[v], mesh_.site_of[gone], longest))
-      longest = mesh_.length(v, gone);
+  for (const EndSquares& edge : ring.edges)
+    if (!shorter_than(edge, longest)) longest = edge_length(edge);
   return std::max(rules_.stretched_edge, 1.02 * longest);
 }
 
 template <int Dim>
-bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const VertexBuffer& ring,
-                                     double longest) const {
+bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const Ring& ring, double longest) const {
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
-  return std::all_of(ring.begin(), ring.end(), [&](VertexId v) {
+  return std::all_of(ring.vertices.begin(), ring.vertices.end(), [&](VertexId v) {
     return v == plan.kept || shorter_than(mesh_.site_of[v], kept, longest);
   });
 }

@@ -54,16 +54,22 @@ class Coarsen {
 
  private:
   struct Candidate {
-    double length;
+    double length;  ///< to the fourth power, by the geometric mean of both ends
     VertexId kept;
     friend auto operator<=>(const Candidate&, const Candidate&) = default;
   };
-  Buffer<Candidate, 32> candidates(VertexId gone, const VertexBuffer& ring) const;
+  /// The neighbours of the vertex that may go, and its edges to them.
+  struct Ring {
+    VertexBuffer vertices;
+    Buffer<EndSquares, 64> edges;
+  };
+  Ring ring_around(VertexId gone) const;
+  Buffer<Candidate, 32> candidates(VertexId gone, const Ring& ring) const;
 
   // ---- Rules: each one reason to refuse a collapse, named for what it protects ----
   bool keeps_geometry(const Plan& plan) const;
-  double longest_allowed(VertexId gone, const VertexBuffer& ring) const;
-  bool keeps_edges_short(const Plan& plan, const VertexBuffer& ring, double longest) const;
+  double longest_allowed(const Ring& ring) const;
+  bool keeps_edges_short(const Plan& plan, const Ring& ring, double longest) const;
   bool keeps_shapes(const Plan& plan, double worst_before) const;
 
   void remove_element(ElementId element, const Plan& plan, runtime::Commit<Coarsen>& commit);

@@ -26,24 +26,37 @@ Site<Dim> make_site(const Vector<Dim>& position, const Metric<Dim>& metric) {
   return {position, metric, std::sqrt(determinant(metric))};
 }
 
-/// Metric length of the edge between two sites.
+/// The squares of an edge's metric length, as the metric at either end measures it.
+struct EndSquares {
+  double at_a, at_b;
+};
+
 template <int Dim>
-double edge_length(const Site<Dim>& a, const Site<Dim>& b) {
+EndSquares end_squares(const Site<Dim>& a, const Site<Dim>& b) {
   const Vector<Dim> d = b.position - a.position;
-  return mean_length(std::sqrt(squared_length(a.metric, d)),
-                     std::sqrt(squared_length(b.metric, d)));
+  return {squared_length(a.metric, d), squared_length(b.metric, d)};
 }
 
-/// edge_length(a, b) < limit, mostly decided without roots and logarithms: the logarithmic mean
+/// Metric length of an edge.
+inline double edge_length(const EndSquares& edge) {
+  return mean_length(std::sqrt(edge.at_a), std::sqrt(edge.at_b));
+}
+template <int Dim>
+double edge_length(const Site<Dim>& a, const Site<Dim>& b) {
+  return edge_length(end_squares(a, b));
+}
+
+/// edge_length(edge) < limit, mostly decided without roots and logarithms: the logarithmic mean
 /// lies between the geometric mean and the larger of the two end lengths.
+inline bool shorter_than(const EndSquares& edge, double limit) {
+  const double square = limit * limit;
+  if (edge.at_a * edge.at_b >= square * square) return false;
+  if (std::max(edge.at_a, edge.at_b) < square) return true;
+  return edge_length(edge) < limit;
+}
 template <int Dim>
 bool shorter_than(const Site<Dim>& a, const Site<Dim>& b, double limit) {
-  const Vector<Dim> d = b.position - a.position;
-  const double at_a = squared_length(a.metric, d), at_b = squared_length(b.metric, d);
-  const double square = limit * limit;
-  if (at_a * at_b >= square * square) return false;
-  if (std::max(at_a, at_b) < square) return true;
-  return mean_length(std::sqrt(at_a), std::sqrt(at_b)) < limit;
+  return shorter_than(end_squares(a, b), limit);
 }
 
 /// The corner with the densest metric: the metric an element is judged by, as the unstructured grid
