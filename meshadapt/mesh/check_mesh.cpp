@@ -10,6 +10,7 @@
 
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/atomic_count.hpp"
+#include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/problems.hpp"
 
@@ -209,12 +210,12 @@ class AnyMeshChecker {
   // ---- Vertices and edges ----
 
   void check_vertices() {
-    std::vector<std::uint32_t> uses(mesh_.vertex_count(), 0);
+    std::vector<std::uint8_t> used(mesh_.vertex_count(), 0);
     parallel_for(executor_, elements().size(), [&](std::size_t e) {
-      for (const VertexId v : elements().vertices[e]) atomic_count(uses[v]);
+      for (const VertexId v : elements().vertices[e]) runtime::atomic_set(used[v]);
     });
     problems_.expect_none(
-        uses.size(), [&](std::size_t v) { return uses[v] == 0; },
+        used.size(), [&](std::size_t v) { return used[v] == 0; },
         [](std::size_t v) { return "vertex " + number(v) + " belongs to no element"; });
   }
 

@@ -1,5 +1,8 @@
 #include "ductile/meshadapt/mesh.hpp"
 
+#include <algorithm>
+#include <span>
+
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
@@ -41,9 +44,8 @@ void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
     });
   };
   each_corner([&](VertexId v, ElementId) { runtime::atomic_count(count[v]); });
-  constexpr std::uint32_t slack = Dim == 2 ? 3 : 10;
   parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
-    if (count[v] != 0) lists.reserve(static_cast<VertexId>(v), count[v] + slack);
+    if (count[v] != 0) lists.reserve(static_cast<VertexId>(v), count[v] + list_slack<Dim>);
   });
   each_corner([&](VertexId v, ElementId element) {
     lists.data(v)[runtime::atomic_count(lists.count_of(v))] = element;
@@ -54,14 +56,26 @@ void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
   });
 }
 
+/// Is any of these numbers larger than a bound? Without branches, so several at once.
+bool any_above(std::span<const std::uint32_t> numbers, std::uint32_t bound) {
+  std::uint32_t any = 0;
+  for (const std::uint32_t number : numbers) any |= static_cast<std::uint32_t>(number > bound);
+  return any != 0;
+}
+
 template <int Dim>
 std::vector<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>& mesh,
                                        std::uint32_t after) {
+  constexpr std::size_t stretch = 64;
   std::vector<std::uint8_t> marked(mesh.vertex_slots());
-  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
-    if (mesh.changed_at[e] <= after || !mesh.alive(static_cast<ElementId>(e))) return;
-    for (const VertexId v : mesh.corners_of[e]) runtime::atomic_mark(marked[v]);
-  });
+  const auto mark = [&](std::size_t, std::size_t begin, std::size_t end) {
+    if (!any_above(std::span(mesh.changed_at).subspan(begin, end - begin), after)) return;
+    for (std::size_t e = begin; e < end; ++e) {
+      if (mesh.changed_at[e] <= after || !mesh.alive(static_cast<ElementId>(e))) continue;
+      for (const VertexId v : mesh.corners_of[e]) runtime::atomic_set(marked[v]);
+    }
+  };
+  runtime::parallel_for_blocks(executor, mesh.element_slots(), stretch, mark, {});
   return marked;
 }
 

@@ -2,6 +2,7 @@
 /// Renumbering: vertices are sorted along a Hilbert curve through the bounding box, elements by
 /// their lowest vertex; whatever is gone is left out.
 #include <algorithm>
+#include <bit>
 #include <memory>
 
 #include "ductile/meshadapt/mesh.hpp"
@@ -17,13 +18,6 @@ using runtime::parallel_for;
 
 namespace {
 
-template <class Key>
-struct Keyed {
-  Key key;
-  std::uint32_t id;
-  friend auto operator<=>(const Keyed&, const Keyed&) = default;
-};
-
 template <int Dim>
 Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh) {
   return runtime::parallel_reduce(
@@ -35,101 +29,160 @@ Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh) {
       [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
 }
 
+/// Ids by their keys, those of equal keys in order. keyed(i, append) appends a key and an id below
+/// `count`; as many of a key's `key_bits` highest bits count as find place beside an id in a word.
+std::vector<std::uint32_t> sorted_ids(const Executor& executor, std::size_t count,
+                                      unsigned key_bits, auto&& keyed) {
+  const auto id_bits = static_cast<unsigned>(std::bit_width(count));
+  const std::uint64_t ids = (std::uint64_t{1} << id_bits) - 1;
+  const auto join = [&](std::uint64_t key, std::uint32_t id) {
+    return key_bits + id_bits <= 64 ? key << id_bits | id : (key << (64 - key_bits) & ~ids) | id;
+  };
+  auto words =
+      runtime::parallel_collect<std::uint64_t>(executor, count, [&](std::size_t i, auto&& append) {
+        keyed(i, [&](std::uint64_t key, std::uint32_t id) { append(join(key, id)); });
+      });
+  runtime::parallel_sort(executor, std::span(words));
+  std::vector<std::uint32_t> order(words.size());
+  parallel_for(executor, words.size(),
+               [&](std::size_t i) { order[i] = static_cast<std::uint32_t>(words[i] & ids); });
+  return order;
+}
+
 /// Living vertices in the order of the curve.
 template <int Dim>
-std::vector<Keyed<std::uint64_t>> sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
+std::vector<VertexId> sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
   const Box<Dim> box = bounding_box(executor, mesh);
-  auto order = runtime::parallel_collect<Keyed<std::uint64_t>>(
-      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
-        const auto vertex = static_cast<VertexId>(v);
-        if (mesh.vertex_alive(vertex)) append({hilbert_key(mesh.site_of[v].position, box), vertex});
-      });
-  runtime::parallel_sort(executor, std::span(order));
-  return order;
+  return sorted_ids(executor, mesh.vertex_slots(), hilbert_bits<Dim>,
+                    [&](std::size_t v, auto&& append) {
+                      const auto vertex = static_cast<VertexId>(v);
+                      if (mesh.vertex_alive(vertex))
+                        append(hilbert_key(mesh.site_of[v].position, box), vertex);
+                    });
 }
 
 /// Living elements by their lowest vertex in the new numbering.
 template <int Dim>
-std::vector<Keyed<VertexId>> sorted_elements(const Executor& executor, const Mesh<Dim>& mesh,
-                                             const std::vector<VertexId>& new_id) {
-  auto order = runtime::parallel_collect<Keyed<VertexId>>(
-      executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
-        const auto element = static_cast<ElementId>(e);
-        if (!mesh.alive(element)) return;
-        VertexId lowest = none;
-        for (const VertexId v : mesh.corners_of[e]) lowest = std::min(lowest, new_id[v]);
-        append({lowest, element});
-      });
-  runtime::parallel_sort(executor, std::span(order));
-  return order;
-}
-
-/// values[i] becomes the old values[order[i].id]. There and back again: a new vector would be set
-/// to zero, and a full one copied when it grows, by one thread; this one keeps room to grow.
-template <class T, class Order>
-void permute(const Executor& executor, std::vector<T>& values, const Order& order) {
-  const auto moved = std::make_unique_for_overwrite<T[]>(order.size());
-  parallel_for(executor, order.size(), [&](std::size_t i) { moved[i] = values[order[i].id]; });
-  values.resize(order.size());
-  runtime::parallel_for_ranges(executor, order.size(), [&](std::size_t begin, std::size_t end) {
-    std::copy(&moved[begin], &moved[0] + end, &values[begin]);
+std::vector<ElementId> sorted_elements(const Executor& executor, const Mesh<Dim>& mesh,
+                                       const std::vector<VertexId>& new_id) {
+  const auto key_bits = static_cast<unsigned>(std::bit_width(new_id.size()));
+  return sorted_ids(executor, mesh.element_slots(), key_bits, [&](std::size_t e, auto&& append) {
+    const auto element = static_cast<ElementId>(e);
+    if (!mesh.alive(element)) return;
+    VertexId lowest = none;
+    for (const VertexId v : mesh.corners_of[e]) lowest = std::min(lowest, new_id[v]);
+    append(lowest, element);
   });
 }
 
-template <class Order>
-void renumber_links(const Executor& executor, Mesh<3>& mesh, const Order& order,
-                    const std::vector<VertexId>& new_id) {
+/// For each old id its place in the order; none for those that are not in it.
+std::vector<std::uint32_t> places_in(const Executor& executor,
+                                     const std::vector<std::uint32_t>& order, std::size_t count) {
+  std::vector<std::uint32_t> place_of(count, none);
+  parallel_for(executor, order.size(),
+               [&](std::size_t i) { place_of[order[i]] = static_cast<std::uint32_t>(i); });
+  return place_of;
+}
+
+/// Puts arrays in a new order by way of a scratch array. There and back again: a new vector would
+/// be set to zero, and a full one copied when it grows, by one thread; these keep room to grow.
+class Permutation {
+ public:
+  Permutation(const Executor& executor, const std::vector<std::uint32_t>& order,
+              std::size_t largest)
+      : executor_(executor),
+        order_(order),
+        scratch_(std::make_unique_for_overwrite<std::byte[]>(order.size() * largest)) {}
+
+  /// values[i] becomes the old values[order[i]].
+  template <class T>
+  void operator()(std::vector<T>& values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    T* const moved = reinterpret_cast<T*>(scratch_.get());
+    const std::size_t n = order_.size();
+    parallel_for(executor_, n,
+                 [&](std::size_t i) { std::construct_at(moved + i, values[order_[i]]); });
+    values.resize(n);
+    runtime::parallel_for_ranges(executor_, n, [&](std::size_t begin, std::size_t end) {
+      std::copy(moved + begin, moved + end, values.begin() + static_cast<std::ptrdiff_t>(begin));
+    });
+  }
+
+ private:
+  const Executor& executor_;
+  const std::vector<std::uint32_t>& order_;
+  std::unique_ptr<std::byte[]> scratch_;
+};
+
+/// The lists of elements in the new order of vertices, with the new ids of elements.
+template <int Dim>
+void renumber_elements_of(const Executor& executor, Mesh<Dim>& mesh,
+                          const std::vector<VertexId>& vertices,
+                          const std::vector<ElementId>& new_element) {
+  ListPool<ElementId> moved;
+  moved.reset(vertices.size());
+  parallel_for(executor, vertices.size(), [&](std::size_t i) {
+    const auto vertex = static_cast<VertexId>(i);
+    const auto elements = mesh.elements_of.of(vertices[i]);
+    moved.reserve(vertex, static_cast<std::uint32_t>(elements.size()) + list_slack<Dim>);
+    for (const ElementId e : elements) moved.insert(vertex, new_element[e]);
+  });
+  std::swap(mesh.elements_of, moved);
+}
+
+void renumber_links(const Executor& executor, Mesh<3>& mesh, const std::vector<VertexId>& vertices,
+                    const std::vector<VertexId>& new_vertex) {
   ListPool<CurveLink> moved;
-  moved.reset(order.size());
-  parallel_for(executor, order.size(), [&](std::size_t i) {
-    for (const CurveLink& link : mesh.links_of.of(order[i].id))
-      moved.insert(static_cast<VertexId>(i), {new_id[link.to], link.curve});
+  moved.reset(vertices.size());
+  parallel_for(executor, vertices.size(), [&](std::size_t i) {
+    for (const CurveLink& link : mesh.links_of.of(vertices[i]))
+      moved.insert(static_cast<VertexId>(i), {new_vertex[link.to], link.curve});
   });
   std::swap(mesh.links_of, moved);
 }
 
-/// The place of each id in an order, or none.
-template <class Order>
-std::vector<std::uint32_t> places(const Executor& executor, const Order& order, std::size_t slots) {
-  std::vector<std::uint32_t> place_of(slots, none);
-  parallel_for(executor, order.size(),
-               [&](std::size_t i) { place_of[order[i].id] = static_cast<std::uint32_t>(i); });
-  return place_of;
+template <int Dim>
+void permute_elements(const Executor& executor, Mesh<Dim>& mesh,
+                      const std::vector<ElementId>& order) {
+  Permutation permute(executor, order, sizeof(Corners<Dim>));
+  permute(mesh.corners_of);
+  permute(mesh.patches_of);
+  permute(mesh.region_of);
+  permute(mesh.shape_of);
+  permute(mesh.changed_at);
 }
 
-template <int Dim, class Order>
-void renumber_neighbours(const Executor& executor, Neighbours<Dim>& neighbours,
-                         const Order& elements) {
-  const auto new_id = places(executor, elements, neighbours.size());
-  permute(executor, neighbours, elements);
-  parallel_for(executor, neighbours.size(), [&](std::size_t e) {
-    for (ElementId& other : neighbours[e])
-      if (other != none) other = new_id[other];
-  });
+template <int Dim>
+void permute_vertices(const Executor& executor, Mesh<Dim>& mesh,
+                      const std::vector<VertexId>& order) {
+  Permutation permute(executor, order, sizeof(Site<Dim>));
+  permute(mesh.site_of);
+  permute(mesh.kind_of);
+  permute(mesh.entity_of);
+  permute(mesh.reference_of);
+  permute(mesh.host_of);
 }
 
-/// The neighbours may be missing.
+/// Neighbours are left alone if there are none.
 template <int Dim>
 void renumber_all(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>* neighbours) {
   const auto vertices = sorted_vertices(executor, mesh);
-  const auto new_id = places(executor, vertices, mesh.vertex_slots());
-  const auto elements = sorted_elements(executor, mesh, new_id);
-  permute(executor, mesh.corners_of, elements);
-  permute(executor, mesh.patches_of, elements);
-  permute(executor, mesh.region_of, elements);
-  permute(executor, mesh.shape_of, elements);
-  permute(executor, mesh.changed_at, elements);
+  const auto new_vertex = places_in(executor, vertices, mesh.vertex_slots());
+  const auto elements = sorted_elements(executor, mesh, new_vertex);
+  const auto new_element = places_in(executor, elements, mesh.element_slots());
+  renumber_elements_of(executor, mesh, vertices, new_element);
+  if constexpr (Dim == 3) renumber_links(executor, mesh, vertices, new_vertex);
+  permute_elements(executor, mesh, elements);
   parallel_for(executor, elements.size(), [&](std::size_t e) {
-    for (VertexId& v : mesh.corners_of[e]) v = new_id[v];
+    for (VertexId& v : mesh.corners_of[e]) v = new_vertex[v];
   });
-  permute(executor, mesh.site_of, vertices);
-  permute(executor, mesh.kind_of, vertices);
-  permute(executor, mesh.entity_of, vertices);
-  permute(executor, mesh.reference_of, vertices);
-  permute(executor, mesh.host_of, vertices);
-  if constexpr (Dim == 3) renumber_links(executor, mesh, vertices, new_id);
-  rebuild_elements_of(executor, mesh);
-  if (neighbours != nullptr) renumber_neighbours<Dim>(executor, *neighbours, elements);
+  permute_vertices(executor, mesh, vertices);
+  if (neighbours == nullptr) return;
+  Permutation(executor, elements, sizeof(Corners<Dim>))(*neighbours);
+  parallel_for(executor, elements.size(), [&](std::size_t e) {
+    for (ElementId& other : (*neighbours)[e])
+      if (other != none) other = new_element[other];
+  });
 }
 
 }  // namespace

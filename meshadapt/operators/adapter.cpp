@@ -343,12 +343,15 @@ void Adapter<Dim>::renumber_mesh() {
   renumber(executor_, mesh_);
 }
 
+/// Counted only after a kernel has made or removed some.
 template <int Dim>
 std::size_t Adapter<Dim>::element_count() const {
-  return runtime::parallel_reduce(
-      executor_, mesh_.element_slots(), std::size_t{0},
-      [&](std::size_t e) { return std::size_t{mesh_.alive(static_cast<ElementId>(e))}; },
-      [](std::size_t a, std::size_t b) { return a + b; });
+  if (!element_count_)
+    element_count_ = runtime::parallel_reduce(
+        executor_, mesh_.element_slots(), std::size_t{0},
+        [&](std::size_t e) { return std::size_t{mesh_.alive(static_cast<ElementId>(e))}; },
+        std::plus<>());
+  return *element_count_;
 }
 
 template <int Dim>
@@ -358,6 +361,8 @@ void Adapter<Dim>::tell(const char* step, std::size_t changes) const {
 
 template <int Dim>
 void Adapter<Dim>::add(KernelReport& kernel, const RoundsReport& rounds) {
+  const bool flips = Dim == 2 && &kernel == &report_.swap;
+  if (rounds.applied != 0 && !flips && &kernel != &report_.smooth) element_count_.reset();
   kernel.considered += rounds.planned;
   kernel.applied += rounds.applied;
   kernel.rounds += rounds.rounds;

@@ -2,6 +2,11 @@
 /// Adapter: the driver. It owns the mesh while it is adapted and decides which kernel runs when.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/mesh.hpp"
@@ -59,7 +64,8 @@ class Adapter {
   Background<Dim> background_;
   AdaptReport report_;
   Aim aim_ = Aim::approach;
-  std::size_t stage_ = 0;  // of refinement
+  std::size_t stage_ = 0;                             // of refinement
+  mutable std::optional<std::size_t> element_count_;  // as far as it is known
   // The epoch up to which each kernel has seen all changes.
   std::uint32_t seen_by_coarsen_ = 0, seen_by_refine_ = 0, seen_by_swap_ = 0, seen_by_smooth_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ductile/runtime/collect.hpp"
+#include "operators/edges.hpp"
 
 namespace ductile::meshadapt {
 
@@ -10,15 +11,12 @@ template <int Dim>
 std::vector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& executor,
                                                      const Mesh<Dim>& mesh, double short_edge,
                                                      std::uint32_t after) {
-  const auto changed = vertices_changed(executor, mesh, after);
+  const auto marked = mark_changed(executor, mesh, after);
+  const auto crowded = mark_ends_of_short_edges(executor, mesh, marked, short_edge);
   return runtime::parallel_collect<VertexId>(
-      executor, changed.size(), [&](std::size_t i, auto&& append) {
-        const VertexId v = changed[i];
-        if (mesh.kind_of[v].freedom == 0) return;
-        for (const ElementId element : mesh.elements_of.of(v))
-          for (const VertexId other : mesh.corners_of[element])
-            if (other != v && shorter_than(mesh.site_of[v], mesh.site_of[other], short_edge))
-              return append(v);
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        if (marked[v] && crowded[v] && mesh.kind_of[v].freedom != 0)
+          append(static_cast<VertexId>(v));
       });
 }
 

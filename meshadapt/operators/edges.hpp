@@ -1,11 +1,17 @@
 /// @file
-/// collect_edges: goes over the edges of a mesh, or of a part of it, each once.
+/// collect_edges: goes over the long edges of a mesh, or of a part of it, each once.
+/// mark_ends_of_short_edges: finds the vertices that have a short one.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/parallel_for.hpp"
 #include "operators/cavity.hpp"
 
 namespace ductile::meshadapt {
@@ -17,19 +23,82 @@ inline bool stands_for(const Mesh<2>& mesh, ElementId element, int facet, Vertex
                    neighbour(mesh, element, facet) == none);
 }
 
-/// Calls find(a, b, append) for every edge a < b that has an end among the marked vertices, once;
-/// append(item) adds to the result, whose order does not depend on threads.
+/// Bits for those edges of an element that may be shorter than a limit, and for those that may not;
+/// of the others it is certain. Decided without roots or branches: see shorter_than().
+struct MaybeEdges {
+  unsigned shorter = 0, longer = 0;
+};
+template <int Dim>
+MaybeEdges compare_edges(const std::array<const Site<Dim>*, Dim + 1>& corner, double limit) {
+  const double square = limit * limit;
+  MaybeEdges result;
+  for (unsigned k = 0; k < Simplex<Dim>::edges; ++k) {
+    const auto& [i, j] = Simplex<Dim>::edge[k];
+    const Site<Dim>& a = *corner[static_cast<std::size_t>(i)];
+    const Site<Dim>& b = *corner[static_cast<std::size_t>(j)];
+    const Vector<Dim> d = b.position - a.position;
+    const double at_a = squared_length(a.metric, d), at_b = squared_length(b.metric, d);
+    result.shorter |= static_cast<unsigned>(at_a * at_b < square * square) << k;
+    result.longer |= static_cast<unsigned>(std::max(at_a, at_b) >= square) << k;
+  }
+  return result;
+}
+
+template <int Dim>
+bool any_marked(const std::vector<std::uint8_t>& marked, const Corners<Dim>& corners) {
+  unsigned sum = 0;
+  for (const VertexId v : corners) sum += marked[v];
+  return sum != 0;
+}
+
+/// The ends of all edges shorter than a limit whose element has a marked corner.
+/// Thread safety: one caller; runs on the executor.
+template <int Dim>
+std::vector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& executor,
+                                                   const Mesh<Dim>& mesh,
+                                                   const std::vector<std::uint8_t>& marked,
+                                                   double limit) {
+  std::vector<std::uint8_t> ends(mesh.vertex_slots());
+  runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    const Corners<Dim>& corners = mesh.corners_of[e];
+    if (!mesh.alive(static_cast<ElementId>(e)) || !any_marked<Dim>(marked, corners)) return;
+    const auto sites = mesh.sites(corners);
+    for (unsigned left = compare_edges<Dim>(sites, limit).shorter; left != 0; left &= left - 1) {
+      const auto& edge = Simplex<Dim>::edge[static_cast<std::size_t>(std::countr_zero(left))];
+      const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
+      if (!shorter_than(*sites[i], *sites[j], limit)) continue;
+      runtime::atomic_mark(ends[corners[i]]);
+      runtime::atomic_mark(ends[corners[j]]);
+    }
+  });
+  return ends;
+}
+
+/// Edges with an end among the marked vertices.
+struct WantedEdges {
+  const std::vector<std::uint8_t>& marked;
+  double no_shorter_than = 0;
+};
+
+/// Calls find(a, b, append) for every wanted edge a < b, once; append(item) adds to the result,
+/// whose order does not depend on threads.
 /// Thread safety: one caller; runs on the executor.
 template <class Item>
 std::vector<Item> collect_edges(const runtime::Executor& executor, const Mesh<2>& mesh,
-                                const std::vector<std::uint8_t>& marked, auto&& find) {
+                                const WantedEdges& wanted, auto&& find) {
+  const std::vector<std::uint8_t>& marked = wanted.marked;
+  const double limit = wanted.no_shorter_than;
   return runtime::parallel_collect<Item>(
       executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
         const auto element = static_cast<ElementId>(e);
-        if (!mesh.alive(element)) return;
-        for (int i = 0; i < 3; ++i) {
-          const auto [p, q] = facet_of<2>(mesh.corners_of[e], i);
-          if ((marked[p] || marked[q]) && stands_for(mesh, element, i, p, q))
+        const Corners<2>& corners = mesh.corners_of[e];
+        if (!mesh.alive(element) || !any_marked<2>(marked, corners)) return;
+        unsigned left = compare_edges<2>(mesh.sites(corners), limit).longer;
+        for (; left != 0; left &= left - 1) {
+          const int facet = (std::countr_zero(left) + 2) % 3;
+          const auto [p, q] = facet_of<2>(corners, facet);
+          if ((marked[p] || marked[q]) && stands_for(mesh, element, facet, p, q) &&
+              !shorter_than(mesh.site_of[p], mesh.site_of[q], limit))
             find(std::min(p, q), std::max(p, q), append);
         }
       });
@@ -38,18 +107,21 @@ std::vector<Item> collect_edges(const runtime::Executor& executor, const Mesh<2>
 /// In 3D an edge is in five elements or so: it is found from its vertices.
 template <class Item>
 std::vector<Item> collect_edges(const runtime::Executor& executor, const Mesh<3>& mesh,
-                                const std::vector<std::uint8_t>& marked, auto&& find) {
-  return runtime::parallel_collect<Item>(executor, mesh.vertex_slots(),
-                                         [&](std::size_t v, auto&& append) {
-                                           const auto a = static_cast<VertexId>(v);
-                                           if (!marked[a]) return;
-                                           Numbering seen;
-                                           for (const ElementId element : mesh.elements_of.of(a))
-                                             for (const VertexId b : mesh.corners_of[element])
-                                               if (a < b || !marked[b]) seen.number_of(b);
-                                           for (const VertexId b : seen.vertices())
-                                             find(std::min(a, b), std::max(a, b), append);
-                                         });
+                                const WantedEdges& wanted, auto&& find) {
+  const std::vector<std::uint8_t>& marked = wanted.marked;
+  const double limit = wanted.no_shorter_than;
+  return runtime::parallel_collect<Item>(
+      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        const auto a = static_cast<VertexId>(v);
+        if (!marked[a]) return;
+        Numbering seen;
+        for (const ElementId element : mesh.elements_of.of(a))
+          for (const VertexId b : mesh.corners_of[element])
+            if (a < b || !marked[b]) seen.number_of(b);
+        for (const VertexId b : seen.vertices())
+          if (!shorter_than(mesh.site_of[a], mesh.site_of[b], limit))
+            find(std::min(a, b), std::max(a, b), append);
+      });
 }
 
 }  // namespace ductile::meshadapt

@@ -25,10 +25,10 @@ template <int Dim>
 std::vector<LongEdge> Refine<Dim>::long_edges(const runtime::Executor& executor,
                                               const Mesh<Dim>& mesh, double long_edge,
                                               std::uint32_t after) {
-  return collect_edges<LongEdge>(executor, mesh, mark_changed(executor, mesh, after),
+  const auto marked = mark_changed(executor, mesh, after);
+  return collect_edges<LongEdge>(executor, mesh, {marked, long_edge},
                                  [&](VertexId a, VertexId b, auto&& append) {
-                                   if (!shorter_than(mesh.site_of[a], mesh.site_of[b], long_edge))
-                                     append(LongEdge{a, b, static_cast<float>(mesh.length(a, b))});
+                                   append(LongEdge{a, b, static_cast<float>(mesh.length(a, b))});
                                  });
 }
 

@@ -1,34 +1,55 @@
 #include <algorithm>
+#include <array>
 
 #include "ductile/runtime/collect.hpp"
 #include "operators/swap.hpp"
 
 namespace ductile::meshadapt {
 
-/// Triangles a b c and b a d become a d c and d b c.
+namespace {
+
+/// Two triangles that share an edge: a b c and b a d.
+struct Kite {
+  ElementId first, second;
+  VertexId a, b, c, d;
+};
+
+/// The triangle, and the one across the edge opposite to its corner.
+Kite make_kite(const Mesh<2>& mesh, ElementId first, int corner, ElementId second) {
+  const auto [a, b] = facet_of<2>(mesh.corners_of[first], corner);
+  const auto [x, y, z] = mesh.corners_of[second];
+  const VertexId d = x != a && x != b ? x : y != a && y != b ? y : z;
+  return {first, second, a, b, mesh.corners_of[first][static_cast<std::size_t>(corner)], d};
+}
+
+/// May the shared edge go, and are triangles a d c and d b c better?
+bool worth_a_flip(const Mesh<2>& mesh, const Kite& kite) {
+  const auto [first, second, a, b, c, d] = kite;
+  if (mesh.region_of[first] != mesh.region_of[second] || mesh.required_element(first) ||
+      patch_of_edge(mesh, first, a, b) != 0)
+    return false;
+  const double least = Swap<2>::bar(std::min(mesh.shape_of[first], mesh.shape_of[second]));
+  return shape_above<2>(mesh.sites({a, d, c}), least) &&
+         shape_above<2>(mesh.sites({d, b, c}), least);
+}
+
+}  // namespace
+
 template <>
 std::optional<Replacement<2>> Swap<2>::plan(const Swappable& edge) const {
   Shell shell;
   shell_of(mesh_, edge.a, edge.b, shell);
-  if (shell.size() != 2 || mesh_.region_of[shell[0]] != mesh_.region_of[shell[1]] ||
-      mesh_.required_element(shell[0]) || patch_of_edge(mesh_, shell[0], edge.a, edge.b) != 0)
-    return {};
+  if (shell.size() != 2) return {};
   const Corners<2>& first = mesh_.corners_of[shell[0]];
-  const auto at_a = static_cast<std::size_t>(corner_of(first, edge.a));
-  const bool forward = first[(at_a + 1) % 3] == edge.b;
-  const VertexId a = forward ? edge.a : edge.b, b = forward ? edge.b : edge.a;
-  const auto opposite = [&](ElementId e) {
-    for (const VertexId v : mesh_.corners_of[e])
-      if (v != a && v != b) return v;
-    return none;
-  };
-  const VertexId c = opposite(shell[0]), d = opposite(shell[1]);
+  int corner = 0;
+  while (first[static_cast<std::size_t>(corner)] == edge.a ||
+         first[static_cast<std::size_t>(corner)] == edge.b)
+    ++corner;
+  const Kite kite = make_kite(mesh_, shell[0], corner, shell[1]);
+  if (!worth_a_flip(mesh_, kite)) return {};
   Replacement<2> result;
-  result.new_elements = {{a, d, c}, {d, b, c}};
-  const double least = bar(std::min(mesh_.shape_of[shell[0]], mesh_.shape_of[shell[1]]));
-  for (const Corners<2>& corners : result.new_elements)
-    if (!(mesh_.shape_at(corners) > least)) return {};
-  result.old_elements = {shell[0], shell[1]};
+  result.old_elements = {kite.first, kite.second};
+  result.new_elements = {{kite.a, kite.d, kite.c}, {kite.d, kite.b, kite.c}};
   return result;
 }
 
@@ -52,38 +73,102 @@ int wide_corner(const Mesh<2>& mesh, ElementId element) {
   for (std::size_t i = 0; i < 3; ++i)
     square[i] =
         squared_length(metric, corner[(i + 2) % 3]->position - corner[(i + 1) % 3]->position);
-  const auto longest = std::max_element(square.begin(), square.end());
-  const double others = square[0] + square[1] + square[2] - *longest;
-  return *longest > wide * others ? static_cast<int>(longest - square.begin()) : -1;
+  const double longest = std::max({square[0], square[1], square[2]});
+  const double others = square[0] + square[1] + square[2] - longest;
+  const int at = square[2] == longest ? 2 : static_cast<int>(square[1] == longest);
+  return longest > wide * others ? at : -1;
 }
 
 }  // namespace
 
+namespace {
+
+/// Looks for flips in a stretch of elements after the other. Each step of the search picks some of
+/// what the one before has left, without branches, for chance decides which.
+class FlipSearch {
+ public:
+  static constexpr std::size_t stretch = 64;
+
+  FlipSearch(const runtime::Executor& executor, const Mesh<2>& mesh, std::uint32_t after,
+             double below)
+      : mesh_(mesh),
+        after_(after),
+        bound_(static_cast<float>(shape_of_mean_ratio<2>(below))),
+        marked_(mark_changed(executor, mesh, after)) {}
+
+  void find(std::size_t begin, std::size_t end, auto&& append) const {
+    std::array<ElementId, stretch> poor;
+    std::array<Candidate, stretch> candidate;
+    std::size_t count = 0, near = 0, found = 0;
+    for (std::size_t e = begin; e < end; ++e) {
+      poor[count] = static_cast<ElementId>(e);
+      count += is_poor(poor[count]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      poor[near] = poor[i];
+      near += near_changes(poor[i]);
+    }
+    for (std::size_t i = 0; i < near; ++i) {
+      const int corner = wide_corner(mesh_, poor[i]);
+      candidate[found] = {poor[i], corner};
+      found += corner >= 0;
+      mesh_.elements_of.prefetch(mesh_.corners_of[poor[i]][next(corner)]);
+    }
+    for (std::size_t i = 0; i < found; ++i) examine(candidate[i], append);
+  }
+
+ private:
+  struct Candidate {
+    ElementId element;
+    int corner;  // that is wide
+  };
+
+  static std::size_t next(int corner) { return static_cast<std::size_t>(corner + 1) % 3; }
+
+  bool is_poor(ElementId e) const {
+    return static_cast<int>(mesh_.shape_of[e] < bound_) & static_cast<int>(mesh_.alive(e));
+  }
+
+  bool near_changes(ElementId e) const {
+    const auto [p, q, r] = mesh_.corners_of[e];
+    return marked_[p] + marked_[q] + marked_[r] >= 2;
+  }
+
+  void examine(const Candidate& candidate, auto&& append) const {
+    const auto [e, corner] = candidate;
+    const ElementId other = neighbour(mesh_, e, corner);
+    if (other == none || (mesh_.changed_at[e] <= after_ && mesh_.changed_at[other] <= after_))
+      return;
+    const Kite kite = make_kite(mesh_, e, corner, other);
+    if (other < e && is_poor(other)) {  // found from there if its corner on the other side is wide
+      const int at = wide_corner(mesh_, other);
+      if (at >= 0 && mesh_.corners_of[other][static_cast<std::size_t>(at)] == kite.d) return;
+    }
+    if (!worth_a_flip(mesh_, kite)) return;
+    const float worst = std::min(mesh_.shape_of[e], mesh_.shape_of[other]);
+    append(Swappable{std::min(kite.a, kite.b), std::max(kite.a, kite.b), none, worst});
+  }
+
+  const Mesh<2>& mesh_;
+  std::uint32_t after_;
+  float bound_;
+  std::vector<std::uint8_t> marked_;
+};
+
+}  // namespace
+
 /// Flips are found from the poor triangle, as few are poor. One with a right angle always is: its
-/// mean ratio is 0.87 at most.
+/// mean ratio is 0.87 at most. If neither it nor the triangle across its longest edge has changed,
+/// nothing is new; that is so where less than two of its corners are next to a change.
 template <>
 std::vector<Swappable> Swap<2>::improvements(const runtime::Executor& executor, Mesh<2>& mesh,
                                              std::uint32_t after, double below) {
-  const Swap swap(mesh);
-  const double bound = shape_of_mean_ratio<2>(below);
-  const auto poor = [&](ElementId e) { return mesh.shape_of[e] < bound && mesh.alive(e); };
+  constexpr std::size_t stretch = FlipSearch::stretch;
+  const FlipSearch search(executor, mesh, after, below);
+  const std::size_t elements = mesh.element_slots();
   return runtime::parallel_collect<Swappable>(
-      executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
-        const auto element = static_cast<ElementId>(e);
-        if (!poor(element)) return;
-        const int corner = wide_corner(mesh, element);
-        if (corner < 0) return;
-        const ElementId other = neighbour(mesh, element, corner);
-        if (other == none || (mesh.changed_at[e] <= after && mesh.changed_at[other] <= after))
-          return;
-        const auto [a, b] = facet_of<2>(mesh.corners_of[e], corner);
-        if (other < element && poor(other)) {
-          const int at = wide_corner(mesh, other);
-          if (at >= 0 && facet_of<2>(mesh.corners_of[other], at) == Facet<2>{b, a}) return;
-        }
-        const float worst = std::min(mesh.shape_of[e], mesh.shape_of[other]);
-        const Swappable item{std::min(a, b), std::max(a, b), none, worst};
-        if (swap.plan(item)) append(item);
+      executor, (elements + stretch - 1) / stretch, [&](std::size_t i, auto&& append) {
+        search.find(i * stretch, std::min(elements, (i + 1) * stretch), append);
       });
 }
 

@@ -47,7 +47,7 @@ TYPED_TEST(EdgesIn, AreFoundOnceFromAnyMarking) {
     for (auto& mark : marked) mark = test::chance(random, share);
     std::vector<Edge> first;
     for (const int threads : {1, 2, 8}) {
-      const auto found = collect_edges<Edge>(Executor({.threads = threads}), mesh, marked,
+      const auto found = collect_edges<Edge>(Executor({.threads = threads}), mesh, {marked},
                                              [](VertexId a, VertexId b, auto&& append) {
                                                append(Edge{a, b});
                                              });
@@ -56,6 +56,46 @@ TYPED_TEST(EdgesIn, AreFoundOnceFromAnyMarking) {
       const std::set<Edge> each(found.begin(), found.end());
       EXPECT_EQ(each.size(), found.size());
       EXPECT_EQ(each, edges_with_an_end_in(mesh, marked));
+    }
+  }
+}
+
+template <int Dim>
+Mesh<Dim> jiggled_grid_in_a_metric(int n) {
+  test::Random random(5);
+  AnyMesh any = test::make_grid(test::unit_grid(Dim, n));
+  test::jiggle(any, random, 0.3);
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  auto mesh = make_mesh<Dim>(Executor({.threads = 1}), any, {}, neighbours, warnings);
+  for (auto& site : mesh.site_of)
+    site = make_site(site.position, isotropic<Dim>((1 + site.position[0]) / n));
+  return mesh;
+}
+
+/// What is decided from bounds of lengths is what lengths say.
+TYPED_TEST(EdgesIn, AreLongOrShortAsTheirLengthsSay) {
+  constexpr int Dim = TypeParam::value;
+  const auto mesh = jiggled_grid_in_a_metric<Dim>(6);
+  const std::vector<std::uint8_t> all(mesh.vertex_slots(), 1);
+  for (const double limit : {0.3, 0.7, 0.9, 1.0, 2.0}) {
+    std::set<Edge> longer;
+    std::vector<std::uint8_t> ends(mesh.vertex_slots());
+    for (const auto& [a, b] : edges_with_an_end_in(mesh, all)) {
+      if (mesh.length(a, b) < limit)
+        ends[a] = ends[b] = 1;
+      else
+        longer.emplace(a, b);
+    }
+    for (const int threads : {1, 2, 8}) {
+      const Executor executor({.threads = threads});
+      EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, all, limit), ends);
+      const auto found = collect_edges<Edge>(executor, mesh, {all, limit},
+                                             [](VertexId a, VertexId b, auto&& append) {
+                                               append(Edge{a, b});
+                                             });
+      EXPECT_EQ(found.size(), longer.size());
+      EXPECT_EQ(std::set<Edge>(found.begin(), found.end()), longer);
     }
   }
 }

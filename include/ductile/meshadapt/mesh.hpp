@@ -125,6 +125,10 @@ struct Mesh {
   void grow(std::size_t vertices, std::size_t elements);
 };
 
+/// Elements that a vertex's list has room for beyond those it was made with.
+template <int Dim>
+inline constexpr std::uint32_t list_slack = Dim == 2 ? 3 : 10;
+
 /// Rebuilds elements_of from corners_of. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void rebuild_elements_of(const runtime::Executor& executor, Mesh<Dim>& mesh);

@@ -64,16 +64,19 @@ bool shorter_than(const Site<Dim>& a, const Site<Dim>& b, double limit) {
 template <int Dim>
 const Site<Dim>& densest(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   const Site<Dim>* best = corner[0];
-  for (std::size_t i = 1; i < corner.size(); ++i)
-    if (corner[i]->density > best->density) best = corner[i];
+  double density = best->density;
+  for (std::size_t i = 1; i < corner.size(); ++i) {  // no branches: any may be the one
+    best = corner[i]->density > density ? corner[i] : best;
+    density = std::max(density, corner[i]->density);
+  }
   return *best;
 }
 
 /// Sum of the squared metric lengths of all edges, by the identity
 /// sum_{i<j} |p_i - p_j|^2 = n sum |p_i|^2 - |sum p_i|^2 with p_0 as the origin.
 template <int Dim>
-double sum_of_squared_lengths(const Metric<Dim>& metric,
-                              const std::array<const Site<Dim>*, Dim + 1>& corner) {
+[[gnu::always_inline]] inline double sum_of_squared_lengths(
+    const Metric<Dim>& metric, const std::array<const Site<Dim>*, Dim + 1>& corner) {
   double squares = 0;
   Vector<Dim> sum;
   for (std::size_t i = 1; i < corner.size(); ++i) {

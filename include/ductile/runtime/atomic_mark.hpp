@@ -1,6 +1,6 @@
 /// @file
 /// atomic_mark: many threads set flags of an ordinary array. In one phase of a loop such a flag is
-/// accessed through this function only.
+/// accessed through these functions only.
 #pragma once
 
 #include <atomic>
@@ -14,6 +14,12 @@ namespace ductile::runtime {
 inline void atomic_mark(std::uint8_t& flag) {
   const std::atomic_ref word(flag);
   if (word.load(std::memory_order_relaxed) == 0) word.store(1, std::memory_order_relaxed);
+}
+
+/// The same where few threads set flags that lie near each other: one of a random pattern is set
+/// faster than looked at. Thread safety: any thread.
+inline void atomic_set(std::uint8_t& flag) {
+  std::atomic_ref(flag).store(1, std::memory_order_relaxed);
 }
 
 }  // namespace ductile::runtime
