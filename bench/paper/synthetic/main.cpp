@@ -234,7 +234,7 @@ void measure_errors(Experiment& experiment, int dimension) {
     paper::MeshGoal goal = goal_of(dimension, elements);
     const AnyMesh mesh =
         paper::fitted_mesh(experiment.executor(), paper::start_mesh(dimension, elements), goal,
-                           dimension == 2 ? 8 : 5);
+                           std::vector<double>(dimension == 2 ? 8 : 5, 0.0));
     const auto count = static_cast<double>(paper::element_count(mesh));
     rows.push_back({count, dimension == 2
                                ? paper::interpolation_error<2>(experiment.executor(), mesh, 0)

@@ -62,23 +62,25 @@ FollowedMesh follow(const runtime::Executor& executor, const AnyMesh& mesh, cons
   return {meshadapt::adapt(executor, mesh, metric.metric), taken.count()};
 }
 
-AnyMesh fitted_mesh(const runtime::Executor& executor, AnyMesh mesh, MeshGoal& goal, int times) {
+AnyMesh fitted_mesh(const runtime::Executor& executor, AnyMesh mesh, MeshGoal& goal,
+                    const std::vector<double>& phases) {
   const double wanted = goal.elements;
-  for (int i = 0; i < times; ++i) {
-    mesh = follow(executor, mesh, goal, 0).adapted.mesh;
+  for (const double phase : phases) {
+    mesh = follow(executor, mesh, goal, phase).adapted.mesh;
     goal.elements *= wanted / static_cast<double>(element_count(mesh));
   }
   return mesh;
 }
 
 MarchReport march(const runtime::Executor& executor, AnyMesh mesh, const March& march) {
+  const double phase_step = 2 * std::numbers::pi / march.steps;
   MeshGoal goal = march.goal;
-  mesh = fitted_mesh(executor, std::move(mesh), goal, 3);
+  mesh = fitted_mesh(executor, std::move(mesh), goal, {-2 * phase_step, -phase_step, 0});
   MarchReport report{.all = {.threads = executor.threads()}};
   for (const int threads : march.threads) report.timed.push_back({.threads = threads});
   report.timed.push_back({.threads = executor.threads()});
   for (int step = 0; step < march.until; ++step) {
-    const double phase = 2 * std::numbers::pi * (step + 1) / march.steps;
+    const double phase = phase_step * (step + 1);
     FollowedMesh followed = follow(executor, mesh, goal, phase);
     add(report.all, followed);
     if (is_timed(step, march)) {

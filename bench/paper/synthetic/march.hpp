@@ -61,14 +61,14 @@ struct MarchReport {
   bool identical = true;          ///< their meshes and metrics, byte for byte
 };
 
-/// The mesh adapted to the first solution, so many times. The complexity that is asked for changes
-/// with the goal, until the number of elements is the one wanted: where psi jumps, the metric
-/// varies too much for complexity_of_elements() to know.
+/// The mesh adapted to the solution at one phase after the other. From one to the next, the goal
+/// changes until meshes have as many elements as wanted: where psi jumps, the metric varies too
+/// much for complexity_of_elements() to know.
 meshadapt::AnyMesh fitted_mesh(const runtime::Executor& executor, meshadapt::AnyMesh mesh,
-                               MeshGoal& goal, int times);
+                               MeshGoal& goal, const std::vector<double>& phases);
 
-/// Marches through the period, with one complexity. The first mesh is fitted to the first solution
-/// before, three times; that is not counted.
+/// Marches through the period, with one complexity, after three steps that fit mesh and complexity
+/// and are not counted.
 MarchReport march(const runtime::Executor& executor, meshadapt::AnyMesh mesh, const March& march);
 
 /// Triangles or tetrahedra.
