@@ -1,7 +1,10 @@
 #include "ductile/meshadapt/transfer.hpp"
 
-#include <numeric>
+#include <algorithm>
+#include <cmath>
+#include <string>
 
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "transfer/projection.hpp"
 
@@ -11,21 +14,24 @@ using runtime::Executor;
 
 namespace {
 
-/// The values at the vertices of the new mesh; fills in how many are outside.
+/// The values at points; fills in how many are outside. coordinates[point * Dim + axis].
 template <int Dim>
 std::vector<double> interpolated(const Executor& executor, const Locator<Dim>& from,
-                                 const Components& field, const FixedMesh<Dim>& to,
+                                 const Components& field, std::span<const double> coordinates,
                                  TransferReport& report) {
-  std::vector<double> result(to.vertex_count() * field.stride);
-  std::vector<std::uint8_t> outside(to.vertex_count());
-  walk_in_blocks(executor, to.vertex_count(), [&](std::size_t v, ElementId near) {
-    const Place<Dim> place = from.find(to.position_of[v], near);
-    outside[v] = place.inside ? 0 : 1;
-    evaluate(from.mesh(), field, place, &result[v * field.stride]);
+  const std::size_t point_count = coordinates.size() / Dim;
+  std::vector<double> result(point_count * field.stride);
+  std::vector<std::uint8_t> outside(point_count);
+  walk_in_blocks(executor, point_count, [&](std::size_t i, ElementId near) {
+    Vector<Dim> point;
+    std::copy_n(&coordinates[i * Dim], Dim, point.x.begin());
+    const Place<Dim> place = from.find(point, near);
+    outside[i] = place.inside ? 0 : 1;
+    evaluate(from.mesh(), field, place, &result[i * field.stride]);
     return place.element;
   });
   report.vertices_outside = runtime::parallel_reduce(
-      executor, outside.size(), std::size_t{0}, [&](std::size_t v) { return outside[v]; },
+      executor, outside.size(), std::size_t{0}, [&](std::size_t i) { return outside[i]; },
       [](std::size_t a, std::size_t b) { return a + b; });
   return result;
 }
@@ -39,7 +45,7 @@ TransferredField transfer(const Executor& executor, const FieldOnMesh& from, con
   const Components field{from.field.values, stride_of(from.field)};
   TransferredField result;
   result.field = {Dim, to.vertex_count(), from.field.types, {}, from.field.name};
-  result.field.values = interpolated(executor, locator, field, new_mesh, result.report);
+  result.field.values = interpolated(executor, locator, field, to.coordinates, result.report);
   if (projection) {
     Projection<Dim> onto(executor, locator, field, new_mesh);
     result.field.values = onto.run(*projection);
@@ -47,6 +53,27 @@ TransferredField transfer(const Executor& executor, const FieldOnMesh& from, con
     result.report.volume_left_out = onto.volume_left_out();
   }
   return result;
+}
+
+template <int Dim>
+TransferredField sample(const Executor& executor, const FieldOnMesh& from,
+                        std::span<const double> coordinates) {
+  const auto mesh = make_fixed_mesh<Dim>(executor, from.mesh);
+  const Locator<Dim> locator(executor, mesh);
+  const Components field{from.field.values, stride_of(from.field)};
+  TransferredField result;
+  result.field = {Dim, coordinates.size() / Dim, from.field.types, {}, from.field.name};
+  result.field.values = interpolated(executor, locator, field, coordinates, result.report);
+  return result;
+}
+
+void expect_points(std::span<const double> coordinates, int dimension) {
+  if (coordinates.size() % static_cast<std::size_t>(dimension) != 0)
+    throw InputError("expected " + std::to_string(dimension) +
+                     " coordinates for each point, found " + std::to_string(coordinates.size()) +
+                     " in all");
+  for (const double x : coordinates)
+    if (!std::isfinite(x)) throw InputError("expected finite coordinates of points");
 }
 
 TransferredField transfer_any(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,
@@ -61,6 +88,14 @@ TransferredField transfer_any(const Executor& executor, const FieldOnMesh& from,
 TransferredField interpolate_field(const Executor& executor, const FieldOnMesh& from,
                                    const AnyMesh& to) {
   return transfer_any(executor, from, to, nullptr);
+}
+
+TransferredField interpolate_at(const Executor& executor, const FieldOnMesh& from,
+                                std::span<const double> coordinates) {
+  expect_field_of(from.field, from.mesh);
+  expect_points(coordinates, from.mesh.dimension);
+  return from.mesh.dimension == 2 ? sample<2>(executor, from, coordinates)
+                                  : sample<3>(executor, from, coordinates);
 }
 
 TransferredField project_field(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,

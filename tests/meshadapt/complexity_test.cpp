@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -87,6 +88,25 @@ TYPED_TEST(ComplexityIn, BeyondTheBoundsIsNotReached) {
     EXPECT_FALSE(fit.reached);
     EXPECT_NEAR(fit.complexity, std::pow(wanted < 10 ? 5 : 10, Dim), 1e-6);
   }
+}
+
+TYPED_TEST(ComplexityIn, DoesNotDependOnThreads) {
+  constexpr int Dim = TypeParam::value;
+  const auto run = [](int threads) {
+    const Executor some({.threads = threads});
+    Scene<Dim> scene;
+    Random random(6);
+    intersect<Dim>(some, scene.metric_of,
+                   tensors_of<Dim>(some, test::wild_field(scene.any, random, 20, 10)));
+    const MetricFit fit = scale_to_complexity<Dim>(
+        some, scene.metric_of, scene.mesh,
+        {.complexity = 500, .bounds = {.smallest = 0.01, .anisotropy = 5}, .gradation = 2});
+    bound_sizes<Dim>(some, scene.metric_of, {.largest = 0.2});
+    return std::tuple(fit.complexity, complexity<Dim>(some, scene.mesh, scene.metric_of),
+                      scene.metric_of);
+  };
+  const auto expected = run(1);
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(expected, run(threads)) << threads;
 }
 
 TYPED_TEST(ComplexityIn, RefusesWhatMakesNoSense) {

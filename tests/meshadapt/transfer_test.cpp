@@ -250,6 +250,33 @@ TYPED_TEST(TransferIn, ConvergesInTheSecondOrder) {
   EXPECT_GT(std::log2(error(n) / error(2 * n)), Dim == 2 ? 1.7 : 1.4);  // 3D: 1.9 from 12 to 24
 }
 
+TYPED_TEST(TransferIn, InterpolatesAtAnyPoints) {
+  constexpr int Dim = TypeParam::value;
+  const AnyMesh mesh = holed_grid<Dim>(6, 14);
+  const AnyField field = field_on<Dim>(mesh, linear<Dim>);
+  Random random(15);
+  std::uniform_real_distribution<double> share(0.01, 1);
+  std::vector<double> coordinates;
+  std::vector<Vector<Dim>> points(100);
+  for (Vector<Dim>& p : points)  // below the hole
+    for (std::size_t axis = 0; axis < Dim; ++axis)
+      coordinates.push_back(p[axis] = share(random) * (axis == 0 ? 0.3 : 0.99));
+  const auto [at, report] = interpolate_at(executor, {mesh, field}, coordinates);
+  EXPECT_EQ(report.vertices_outside, 0U);
+  ASSERT_EQ(at.values.size(), points.size() * (Dim + 1));
+  for (std::size_t i = 0; i < at.values.size(); ++i)
+    EXPECT_NEAR(at.values[i], linear<Dim>(i % (Dim + 1), points[i / (Dim + 1)]), 1e-12);
+  const auto vertices = interpolate_at(executor, {mesh, field}, mesh.coordinates).field;
+  EXPECT_LT(difference(vertices.values, field.values), 1e-14);
+
+  coordinates.assign(Dim, 0.5);  // in the hole
+  EXPECT_EQ(interpolate_at(executor, {mesh, field}, coordinates).report.vertices_outside, 1U);
+  EXPECT_EQ(interpolate_at(executor, {mesh, field}, {}).field.values.size(), 0U);
+  coordinates[0] = std::nan("");
+  EXPECT_THROW(interpolate_at(executor, {mesh, field}, coordinates), InputError);
+  EXPECT_THROW(interpolate_at(executor, {mesh, field}, std::vector<double>(Dim + 1)), InputError);
+}
+
 TYPED_TEST(TransferIn, DoesNotDependOnThreads) {
   constexpr int Dim = TypeParam::value;
   const int n = Dim == 2 ? 30 : 6;
@@ -257,8 +284,9 @@ TYPED_TEST(TransferIn, DoesNotDependOnThreads) {
   const AnyField field = field_on<Dim>(old_mesh, front<Dim>);
   const auto run = [&](int threads) {
     const Executor some({.threads = threads});
-    return std::pair(interpolate_field(some, {old_mesh, field}, new_mesh).field.values,
-                     project_field(some, {old_mesh, field}, new_mesh).field.values);
+    return std::tuple(interpolate_field(some, {old_mesh, field}, new_mesh).field.values,
+                      interpolate_at(some, {old_mesh, field}, new_mesh.coordinates).field.values,
+                      project_field(some, {old_mesh, field}, new_mesh).field.values);
   };
   const auto expected = run(1);
   for (const int threads : {2, 3, 4, 8}) EXPECT_EQ(expected, run(threads)) << threads;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "cantilever.hpp"
 #include "split_mesh.hpp"
@@ -19,7 +20,7 @@ using paper::Outcome;
 using paper::Settings;
 
 constexpr std::array<cli::Option, 6> options{{
-    {"--dimension", "2|3", "of the cantilever (default: 2)"},
+    {"--dimension", "2|3", "of the cantilever (default: both; 2 with any of the options below)"},
     {"--length", "X", "minimum length of bars and holes (default: 0.01; 3D: 0.08)"},
     {"--first-length", "X",
      "of the filter, which shrinks to the minimum length on the way (default: 0.01 if that is "
@@ -41,14 +42,15 @@ struct Study {
   bool compares() const { return uniform.cells > 0; }
 };
 
-/// Defaults: in the plane, in space, and of the test in the plane.
+/// Defaults: in the plane, in space, and of the tests.
 struct Defaults {
   double length = 0, elements = 0;
   int iterations = 0, start_cells = 0, uniform_cells = 0, judge_cells = 0;
 };
 constexpr Defaults plane{0.01, 8000, 120, 50, 200, 400};
 constexpr Defaults space{0.08, 12000, 40, 10, 20, 30};
-constexpr Defaults test{0.05, 1000, 30, 10, 40, 80};
+constexpr Defaults plane_test{0.05, 1000, 30, 10, 40, 80};
+constexpr Defaults space_test{0.16, 3000, 20, 10, 10, 20};
 
 /// The contrast and the number of elements that conjugate gradients and a cube's third dimension
 /// leave room for.
@@ -61,7 +63,8 @@ void fit_to_space(Settings& settings) {
 }
 
 const Defaults& defaults_of(const Experiment& experiment, int dimension) {
-  return dimension == 3 ? space : experiment.small() ? test : plane;
+  if (experiment.small()) return dimension == 3 ? space_test : plane_test;
+  return dimension == 3 ? space : plane;
 }
 
 /// In 2D, four to the minimum length; 0 if the systems would not fit into common memory.
@@ -112,10 +115,14 @@ void say_outcome(Experiment& experiment, const Outcome& outcome,
                  outcome.adapt_seconds);
 }
 
+/// `excess`: compliance over that of the uniform mesh that is let pass.
 void claim_as_good(Experiment& experiment, const std::vector<Outcome>& outcomes,
-                   const std::vector<paper::Judgement>& judgements) {
-  experiment.claim(judgements[0].compliance < 1.03 * judgements[1].compliance,
-                   "the adapted run is as stiff as the uniform one, or within 3 % of it");
+                   const std::vector<paper::Judgement>& judgements, double excess) {
+  std::array<char, 100> text{};
+  std::snprintf(text.data(), text.size(),
+                "the adapted run is as stiff as the uniform one, or within %.0f %% of it",
+                100 * excess);
+  experiment.claim(judgements[0].compliance < (1 + excess) * judgements[1].compliance, text.data());
   if (!experiment.small())
     experiment.claim(2 * outcomes[0].last.elements < outcomes[1].last.elements,
                      "it needs less than half the elements");
@@ -140,17 +147,21 @@ void compare(Experiment& experiment) {
   experiment.claim(std::abs(judgements[0].volume_fraction - volume) < 0.002 * volume,
                    "the volume is the one that was asked for");
   if (study.compares())
-    claim_as_good(experiment, outcomes, judgements);
+    // The test in space has few tetrahedra across a bar.
+    claim_as_good(experiment, outcomes, judgements, Dim == 3 && experiment.small() ? 0.2 : 0.03);
   else
     experiment.claim(judgements[0].compliance < 1.03 * outcomes[0].last.compliance,
                      "split in four, the mesh gives the same compliance within 3 %");
 }
 
+/// Sizes are of one dimension, so who gives some gets that one only.
 void run(Experiment& experiment) {
-  if (experiment.arguments().integer("--dimension", 2, 3).value_or(2) == 2)
-    compare<2>(experiment);
-  else
-    compare<3>(experiment);
+  const cli::Arguments& given = experiment.arguments();
+  const bool own_sizes = std::any_of(options.begin() + 1, options.end(),
+                                     [&](const auto& option) { return given.has(option.name); });
+  const int only = given.integer("--dimension", 2, 3).value_or(own_sizes ? 2 : 0);
+  if (only != 3) compare<2>(experiment);
+  if (only != 2) compare<3>(experiment);
 }
 
 }  // namespace

@@ -38,16 +38,6 @@ FieldPanel panel_of(const Frame& frame, bool lines) {
           .colour = material_colour};
 }
 
-void draw_frames(const std::filesystem::path& path, const std::vector<Frame>& frames) {
-  std::vector<FieldPanel> panels;
-  panels.reserve(2 * frames.size());
-  for (const Frame& frame : frames) panels.push_back(panel_of(frame, false));
-  for (const Frame& frame : frames) panels.push_back(panel_of(frame, true));
-  const auto columns = static_cast<int>(frames.size());
-  write_png(path, panels,
-            {.columns = columns, .panel_width = 360, .bar = {"density", 0, 1, material_colour}});
-}
-
 /// Iterations whose meshes are shown: four, closer to each other at the beginning.
 bool is_shown(int iteration, int iterations) {
   return iteration == iterations / 20 || iteration == iterations / 6 ||
@@ -88,16 +78,38 @@ void add_to(bench::Table& history, const Iteration& found) {
 }
 
 /// The part of a solid mesh that is material.
-AnyMesh material_of(const Outcome& outcome) {
-  AnyMesh solid = outcome.mesh;
+AnyMesh material_of(const Frame& frame) {
+  AnyMesh solid = frame.mesh;
   solid.triangles = {};
   solid.tetrahedra = {};
-  for (const auto& corners : outcome.mesh.tetrahedra.vertices) {
+  for (const auto& corners : frame.mesh.tetrahedra.vertices) {
     double sum = 0;
-    for (const std::uint32_t v : corners) sum += outcome.density_of[v];
+    for (const std::uint32_t v : corners) sum += frame.density_of[v];
     if (sum > 2) solid.tetrahedra.add(corners, 1);
   }
   return solid;
+}
+
+void draw_solids(const std::filesystem::path& path, const std::vector<Frame>& frames, int size) {
+  cli::Scene scene;
+  for (const Frame& frame : frames) {
+    scene.panels.push_back(cli::surface_panel(material_of(frame), cli::camera_along(2)));
+    scene.panels.back().title = frame.title;
+  }
+  meshadapt::AtomicOutputs outputs;
+  outputs.stage(path).write(cli::draw(scene, cli::PictureFormat::png, size));
+  outputs.commit();
+}
+
+void draw_frames(const std::filesystem::path& path, const std::vector<Frame>& frames) {
+  if (frames.front().mesh.dimension == 3) return draw_solids(path, frames, 400);
+  std::vector<FieldPanel> panels;
+  panels.reserve(2 * frames.size());
+  for (const Frame& frame : frames) panels.push_back(panel_of(frame, false));
+  for (const Frame& frame : frames) panels.push_back(panel_of(frame, true));
+  const auto columns = static_cast<int>(frames.size());
+  write_png(path, panels,
+            {.columns = columns, .panel_width = 360, .bar = {"density", 0, 1, material_colour}});
 }
 
 }  // namespace
@@ -116,7 +128,7 @@ Outcome optimise(Experiment& experiment, const std::string& name, const Settings
     add_to(outcome, found);
     add_to(history, found);
     progress.show((i + 1.0) / settings.path.iterations, name + ": " + report_of(found));
-    if (Dim == 2 && is_shown(i, settings.path.iterations))
+    if (is_shown(i, settings.path.iterations))
       frames.push_back({words_for(found), optimiser.mesh(), optimiser.density()});
     if (i % 10 == 9)
       series.add(i + 1, optimiser.mesh(),
@@ -154,14 +166,11 @@ void draw_outcomes<2>(Experiment& experiment, const std::string& name,
 template <>
 void draw_outcomes<3>(Experiment& experiment, const std::string& name,
                       const std::vector<Outcome>& outcomes) {
-  cli::Scene scene;
-  for (const Outcome& outcome : outcomes) {
-    scene.panels.push_back(cli::surface_panel(material_of(outcome), cli::camera_along(2)));
-    scene.panels.back().title = title_of(outcome);
-  }
-  meshadapt::AtomicOutputs outputs;
-  outputs.stage(experiment.file(name)).write(cli::draw(scene, cli::PictureFormat::png, 700));
-  outputs.commit();
+  std::vector<Frame> frames;
+  frames.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes)
+    frames.push_back({title_of(outcome), outcome.mesh, outcome.density_of});
+  draw_solids(experiment.file(name), frames, 700);
 }
 
 template Outcome optimise<2>(Experiment&, const std::string&, const Settings&);

@@ -32,12 +32,11 @@ struct Plan {
   double compare_at, show_until;  ///< times
 };
 
-constexpr int adapt_every =
-    4;  // intervals; in which fingers go on by a third of the front's thickness
+constexpr int adapt_every = 16;  // intervals; in which fingers go on by the front's thickness
 
 Plan plan_for(const Experiment& experiment) {
   if (experiment.small()) return {48, {16, 32}, {0.012, 0.006}, 0.01, 0.1, 0.2};
-  return {256, {32, 64, 128, 192}, {0.004, 0.002, 0.001, 0.0005}, 0.0015, 0.2, 1.2};
+  return {512, {32, 64, 128, 192, 256}, {0.004, 0.002, 0.001, 0.0005}, 0.0015, 0.2, 1.2};
 }
 
 AdaptGoal goal_of(double error) { return {.saturation_error = error, .pressure_error = error}; }

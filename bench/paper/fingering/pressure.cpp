@@ -1,7 +1,5 @@
 #include "fingering/pressure.hpp"
 
-#include <cmath>
-
 #include "ductile/meshadapt/error.hpp"
 
 namespace ductile::paper {
@@ -68,7 +66,7 @@ Flow PressureSolver::solve(const Fluids& fluids, const std::vector<double>& satu
   std::vector<double> mobility_of(dual_.mesh.element_count(), 0);
   for (ElementId e = 0; e < mobility_of.size(); ++e)
     for (const VertexId v : dual_.mesh.corners_of[e])
-      mobility_of[e] += std::exp(fluids.log_viscosity_ratio * (saturation_of[v] - 1)) / 3;
+      mobility_of[e] += mobility(fluids, saturation_of[v]) / 3;
   Eigen::VectorXd right(unknown_count_);
   for (VertexId v = 0; v < dual_.vertex_count(); ++v)
     if (unknown_of_[v] >= 0) right[unknown_of_[v]] = dual_.inflow_of[v];

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/CholmodSupport>
+#include <cmath>
 #include <vector>
 
 #include "fingering/dual_mesh.hpp"
@@ -16,6 +17,11 @@ struct Fluids {
   double log_viscosity_ratio = 2;  ///< R
   double diffusivity = 0.0004;     ///< of one in the other; width and speed of inflow are 1
 };
+
+/// 1 / viscosity.
+inline double mobility(const Fluids& fluids, double saturation) {
+  return std::exp(fluids.log_viscosity_ratio * (saturation - 1));
+}
 
 /// Rates of flow; those through the left side are DualMesh::inflow_of.
 struct Flow {

@@ -35,6 +35,10 @@ class Stopwatch {
 };
 
 using Metric = meshadapt::Metric<2>;
+using Point = meshadapt::Vector<2>;
+
+/// The faster and smoother one: fields are noisy where the mesh has just been changed.
+constexpr auto recovery = meshadapt::Recovery::double_projection;
 
 }  // namespace
 
@@ -101,7 +105,8 @@ std::vector<Metric> Simulation::wanted_metric(const AdaptGoal& goal) {
   find_flow();
   const Stopwatch stopwatch(timings_.adaptation);
   const auto metric_for = [&](const std::vector<double>& value_of, double error) {
-    const auto hessian_of = meshadapt::recover_hessian<2>(executor_, dual_->mesh, value_of);
+    const auto hessian_of =
+        meshadapt::recover_hessian<2>(executor_, dual_->mesh, value_of, recovery);
     return meshadapt::hessian_metric<2>(
                executor_, dual_->mesh, hessian_of,
                {.error = error,
@@ -110,10 +115,29 @@ std::vector<Metric> Simulation::wanted_metric(const AdaptGoal& goal) {
   };
   const std::vector<double>& pressure_of = flow_.pressure_of;
   const double highest = *std::max_element(pressure_of.begin(), pressure_of.end());
-  std::vector<Metric> metric_of = metric_for(saturation_of_, goal.saturation_error);
-  meshadapt::intersect(executor_, metric_of,
-                       metric_for(pressure_of, goal.pressure_error * highest));
+  const std::vector<Metric> now_of = metric_for(saturation_of_, goal.saturation_error);
+  std::vector<Metric> metric_of = metric_for(pressure_of, goal.pressure_error * highest);
+  meshadapt::intersect(executor_, metric_of, now_of);
+  if (goal.ahead > 0)
+    for (const double time : {goal.ahead / 2, goal.ahead})
+      meshadapt::intersect(executor_, metric_of, carried(now_of, time));
   return metric_of;
+}
+
+/// The metric that the flow of now will have carried to each vertex after so much time: the one at
+/// the point that it comes from.
+std::vector<Metric> Simulation::carried(const std::vector<Metric>& metric_of, double time) const {
+  const auto slope_of =
+      meshadapt::recover_gradient<2>(executor_, dual_->mesh, flow_.pressure_of, recovery);
+  std::vector<double> upstream = mesh_.coordinates;
+  for (VertexId v = 0; v < slope_of.size(); ++v) {
+    const Point back = (time * mobility(fluids_, saturation_of_[v])) * slope_of[v];
+    for (std::size_t axis = 0; axis < 2; ++axis) upstream[2 * v + axis] += back[axis];
+  }
+  const meshadapt::AnyField now = meshadapt::symmetric_field<2>(executor_, metric_of, "metric");
+  return meshadapt::tensors_of<2>(
+      executor_,
+      meshadapt::interpolate_at(executor_, {.mesh = mesh_, .field = now}, upstream).field);
 }
 
 AnyMesh Simulation::adapted_mesh(const AdaptGoal& goal) {

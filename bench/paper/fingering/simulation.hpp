@@ -2,6 +2,7 @@
 /// Simulation: a fluid displaces a more viscous one from left to right. Time goes in intervals: the
 /// pressure is found for the saturation at the start of each, the saturation is carried along to
 /// its end. Between intervals the mesh may be adapted to both, and the saturation projected to it.
+/// The metric covers where the front will be until the mesh is adapted again.
 #pragma once
 
 #include <memory>
@@ -25,6 +26,7 @@ struct AdaptGoal {
   double pressure_error = 0.002;
   double smallest_size = 0.001;
   double largest_size = 0.1;
+  double ahead = 0;  ///< time from now for which the mesh is to do
 };
 
 /// Seconds: of the clock on the wall, and of all processors together.
@@ -84,6 +86,8 @@ class Simulation {
  private:
   void take_mesh(AnyMesh mesh);
   std::vector<meshadapt::Metric<2>> wanted_metric(const AdaptGoal& goal);
+  std::vector<meshadapt::Metric<2>> carried(const std::vector<meshadapt::Metric<2>>& metric_of,
+                                            double time) const;
   AnyMesh adapted_mesh(const AdaptGoal& goal);
   void sample(Start start);
   void find_flow();

@@ -28,11 +28,13 @@ std::unique_ptr<Simulation> run_case(const runtime::Executor& executor, const Ru
       executor, Fluids{}, meshadapt::rectangle_mesh({2, 1}, {2 * options.cells, options.cells}),
       saturation_at_start);
   const bool adapts = options.adapt_every > 0;
-  if (adapts) run->adapt_to_start(options.goal, saturation_at_start);
+  AdaptGoal goal = options.goal;
+  goal.ahead = options.adapt_every * options.interval;
+  if (adapts) run->adapt_to_start(goal, saturation_at_start);
   watch(*run);
   const int intervals = static_cast<int>(std::lround(options.end / options.interval));
   for (int i = 0; i < intervals; ++i) {
-    if (adapts && i > 0 && i % options.adapt_every == 0) run->adapt(options.goal);
+    if (adapts && i > 0 && i % options.adapt_every == 0) run->adapt(goal);
     run->advance(options.interval);
     watch(*run);
   }

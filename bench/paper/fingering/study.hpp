@@ -18,7 +18,7 @@ struct RunOptions {
   double end = 1;            ///< time
   double interval = 0.0025;  ///< between two pressures
   int adapt_every = 0;       ///< intervals; 0: never
-  AdaptGoal goal = {};
+  AdaptGoal goal = {};       ///< `ahead` becomes the time between adaptations
 };
 
 /// Called at the start and after each interval.

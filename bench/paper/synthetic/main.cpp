@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "cases/psi.hpp"
 #include "ductile/meshadapt/atomic_file.hpp"
@@ -23,12 +24,10 @@ using paper::Experiment;
 
 constexpr std::array<cli::Option, 5> options{{
     {"--dimension", "2|3", "only this one (default: both)"},
-    {"--full", "",
-     "times the paper's sizes: from 200 x 200 cells to 550,000 triangles, from 50^3 to 210,000 "
-     "tetrahedra, 50 steps"},
-    {"--elements", "N", "of the meshes that are timed (default: 60000, 3D: 40000)"},
-    {"--steps", "N", "of time (default: 25, 3D: 8)"},
-    {"--part", "errors|kernels", "only this one (default: both)"},
+    {"--elements", "N", "of the meshes (default: the paper's 550000; 3D: 210000)"},
+    {"--steps", "N", "of time, into which the period is divided (default: 50)"},
+    {"--timed", "N", "of these, steps to time on 1, 2, 4, ... threads (default: 10)"},
+    {"--until", "N", "stops after this step, and leaves out errors and pictures"},
 }};
 
 struct Size {
@@ -37,22 +36,15 @@ struct Size {
   int start_cells = 0;  ///< along each axis of the mesh to start from; 0: of as many elements
 };
 
-Size usual_size(const Experiment& experiment, int dimension) {
-  if (experiment.small()) return dimension == 2 ? Size{2000, 4} : Size{3000, 4};
-  return dimension == 2 ? Size{60000, 25} : Size{40000, 8};
-}
-
-/// What the paper ran.
-Size paper_size(int dimension) {
-  return dimension == 2 ? Size{550000, 50, 200} : Size{210000, 50, 50};
-}
-
 Size size_of_march(const Experiment& experiment, int dimension) {
-  const bool full = experiment.arguments().has("--full");
-  const Size usual = full ? paper_size(dimension) : usual_size(experiment, dimension);
   const cli::Arguments& given = experiment.arguments();
-  return {given.positive("--elements").value_or(usual.elements),
-          given.integer("--steps", 1, 10000).value_or(usual.steps), usual.start_cells};
+  // What the paper ran, and the test.
+  Size size = dimension == 2 ? Size{550000, 50, 200} : Size{210000, 50, 50};
+  if (experiment.small()) size = dimension == 2 ? Size{2000, 4} : Size{3000, 4};
+  if (const auto elements = given.positive("--elements"))
+    size.elements = *elements, size.start_cells = 0;
+  size.steps = given.integer("--steps", 1, 10000).value_or(size.steps);
+  return size;
 }
 
 paper::MeshGoal goal_of(int dimension, double elements) {
@@ -112,25 +104,54 @@ void draw_plane(Experiment& experiment, const std::vector<Frame>& frames) {
              .bar = {"psi, in the unit square", -1.6, 1.6}});
 }
 
-void draw_solid(Experiment& experiment, const Frame& frame) {
-  const cli::Scene scene = cli::make_scene(experiment.executor(), frame.mesh, nullptr,
-                                           {.tint = cli::Tint::size, .cut_axis = 2});
+void write_scene(const Experiment& experiment, const std::string& name, const cli::Scene& scene,
+                 int size) {
   meshadapt::AtomicOutputs outputs;
-  outputs.stage(experiment.file("cut_3d.png"))
-      .write(cli::draw(scene, cli::PictureFormat::png, 700));
+  outputs.stage(experiment.file(name)).write(cli::draw(scene, cli::PictureFormat::png, size));
   outputs.commit();
+}
+
+/// What each tetrahedron is painted in: psi at its corners, on average.
+std::vector<cli::Colour> psi_colours(const Frame& frame) {
+  std::vector<cli::Colour> colour_of;
+  colour_of.reserve(frame.mesh.tetrahedra.size());
+  for (const auto& corners : frame.mesh.tetrahedra.vertices) {
+    double sum = 0;
+    for (const std::uint32_t v : corners) sum += frame.value_of[v];
+    colour_of.push_back(cli::size_colour(0.5 + sum / 4 / 3.2));
+  }
+  return colour_of;
+}
+
+/// Cuts through the cube at several times, in the colours of psi, and the last in those of sizes.
+void draw_solid(Experiment& experiment, const std::vector<Frame>& frames) {
+  const int axis = 2;
+  cli::Scene strip{.caption = "psi from -1.6 (dark) to 1.6, in the lower half of the unit cube"};
+  for (const Frame& frame : frames) {
+    strip.panels.push_back(
+        cli::cut_panel(frame.mesh, psi_colours(frame), cli::camera_along(axis), axis));
+    strip.panels.back().title = title_of(frame);
+  }
+  write_scene(experiment, "frames_3d.png", strip, 500);
+  write_scene(experiment, "cut_3d.png",
+              cli::make_scene(experiment.executor(), frames.back().mesh, nullptr,
+                              {.tint = cli::Tint::size, .cut_axis = axis}),
+              700);
 }
 
 /// Keeps some frames and writes some to the series.
 class Watcher {
  public:
   Watcher(Experiment& experiment, const std::string& name, int steps)
-      : series_(experiment.file(name + ".pvd")), name_(name), steps_(steps) {}
+      : executor_(experiment.executor()),
+        series_(experiment.file(name + ".pvd")),
+        name_(name),
+        steps_(steps) {}
 
   void look(int step, double phase, const AnyMesh& mesh) {
     progress_.show((step + 1.0) / steps_,
                    name_ + ": " + std::to_string(paper::element_count(mesh)) + " elements");
-    std::vector<double> value_of = paper::sampled_solution(mesh, phase).values;
+    std::vector<double> value_of = paper::sampled_solution(executor_, mesh, phase).values;
     if (step % std::max(1, steps_ / 10) == 0)
       series_.add(phase, mesh, {{"psi", meshadapt::AnyField::Type::scalar, value_of}});
     if ((step + 1) * 3 / steps_ > step * 3 / steps_) {
@@ -141,6 +162,7 @@ class Watcher {
   const std::vector<Frame>& frames() const { return frames_; }
 
  private:
+  const runtime::Executor& executor_;
   paper::ProgressLine progress_;
   paper::VtuSeries series_;
   std::string name_;
@@ -150,63 +172,69 @@ class Watcher {
 
 // ---- The two halves of the benchmark ----
 
-/// 1, 2, 4, ... and the last one.
-std::vector<int> thread_counts(int last) {
+/// 1, 2, 4, ... below the last one.
+std::vector<int> thread_counts_below(int last) {
   std::vector<int> counts;
   for (int threads = 1; threads < last; threads *= 2) counts.push_back(threads);
-  counts.push_back(last);
   return counts;
 }
 
-/// The same march on 1, 2, 4, ... threads; only the last one is watched, so that all are timed
-/// alike.
+/// One march on all threads, some steps of which are taken on fewer as well.
 void time_kernels(Experiment& experiment, int dimension) {
   const std::string name = std::to_string(dimension) + "d";
+  const cli::Arguments& given = experiment.arguments();
   const Size size = size_of_march(experiment, dimension);
-  const AnyMesh start = size.start_cells > 0 ? paper::start_mesh_of(dimension, size.start_cells)
-                                             : paper::start_mesh(dimension, size.elements);
-  const int most = experiment.executor().threads();
-  Watcher watcher(experiment, name, size.steps);
-  std::vector<paper::ThreadRow> rows;
-  for (const int threads : thread_counts(most)) {
-    paper::March march{goal_of(dimension, size.elements), size.steps};
-    if (threads == most)
-      march.look = [&](int step, double phase, const AnyMesh& mesh) {
-        watcher.look(step, phase, mesh);
-      };
-    rows.push_back({threads, paper::march(runtime::Executor({.threads = threads}), start, march)});
-  }
-  say_kernels(experiment, name, rows);
-  experiment.claim(rows.front().report.mean_elements == rows.back().report.mean_elements,
-                   name + ": as many elements on every number of threads");
+  const int until = given.integer("--until", 1, size.steps).value_or(size.steps);
+  Watcher watcher(experiment, name, until);
+  const paper::MarchReport report =
+      paper::march(experiment.executor(),
+                   size.start_cells > 0 ? paper::start_mesh_of(dimension, size.start_cells)
+                                        : paper::start_mesh(dimension, size.elements),
+                   {.goal = goal_of(dimension, size.elements),
+                    .steps = size.steps,
+                    .until = until,
+                    .timed = given.integer("--timed", 1, until).value_or(std::min(until, 10)),
+                    .threads = thread_counts_below(experiment.executor().threads()),
+                    .look = [&](int step, double phase, const AnyMesh& mesh) {
+                      watcher.look(step, phase, mesh);
+                    }});
+  say_kernels(experiment, name, report);
+  experiment.claim(
+      report.identical,
+      name + ": meshes and metrics are the same, byte for byte, on each number of threads");
+  if (until < size.steps) return;
   if (dimension == 2)
     draw_plane(experiment, watcher.frames());
   else
-    draw_solid(experiment, watcher.frames().back());
+    draw_solid(experiment, watcher.frames());
 }
 
-/// Sizes of meshes, each twice the one before. Below about 10,000 tetrahedra the rate is not yet
-/// there to be seen, so the test has one size in 3D.
+/// Sizes of meshes, each twice the one before, up to that of the march. Below about 10,000
+/// tetrahedra the rate is not yet there to be seen, so the test has one size in 3D.
 std::vector<double> element_goals(const Experiment& experiment, int dimension) {
-  const double elements = usual_size(experiment, dimension).elements;
-  if (dimension == 3)
-    return experiment.small() ? std::vector{elements}
-                              : std::vector{elements / 4, elements / 2, elements, 2 * elements};
-  std::vector<double> goals{elements / 2, elements, 2 * elements};
-  if (!experiment.small())
-    goals = {elements / 16, elements / 8, elements / 4, elements / 2, elements};
+  const double elements = size_of_march(experiment, dimension).elements;
+  if (experiment.small())
+    return dimension == 3 ? std::vector{elements}
+                          : std::vector{elements / 2, elements, 2 * elements};
+  std::vector<double> goals{elements / 8, elements / 4, elements / 2, elements};
+  if (dimension == 2) goals.insert(goals.begin(), elements / 16);
   return goals;
 }
 
 /// Meshes adapted to the first solution again and again until they fit it, coarse to fine.
 void measure_errors(Experiment& experiment, int dimension) {
   const std::string name = std::to_string(dimension) + "d";
+  const std::vector<double> goals = element_goals(experiment, dimension);
+  paper::ProgressLine progress;
   std::vector<paper::ErrorRow> rows;
-  for (const double elements : element_goals(experiment, dimension)) {
-    AnyMesh mesh = paper::start_mesh(dimension, elements);
-    for (int again = 0; again < (dimension == 2 ? 8 : 5); ++again)
-      mesh =
-          paper::follow(experiment.executor(), mesh, goal_of(dimension, elements), 0).adapted.mesh;
+  double done = 0;
+  for (const double elements : goals) {
+    progress.show(done, name + ", errors");
+    done += elements / std::accumulate(goals.begin(), goals.end(), 0.0);
+    paper::MeshGoal goal = goal_of(dimension, elements);
+    const AnyMesh mesh =
+        paper::fitted_mesh(experiment.executor(), paper::start_mesh(dimension, elements), goal,
+                           std::vector<double>(dimension == 2 ? 8 : 5, 0.0));
     const auto count = static_cast<double>(paper::element_count(mesh));
     rows.push_back({count, dimension == 2
                                ? paper::interpolation_error<2>(experiment.executor(), mesh, 0)
@@ -221,13 +249,10 @@ void measure_errors(Experiment& experiment, int dimension) {
 
 void run(Experiment& experiment) {
   const int only = experiment.arguments().integer("--dimension", 2, 3).value_or(0);
-  const std::string part = experiment.arguments().text("--part").value_or("");
-  if (!part.empty() && part != "errors" && part != "kernels")
-    throw cli::UsageError("expected --part errors or --part kernels, found '" + part + "'");
   for (const int dimension : {2, 3})
     if (only == 0 || only == dimension) {
-      if (part != "kernels") measure_errors(experiment, dimension);
-      if (part != "errors") time_kernels(experiment, dimension);
+      if (!experiment.arguments().has("--until")) measure_errors(experiment, dimension);
+      time_kernels(experiment, dimension);
     }
 }
 

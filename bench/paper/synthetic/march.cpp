@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "ductile/meshadapt/box_mesh.hpp"
@@ -11,19 +12,39 @@
 
 namespace ductile::paper {
 
+using meshadapt::AdaptedMesh;
 using meshadapt::AnyMesh;
 
 namespace {
 
-void add(KernelSeconds& sum, const FollowedMesh& step) {
+void add(TimedSteps& sum, const FollowedMesh& step) {
   const meshadapt::AdaptReport& report = step.adapted.report;
-  sum.coarsen += report.coarsen.seconds;
-  sum.swap += report.swap.seconds;
-  sum.refine += report.refine.seconds;
-  sum.smooth += report.smooth.seconds;
-  sum.other += report.total_seconds - report.coarsen.seconds - report.swap.seconds -
-               report.refine.seconds - report.smooth.seconds;
-  sum.metric += step.metric_seconds;
+  ++sum.steps;
+  sum.seconds.coarsen += report.coarsen.seconds;
+  sum.seconds.swap += report.swap.seconds;
+  sum.seconds.refine += report.refine.seconds;
+  sum.seconds.smooth += report.smooth.seconds;
+  sum.seconds.other += report.total_seconds - report.coarsen.seconds - report.swap.seconds -
+                       report.refine.seconds - report.smooth.seconds;
+  sum.seconds.metric += step.metric_seconds;
+}
+
+template <class Item>
+bool same_bytes(const std::vector<Item>& a, const std::vector<Item>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0;
+}
+
+bool identical(const AdaptedMesh& a, const AdaptedMesh& b) {
+  return same_bytes(a.mesh.coordinates, b.mesh.coordinates) &&
+         same_bytes(a.mesh.edges.vertices, b.mesh.edges.vertices) &&
+         same_bytes(a.mesh.triangles.vertices, b.mesh.triangles.vertices) &&
+         same_bytes(a.mesh.tetrahedra.vertices, b.mesh.tetrahedra.vertices) &&
+         same_bytes(a.metric.values, b.metric.values);
+}
+
+/// Whether so many of a number of steps, evenly spread, count this one among them.
+bool is_timed(int step, const March& march) {
+  return (step + 1) * march.timed / march.until > step * march.timed / march.until;
 }
 
 }  // namespace
@@ -36,20 +57,43 @@ FollowedMesh follow(const runtime::Executor& executor, const AnyMesh& mesh, cons
   options.goal.norm = 1;  // in which a jump does not spoil the rate
   options.goal.bounds = {goal.smallest, goal.largest, goal.anisotropy};
   const meshadapt::SolutionMetric metric =
-      meshadapt::solution_metric(executor, mesh, sampled_solution(mesh, phase), options);
+      meshadapt::solution_metric(executor, mesh, sampled_solution(executor, mesh, phase), options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   return {meshadapt::adapt(executor, mesh, metric.metric), taken.count()};
 }
 
+AnyMesh fitted_mesh(const runtime::Executor& executor, AnyMesh mesh, MeshGoal& goal,
+                    const std::vector<double>& phases) {
+  const double wanted = goal.elements;
+  for (const double phase : phases) {
+    mesh = follow(executor, mesh, goal, phase).adapted.mesh;
+    goal.elements *= wanted / static_cast<double>(element_count(mesh));
+  }
+  return mesh;
+}
+
 MarchReport march(const runtime::Executor& executor, AnyMesh mesh, const March& march) {
-  for (int i = 0; i < 3; ++i) mesh = follow(executor, mesh, march.goal, 0).adapted.mesh;
-  MarchReport report{.steps = march.steps, .seconds = {}};
-  for (int step = 0; step < march.steps; ++step) {
-    const double phase = 2 * std::numbers::pi * (step + 1) / march.steps;
-    FollowedMesh followed = follow(executor, mesh, march.goal, phase);
-    add(report.seconds, followed);
+  const double phase_step = 2 * std::numbers::pi / march.steps;
+  MeshGoal goal = march.goal;
+  mesh = fitted_mesh(executor, std::move(mesh), goal, {-2 * phase_step, -phase_step, 0});
+  MarchReport report{.all = {.threads = executor.threads()}};
+  for (const int threads : march.threads) report.timed.push_back({.threads = threads});
+  report.timed.push_back({.threads = executor.threads()});
+  for (int step = 0; step < march.until; ++step) {
+    const double phase = phase_step * (step + 1);
+    FollowedMesh followed = follow(executor, mesh, goal, phase);
+    add(report.all, followed);
+    if (is_timed(step, march)) {
+      add(report.timed.back(), followed);
+      for (std::size_t i = 0; i < march.threads.size(); ++i) {
+        const runtime::Executor others({.threads = march.threads[i]});
+        const FollowedMesh again = follow(others, mesh, goal, phase);
+        add(report.timed[i], again);
+        report.identical = report.identical && identical(again.adapted, followed.adapted);
+      }
+    }
     mesh = std::move(followed.adapted.mesh);
-    report.mean_elements += static_cast<double>(element_count(mesh)) / march.steps;
+    report.mean_elements += static_cast<double>(element_count(mesh)) / march.until;
     if (march.look) march.look(step, phase, mesh);
   }
   return report;

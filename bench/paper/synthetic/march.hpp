@@ -1,10 +1,11 @@
 /// @file
 /// March: a mesh that follows the solution from time step to time step. At each, the solution is
 /// sampled on the mesh as it is, its Hessian recovered, the metric scaled to a complexity, and the
-/// mesh adapted.
+/// mesh adapted. Some steps are taken on several numbers of threads, from the same mesh, and timed.
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
@@ -32,25 +33,42 @@ FollowedMesh follow(const runtime::Executor& executor, const meshadapt::AnyMesh&
 struct KernelSeconds {
   double coarsen = 0, swap = 0, refine = 0, smooth = 0;
   double other = 0;   ///< of adapt(): set-up, renumbering
-  double metric = 0;  ///< recovery of the Hessian, scaling
+  double metric = 0;  ///< sampling, recovery of the Hessian, scaling
   double adapt() const { return coarsen + swap + refine + smooth + other; }
 };
 
 struct March {
   MeshGoal goal;
-  int steps = 50;
+  int steps = 50;            ///< that the period is divided into
+  int until = 50;            ///< the last one to be taken
+  int timed = 10;            ///< of those taken, how many are timed, evenly spread
+  std::vector<int> threads;  ///< on which they are timed, besides those of the executor
   /// Called with what each step left.
   std::function<void(int step, double phase, const meshadapt::AnyMesh& mesh)> look{};
 };
 
-struct MarchReport {
+/// Steps on one number of threads.
+struct TimedSteps {
+  int threads = 0;
   int steps = 0;
-  double mean_elements = 0;
   KernelSeconds seconds;
 };
 
-/// Marches once through the period. The first mesh is adapted to the first solution before, three
-/// times; that is not counted.
+struct MarchReport {
+  double mean_elements = 0;
+  TimedSteps all;                 ///< every step, on the executor's threads
+  std::vector<TimedSteps> timed;  ///< the same steps on each number of threads, fewest first
+  bool identical = true;          ///< their meshes and metrics, byte for byte
+};
+
+/// The mesh adapted to the solution at one phase after the other. From one to the next, the goal
+/// changes until meshes have as many elements as wanted: where psi jumps, the metric varies too
+/// much for complexity_of_elements() to know.
+meshadapt::AnyMesh fitted_mesh(const runtime::Executor& executor, meshadapt::AnyMesh mesh,
+                               MeshGoal& goal, const std::vector<double>& phases);
+
+/// Marches through the period, with one complexity, after three steps that fit mesh and complexity
+/// and are not counted.
 MarchReport march(const runtime::Executor& executor, meshadapt::AnyMesh mesh, const March& march);
 
 /// Triangles or tetrahedra.

@@ -47,13 +47,13 @@ InterpolationError sum(InterpolationError a, const InterpolationError& b) {
 
 }  // namespace
 
-AnyField sampled_solution(const AnyMesh& mesh, double phase) {
-  std::vector<double> value_of;
-  value_of.reserve(mesh.vertex_count());
+AnyField sampled_solution(const runtime::Executor& executor, const AnyMesh& mesh, double phase) {
+  std::vector<double> value_of(mesh.vertex_count());
   const auto stride = static_cast<std::size_t>(mesh.dimension);
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-    value_of.push_back(
-        bench::psi(mesh.coordinates[stride * v], mesh.coordinates[stride * v + 1], phase));
+  runtime::parallel_for(executor, value_of.size(), [&](std::size_t v) {
+    const double* const place = &mesh.coordinates[stride * v];
+    value_of[v] = bench::psi(place[0], place[1], phase);
+  });
   return meshadapt::scalar_field(mesh.dimension, std::move(value_of), "solution");
 }
 
@@ -61,7 +61,7 @@ template <int Dim>
 InterpolationError interpolation_error(const runtime::Executor& executor, const AnyMesh& any,
                                        double phase) {
   const auto mesh = meshadapt::make_fixed_mesh<Dim>(executor, any);
-  const AnyField at_vertices = sampled_solution(any, phase);
+  const AnyField at_vertices = sampled_solution(executor, any, phase);
   const std::vector<Weights<Dim>> points = points_inside<Dim>(Dim == 2 ? 9 : 5);
   const auto error_in = [&](std::size_t element) {
     const auto corner = mesh.points(static_cast<ElementId>(element));

@@ -13,7 +13,8 @@
 namespace ductile::paper {
 
 /// psi's values at the vertices.
-meshadapt::AnyField sampled_solution(const meshadapt::AnyMesh& mesh, double phase);
+meshadapt::AnyField sampled_solution(const runtime::Executor& executor,
+                                     const meshadapt::AnyMesh& mesh, double phase);
 
 /// Norms of the difference between psi and its interpolant. No linear element can follow
 /// the jump: in the elements that it cuts, the error does not shrink, only their volume does. L1

@@ -13,11 +13,11 @@ const std::vector<std::string> kernel_names{"coarsen", "swap",   "refine", "smoo
                                             "other",   "metric", "adapt"};
 
 /// Seconds per step, in the order of kernel_names.
-std::vector<double> seconds_per_step(const MarchReport& report) {
-  const KernelSeconds& sum = report.seconds;
+std::vector<double> seconds_per_step(const TimedSteps& timed) {
+  const KernelSeconds& sum = timed.seconds;
   std::vector<double> seconds{sum.coarsen, sum.swap,   sum.refine, sum.smooth,
                               sum.other,   sum.metric, sum.adapt()};
-  for (double& value : seconds) value /= report.steps;
+  for (double& value : seconds) value /= timed.steps;
   return seconds;
 }
 
@@ -35,23 +35,28 @@ double rate_between(const ErrorRow& coarse, const ErrorRow& fine,
 
 }  // namespace
 
-void say_kernels(Experiment& experiment, const std::string& name,
-                 const std::vector<ThreadRow>& rows) {
-  bench::Table seconds(columns("threads")), efficiency(columns("threads"));
-  const std::vector<double> alone = seconds_per_step(rows.front().report);
-  for (const ThreadRow& row : rows) {
-    std::vector<double> taken = seconds_per_step(row.report), share = taken;
+void say_kernels(Experiment& experiment, const std::string& name, const MarchReport& report) {
+  bench::Table seconds(columns("threads")), efficiency(columns("threads")), all(columns("threads"));
+  const auto row = [](int threads, std::vector<double> values) {
+    values.insert(values.begin(), threads);
+    return values;
+  };
+  const TimedSteps& fewest = report.timed.front();
+  const std::vector<double> alone = seconds_per_step(fewest);
+  for (const TimedSteps& timed : report.timed) {
+    const std::vector<double> taken = seconds_per_step(timed);
+    std::vector<double> share = taken;
     for (std::size_t k = 0; k < share.size(); ++k)
-      share[k] = alone[k] * rows.front().threads / (taken[k] * row.threads);
-    taken.insert(taken.begin(), row.threads);
-    share.insert(share.begin(), row.threads);
-    seconds.add_numbers(taken);
-    efficiency.add_numbers(share);
+      share[k] = alone[k] * fewest.threads / (taken[k] * timed.threads);
+    seconds.add_numbers(row(timed.threads, taken));
+    efficiency.add_numbers(row(timed.threads, share));
   }
+  all.add_numbers(row(report.all.threads, seconds_per_step(report.all)));
   seconds.write_csv(experiment.file("seconds_" + name + ".csv"));
   efficiency.write_csv(experiment.file("efficiency_" + name + ".csv"));
-  experiment.say("\n%s, %d steps, %.0f elements on average; seconds per step:\n%s", name.c_str(),
-                 rows.front().report.steps, rows.front().report.mean_elements,
+  experiment.say("\n%s, %.0f elements on average; seconds per step, mean of all %d steps:\n%s",
+                 name.c_str(), report.mean_elements, report.all.steps, all.text().c_str());
+  experiment.say("mean of the %d steps taken on each number of threads:\n%s", fewest.steps,
                  seconds.text().c_str());
   experiment.say("parallel efficiency:\n%s", efficiency.text().c_str());
 }

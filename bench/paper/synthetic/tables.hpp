@@ -12,22 +12,15 @@
 
 namespace ductile::paper {
 
-/// A march on one number of threads.
-struct ThreadRow {
-  int threads = 1;
-  MarchReport report;
-};
-
 /// An adapted mesh and its error.
 struct ErrorRow {
   double elements = 0;
   InterpolationError error;
 };
 
-/// Says the seconds per step and the parallel efficiency against the first row, kernel by kernel;
-/// writes both to NAME, for plots.
-void say_kernels(Experiment& experiment, const std::string& name,
-                 const std::vector<ThreadRow>& rows);
+/// Says the seconds per step and the parallel efficiency against the fewest threads, kernel by
+/// kernel; writes both to NAME, for plots.
+void say_kernels(Experiment& experiment, const std::string& name, const MarchReport& report);
 
 /// Says the errors and the rates from row to row; writes them to NAME, for plots.
 void say_errors(Experiment& experiment, const std::string& name, const std::vector<ErrorRow>& rows);

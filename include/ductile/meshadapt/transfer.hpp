@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -36,6 +37,13 @@ struct TransferredField {
 /// one. Thread safety: one caller; runs on the executor.
 TransferredField interpolate_field(const runtime::Executor& executor, const FieldOnMesh& from,
                                    const AnyMesh& to);
+
+/// The same at points of one's own choice, one after another: coordinates[point * dimension +
+/// axis]. The field that is returned has them in place of vertices, and so does the report. Throws
+/// InputError as well if coordinates are not finite or do not come in whole points.
+/// Thread safety: one caller; runs on the executor.
+TransferredField interpolate_at(const runtime::Executor& executor, const FieldOnMesh& from,
+                                std::span<const double> coordinates);
 
 struct ProjectionOptions {
   /// No value above or below those of the old elements that touch the new elements around the
