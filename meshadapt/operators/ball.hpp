@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <span>
 
 #include "operators/base.hpp"
 #include "operators/cavity.hpp"
@@ -50,17 +51,6 @@ class Ball {
   }
 
   std::size_t size() const { return size_; }
-
-  /// Is every element's volume positive, but for rounding, with the apex here?
-  bool positive(const Vector<Dim>& apex) const {
-    const Vector<Dim> offset = apex - origin_;
-    return std::all_of(blocks_.begin(), blocks_.end(), [&](const Block& block) {
-      Lanes volume;
-      for (std::size_t l = 0; l < lane_count; ++l)
-        volume[l] = dot(at(block.normal, l), offset - at(block.centre, l));
-      return least(volume) > 0;
-    });
-  }
 
   /// Worst and sum of all shapes with this apex; just a worst of -1 if one is below the bound or
   /// has no positive volume.

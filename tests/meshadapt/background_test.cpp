@@ -1,4 +1,5 @@
 #include "ductile/meshadapt/background.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,8 +44,8 @@ struct Scene {
       for (double& h : sizes) h = std::pow(10.0, uniform(random, -2, 0));
       metric_of.push_back(test::random_metric<Dim>(random, sizes));
     }
-    background =
-        std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours), metric_of);
+    for (std::size_t v = 0; v < metric_of.size(); ++v) mesh.site_of[v].metric = metric_of[v];
+    background = std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours));
   }
 };
 

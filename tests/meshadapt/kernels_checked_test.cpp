@@ -42,12 +42,12 @@ struct Case {
     Neighbours<Dim> neighbours;
     std::vector<std::string> warnings;
     auto mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
-    auto background = std::make_unique<Background<Dim>>(executor, mesh, neighbours, metric_of);
     for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
       mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
       mesh.host_of[v] = mesh.elements_of.of(v).front();
     }
     update_shapes(executor, mesh);
+    auto background = std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours));
     return {std::move(mesh), std::move(background)};
   }
 };

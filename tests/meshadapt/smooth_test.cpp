@@ -49,7 +49,7 @@ TYPED_TEST(SmoothIn, KeepsVerticesOnTheirPatches) {
     for (std::size_t v = 0; v < mesh.vertex_slots(); ++v)
       mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
     update_shapes(executor, mesh);
-    const Background<Dim> background(executor, mesh, std::move(neighbours), metric_of);
+    const Background<Dim> background(executor, mesh, std::move(neighbours));
     const Smooth<Dim> op(mesh, background, {.laplacian = trial % 2 == 0, .optimise_below = 1});
     for (std::size_t i = 0; i < mesh.vertex_slots(); ++i) {
       const auto v = static_cast<VertexId>(i);

@@ -1,0 +1,141 @@
+#include "operators/ball.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using test::Random;
+using test::uniform;
+
+template <class Dimension>
+class BallOf : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(BallOf, Dimensions);
+
+/// A jiggled grid with a metric at each vertex that has nothing to do with its neighbours'.
+template <int Dim>
+Mesh<Dim> wild_mesh(Random& random) {
+  AnyMesh any = test::make_grid(test::unit_grid(Dim, 4));
+  test::jiggle(any, random, 0.3);
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  const runtime::Executor executor({.threads = 1});
+  Mesh<Dim> mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
+  for (Site<Dim>& site : mesh.site_of) {
+    std::array<double, Dim> sizes;
+    for (double& h : sizes) h = std::pow(10.0, uniform(random, -1.5, 0));
+    site = make_site(site.position, test::random_metric<Dim>(random, sizes));
+  }
+  update_shapes(executor, mesh);
+  return mesh;
+}
+
+/// The same vertex not far away, with the metric of another one.
+template <int Dim>
+Site<Dim> moved(const Mesh<Dim>& mesh, VertexId vertex, Random& random, double furthest) {
+  Site<Dim> site = mesh.site_of[test::below(random, mesh.vertex_slots())];
+  site.position = mesh.site_of[vertex].position;
+  for (double& x : site.position.x) x += furthest * uniform(random, -1, 1);
+  return site;
+}
+
+/// The shapes around a vertex by the definition.
+template <int Dim>
+std::vector<double> shapes_by_definition(const Mesh<Dim>& mesh, VertexId vertex,
+                                         const Site<Dim>& apex) {
+  std::vector<double> result;
+  for (const ElementId e : mesh.elements_of.of(vertex)) {
+    auto sites = mesh.sites(mesh.corners_of[e]);
+    sites[static_cast<std::size_t>(corner_of(mesh.corners_of[e], vertex))] = &apex;
+    result.push_back(shape<Dim>(sites));
+  }
+  return result;
+}
+
+TYPED_TEST(BallOf, GivesTheShapesOfTheElementsAround) {
+  constexpr int Dim = TypeParam::value;
+  Random random(31);
+  std::size_t positive = 0, inverted = 0;
+  for (int trial = 0; trial < 10; ++trial) {
+    const Mesh<Dim> mesh = wild_mesh<Dim>(random);
+    for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
+      const Ball<Dim> ball(mesh, v);
+      const Site<Dim> apex = moved(mesh, v, random, v % 2 == 0 ? 0.03 : 0.2);
+      const auto expected = shapes_by_definition(mesh, v, apex);
+      ASSERT_EQ(ball.size(), expected.size());
+      const double worst = *std::min_element(expected.begin(), expected.end());
+      const auto score = ball.score(apex, 0);
+      if (!(worst > 0)) {
+        EXPECT_LT(score.worst, 0);
+        ++inverted;
+        continue;
+      }
+      ++positive;
+      EXPECT_NEAR(score.worst, worst, 1e-9);
+      EXPECT_NEAR(score.sum, std::accumulate(expected.begin(), expected.end(), 0.0), 1e-8);
+      EXPECT_LT(ball.score(apex, worst * 1.01).worst, 0);
+      const auto shapes = ball.shapes(apex);
+      for (std::size_t i = 0; i < shapes.size(); ++i) EXPECT_NEAR(shapes[i], expected[i], 1e-6);
+    }
+  }
+  EXPECT_GT(positive, 100U);
+  EXPECT_GT(inverted, 100U);
+}
+
+TYPED_TEST(BallOf, GivesTheGradientsOfShapes) {
+  constexpr int Dim = TypeParam::value;
+  constexpr double step = 1e-6;
+  Random random(32);
+  const Mesh<Dim> mesh = wild_mesh<Dim>(random);
+  for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
+    const Ball<Dim> ball(mesh, v);
+    const Site<Dim>& here = mesh.site_of[v];
+    const auto shapes = shapes_by_definition(mesh, v, here);
+    for (int axis = 0; axis < Dim; ++axis) {
+      Site<Dim> up = here, down = here;
+      up.position[axis] += step;
+      down.position[axis] -= step;
+      const auto above = shapes_by_definition(mesh, v, up),
+                 below = shapes_by_definition(mesh, v, down);
+      for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const double slope = (above[i] - below[i]) / (2 * step);
+        EXPECT_NEAR(ball.gradient(i, here, shapes[i])[axis], slope, 1e-3 + 1e-3 * std::abs(slope));
+      }
+    }
+  }
+}
+
+/// Regular elements with edges of length 1 around a vertex pull it to where it was.
+TEST(Ball, PullsToWhereElementsAreRegular) {
+  AnyMesh any = test::make_grid(test::unit_grid(2, 2));
+  Neighbours<2> neighbours;
+  std::vector<std::string> warnings;
+  Mesh<2> mesh = make_mesh<2>(runtime::Executor({.threads = 1}), any, {}, neighbours, warnings);
+  const double root = std::sqrt(0.75);
+  for (Site<2>& site : mesh.site_of) {  // shear the squares to pairs of regular triangles
+    const Vector<2> p = site.position;
+    site = make_site(Vector<2>{{p[0] * 2 - p[1], p[1] * 2 * root}}, isotropic<2>(1));
+  }
+  for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
+    if (mesh.elements_of.of(v).size() != 6) continue;
+    const Vector<2> off{{0.1, -0.05}};
+    mesh.site_of[v].position += off;
+    const Vector<2> pull =
+        Ball<2>(mesh, v).mean_pull(isotropic<2>(1), [](std::size_t) { return 1; });
+    EXPECT_NEAR(pull[0], -off[0], 1e-12);
+    EXPECT_NEAR(pull[1], -off[1], 1e-12);
+    return;
+  }
+  FAIL() << "no vertex with six triangles";
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
