@@ -11,6 +11,7 @@ namespace ductile::bench {
 namespace {
 
 constexpr int most_threads = 64;
+constexpr std::size_t recorded_runs = 3;
 
 ForecastRow row_from(const runtime::Replay& replayed) {
   ForecastRow row{.threads = replayed.threads,
@@ -30,14 +31,17 @@ ForecastRow row_from(const runtime::Replay& replayed) {
 }  // namespace
 
 Forecast forecast(const Sampler& sampler, const std::string& case_name) {
-  runtime::Recording recording;
-  recording.pause();
   Forecast result{.case_name = case_name};
-  const runtime::Executor executor({.threads = most_threads, .recording = &recording});
-  result.fingerprint = fingerprint(sampler.adapt_on(executor));
+  std::vector<runtime::Recording> runs(recorded_runs);
+  for (runtime::Recording& run : runs) {
+    run.pause();
+    const runtime::Executor executor({.threads = most_threads, .recording = &run});
+    result.fingerprint = fingerprint(sampler.adapt_on(executor));
+  }
+  const runtime::Recording recording = runtime::typical(runs);
   for (int threads = 1; threads <= most_threads; threads *= 2)
-    result.rows.push_back(row_from(
-        replay(recording, {.threads = threads, .launch_ns = 1000 + 30.0 * threads, .block = 32})));
+    result.rows.push_back(
+        row_from(replay(recording, {.threads = threads, .launch_ns = 1000 + 30.0 * threads})));
   return result;
 }
 
