@@ -67,7 +67,9 @@ AnyMesh fitted_mesh(const runtime::Executor& executor, AnyMesh mesh, MeshGoal& g
   const double wanted = goal.elements;
   for (const double phase : phases) {
     mesh = follow(executor, mesh, goal, phase).adapted.mesh;
-    goal.elements *= wanted / static_cast<double>(element_count(mesh));
+    // After a large step in phase, one mesh says little.
+    const double ratio = goal.elements / static_cast<double>(element_count(mesh));
+    goal.elements = wanted * std::clamp(ratio, 0.7, 1.4);
   }
   return mesh;
 }
