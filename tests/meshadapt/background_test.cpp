@@ -1,10 +1,10 @@
 #include "ductile/meshadapt/background.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
