@@ -68,7 +68,7 @@ TYPED_TEST(BallOf, GivesTheShapesOfTheElementsAround) {
     const Mesh<Dim> mesh = wild_mesh<Dim>(random);
     for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
       const Ball<Dim> ball(mesh, v);
-      const Site<Dim> apex = moved(mesh, v, random, v % 2 == 0 ? 0.03 : 0.2);
+      const Site<Dim> apex = moved(mesh, v, random, v % 2 == 0 ? 0.03 : 0.4);
       const auto expected = shapes_by_definition(mesh, v, apex);
       ASSERT_EQ(ball.size(), expected.size());
       const double worst = *std::min_element(expected.begin(), expected.end());
