@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <stdexcept>
 #include <utility>
 
 namespace ductile::runtime {
@@ -47,8 +46,8 @@ void Recording::note(double cost_ns) {
 /// Books the time since the last loop as serial.
 void Recording::flush() {
   const double ns = lap();
-  if (paused_) return;
-  note(ns);  // also if it is 0, so that the same run makes the same stretches
+  if (paused_ || ns == 0) return;
+  note(ns);
   add(Stretch::Kind::serial, costs_.size() - 1);
 }
 
@@ -113,27 +112,6 @@ void Recording::end_loop() {
     add(items_ ? Stretch::Kind::items : Stretch::Kind::chunks, loop_first_, items_ ? block_ : 1);
   }
   lap();
-}
-
-bool Recording::same_course(const Recording& other) const {
-  return sections_ == other.sections_ && stretches_ == other.stretches_ &&
-         costs_.size() == other.costs_.size();
-}
-
-Recording typical(std::span<const Recording> runs) {
-  if (runs.empty()) throw std::invalid_argument("typical: expected at least one recording");
-  Recording result = runs.front();
-  for (const Recording& run : runs)
-    if (!run.same_course(result))
-      throw std::invalid_argument("typical: expected recordings of runs that did the same");
-  std::vector<float> costs(runs.size());
-  const auto middle = costs.begin() + static_cast<std::ptrdiff_t>((costs.size() - 1) / 2);
-  for (std::size_t i = 0; i < result.costs_.size(); ++i) {
-    for (std::size_t r = 0; r < runs.size(); ++r) costs[r] = runs[r].costs_[i];
-    std::nth_element(costs.begin(), middle, costs.end());
-    result.costs_[i] = *middle;
-  }
-  return result;
 }
 
 }  // namespace ductile::runtime

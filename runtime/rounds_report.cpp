@@ -9,7 +9,6 @@ RoundsReport& RoundsReport::operator+=(const RoundsReport& other) {
   applied += other.applied;
   lost += other.lost;
   dropped += other.dropped;
-  postponed += other.postponed;
   committed += other.committed;
   woken += other.woken;
   left += other.left;

@@ -11,7 +11,6 @@ namespace ductile::bench {
 namespace {
 
 constexpr int most_threads = 64;
-constexpr std::size_t recorded_runs = 3;
 
 ForecastRow row_from(const runtime::Replay& replayed) {
   ForecastRow row{.threads = replayed.threads,
@@ -31,17 +30,14 @@ ForecastRow row_from(const runtime::Replay& replayed) {
 }  // namespace
 
 Forecast forecast(const Sampler& sampler, const std::string& case_name) {
+  runtime::Recording recording;
+  recording.pause();
   Forecast result{.case_name = case_name};
-  std::vector<runtime::Recording> runs(recorded_runs);
-  for (runtime::Recording& run : runs) {
-    run.pause();
-    const runtime::Executor executor({.threads = most_threads, .recording = &run});
-    result.fingerprint = fingerprint(sampler.adapt_on(executor));
-  }
-  const runtime::Recording recording = runtime::typical(runs);
+  const runtime::Executor executor({.threads = most_threads, .recording = &recording});
+  result.fingerprint = fingerprint(sampler.adapt_on(executor));
   for (int threads = 1; threads <= most_threads; threads *= 2)
-    result.rows.push_back(
-        row_from(replay(recording, {.threads = threads, .launch_ns = 1000 + 30.0 * threads})));
+    result.rows.push_back(row_from(
+        replay(recording, {.threads = threads, .launch_ns = 1000 + 30.0 * threads, .block = 32})));
   return result;
 }
 

@@ -25,7 +25,7 @@ struct Forecast {
   std::vector<ForecastRow> rows{};  ///< 1, 2, 4, ..., 64 threads
 };
 
-/// Records three runs and replays what is typical of them, with launches of 1 us + 30 ns a thread.
+/// Records a run and replays it, with blocks of 32 items and launches of 1 us + 30 ns a thread.
 Forecast forecast(const Sampler& sampler, const std::string& case_name);
 
 }  // namespace ductile::bench

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <thread>
 #include <vector>
 
@@ -126,40 +125,6 @@ TEST(Replay, HandsItemsOutAsTheLoopDid) {
   EXPECT_NEAR(elapsed(10), 10, 0.1);
 }
 
-TEST(Recording, OfATypicalRunHasTheMedians) {
-  const auto recorded = [](const std::vector<double>& costs) {
-    Recording recording;
-    record_items(recording, costs);
-    return recording;
-  };
-  const std::vector<Recording> runs{recorded({1, 90, 3}), recorded({1, 2, 4}),
-                                    recorded({50, 2, 5})};
-  const Recording all = typical(runs);
-  EXPECT_TRUE(all.same_course(runs[0]));
-  ASSERT_GE(all.costs().size(), 3U);
-  const std::vector<float> last(all.costs().end() - 3, all.costs().end());
-  EXPECT_EQ(last, (std::vector<float>{1, 2, 4}));
-}
-
-TEST(Recording, OfATypicalRunNeedsRunsThatDidTheSame) {
-  std::vector<Recording> runs(2);
-  EXPECT_THROW(typical(std::span(runs).first(0)), std::invalid_argument);
-  EXPECT_NO_THROW(typical(runs));
-  record_items(runs[0], {1});
-  EXPECT_THROW(typical(runs), std::invalid_argument);
-}
-
-TEST(Recording, OfTheSameRunHasTheSameCourse) {
-  std::vector<Recording> runs(3);
-  for (Recording& run : runs) {
-    const Executor executor({.threads = 8, .recording = &run});
-    std::vector<int> values(10000);
-    for (int loop = 0; loop < 100; ++loop)
-      parallel_for(executor, values.size(), [&](std::size_t i) { ++values[i]; });
-  }
-  EXPECT_NO_THROW(typical(runs));
-}
-
 TEST(Recording, TimesTheChunksOfALoop) {
   Recording recording;
   const Executor executor({.threads = 16, .recording = &recording});
@@ -236,8 +201,8 @@ TEST(Recording, TakesCostsFromTheOperator) {
   EXPECT_NEAR(phase(10, Phase::plan).work, 2 * 20480e-6, 1e-6);
   EXPECT_NEAR(phase(10, Phase::apply).work, 2 * 61440e-6, 1e-6);
   // Small serial parts between the loops are measured, so the bounds are one-sided.
-  EXPECT_GE(phase(16, Phase::apply).elapsed, 2 * 3840e-6 - 1e-6);
-  EXPECT_NEAR(phase(16, Phase::apply).elapsed - phase(16, Phase::apply).serial, 2 * 3840e-6, 1e-6);
+  EXPECT_GE(phase(10, Phase::apply).elapsed, 2 * 6144e-6 - 1e-6);
+  EXPECT_NEAR(phase(10, Phase::apply).elapsed - phase(10, Phase::apply).serial, 2 * 6144e-6, 1e-6);
 }
 
 TEST(Recording, ChangesNoResult) {

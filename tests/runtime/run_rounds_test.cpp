@@ -208,28 +208,6 @@ TEST(RunRounds, WindowsGrowWithTheWork) {
   EXPECT_EQ(windows(100000, {.windows = 8, .window = 1000}), 8U);
 }
 
-TEST(RunRounds, ClassesTooSmallWaitForTheNextRound) {
-  std::vector<std::uint8_t> first;
-  std::size_t postponed = 0;
-  for (const int threads : thread_counts) {
-    IndependentSet set(5000);
-    const Executor executor({.threads = threads});
-    const RoundsReport report = run_rounds(executor, set, all_items(5000), {.least_class = 0.6});
-    expect_maximal_independent(set);
-    EXPECT_EQ(report.planned, 5000U);
-    EXPECT_GT(report.postponed, 0U);
-    EXPECT_GT(report.rounds, 1U);
-    if (first.empty()) first = set.member, postponed = report.postponed;
-    EXPECT_EQ(set.member, first) << threads << " threads";
-    EXPECT_EQ(report.postponed, postponed) << threads << " threads";
-  }
-  IndependentSet set(5000);
-  const RoundsReport last = run_rounds(Executor({.threads = 2}), set, all_items(5000),
-                                       {.most_rounds = 1, .least_class = 0.6});
-  expect_maximal_independent(set);
-  EXPECT_EQ(last.postponed, 0U);  // nobody would come back
-}
-
 TEST(RunRounds, StaleColoursDoNoHarmInArrivalOrder) {
   for (int run = 0; run < 5; ++run) {
     Bypass lines(20000);

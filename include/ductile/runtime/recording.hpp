@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -31,7 +30,6 @@ class Recording {
     Kind kind;
     std::size_t first, count;  ///< its costs
     std::size_t block = 1;     ///< of items: how many were handed out at once
-    friend bool operator==(const Stretch&, const Stretch&) = default;
   };
 
   Recording();
@@ -45,10 +43,6 @@ class Recording {
   const std::vector<Stretch>& stretches() const { return stretches_; }
   const std::vector<float>& costs() const { return costs_; }  ///< nanoseconds
   std::uint32_t rounds() const { return rounds_; }
-
-  /// Whether another recording is of a run that did the same, step by step, whatever it cost.
-  bool same_course(const Recording& other) const;
-  friend Recording typical(std::span<const Recording> runs);
 
   // ---- For the runtime and for those who record something else than time ----
 
@@ -92,11 +86,5 @@ class Recording {
   bool given_ = false;           // costs of the running loop are given, not measured
   bool items_ = false;           // and are of single items
 };
-
-/// The recording of a typical run: of each cost the median, or the lower of the two in the middle.
-/// Interrupts, and what a hypervisor does for a fraction of a millisecond, then count in no item,
-/// as they seldom meet the same one twice. The runs must have done the same, as deterministic ones
-/// do. Throws std::invalid_argument if there are none or they did not. Thread safety: any thread.
-Recording typical(std::span<const Recording> runs);
 
 }  // namespace ductile::runtime

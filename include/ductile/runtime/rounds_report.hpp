@@ -16,9 +16,6 @@ struct RoundsOptions {
   /// while their classes run; large ones keep many threads busy.
   std::size_t windows = 4;
   std::size_t window = 16384;
-  /// Colouring: classes of a smaller share of their window than this wait for the next round, if
-  /// there is one; the first class of a window never does.
-  double least_class = 1.0 / 64;
   /// Reservations: if a smaller share than this of those that asked held all, fewer ask in the next
   /// round and the others wait their turn, which saves them planning in vain. 0: all ask always.
   double least_won = 0;
@@ -33,7 +30,6 @@ struct RoundsReport {
   std::size_t applied = 0;    ///< plans carried out
   std::size_t lost = 0;       ///< conflicts: reservations that met a higher priority
   std::size_t dropped = 0;    ///< conflicts: items that left a round because they were woken in it
-  std::size_t postponed = 0;  ///< items of classes too small to run, that wait for the next round
   std::size_t committed = 0;  ///< deferred updates
   std::size_t woken = 0;      ///< items woken, each once a round
   std::size_t left = 0;       ///< work that most_rounds cut off

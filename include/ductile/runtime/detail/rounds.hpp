@@ -9,6 +9,7 @@
 #include <array>
 #include <atomic>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -47,8 +48,7 @@ class Rounds {
         options_(options),
         recording_(executor.recording()),
         deferred_(executor, {.order = executor.deterministic() ? options.order : CommitOrder::any}),
-        woken_(executor, {.order = WorkOrder::by_item, .unique = true}),
-        done_(executor) {}
+        woken_(executor, {.order = WorkOrder::by_item, .unique = true}) {}
 
   RoundsReport run(std::vector<Item> work) {
     for (int round = 1; !work.empty() && round <= options_.most_rounds; ++round) {
@@ -74,9 +74,9 @@ class Rounds {
   static constexpr LoopOptions copying{.grain = 512, .serial_below = 2048};
 
   /// Items handed out at once to be planned or applied: few of a small batch, so that each of many
-  /// threads gets some, and no thread waits long for the last.
+  /// threads gets some.
   static std::size_t block_of(std::size_t items) {
-    return std::clamp<std::size_t>(items / 2048, 2, block);
+    return std::clamp<std::size_t>(items / 512, 8, block);
   }
 
   // ---- Colouring: cut the round into classes of items that do not conflict ----
@@ -110,36 +110,13 @@ class Rounds {
       class_begin = sort_by_class(work);
     }
     const std::size_t classes = class_begin.size() - 1;
-    const std::size_t few = few_of(work.size());
     for (turn_ = 0; turn_ < classes; ++turn_) {
-      const auto batch = std::span(by_class_).subspan(class_begin[turn_],
-                                                      class_begin[turn_ + 1] - class_begin[turn_]);
-      if (turn_ > 0 && batch.size() < few) {
-        postpone(batch);
-      } else {
-        execute(batch);
-      }
-      if constexpr (Check::on)
-        check_waiting(std::span(by_class_).first(work.size()).subspan(class_begin[turn_ + 1]));
+      execute(std::span(by_class_).subspan(class_begin[turn_],
+                                           class_begin[turn_ + 1] - class_begin[turn_]));
+      if constexpr (Check::on) check_waiting(class_begin[turn_ + 1]);
     }
     parallel_for(
         executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; }, copying);
-  }
-
-  /// Classes after the first with fewer items than this are not worth their loops; 0 in the last
-  /// round, as nobody would come back.
-  std::size_t few_of(std::size_t items) const {
-    if (static_cast<int>(round_) >= options_.most_rounds) return 0;
-    return static_cast<std::size_t>(options_.least_class * static_cast<double>(items));
-  }
-
-  /// Moves items to the next round.
-  void postpone(std::span<const Item> batch) {
-    report_.postponed += batch.size();
-    for (const Item& item : batch) {
-      woken_at_[item] = window_;
-      woken_.append(item);
-    }
   }
 
   /// Sets by_class_ to the work sorted into classes of items that do not conflict, and turn_of_ to
@@ -155,7 +132,7 @@ class Rounds {
     });
     const Colouring colouring = colour(executor_, graph);
     ColourClasses classes = colour_classes(executor_, colouring);
-    if (by_class_.size() < work.size()) by_class_.resize(work.size());
+    by_class_.resize(work.size());
     const auto place = [&](std::size_t i) {
       by_class_[i] = work[classes.vertices[i]];
       turn_of_[work[i]] = colouring.colour_of[i];
@@ -172,9 +149,10 @@ class Rounds {
     return true;
   }
 
-  void check_waiting(std::span<const Item> later) {
-    for (const Item& item : later)
-      if (woken_at_[item] != window_) check_.expect_kept(op_, item);
+  /// Those that wait for a later turn begin here.
+  void check_waiting(std::size_t begin) {
+    for (std::size_t i = begin; i < by_class_.size(); ++i)
+      if (woken_at_[by_class_[i]] != window_) check_.expect_kept(op_, by_class_[i]);
   }
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
@@ -293,21 +271,20 @@ class Rounds {
     block_size_ = block_of(size_);
     const std::size_t blocks = (size_ + block_size_ - 1) / block_size_;
     plans_.provide(executor_, size_);
+    planned_of_.assign(blocks, 0);
     {
       const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
       parallel_for_blocks(
           executor_, size_, block_size_,
-          [&](std::size_t, std::size_t begin, std::size_t end) {
-            std::size_t planned = 0;
+          [&](std::size_t b, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
               if constexpr (PrefetchingOperator<Op>) prefetch_after(batch, i);
-              planned += plan(batch[i], plans_[i]);
+              planned_of_[b] += plan(batch[i], plans_[i]);
             }
-            done_.mine() += planned;
           },
           by_block);
     }
-    const std::size_t planned = take_done();
+    const std::size_t planned = std::accumulate(planned_of_.begin(), planned_of_.end(), 0U);
     report_.planned += planned;
     report_.dropped += size_ - planned;
     if constexpr (Check::on) return apply_checked(batch);
@@ -347,33 +324,26 @@ class Rounds {
   }
 
   void apply_plans(std::size_t blocks) {
-    if constexpr (kinds > 0) number_new_things(blocks);
+    first_of_.assign(blocks, {});
+    applied_of_.assign(blocks, 0);
+    if constexpr (kinds > 0) number_new_things();
     parallel_for_blocks(
         executor_, size_, block_size_,
-        [&]([[maybe_unused]] std::size_t b, std::size_t begin, std::size_t end) {
+        [&](std::size_t b, std::size_t begin, std::size_t end) {
           Commit<Op> commit = new_commit();
-          if constexpr (kinds > 0) commit.next_ = first_of_[b];
-          std::size_t applied = 0;
+          commit.next_ = first_of_[b];
           for (std::size_t i = begin; i < end; ++i) {
             if (plans_[i]) {
               commit.source_ = i;
               op_.apply(*plans_[i], commit);
-              ++applied;
+              ++applied_of_[b];
             }
             if (recording_ != nullptr) [[unlikely]]
               record_apply(plans_[i]);
           }
-          done_.mine() += applied;
         },
         by_block);
-    report_.applied += take_done();
-  }
-
-  /// What all threads have counted since the last call.
-  std::size_t take_done() {
-    std::size_t sum = 0;
-    for (std::size_t t = 0; t < done_.size(); ++t) sum += std::exchange(done_[t], 0);
-    return sum;
+    for (const std::uint32_t applied : applied_of_) report_.applied += applied;
   }
 
   void apply_checked(std::span<const Item> all) {
@@ -389,8 +359,7 @@ class Rounds {
   }
 
   /// Sets first_of_ to the first new number of each kind for each block of the batch.
-  void number_new_things(std::size_t blocks) {
-    first_of_.assign(blocks, {});
+  void number_new_things() {
     parallel_for_blocks(
         executor_, size_, block_size_,
         [&](std::size_t b, std::size_t begin, std::size_t end) {
@@ -483,8 +452,7 @@ class Rounds {
   detail::FilledArray<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
   detail::FilledArray<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its
                                                  // class, or absent
-  std::vector<Item> by_class_;                   // the window's work, class after class, and what
-                                                 // a longer one left behind
+  std::vector<Item> by_class_;                   // the window's work, class after class
   std::size_t turn_ = 0;                         // class being executed
 
   // ---- Reservation ----
@@ -496,8 +464,9 @@ class Rounds {
   // ---- The batch ----
   std::size_t size_ = 0, block_size_ = 1;  // its items, and those of a block
   detail::Slots<Plan> plans_;              // [position]; there may be old ones beyond its size
-  PerThread<std::size_t> done_;            // plans asked for or carried out, see take_done()
+  std::vector<std::uint32_t> planned_of_;  // [block]
   std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block][kind]
+  std::vector<std::uint32_t> applied_of_;                   // [block]
 };
 
 }  // namespace ductile::runtime
