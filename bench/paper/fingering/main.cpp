@@ -35,7 +35,7 @@ struct Plan {
 constexpr int adapt_every = 16;  // intervals; in which fingers go on by the front's thickness
 
 Plan plan_for(const Experiment& experiment) {
-  if (experiment.small()) return {48, {16, 32}, {0.012, 0.006}, 0.01, 0.1, 0.2};
+  if (experiment.small()) return {48, {16, 32}, {0.012, 0.006}, 0.004, 0.1, 0.3};
   return {512, {32, 64, 128, 192, 256}, {0.004, 0.002, 0.001, 0.0005}, 0.0015, 0.2, 1.2};
 }
 
