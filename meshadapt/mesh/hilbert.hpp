@@ -125,6 +125,7 @@ inline std::uint64_t hilbert_key(std::array<std::uint32_t, 2> x, int bits) {
 /// Bits of the key of a point.
 template <int Dim>
 inline constexpr unsigned hilbert_bits = Dim == 2 ? 48 : 60;
+static_assert(hilbert_bits<2> / 2 % HilbertTable::step == 0);
 
 /// The same of a point in the box.
 template <int Dim>

@@ -57,7 +57,7 @@ void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
 }
 
 /// Is any of these numbers larger than a bound? Without branches, so several at once.
-bool any_above(std::span<const std::uint32_t> numbers, std::uint32_t bound) {
+static bool any_above(std::span<const std::uint32_t> numbers, std::uint32_t bound) {
   std::uint32_t any = 0;
   for (const std::uint32_t number : numbers) any |= static_cast<std::uint32_t>(number > bound);
   return any != 0;

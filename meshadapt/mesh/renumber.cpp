@@ -3,7 +3,11 @@
 /// their lowest vertex; whatever is gone is left out.
 #include <algorithm>
 #include <bit>
+#include <cassert>
+#include <cstddef>
 #include <memory>
+#include <span>
+#include <type_traits>
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/collect.hpp"
@@ -92,12 +96,14 @@ class Permutation {
               std::size_t largest)
       : executor_(executor),
         order_(order),
+        largest_(largest),
         scratch_(std::make_unique_for_overwrite<std::byte[]>(order.size() * largest)) {}
 
   /// values[i] becomes the old values[order[i]].
   template <class T>
   void operator()(std::vector<T>& values) {
     static_assert(std::is_trivially_copyable_v<T>);
+    assert(sizeof(T) <= largest_);
     T* const moved = reinterpret_cast<T*>(scratch_.get());
     const std::size_t n = order_.size();
     parallel_for(executor_, n,
@@ -111,6 +117,7 @@ class Permutation {
  private:
   const Executor& executor_;
   const std::vector<std::uint32_t>& order_;
+  [[maybe_unused]] std::size_t largest_;  // bytes of a value there is room for
   std::unique_ptr<std::byte[]> scratch_;
 };
 

@@ -52,8 +52,8 @@ class Ball {
 
   std::size_t size() const { return size_; }
 
-  /// Worst and sum of all shapes with this apex; just a worst of -1 if one is below the bound or
-  /// has no positive volume.
+  /// Worst and sum of all shapes with this apex; just a worst of -1 if one is below the bound, has
+  /// no positive volume or is not a number.
   Score score(const Site<Dim>& apex, double bound) const {
     double worst = 1;
     Lanes sum{};
@@ -63,7 +63,8 @@ class Ball {
       if (!(worst > 0) || worst < bound) return {-1, 0};
       for (std::size_t l = 0; l < lane_count; ++l) sum[l] += block.counts[l] * shape[l];
     }
-    return {worst, total(sum)};
+    const double all = total(sum);
+    return all > 0 ? Score{worst, all} : Score{-1, 0};  // least() does not see what is no number
   }
 
   /// Calls visit(i, shape) for each element.
@@ -118,7 +119,7 @@ class Ball {
     const std::size_t l = element % lane_count;
     const Vector<Dim> up = apex.position - origin_ - at(block.centre, l);
     const auto by = [&](const Metric<Dim>& metric) {
-      return whole(contraction(metric, at_tensor(block.spread, l)), metric, up);
+      return squares_over(contraction(metric, at_tensor(block.spread, l)), metric, up);
     };
     Metric<Dim> judge =
         apex.density > block.density[l] ? apex.metric : at_tensor(block.metric[0], l);
@@ -161,11 +162,6 @@ class Ball {
     return folded(lanes, [](double a, double b) { return a < b ? a : b; });
   }
 
-  /// Sum of squared edge lengths, given that of the base's and the way up from its centre.
-  static double whole(double base_squares, const Metric<Dim>& metric, const Vector<Dim>& up) {
-    return (Dim + 1.0) / Dim * base_squares + Dim * squared_length(metric, up);
-  }
-
   /// shape_over() of each.
   Lanes shapes_in(const Block& block, const Site<Dim>& apex) const {
     const Vector<Dim> offset = apex.position - origin_;
@@ -174,15 +170,16 @@ class Ball {
       const Vector<Dim> up = offset - at(block.centre, l);
       const double determinant = dot(at(block.normal, l), up);
       const double by_apex =
-          whole(contraction(apex.metric, at_tensor(block.spread, l)), apex.metric, up);
-      const double by_judge = whole(block.squares[0][l], at_tensor(block.metric[0], l), up);
+          squares_over(contraction(apex.metric, at_tensor(block.spread, l)), apex.metric, up);
+      const double by_judge = squares_over(block.squares[0][l], at_tensor(block.metric[0], l), up);
       const bool apex_judges = apex.density > block.density[l];
       const double volume = (apex_judges ? apex.density : block.density[l]) * determinant;
       double value = shape_from<Dim>(volume, apex_judges ? by_apex : by_judge);
       if constexpr (Block::judges > 1) {
         double most = by_apex > by_judge ? by_apex : by_judge;
         for (std::size_t j = 1; j < Block::judges; ++j) {
-          const double by_other = whole(block.squares[j][l], at_tensor(block.metric[j], l), up);
+          const double by_other =
+              squares_over(block.squares[j][l], at_tensor(block.metric[j], l), up);
           most = by_other > most ? by_other : most;
         }
         const double strict = shape_from<Dim>(volume, most);

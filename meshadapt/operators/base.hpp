@@ -85,19 +85,18 @@ double volume_over(const Base<Dim>& base, const Vector<Dim>& apex) {
   return dot(base.normal, apex - base.centre);
 }
 
-/// The sum of all squared edge lengths of the element with this apex, in a metric in which those of
-/// the base sum up to `squares`: the squares of the distances from a facet's centre to its corners
-/// sum up to `squares` / Dim.
+/// The sum of all squared edge lengths of an element whose apex is `up` from the centre of its
+/// base, in a metric in which those of the base sum up to `squares`: the squares of the distances
+/// from a facet's centre to its corners sum up to `squares` / Dim.
 template <int Dim>
-double squares_over(const Base<Dim>& base, const Vector<Dim>& apex, const Metric<Dim>& metric,
-                    double squares) {
-  return (Dim + 1.0) / Dim * squares + Dim * squared_length(metric, apex - base.centre);
+double squares_over(double squares, const Metric<Dim>& metric, const Vector<Dim>& up) {
+  return (Dim + 1.0) / Dim * squares + Dim * squared_length(metric, up);
 }
 
 /// The same in the metric of a site.
 template <int Dim>
 double squares_at(const Base<Dim>& base, const Vector<Dim>& apex, const Site<Dim>& site) {
-  return squares_over(base, apex, site.metric, base_squares(base, site.metric));
+  return squares_over(base_squares(base, site.metric), site.metric, apex - base.centre);
 }
 
 /// Of the element with this apex, the corner whose metric shape() takes the lengths in if it is
@@ -124,9 +123,8 @@ double shape_over(const Base<Dim>& base, const Site<Dim>& apex, bool under = fal
   if (!(determinant > 0)) return determinant;
   const bool apex_judges = apex.density > base.judge->density;
   const Site<Dim>& judge = apex_judges ? apex : *base.judge;
-  const double squares =
-      squares_over(base, apex.position, judge.metric,
-                   apex_judges ? base_squares(base, judge.metric) : base.squares);
+  const double squares = squares_over(apex_judges ? base_squares(base, judge.metric) : base.squares,
+                                      judge.metric, apex.position - base.centre);
   const double value = shape_from<Dim>(judge.density * determinant, squares);
   if (value > doubtful_shape<Dim>) return value;
   return shape_from<Dim>(judge.density * determinant,

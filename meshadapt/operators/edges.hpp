@@ -36,8 +36,7 @@ MaybeEdges compare_edges(const std::array<const Site<Dim>*, Dim + 1>& corner, do
     const auto& [i, j] = Simplex<Dim>::edge[k];
     const Site<Dim>& a = *corner[static_cast<std::size_t>(i)];
     const Site<Dim>& b = *corner[static_cast<std::size_t>(j)];
-    const Vector<Dim> d = b.position - a.position;
-    const double at_a = squared_length(a.metric, d), at_b = squared_length(b.metric, d);
+    const auto [at_a, at_b] = end_squares(a, b);
     result.shorter |= static_cast<unsigned>(at_a * at_b < square * square) << k;
     result.longer |= static_cast<unsigned>(std::max(at_a, at_b) >= square) << k;
   }
@@ -77,7 +76,7 @@ std::vector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& exec
 /// Edges with an end among the marked vertices.
 struct WantedEdges {
   const std::vector<std::uint8_t>& marked;
-  double no_shorter_than = 0;
+  double no_shorter_than = 0;  ///< metric length
 };
 
 /// Calls find(a, b, append) for every wanted edge a < b, once; append(item) adds to the result,

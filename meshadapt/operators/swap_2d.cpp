@@ -79,10 +79,6 @@ int wide_corner(const Mesh<2>& mesh, ElementId element) {
   return longest > wide * others ? at : -1;
 }
 
-}  // namespace
-
-namespace {
-
 /// Looks for flips in a stretch of elements after the other. Each step of the search picks some of
 /// what the one before has left, without branches, for chance decides which.
 class FlipSearch {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "ductile/meshadapt/make_mesh.hpp"
@@ -88,6 +89,15 @@ TYPED_TEST(BallOf, GivesTheShapesOfTheElementsAround) {
   }
   EXPECT_GT(positive, 50U);
   EXPECT_GT(inverted, 50U);
+}
+
+TYPED_TEST(BallOf, RefusesAnApexThatIsNowhere) {
+  constexpr int Dim = TypeParam::value;
+  Random random(33);
+  const Mesh<Dim> mesh = wild_mesh<Dim>(random);
+  Site<Dim> apex = mesh.site_of[0];
+  apex.position[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_LT(Ball<Dim>(mesh, 0).score(apex, 0).worst, 0);
 }
 
 TYPED_TEST(BallOf, GivesTheGradientsOfShapes) {

@@ -75,8 +75,10 @@ struct Mesh {
   std::vector<Corners<Dim>> corners_of;                  // [element], positively oriented
   std::vector<std::array<PatchId, Dim + 1>> patches_of;  // [element][facet], 0 inside
   std::vector<std::uint32_t> region_of;                  // [element], index into regions
-  std::vector<float> shape_of;                           // [element], see shape()
-  std::vector<std::uint32_t> changed_at;                 // [element], epoch of its last change
+  // [element], see shape(). Rounded in another way by kernels that know it before they act; of
+  // corners exactly as dense, any may have been the judge.
+  std::vector<float> shape_of;
+  std::vector<std::uint32_t> changed_at;  // [element], epoch of its last change
   std::uint32_t epoch = 1;  ///< what changes now is marked with this; a scan ends an epoch
 
   // ---- Vertices; one is gone when it has no elements ----
