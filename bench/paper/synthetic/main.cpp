@@ -126,7 +126,8 @@ std::vector<cli::Colour> psi_colours(const Frame& frame) {
 /// Cuts through the cube at several times, in the colours of psi, and the last in those of sizes.
 void draw_solid(Experiment& experiment, const std::vector<Frame>& frames) {
   const int axis = 2;
-  cli::Scene strip{.caption = "psi from -1.6 (dark) to 1.6, in the lower half of the unit cube"};
+  cli::Scene strip;
+  strip.caption = "psi from -1.6 (dark) to 1.6, in the lower half of the unit cube";
   for (const Frame& frame : frames) {
     strip.panels.push_back(
         cli::cut_panel(frame.mesh, psi_colours(frame), cli::camera_along(axis), axis));

@@ -39,10 +39,10 @@ struct KernelSeconds {
 
 struct March {
   MeshGoal goal;
-  int steps = 50;            ///< that the period is divided into
-  int until = 50;            ///< the last one to be taken
-  int timed = 10;            ///< of those taken, how many are timed, evenly spread
-  std::vector<int> threads;  ///< on which they are timed, besides those of the executor
+  int steps = 50;              ///< that the period is divided into
+  int until = 50;              ///< the last one to be taken
+  int timed = 10;              ///< of those taken, how many are timed, evenly spread
+  std::vector<int> threads{};  ///< on which they are timed, besides those of the executor
   /// Called with what each step left.
   std::function<void(int step, double phase, const meshadapt::AnyMesh& mesh)> look{};
 };
@@ -51,14 +51,14 @@ struct March {
 struct TimedSteps {
   int threads = 0;
   int steps = 0;
-  KernelSeconds seconds;
+  KernelSeconds seconds{};
 };
 
 struct MarchReport {
   double mean_elements = 0;
-  TimedSteps all;                 ///< every step, on the executor's threads
-  std::vector<TimedSteps> timed;  ///< the same steps on each number of threads, fewest first
-  bool identical = true;          ///< their meshes and metrics, byte for byte
+  TimedSteps all;                   ///< every step, on the executor's threads
+  std::vector<TimedSteps> timed{};  ///< the same steps on each number of threads, fewest first
+  bool identical = true;            ///< their meshes and metrics, byte for byte
 };
 
 /// The mesh adapted to the solution at one phase after the other. From one to the next, the goal
