@@ -30,6 +30,7 @@ struct Tuning<2> {
   /// How much longer than the rules want edges must be to be split, by stage.
   static constexpr double stages[] = {1};
   static constexpr double calm = 0.03;           ///< share of changes below which it is near
+  static constexpr double kept_shape = 1;        ///< of Rules, on the way to the metric
   static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
   static constexpr double swap_below = 0.9;      ///< mean ratio of elements that are swapped
   static constexpr double optimise_below = 0.8;  ///< of those that are optimised in the end
@@ -43,6 +44,7 @@ struct Tuning<3> {
   /// after it what is left of the longest.
   static constexpr double stages[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25, 1};
   static constexpr double calm = 0.05;
+  static constexpr double kept_shape = 0.2;
   static constexpr double stretched_edge = 1.55;
   static constexpr double swap_below = 0.8;
   static constexpr double optimise_below = 0.6;
@@ -186,6 +188,7 @@ double Adapter<Dim>::share(std::size_t changes) const {
 template <int Dim>
 Rules Adapter<Dim>::rules() const {
   Rules rules = options_.rules;
+  if (aim_ == Aim::approach) rules.kept_shape *= Tuning<Dim>::kept_shape;
   if (aim_ == Aim::rearrange) {
     rules.stretched_edge = Tuning<Dim>::stretched_edge;
     rules.short_edge *= eager;
@@ -228,7 +231,7 @@ void Adapter<Dim>::rearrange() {
   if (!options_.insert) return;
   aim_ = Aim::rearrange;
   seen_by_coarsen_ = 0;
-  for (int pass = 0; pass < (Dim == 2 ? 3 : 2); ++pass) {
+  for (int pass = 0; pass < 2; ++pass) {
     seen_by_smooth_ = mesh_.epoch - 1;
     coarsen();
     swap(4, Tuning<Dim>::swap_below);

@@ -102,7 +102,7 @@ bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const Ring& ring, double 
 
 template <int Dim>
 bool Coarsen<Dim>::keeps_shapes(const Plan& plan, double worst_before) const {
-  const double least = std::min(worst_before, rules_.accepted_shape);
+  const double least = std::min(rules_.kept_shape * worst_before, rules_.accepted_shape);
   const bool on_boundary = mesh_.kind_of[plan.gone].freedom < Dim;
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
   for (const ElementId e : mesh_.elements_of.of(plan.gone)) {

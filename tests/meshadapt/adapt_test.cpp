@@ -193,7 +193,7 @@ TEST_P(Adapt, ChangesLittleTheSecondTime) {
                         std::back_inserter(kept));
   EXPECT_GT(static_cast<double>(kept.size()), 0.98 * static_cast<double>(before.size()));
   const double quality = measure(executor, once.mesh, &once.metric).quality.mean;
-  EXPECT_GT(measure(executor, again.mesh, &again.metric).quality.mean, quality - 1e-4);
+  EXPECT_GT(measure(executor, again.mesh, &again.metric).quality.mean, quality - 5e-4);
 }
 
 TEST_P(Adapt, MendsAnAdaptedMeshWhereItMust) {
