@@ -134,13 +134,11 @@ void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
   }
   if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan, commit);
   mesh_.elements_of.clear(plan.gone);
-  for (const VertexId v : ring) {
-    if (v == plan.kept || mesh_.kind_of[v].freedom == 0) continue;
-    if (shorter_than(mesh_.site_of[v], mesh_.site_of[plan.kept], rules_.short_edge))
-      commit.wake(v);
-    else
-      commit.disturb(v);
-  }
+  for (const VertexId v : ring)
+    if (v != plan.kept && mesh_.kind_of[v].freedom != 0 &&
+        shorter_than(mesh_.site_of[v], mesh_.site_of[plan.kept], rules_.short_edge))
+      commit.reconsider(v);
+  // All new neighbours are neighbours of this one.
   if (mesh_.kind_of[plan.kept].freedom != 0) commit.wake(plan.kept);
 }
 

@@ -132,12 +132,18 @@ TEST(RunRoundsChecked, CatchesConflictsThatReachTooShort) {
 }
 
 TEST(RunRoundsChecked, CatchesAPlanThatChangesWhileItsItemWaits) {
-  const std::string message = caught(ContractRule::waiting_conflicts_kept,
+  const std::string message = caught(ContractRule::waiting_plan_kept,
                                      Bypass(10, {.wakes_back = false}), {Vertex{4}, Vertex{3}});
   EXPECT_NE(message.find("nobody woke"), std::string::npos) << message;
   EXPECT_NE(message.find("item 3, round 1"), std::string::npos) << message;
-  caught(ContractRule::waiting_conflicts_kept, Bypass(10, {.wakes_ahead = false}),
-         {Vertex{2}, Vertex{4}});
+}
+
+TEST(RunRoundsChecked, CatchesANewConflictOfTwoThatWait) {
+  const std::vector<Vertex> work{4, 3, 7};  // 3 and 7 are four apart until 4 bypasses 5
+  const std::string message = caught(ContractRule::waiting_conflicts_kept,
+                                     Bypass(10, {.wakes_back = false, .wakes_ahead = false}), work);
+  EXPECT_NE(message.find("item 3, round 1: it got a new conflict, with item 7"), std::string::npos)
+      << message;
 }
 
 TEST(RunRoundsChecked, CatchesAForgottenWake) {
@@ -176,7 +182,9 @@ class Lower {
   };
   struct Update {};
 
-  Lower(std::size_t n, bool wakes) : value(all_items(n)), wakes_(wakes) {
+  enum class Tells { nobody, woken, reconsidered };
+
+  Lower(std::size_t n, Tells tells) : value(all_items(n)), tells_(tells) {
     for (Vertex& v : value) v = mix32(v);
   }
   std::optional<Plan> plan(Vertex v) const {
@@ -192,23 +200,40 @@ class Lower {
   std::size_t item_count() const { return value.size(); }
   void apply(const Plan& plan, Commit<Lower>& commit) {
     value[plan.vertex] = plan.value;
-    if (wakes_) conflicts(plan.vertex, [&](Vertex u) { commit.wake(u); });
+    if (tells_ == Tells::woken) conflicts(plan.vertex, [&](Vertex u) { commit.wake(u); });
+    if (tells_ == Tells::reconsidered)
+      conflicts(plan.vertex, [&](Vertex u) { commit.reconsider(u); });
   }
   void commit(std::uint32_t, const Update&) {}
 
   std::vector<Vertex> value;  // [vertex]
 
  private:
-  bool wakes_;
+  Tells tells_;
 };
 
 TEST(RunRoundsChecked, CatchesAStalePlanOfAWaitingItem) {
   const std::string message =
-      caught(ContractRule::waiting_plan_kept, Lower(100, false), all_items(100));
+      caught(ContractRule::waiting_plan_kept, Lower(100, Lower::Tells::nobody), all_items(100));
   EXPECT_NE(message.find("its plan changed while it waited"), std::string::npos) << message;
-  Lower right(100, true);
-  run_rounds_checked(Executor({.threads = 1}), right, all_items(100));
-  EXPECT_EQ(std::count(right.value.begin(), right.value.end(), right.value[0]), 100);
+  for (const auto tells : {Lower::Tells::woken, Lower::Tells::reconsidered}) {
+    Lower right(100, tells);
+    run_rounds_checked(Executor({.threads = 1}), right, all_items(100));
+    EXPECT_EQ(std::count(right.value.begin(), right.value.end(), right.value[0]), 100);
+  }
+}
+
+TEST(RunRounds, ReconsideringDropsNobody) {
+  for (const int threads : {1, 2, 3, 4, 8}) {
+    Lower woken(1000, Lower::Tells::woken), reconsidered(1000, Lower::Tells::reconsidered);
+    const Executor executor({.threads = threads});
+    const RoundsReport a = run_rounds(executor, woken, all_items(1000));
+    const RoundsReport b = run_rounds(executor, reconsidered, all_items(1000));
+    EXPECT_EQ(woken.value, reconsidered.value);
+    EXPECT_GT(a.dropped, 0U);
+    EXPECT_EQ(b.dropped, 0U);
+    EXPECT_LE(b.rounds, a.rounds);
+  }
 }
 
 // ---- Operators by reservation ----

@@ -17,8 +17,8 @@ enum class ContractRule : std::uint8_t {
   touches_announced,       ///< what runs beside an item does not change its plan
   order_free,              ///< the order in which a batch is applied does not show
   fresh_demanded,          ///< apply() takes no more fresh numbers than demand() asked for
-  waiting_plan_kept,       ///< who waits in the round plans as before, or is woken
-  waiting_conflicts_kept,  ///< who waits in the round conflicts as before, or is woken
+  waiting_plan_kept,       ///< who waits in the round plans as before, or is woken or reconsidered
+  waiting_conflicts_kept,  ///< who waits in the round gets no new conflict with another that waits
   woken_if_plannable,      ///< who had its turn and can plan again is woken
 };
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/worklist.hpp"
@@ -44,6 +45,7 @@ concept Operator = requires(Op& op, const Op& reader, const typename Op::Item it
 /// Items are numbers below item_count(); conflicts(item, visit) visits those it may not run beside
 /// (symmetric; repetition is allowed). If applying never changes what conflicts, the operator says
 /// so by a member `keeps_conflicts`; items that were woken then need not leave the round.
+/// Else whoever gets a new conflict must be woken, or have it with one that is woken.
 template <class Op>
 concept ColouredOperator = Operator<Op> && std::same_as<typename Op::Item, std::uint32_t> &&
     requires(const Op& op, std::uint32_t item) {
@@ -129,11 +131,12 @@ class Commit {
     woken_->append(std::move(item));
   }
 
-  /// Says that an item's conflicts may have changed but nothing else that matters to it: if it is
-  /// still to be planned in this round, it leaves the round and comes back in the next one.
-  void disturb(Item item) requires ColouredOperator<Op> {
-    std::atomic_ref(woken_at_[item]).store(window_, std::memory_order_relaxed);
-    if (turn_of_[item] > turn_ && turn_of_[item] != 0xffffffffU) woken_->append(item);
+  /// Like wake() for an item whose plan may have changed, but of whose conflicts none is new save
+  /// with items that are woken: if it is still to be planned in this window, it stays for its turn.
+  void reconsider(Item item) requires ColouredOperator<Op> {
+    const bool waits = turn_of_[item] > turn_ && turn_of_[item] != 0xffffffffU;
+    if (!waits) return wake(item);
+    if (reconsidered_ != nullptr) reconsidered_->push_back(item);
   }
 
   /// The next of the numbers of this kind that demand() asked for.
@@ -146,9 +149,10 @@ class Commit {
   friend class detail::OppositeOrder<Op>;
   DeferredUpdate<Update>* deferred_ = nullptr;
   Worklist<Item>* woken_ = nullptr;
-  std::uint32_t* woken_at_ = nullptr;       // [item], the window it was last woken in
-  const std::uint32_t* turn_of_ = nullptr;  // [item], its class in this window
-  std::uint32_t turn_ = 0;                  // the class being applied
+  std::uint32_t* woken_at_ = nullptr;          // [item], the window it was last woken in
+  const std::uint32_t* turn_of_ = nullptr;     // [item], its class in this window
+  std::uint32_t turn_ = 0;                     // the class being applied
+  std::vector<Item>* reconsidered_ = nullptr;  // if rounds are checked
   std::uint64_t source_ = 0;
   std::uint32_t window_ = 0;
   std::array<std::uint32_t, detail::Kinds<Op>::count> next_{};

@@ -30,6 +30,7 @@ class OperatorCheck {
 
   void begin_round(const Op& op, std::uint32_t round, const std::vector<Item>& work) {
     round_ = round;
+    reconsidered.clear();
     if constexpr (ColouredOperator<Op>) {
       note_waiting(op, work);
     } else {
@@ -37,17 +38,25 @@ class OperatorCheck {
     }
   }
 
-  /// After a batch, for an item that waits for its turn and was neither woken nor disturbed.
-  void expect_kept(const Op& op, Item item) requires ColouredOperator<Op> {
+  /// After a batch, for an item for which waits(item) holds: it is still to have its turn and was
+  /// not woken.
+  void expect_kept(const Op& op, Item item, auto&& waits) const requires ColouredOperator<Op> {
     const std::size_t i = place_of_[item];
-    if (conflicts_of(op, item) != conflicts_[i])
-      refuse(ContractRule::waiting_conflicts_kept, item, i,
-             "its conflicts changed while it waited for its turn, and nobody woke or disturbed it");
-    if constexpr (requires { Op::keeps_conflicts; }) return;
+    for (const std::uint32_t other : conflicts_of(op, item))
+      if (waits(other) && !std::binary_search(conflicts_[i].begin(), conflicts_[i].end(), other))
+        refuse(ContractRule::waiting_conflicts_kept, item, i,
+               "it got a new conflict, with item " + std::to_string(other) +
+                   ", while both waited for their turn, and nobody woke one of them");
+    if constexpr (
+        requires { Op::keeps_conflicts; } || requires { Op::forgoes_wakes; })
+      return;
+    if (std::find(reconsidered.begin(), reconsidered.end(), item) != reconsidered.end()) return;
     if (!same_plan<Op>(op.plan(item), plans_[i]))
       refuse(ContractRule::waiting_plan_kept, item, i,
-             "its plan changed while it waited for its turn, and nobody woke or disturbed it");
+             "its plan changed while it waited for its turn, and nobody woke it");
   }
+
+  std::vector<Item> reconsidered;  ///< in this round, while they waited for their turn
 
   /// plans[i] and commits[i] belong to items[i].
   struct Batch {

@@ -151,8 +151,11 @@ class Rounds {
 
   /// Those that wait for a later turn begin here.
   void check_waiting(std::size_t begin) {
+    const auto waits = [&](const Item& item) {
+      return turn_of_[item] > turn_ && turn_of_[item] != absent && woken_at_[item] != window_;
+    };
     for (std::size_t i = begin; i < by_class_.size(); ++i)
-      if (woken_at_[by_class_[i]] != window_) check_.expect_kept(op_, by_class_[i]);
+      if (waits(by_class_[i])) check_.expect_kept(op_, by_class_[i], waits);
   }
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
@@ -403,6 +406,7 @@ class Rounds {
       commit.turn_ = static_cast<std::uint32_t>(turn_);
     }
     commit.window_ = window_;
+    if constexpr (Check::on) commit.reconsidered_ = &check_.reconsidered;
     return commit;
   }
 
