@@ -293,10 +293,7 @@ class Rounds {
       apply_plans(blocks);
     }
     const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
-    const std::size_t updates = deferred_.size();
-    report_.committed += updates;
-    if (updates == 0) return;
-    deferred_.commit(
+    report_.committed += deferred_.commit(
         [&](std::uint32_t owner, Update& update) { op_.commit(owner, std::move(update)); });
   }
 
@@ -395,7 +392,7 @@ class Rounds {
 
   Commit<Op> new_commit() {
     Commit<Op> commit;
-    commit.deferred_ = &deferred_;
+    commit.deferrer_ = deferred_.deferrer();
     commit.woken_ = &woken_;
     if constexpr (ColouredOperator<Op>) {
       commit.woken_at_ = woken_at_.data();
