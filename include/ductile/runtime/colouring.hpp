@@ -69,15 +69,18 @@ template <class Method, Graph G>
 std::uint32_t colour_all(const Executor& executor, const G& graph,
                          std::vector<std::uint32_t>& colour_of, VertexSet vertices) {
   try {
-    return colour_in_bytes<Method, Narrow>(executor, graph, colour_of, vertices);
+    return colour_in_bytes<Method, typename WidthOf<Method, Narrow>::Type>(executor, graph,
+                                                                           colour_of, vertices);
   } catch (const TooManyColours&) {
   }
   try {
-    return colour_in_bytes<Method, OneByte>(executor, graph, colour_of, vertices);
+    return colour_in_bytes<Method, typename WidthOf<Method, OneByte>::Type>(executor, graph,
+                                                                            colour_of, vertices);
   } catch (const TooManyColours&) {
   }
   std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
-  Method::run(executor, graph, vertices, Colours<FourBytes>(colour_of));
+  using Width = typename WidthOf<Method, FourBytes>::Type;
+  Method::run(executor, graph, vertices, Colours<Width>(colour_of));
   return colour_count(executor, colour_of);
 }
 
@@ -146,7 +149,8 @@ void recolour(const Executor& executor, const G& graph, std::span<const std::uin
     // Scattered vertices hardly wait for each other, and blocks would cost as if all were there.
     detail::colour_by_priority(executor, graph, vertices, colours, detail::outranks);
   } else {
-    detail::Blocked::run(executor, graph, set, colours);
+    using Width = detail::WidthOf<detail::Blocked, detail::FourBytes>::Type;
+    detail::Blocked::run(executor, graph, set, detail::Colours<Width>(colour_of));
   }
   const auto next = [&](std::size_t i) { return colour_of[vertices[i]] + 1; };
   const auto greater = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); };

@@ -33,20 +33,44 @@ struct VertexSet {
 /// There is no such colour in these words; the colouring starts again with longer ones.
 struct TooManyColours {};
 
-// ---- Widths: words that hold colours, and the greatest colour; two marks are above it
+// ---- Widths: words that hold colours, and the greatest colour; above it are `marks` marks of who
+// ---- colours a vertex, and two that say that it has no colour
 
 /// So few colours that TakenColours has room for them all: no look at how great a colour is.
 struct Narrow {
   using Word = std::uint8_t;
   static constexpr Word most = 61;
+  static constexpr std::uint32_t marks = 0;
 };
 struct OneByte {
   using Word = std::uint8_t;
   static constexpr Word most = 253;
+  static constexpr std::uint32_t marks = 0;
 };
 struct FourBytes {
   using Word = std::uint32_t;
   static constexpr Word most = 0xfffffffd;
+  static constexpr std::uint32_t marks = 0;
+};
+
+/// A width that gives up its greatest colours for marks: a vertex that is being coloured shows, in
+/// place of a colour, by whom. Who looks at its neighbours' colours then sees at no cost whether
+/// others are coloured at the same time: a mark is one more bit of TakenColours.
+template <class Width, std::uint32_t Marks>
+struct WithMarks {
+  using Word = typename Width::Word;
+  static constexpr std::uint32_t marks = Marks;
+  static constexpr Word most = Width::most - marks;
+};
+
+/// The width a method wants in place of this one: WithMarks if there are Method::marks.
+template <class Method, class Width>
+struct WidthOf {
+  using Type = Width;
+};
+template <class Method, class Width>
+requires(Method::marks > 0) struct WidthOf<Method, Width> {
+  using Type = WithMarks<Width, Method::marks>;
 };
 
 template <class Width>
@@ -56,6 +80,11 @@ class Colours {
   static constexpr Word none = static_cast<Word>(~Word{0});  ///< not yet coloured
   static constexpr Word waiting = none - 1;                  ///< lost its colour, will get another
   static constexpr Word most = Width::most;
+  static constexpr std::uint32_t marks = Width::marks;
+  /// Stands for a colour while whoever has this number colours the vertex.
+  static constexpr Word mark(std::uint32_t number) {
+    return static_cast<Word>(waiting - 1 - number);
+  }
 
   explicit Colours(std::span<Word> words) : words_(words) {}
 
@@ -75,14 +104,27 @@ class Colours {
 /// Colours, or shows some of them.
 template <class View>
 struct TakenColours {
-  static constexpr std::uint32_t count = 62;
+  static constexpr std::uint32_t count = 62 - View::marks;
 
-  std::uint64_t bits = 0;  ///< `waiting` and `none` fall on those beyond the count, or on none
+  std::uint64_t bits = 0;  ///< marks, `waiting` and `none` fall on those beyond the count; of views
+                           ///< without marks perhaps on none
 
   void add(std::uint32_t colour) {  // not of bytes, which GCC 12 may put into mask registers
+    using Word = typename View::Word;
     std::uint64_t bit = 1;
-    if constexpr (View::most >= count) bit = colour < count ? 1 : 0;
+    if constexpr (View::most >= count) {
+      if constexpr (View::marks == 0) {
+        bit = colour < count ? 1 : 0;
+      } else {  // what is not a colour follows the last word, and so precedes the first
+        bit = static_cast<Word>(colour + (64 - count)) < 64 ? 1 : 0;
+      }
+    }
     bits |= bit << (colour & 63U);
+  }
+  /// A neighbour is `waiting`, or has the mark of another than this.
+  bool shows_others(std::uint32_t number) const {
+    constexpr std::uint64_t all = ~std::uint64_t{0} << count << 1U >> 1U;  // but that of `none`
+    return (bits & (all & ~(std::uint64_t{1} << (61 - number)))) != 0;
   }
 };
 
@@ -147,17 +189,6 @@ template <Graph G, class View>
   TakenColours<View> seen;
   graph.for_each_neighbour(v, [&](std::uint32_t u) { seen.add(colours[u]); });
   return least_free(graph, v, colours, seen);
-}
-
-/// A neighbour of lower id has v's colour.
-template <class Width, Graph G>
-bool clashes(const G& graph, std::uint32_t v, const Colours<Width>& colours) {
-  const std::uint32_t own = colours[v];
-  unsigned clash = 0;
-  graph.for_each_neighbour(v, [&](std::uint32_t u) {
-    clash |= static_cast<unsigned>(u < v) & static_cast<unsigned>(colours[u] == own);
-  });
-  return clash != 0;
 }
 
 /// First-fit in order, on the caller.
