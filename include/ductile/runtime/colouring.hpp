@@ -13,6 +13,7 @@
 
 #include "ductile/runtime/detail/blocked_colouring.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/marked_colouring.hpp"
 #include "ductile/runtime/detail/priority_colouring.hpp"
 #include "ductile/runtime/detail/speculative_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -44,7 +45,8 @@ struct Colouring {
 
 namespace detail {
 
-constexpr std::size_t few_vertices = 256;  // coloured on the caller, in order
+constexpr std::size_t few_vertices = 256;    // coloured on the caller, in order
+constexpr std::size_t many_vertices = 8192;  // worth the launches of MarkedBlocks
 
 /// Copies colours of one byte to words of four. Returns one more than the greatest.
 std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
@@ -54,7 +56,7 @@ std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> byte
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
 
 /// Colours all, in this order, by a method, with words of one byte. Returns one more than the
-/// greatest colour.
+/// greatest colour. Throws TooManyColours.
 template <class Method, class Width, Graph G>
 std::uint32_t colour_in_bytes(const Executor& executor, const G& graph,
                               std::vector<std::uint32_t>& colour_of, VertexSet vertices) {
@@ -68,16 +70,17 @@ std::uint32_t colour_in_bytes(const Executor& executor, const G& graph,
 template <class Method, Graph G>
 std::uint32_t colour_all(const Executor& executor, const G& graph,
                          std::vector<std::uint32_t>& colour_of, VertexSet vertices) {
+  constexpr std::uint32_t marks = Method::marks;
   try {
-    return colour_in_bytes<Method, Narrow>(executor, graph, colour_of, vertices);
+    return colour_in_bytes<Method, Narrow<marks>>(executor, graph, colour_of, vertices);
   } catch (const TooManyColours&) {
   }
   try {
-    return colour_in_bytes<Method, OneByte>(executor, graph, colour_of, vertices);
+    return colour_in_bytes<Method, OneByte<marks>>(executor, graph, colour_of, vertices);
   } catch (const TooManyColours&) {
   }
   std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
-  Method::run(executor, graph, vertices, Colours<FourBytes>(colour_of));
+  Method::run(executor, graph, vertices, Colours<FourBytes<marks>>(colour_of));
   return colour_count(executor, colour_of);
 }
 
@@ -105,7 +108,11 @@ Colouring colour(const Executor& executor, const G& graph,
       break;
     case ColouringMethod::automatic:  // blocked is deterministic and not far from the fastest
     case ColouringMethod::blocked:
-      by(detail::Blocked());
+      if (colour_of.size() < detail::many_vertices) {
+        by(detail::Blocked());
+      } else {
+        by(detail::MarkedBlocks());
+      }
       break;
     case ColouringMethod::by_priority:
       by(detail::ByPriority());
@@ -139,7 +146,7 @@ void recolour(const Executor& executor, const G& graph, std::span<const std::uin
       executor, vertices.size(), [&](std::size_t i) { colour_of[vertices[i]] = Colouring::none; },
       loop);
   const detail::VertexSet set{vertices.size(), vertices.data()};
-  const detail::Colours<detail::FourBytes> colours(colour_of);
+  const detail::Colours<detail::FourBytes<>> colours(colour_of);
   if (vertices.size() < detail::few_vertices) {
     detail::Serial::run(executor, graph, set, colours);
   } else if (vertices.size() < colour_of.size() / 16) {

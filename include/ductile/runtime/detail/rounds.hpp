@@ -148,10 +148,10 @@ class Rounds {
     Colouring colouring;
     colouring.colour_of.resize(graph.vertex_count(), Colouring::none);
     const detail::VertexSet all{graph.vertex_count()};
-    const detail::Colours<detail::FourBytes> colours(colouring.colour_of);
+    const detail::Colours<detail::FourBytes<>> colours(colouring.colour_of);
     if (all.count >= detail::few_vertices) {
       try {
-        colouring.count = detail::colour_in_bytes<detail::Blocked, detail::Narrow>(
+        colouring.count = detail::colour_in_bytes<detail::Blocked, detail::Narrow<>>(
             executor_, graph, colouring.colour_of, all);
         return colouring;
       } catch (const detail::TooManyColours&) {
