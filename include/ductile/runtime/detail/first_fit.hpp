@@ -183,11 +183,14 @@ template <Graph G, class View>
 /// First-fit in order, on the caller.
 struct Serial {
   static constexpr std::uint32_t marks = 0;
+  static constexpr bool resumes = true;  ///< goes on after TooManyColours, given longer words
 
   template <class Width, Graph G>
   static void run(const Executor&, const G& graph, VertexSet vertices, Colours<Width> colours) {
     const auto& rows = in_registers(graph);
-    for (std::size_t i = 0; i < vertices.count; ++i) {
+    std::size_t i = 0;
+    while (i < vertices.count && colours[vertices[i]] != Colours<Width>::none) ++i;
+    for (; i < vertices.count; ++i) {
       prefetch_after(rows, vertices, i);
       colours.set(vertices[i], least_free(rows, vertices[i], colours));
     }

@@ -150,9 +150,11 @@ class Rounds {
     const detail::VertexSet all{graph.vertex_count()};
     const detail::Colours<detail::FourBytes<>> colours(colouring.colour_of);
     if (all.count >= detail::few_vertices) {
+      using Width = detail::Narrow<>;
+      std::vector<std::uint8_t> bytes(all.count, detail::Colours<Width>::none);
       try {
-        colouring.count = detail::colour_in_bytes<detail::Blocked, detail::Narrow<>>(
-            executor_, graph, colouring.colour_of, all);
+        colouring.count = detail::colour_in_bytes<detail::Blocked, Width>(
+            executor_, graph, colouring.colour_of, all, bytes);
         return colouring;
       } catch (const detail::TooManyColours&) {
       }

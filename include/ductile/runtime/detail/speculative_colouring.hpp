@@ -1,8 +1,7 @@
 /// @file
 /// Parallel colourings that speculate: every vertex takes the least colour it sees free, without
 /// waiting for anybody; neighbours that did so at the same moment may clash, and one of them is
-/// coloured again. Rounds go on until there is no clash. The colours depend on timing; a team of
-/// one has no clashes to look for and gives serial first-fit's.
+/// coloured again. Rounds go on until there is no clash. The colours depend on timing.
 /// Threads take windows of vertices, each from a part of its own while that lasts, and mark them
 /// before they start. Of two that clash one at least saw the other's mark, as each thread marks
 /// before it reads: only who saw a mark is looked at again.
@@ -100,8 +99,7 @@ struct TwoPhase {
   static constexpr std::uint32_t marks = speculative_marks;
 
   template <class Width, Graph G>
-  static void run(const Executor& executor, const G& graph, VertexSet all, Colours<Width> colours) {
-    if (executor.threads() == 1) return Serial::run(executor, graph, all, colours);
+  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
     std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, colours).run();
     Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
     for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
@@ -128,8 +126,7 @@ struct DetectAgain {
   static constexpr std::uint32_t marks = speculative_marks;
 
   template <class Width, Graph G>
-  static void run(const Executor& executor, const G& graph, VertexSet all, Colours<Width> colours) {
-    if (executor.threads() == 1) return Serial::run(executor, graph, all, colours);
+  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
     std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, colours).run();
     Worklist<std::uint32_t> recoloured(executor, {.order = WorkOrder::arrival});
     for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
