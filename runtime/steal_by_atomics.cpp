@@ -2,10 +2,11 @@
 /// Work stealing by compare-and-swap. Every thread starts with an equal part of the chunks, kept as
 /// one packed word, and takes chunks from its front: many at once while it has many, so that
 /// taking them costs nothing, and single ones in the end. A thread without work looks for the
-/// longest part and takes the back half of it. A thread leaves when it finds nothing to take: what
-/// others still run cannot be shared any more, so nobody waits here but for the join. The words
-/// carry numbers of chunks only, so all orders are relaxed: what bodies read was written before the
-/// loop began, what they write is read after the join.
+/// longest part and takes the back half of it. The last chunk of all is begun first: in order it
+/// would be begun last, and if it is a long one, everybody would wait for it. A thread leaves when
+/// it finds nothing to take: what others still run cannot be shared any more, so nobody waits here
+/// but for the join. The words carry numbers of chunks only, so all orders are relaxed: what bodies
+/// read was written before the loop began, what they write is read after the join.
 
 #include <algorithm>
 #include <atomic>
@@ -44,6 +45,18 @@ struct alignas(128) PartOfThread {
         return {part.begin, end};
     }
   }
+
+  /// Takes the part's last chunk, if there is one.
+  Part take_last() {
+    std::uint64_t seen = word.load(std::memory_order_relaxed);
+    for (;;) {
+      const Part part = Part::of(seen);
+      if (part.size() == 0) return part;
+      if (word.compare_exchange_weak(seen, Part{part.begin, part.end - 1}.word(),
+                                     std::memory_order_relaxed))
+        return {part.end - 1, part.end};
+    }
+  }
 };
 
 using Parts = std::span<PartOfThread>;
@@ -70,10 +83,16 @@ bool steal(Parts parts, PartOfThread& mine) {
   }
 }
 
+/// False if the loop is to stop.
+bool run_chunks(Loop& loop, Part part) {
+  return part.size() == 0 ||
+         loop.run(part.begin * loop.grain, std::min(loop.n, part.end * loop.grain));
+}
+
 void work_and_steal(Loop& loop, Parts parts, PartOfThread& mine) {
   do {
     for (Part taken = mine.take_front(); taken.size() > 0; taken = mine.take_front())
-      if (!loop.run(taken.begin * loop.grain, std::min(loop.n, taken.end * loop.grain))) return;
+      if (!run_chunks(loop, taken)) return;
   } while (steal(parts, mine));
 }
 
@@ -95,7 +114,9 @@ void run_steal_by_atomics(const Executor& executor, Loop& loop) {
   }
   // Should the team be smaller than it was to be, the parts without a thread are stolen.
   run_team(executor, [&](int thread) {
-    work_and_steal(loop, parts, parts[static_cast<std::size_t>(thread)]);
+    PartOfThread& mine = parts[static_cast<std::size_t>(thread)];
+    if (thread + 1 == executor.threads() && !run_chunks(loop, mine.take_last())) return;
+    work_and_steal(loop, parts, mine);
   });
 }
 

@@ -3,10 +3,12 @@
 /// (DeferredUpdate), or at once under a lock or by an atomic, or kept in other containers.
 /// Item i of a loop adds i to the sum of an owner. Floor: it writes both into an array of its own.
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <mutex>
 #include <numeric>
+#include <tuple>
 #include <utility>
 #ifdef DUCTILE_BENCH_TBB
 #include <tbb/concurrent_vector.h>
@@ -60,6 +62,8 @@ void add_buffers(const std::string& candidate, Make make) {
           const Executor executor({.threads = threads});
           Sums sums(c.count);
           auto carry_out = make(executor, c);
+          carry_out(sums);  // its memory is there from now on, as the floor's is
+          std::fill(sums.begin(), sums.end(), 0U);
           for (auto _ : state) carry_out(sums);
           const auto sum = std::accumulate(sums.begin(), sums.end(), 0U);  // all of these wrap
           const std::uint32_t once =
@@ -82,34 +86,53 @@ void add_floor(const std::string& subject) {
         });
 }
 
-void add_deferred(const std::string& name, CommitOrder order) {
-  add_buffers(name, [order](const Executor& executor, const Case& c) {
-    using Deferred = runtime::DeferredUpdate<std::uint32_t>;
-    return [&executor, &c,
+using Deferred = runtime::DeferredUpdate<std::uint32_t>;
+
+/// How a loop defers.
+enum class Way {
+  each,  ///< DeferredUpdate::defer() for every update
+  run,   ///< a Deferrer for every run of iterations that a thread gets, as run_rounds has it
+};
+
+void defer_all(const Executor& executor, const Case& c, Deferred& deferred, Way way) {
+  if (way == Way::each) {
+    parallel_for(executor, c.count, [&](std::size_t i) {
+      const Update update = c.update(i);
+      deferred.defer(update.owner, i, update.value);
+    });
+  } else {
+    runtime::parallel_for_ranges(executor, c.count, [&](std::size_t begin, std::size_t end) {
+      const auto deferrer = deferred.deferrer();
+      for (std::size_t i = begin; i < end; ++i) {
+        const Update update = c.update(i);
+        deferrer.defer(update.owner, i, update.value);
+      }
+    });
+  }
+}
+
+void add_deferred(const std::string& name, CommitOrder order, Way way) {
+  add_buffers(name, [order, way](const Executor& executor, const Case& c) {
+    return [&executor, &c, way,
             deferred = std::make_unique<Deferred>(
                 executor, runtime::DeferredUpdateOptions{.order = order})](Sums& sums) {
-      parallel_for(executor, c.count, [&](std::size_t i) {
-        const Update update = c.update(i);
-        deferred->defer(update.owner, i, update.value);
-      });
+      defer_all(executor, c, *deferred, way);
       deferred->commit([&](std::uint32_t owner, std::uint32_t value) { sums[owner] += value; });
     };
   });
 }
 
 /// Without the commit: what a loop pays for an update that it defers.
-void add_deferring(const std::string& name, CommitOrder order) {
+void add_deferring(const std::string& name, CommitOrder order, Way way) {
   for (const Case& c : cases())
     add("deferring/" + c.name + '/' + name, thread_counts(),
-        [c, order](benchmark::State& state, int threads) {
+        [c, order, way](benchmark::State& state, int threads) {
           const Executor executor({.threads = threads});
-          runtime::DeferredUpdate<std::uint32_t> deferred(executor, {.order = order});
+          Deferred deferred(executor, {.order = order});
+          defer_all(executor, c, deferred, way);  // its memory is there from now on
           for (auto _ : state) {
             deferred.clear();
-            parallel_for(executor, c.count, [&](std::size_t i) {
-              const Update update = c.update(i);
-              deferred.defer(update.owner, i, update.value);
-            });
+            defer_all(executor, c, deferred, way);
           }
           if (deferred.size() != c.count) state.SkipWithError("updates were lost");
         });
@@ -207,10 +230,14 @@ class TwoPasses {
 void add_all() {
   add_floor("buffers");
   add_floor("deferring");
-  for (const auto& [name, order] : {std::pair("ductile.any_order", CommitOrder::any),
-                                    std::pair("ductile.by_source", CommitOrder::by_source)}) {
-    add_deferred(name, order);
-    add_deferring(name, order);
+  const std::tuple<const char*, CommitOrder, Way> ways[] = {
+      {"ductile.any_order", CommitOrder::any, Way::each},
+      {"ductile.any_order_in_runs", CommitOrder::any, Way::run},
+      {"ductile.by_source", CommitOrder::by_source, Way::each},
+      {"ductile.by_source_in_runs", CommitOrder::by_source, Way::run}};
+  for (const auto& [name, order, way] : ways) {
+    add_deferred(name, order, way);
+    add_deferring(name, order, way);
   }
   add_atomic();
   add_mutexes("mutex.one", 1);

@@ -138,34 +138,47 @@ TEST(Colouring, ByPriorityIsFirstFitInItsOrder) {
           << graph.name;
 }
 
-/// Cliques of sizes that just fit into words of each width, and just do not.
+/// Cliques of sizes that just fit into words of each width, and just do not, on few vertices and on
+/// enough for marks.
 TEST(Colouring, TakesAsManyColoursAsAreNeeded) {
-  for (const std::uint32_t clique : {62U, 63U, 64U, 254U, 255U, 1100U}) {
-    test::Edges edges;
-    for (std::uint32_t u = 0; u < clique; ++u)
-      for (std::uint32_t v = 0; v < u; ++v) edges.emplace_back(5 * u, 5 * v);
-    const auto graph = test::make_graph("clique and lone vertices", 5 * clique, std::move(edges));
-    const int threads = clique < 1000 ? 4 : 2;
-    const Executor executor({.threads = threads});
-    for (const ColouringMethod method : methods) {
-      const Colouring colouring = colour(executor, graph.view(), method);
-      EXPECT_EQ(colouring.count, clique) << static_cast<int>(method);
-      EXPECT_TRUE(is_proper(executor, graph.view(), colouring)) << clique;
+  for (const std::uint32_t clique : {30U, 31U, 47U, 63U, 64U, 222U, 223U, 239U, 254U, 255U, 1100U})
+    for (const std::uint32_t vertices : {5 * clique, 9900U}) {
+      const auto graph = test::make_graph("clique and lone vertices", vertices,
+                                          test::clique_edges(vertices / clique, clique));
+      const int threads = clique < 1000 ? 4 : 2;
+      const Executor executor({.threads = threads});
+      for (const ColouringMethod method : methods) {
+        const Colouring colouring = colour(executor, graph.view(), method);
+        EXPECT_EQ(colouring.count, clique) << static_cast<int>(method);
+        EXPECT_TRUE(is_proper(executor, graph.view(), colouring)) << clique;
+      }
     }
-  }
 }
 
-/// Windows that are coloured at the same time share many edges here.
+/// Windows that are coloured at the same time share many edges here; 40 threads share marks.
 TEST(Colouring, FindsAllClashesOfSpeculation) {
   for (const auto& graph : {test::mesh_graph(300), test::shuffled(test::mesh_graph(300), 7),
                             test::random_graph(20000, 400000, 8), test::rmat_graph(14, 200000, 9)})
     for (const ColouringMethod method : {ColouringMethod::detect_again, ColouringMethod::two_phase})
-      for (int threads : {2, 3, 4, 8}) {
+      for (int threads : {2, 3, 4, 8, 40}) {
         const Executor executor({.threads = threads});
         for (int run = 0; run < 5; ++run)
           EXPECT_TRUE(is_proper(executor, graph.view(), colour(executor, graph.view(), method)))
               << graph.name << ", threads " << threads;
       }
+}
+
+/// Many vertices hide their colours here, and clash: a sixteenth of the neighbours are coloured at
+/// the same time, at 31 colours and above with wide words.
+TEST(Colouring, OfBlocksWithManyClashesIsTheSameAtAnyThreadCount) {
+  for (const auto& graph : {test::random_graph(33000, 500000, 11), test::rmat_graph(15, 600000, 12),
+                            test::shuffled(test::mesh_graph(182), 13)}) {
+    const Colouring first = colour(Executor({.threads = 1}), graph.view());
+    EXPECT_TRUE(is_proper(Executor({.threads = 1}), graph.view(), first)) << graph.name;
+    for (int threads : {2, 3, 8, 40})
+      EXPECT_EQ(colour(Executor({.threads = threads}), graph.view()).colour_of, first.colour_of)
+          << graph.name << ", threads " << threads;
+  }
 }
 
 TEST(Colouring, OfACallbackIsThatOfItsRows) {

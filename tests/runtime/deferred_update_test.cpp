@@ -90,6 +90,73 @@ TEST(DeferredUpdate, SortsSourcesThatCameInNoOrder) {
   }
 }
 
+/// Threads that take parts of a loop from each other leave pieces in order, which may reach over
+/// each other.
+TEST(DeferredUpdate, MergesPiecesOfALoop) {
+  constexpr std::uint64_t far = std::uint64_t{1} << 40U;  // sources of more than 32 bits
+  const std::vector<std::vector<std::uint64_t>> starts = {
+      {0, 1000, 2000},      {2000, 0, 1000}, {0, 2000, 1000}, {0, 400, 200},
+      {far, 0, far + 1000}, {500, 0, 1000},  {0, 0, 500}};
+  for (const auto& start : starts) {
+    DeferredUpdate<std::uint64_t> deferred(Executor({.threads = 1}),
+                                           {.order = CommitOrder::by_source});
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> expected, got;  // source, update
+    for (const std::uint64_t first : start)
+      for (std::uint64_t source = first; source < first + 1000; ++source) {
+        expected.emplace_back(source, expected.size());
+        deferred.defer(7, source, expected.size() - 1);
+      }
+    const auto by_source = [](const auto& a, const auto& b) { return a.first < b.first; };
+    const auto deferred_in_order = expected;
+    std::stable_sort(expected.begin(), expected.end(), by_source);
+    EXPECT_EQ(deferred.commit([&](std::uint32_t, std::uint64_t update) {
+      got.push_back(deferred_in_order[update]);
+    }),
+              3000U);
+    EXPECT_EQ(got, expected);
+  }
+}
+
+TEST(DeferredUpdate, LendsADeferrerForManyUpdates) {
+  constexpr std::uint32_t sources = 20000, owners = 3000;
+  const History expected = serial_history(sources, owners);
+  for (int threads : {1, 2, 8}) {
+    const Executor executor({.threads = threads});
+    DeferredUpdate<std::uint64_t> deferred(executor, {.order = CommitOrder::by_source});
+    for (int round = 0; round < 3; ++round) {
+      parallel_for_ranges(executor, sources, [&](std::size_t begin, std::size_t end) {
+        const Deferrer<std::uint64_t> mine = deferred.deferrer();
+        for (std::size_t i = begin; i < end; ++i)
+          updates_of(static_cast<std::uint32_t>(i), owners,
+                     [&](std::uint32_t o, std::uint64_t u) { mine.defer(o, i, u); });
+      });
+      History history(owners);
+      deferred.commit([&](std::uint32_t o, std::uint64_t& u) { history[o].push_back(u); });
+      EXPECT_EQ(history, expected) << threads;
+      if (round == 1) deferred.release();
+    }
+  }
+}
+
+TEST(DeferredUpdate, KeepsNothingOfAnUpdateThatCannotBeCopied) {
+  struct Stubborn {
+    bool stubborn = false;
+    Stubborn() = default;
+    explicit Stubborn(bool is) : stubborn(is) {}
+    Stubborn(const Stubborn& other) : stubborn(other.stubborn) {
+      if (stubborn) throw std::runtime_error("no");
+    }
+    Stubborn(Stubborn&&) noexcept = default;
+  };
+  DeferredUpdate<Stubborn> deferred(Executor({.threads = 1}));
+  const Stubborn bad(true), good(false);
+  EXPECT_THROW(deferred.defer(1, 1, bad), std::runtime_error);
+  EXPECT_EQ(deferred.size(), 0U);
+  deferred.defer(1, 1, good);
+  EXPECT_THROW(deferred.defer(1, 1, bad), std::runtime_error);
+  EXPECT_EQ(deferred.commit([](std::uint32_t, Stubborn& s) { EXPECT_FALSE(s.stubborn); }), 1U);
+}
+
 TEST(DeferredUpdate, CarriesMoveOnlyAndLargeUpdates) {
   const Executor executor({.threads = 2});
   DeferredUpdate<std::unique_ptr<int>> owned(executor, {.order = CommitOrder::by_source});

@@ -61,12 +61,19 @@ inline TestGraph path_graph(std::uint32_t vertices) {
   return make_graph("path", vertices, std::move(edges));
 }
 
+/// Every pair among `clique` vertices that are `step` apart.
+inline Edges clique_edges(std::uint32_t step, std::uint32_t clique) {
+  Edges edges;
+  for (std::uint32_t u = 0; u < clique; ++u)
+    for (std::uint32_t v = 0; v < u; ++v) edges.emplace_back(u * step, v * step);
+  return edges;
+}
+
 /// A path, and every pair among `clique` vertices spread over it: needs `clique` colours.
 inline TestGraph clique_graph(std::uint32_t vertices, std::uint32_t clique) {
   Edges edges = path_graph(vertices).edges;
-  const std::uint32_t step = vertices / clique;
-  for (std::uint32_t u = 0; u < clique; ++u)
-    for (std::uint32_t v = 0; v < u; ++v) edges.emplace_back(u * step, v * step);
+  const Edges more = clique_edges(vertices / clique, clique);
+  edges.insert(edges.end(), more.begin(), more.end());
   return make_graph("clique", vertices, std::move(edges));
 }
 

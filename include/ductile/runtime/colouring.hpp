@@ -13,6 +13,7 @@
 
 #include "ductile/runtime/detail/blocked_colouring.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/marked_colouring.hpp"
 #include "ductile/runtime/detail/priority_colouring.hpp"
 #include "ductile/runtime/detail/speculative_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -24,7 +25,7 @@ namespace ductile::runtime {
 enum class ColouringMethod {
   automatic,          ///< blocked: parallel, and the same at any thread count
   serial,             ///< first-fit in vertex order on the calling thread
-  blocked,            ///< strided blocks side by side, clashes repaired by priority; deterministic
+  blocked,            ///< blocks side by side, clashes repaired by priority; deterministic
   by_priority,        ///< hashed priority decides who waits for whom; deterministic, a yardstick
                       ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
   largest_first,      ///< by_priority, but greater degrees go first: fewer colours, longer chains
@@ -44,7 +45,8 @@ struct Colouring {
 
 namespace detail {
 
-constexpr std::size_t few_vertices = 256;  // coloured on the caller, in order
+constexpr std::size_t few_vertices = 256;    // coloured on the caller, in order
+constexpr std::size_t many_vertices = 8192;  // worth the launches of MarkedBlocks
 
 /// Copies colours of one byte to words of four. Returns one more than the greatest.
 std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
@@ -53,12 +55,12 @@ std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> byte
 /// One more than the greatest colour.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
 
-/// Colours all, in this order, by a method, with words of one byte. Returns one more than the
-/// greatest colour.
+/// Colours all, in this order, by a method, with words of one byte: these, which say `none`.
+/// Returns one more than the greatest colour. Throws TooManyColours.
 template <class Method, class Width, Graph G>
 std::uint32_t colour_in_bytes(const Executor& executor, const G& graph,
-                              std::vector<std::uint32_t>& colour_of, VertexSet vertices) {
-  std::vector<std::uint8_t> bytes(colour_of.size(), Colours<Width>::none);
+                              std::vector<std::uint32_t>& colour_of, VertexSet vertices,
+                              std::vector<std::uint8_t>& bytes) {
   Method::run(executor, graph, vertices, Colours<Width>(bytes));
   return widen(executor, bytes, colour_of);
 }
@@ -68,24 +70,29 @@ std::uint32_t colour_in_bytes(const Executor& executor, const G& graph,
 template <class Method, Graph G>
 std::uint32_t colour_all(const Executor& executor, const G& graph,
                          std::vector<std::uint32_t>& colour_of, VertexSet vertices) {
+  using Short = Narrow<Method::marks>;
+  using Long = OneByte<Method::marks>;
+  std::vector<std::uint8_t> bytes(colour_of.size(), Colours<Short>::none);
   try {
-    return colour_in_bytes<Method, Narrow>(executor, graph, colour_of, vertices);
+    return colour_in_bytes<Method, Short>(executor, graph, colour_of, vertices, bytes);
   } catch (const TooManyColours&) {
   }
+  if constexpr (!requires { Method::resumes; })
+    std::fill(bytes.begin(), bytes.end(), Colours<Long>::none);
   try {
-    return colour_in_bytes<Method, OneByte>(executor, graph, colour_of, vertices);
+    return colour_in_bytes<Method, Long>(executor, graph, colour_of, vertices, bytes);
   } catch (const TooManyColours&) {
   }
   std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
-  Method::run(executor, graph, vertices, Colours<FourBytes>(colour_of));
+  Method::run(executor, graph, vertices, Colours<FourBytes<Method::marks>>(colour_of));
   return colour_count(executor, colour_of);
 }
 
 }  // namespace detail
 
-/// Colours all vertices. `detect_again` and `two_phase` depend on timing, the others give the same
-/// colours at any thread count. Throws std::bad_alloc and what the graph throws. Thread safety: any
-/// thread.
+/// Colours all vertices. `detect_again` and `two_phase` depend on timing, and on one thread are
+/// `serial`; the others give the same colours at any thread count. Throws std::bad_alloc and what
+/// the graph throws. Thread safety: any thread.
 template <Graph G>
 Colouring colour(const Executor& executor, const G& graph,
                  ColouringMethod method = ColouringMethod::automatic) {
@@ -94,7 +101,11 @@ Colouring colour(const Executor& executor, const G& graph,
   colour_of.resize(graph.vertex_count());
   const bool by_degree =
       method == ColouringMethod::largest_first || method == ColouringMethod::largest_log_first;
-  if (colour_of.size() < detail::few_vertices && !by_degree) method = ColouringMethod::serial;
+  // A team of one has no clashes to look for.
+  const bool alone = executor.threads() == 1 && (method == ColouringMethod::detect_again ||
+                                                 method == ColouringMethod::two_phase);
+  if (alone || (colour_of.size() < detail::few_vertices && !by_degree))
+    method = ColouringMethod::serial;
   const auto by = [&]<class Method>(Method) {
     colouring.count =
         detail::colour_all<Method>(executor, graph, colour_of, detail::VertexSet{colour_of.size()});
@@ -105,7 +116,11 @@ Colouring colour(const Executor& executor, const G& graph,
       break;
     case ColouringMethod::automatic:  // blocked is deterministic and not far from the fastest
     case ColouringMethod::blocked:
-      by(detail::Blocked());
+      if (colour_of.size() < detail::many_vertices) {
+        by(detail::Blocked());
+      } else {
+        by(detail::MarkedBlocks());
+      }
       break;
     case ColouringMethod::by_priority:
       by(detail::ByPriority());
@@ -139,7 +154,7 @@ void recolour(const Executor& executor, const G& graph, std::span<const std::uin
       executor, vertices.size(), [&](std::size_t i) { colour_of[vertices[i]] = Colouring::none; },
       loop);
   const detail::VertexSet set{vertices.size(), vertices.data()};
-  const detail::Colours<detail::FourBytes> colours(colour_of);
+  const detail::Colours<detail::FourBytes<>> colours(colour_of);
   if (vertices.size() < detail::few_vertices) {
     detail::Serial::run(executor, graph, set, colours);
   } else if (vertices.size() < colour_of.size() / 16) {

@@ -115,10 +115,10 @@ class Commit {
 
   /// Commits `update` on behalf of `owner` when all of the round has been applied.
   void defer(std::uint32_t owner, Update&& update) {
-    deferred_->defer(owner, source_, std::move(update));
+    deferrer_.defer(owner, source_, std::move(update));
   }
   void defer(std::uint32_t owner, const Update& update) requires std::copy_constructible<Update> {
-    deferred_->defer(owner, source_, update);
+    deferrer_.defer(owner, source_, update);
   }
 
   /// Considers an item again: its plan or its conflicts may have changed. If it is in this window
@@ -147,7 +147,7 @@ class Commit {
   friend class Rounds;
   friend class detail::OperatorCheck<Op>;
   friend class detail::OppositeOrder<Op>;
-  DeferredUpdate<Update>* deferred_ = nullptr;
+  Deferrer<Update> deferrer_;
   Worklist<Item>* woken_ = nullptr;
   std::uint32_t* woken_at_ = nullptr;          // [item], the window it was last woken in
   const std::uint32_t* turn_of_ = nullptr;     // [item], its class in this window

@@ -70,6 +70,8 @@ inline bool names_each_once(std::span<const std::uint32_t> order, std::size_t ve
 
 /// Serial first-fit in the given order.
 struct InOrder {
+  static constexpr std::uint32_t marks = 0;
+
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
                   Colours<Width> colours) {

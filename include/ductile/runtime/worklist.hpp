@@ -10,6 +10,7 @@
 #include <atomic>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <memory>
 #include <new>
@@ -203,5 +204,8 @@ class Worklist {
   alignas(128) std::atomic<std::size_t> length_{0};  // places handed out
   alignas(128) std::atomic<bool> broken_{false};     // some were not filled
 };
+
+// Of the items that coloured operators have: compiled once.
+extern template class Worklist<std::uint32_t>;
 
 }  // namespace ductile::runtime

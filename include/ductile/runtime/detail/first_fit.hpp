@@ -10,6 +10,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -33,21 +34,25 @@ struct VertexSet {
 /// There is no such colour in these words; the colouring starts again with longer ones.
 struct TooManyColours {};
 
-// ---- Widths: words that hold colours, and the greatest colour; two marks are above it
-
+/// Words that hold colours; the greatest are two that say that a vertex has no colour, and Marks
+/// marks below them. A vertex that is being coloured shows, in place of a colour, by whom: who
+/// looks at its neighbours' colours then sees at no cost whether others are coloured at the same
+/// time, as a mark is one more bit of TakenColours. Methods say how many they need.
+template <std::unsigned_integral W, std::uint32_t Marks>
+struct Words {
+  using Word = W;
+  static constexpr std::uint32_t marks = Marks;
+  static constexpr Word most = static_cast<Word>(~Word{0}) - 2 - Marks;  ///< greatest colour
+};
+template <std::uint32_t Marks = 0>
+using OneByte = Words<std::uint8_t, Marks>;
 /// So few colours that TakenColours has room for them all: no look at how great a colour is.
-struct Narrow {
-  using Word = std::uint8_t;
-  static constexpr Word most = 61;
+template <std::uint32_t Marks = 0>
+struct Narrow : OneByte<Marks> {
+  static constexpr std::uint8_t most = 61 - Marks;
 };
-struct OneByte {
-  using Word = std::uint8_t;
-  static constexpr Word most = 253;
-};
-struct FourBytes {
-  using Word = std::uint32_t;
-  static constexpr Word most = 0xfffffffd;
-};
+template <std::uint32_t Marks = 0>
+using FourBytes = Words<std::uint32_t, Marks>;
 
 template <class Width>
 class Colours {
@@ -56,6 +61,11 @@ class Colours {
   static constexpr Word none = static_cast<Word>(~Word{0});  ///< not yet coloured
   static constexpr Word waiting = none - 1;                  ///< lost its colour, will get another
   static constexpr Word most = Width::most;
+  static constexpr std::uint32_t marks = Width::marks;
+  /// Stands for a colour while whoever has this number colours the vertex.
+  static constexpr Word mark(std::uint32_t number) {
+    return static_cast<Word>(waiting - 1 - number);
+  }
 
   explicit Colours(std::span<Word> words) : words_(words) {}
 
@@ -71,18 +81,39 @@ class Colours {
   std::span<Word> words_;
 };
 
+/// What a word adds to TakenColours of `count` colours. To look it up takes less time than to tell
+/// colours from marks and from those beyond the count.
+template <std::uint32_t count>
+struct BitOfByte {
+  static constexpr std::array<std::uint64_t, 256> table = [] {
+    std::array<std::uint64_t, 256> bit_of{};
+    for (std::uint32_t word = 0; word < 256; ++word)
+      if (word < count || word >= 256 - 64 + count) bit_of[word] = std::uint64_t{1} << word % 64;
+    return bit_of;
+  }();
+};
+
 /// The least colours that a look at a vertex's neighbours shows to be taken, as bits. A View is
 /// Colours, or shows some of them.
 template <class View>
 struct TakenColours {
-  static constexpr std::uint32_t count = 62;
+  static constexpr std::uint32_t count = 62 - View::marks;
 
-  std::uint64_t bits = 0;  ///< `waiting` and `none` fall on those beyond the count, or on none
+  std::uint64_t bits = 0;  ///< marks, `waiting` and `none` fall on those beyond the count
 
-  void add(std::uint32_t colour) {  // not of bytes, which GCC 12 may put into mask registers
-    std::uint64_t bit = 1;
-    if constexpr (View::most >= count) bit = colour < count ? 1 : 0;
-    bits |= bit << (colour & 63U);
+  void add(std::uint32_t word) {  // not a byte, which GCC 12 may put into mask registers
+    if constexpr (View::most < count) {
+      bits |= std::uint64_t{1} << (word & 63U);
+    } else if constexpr (sizeof(typename View::Word) == 1) {
+      bits |= BitOfByte<count>::table[word];
+    } else {  // what is not a colour follows the last word, and so precedes the first
+      bits |= std::uint64_t{word + (64 - count) < 64} << (word & 63U);
+    }
+  }
+  /// A neighbour is `waiting`, or has the mark of another than this.
+  bool shows_others(std::uint32_t number) const {
+    constexpr std::uint64_t all = ~std::uint64_t{0} << count << 1U >> 1U;  // but that of `none`
+    return (bits & (all & ~(std::uint64_t{1} << (61 - number)))) != 0;
   }
 };
 
@@ -149,23 +180,17 @@ template <Graph G, class View>
   return least_free(graph, v, colours, seen);
 }
 
-/// A neighbour of lower id has v's colour.
-template <class Width, Graph G>
-bool clashes(const G& graph, std::uint32_t v, const Colours<Width>& colours) {
-  const std::uint32_t own = colours[v];
-  unsigned clash = 0;
-  graph.for_each_neighbour(v, [&](std::uint32_t u) {
-    clash |= static_cast<unsigned>(u < v) & static_cast<unsigned>(colours[u] == own);
-  });
-  return clash != 0;
-}
-
 /// First-fit in order, on the caller.
 struct Serial {
+  static constexpr std::uint32_t marks = 0;
+  static constexpr bool resumes = true;  ///< goes on after TooManyColours, given longer words
+
   template <class Width, Graph G>
   static void run(const Executor&, const G& graph, VertexSet vertices, Colours<Width> colours) {
     const auto& rows = in_registers(graph);
-    for (std::size_t i = 0; i < vertices.count; ++i) {
+    std::size_t i = 0;
+    while (i < vertices.count && colours[vertices[i]] != Colours<Width>::none) ++i;
+    for (; i < vertices.count; ++i) {
       prefetch_after(rows, vertices, i);
       colours.set(vertices[i], least_free(rows, vertices[i], colours));
     }

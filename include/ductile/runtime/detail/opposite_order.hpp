@@ -71,7 +71,7 @@ class OppositeOrder {
       twin_.emplace(op);
       for (std::size_t i = plans.size(); i-- > 0;) {
         Commit<Op> commit = commits[i];
-        commit.deferred_ = &deferred;
+        commit.deferrer_ = deferred.deferrer();
         commit.woken_ = &woken;
         commit.woken_at_ = woken_at.data();
         if (plans[i]) twin_->apply(*plans[i], commit);

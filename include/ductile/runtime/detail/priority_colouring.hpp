@@ -129,6 +129,8 @@ inline std::vector<std::uint32_t> listed(const VertexSet& vertices) {
 }
 
 struct ByPriority {
+  static constexpr std::uint32_t marks = 0;
+
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
                   Colours<Width> colours) {
@@ -140,6 +142,8 @@ struct ByPriority {
 /// vertices that wait for each other (Hasenplaugh et al., SPAA 2014). Ties by hash.
 template <bool OfLogarithm>
 struct ByDegree {
+  static constexpr std::uint32_t marks = 0;
+
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
                   Colours<Width> colours) {

@@ -7,6 +7,7 @@
 #include <bit>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
@@ -134,5 +135,9 @@ void radix_sort(const Executor& executor, std::span<T> values) {
   }
   if (from.data() != values.data()) copy<T>(executor, from, values);
 }
+
+// Of items of most programs: compiled once.
+extern template void radix_sort(const Executor& executor, std::span<std::uint32_t> values);
+extern template void radix_sort(const Executor& executor, std::span<std::uint64_t> values);
 
 }  // namespace ductile::runtime::sort_detail

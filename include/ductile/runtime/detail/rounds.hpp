@@ -130,7 +130,7 @@ class Rounds {
         if (turn_of_[other] != absent) visit(turn_of_[other]);
       });
     });
-    const Colouring colouring = colour(executor_, graph);
+    const Colouring colouring = colour_conflicts(graph);
     ColourClasses classes = colour_classes(executor_, colouring);
     by_class_.resize(work.size());
     const auto place = [&](std::size_t i) {
@@ -139,6 +139,31 @@ class Rounds {
     };
     parallel_for(executor_, work.size(), place, copying);
     return std::move(classes.begin);
+  }
+
+  /// What colour() does, without the methods and widths of words that conflicts have no use for: a
+  /// program compiles what is named here for each of its operators.
+  template <class G>
+  Colouring colour_conflicts(const G& graph) const {
+    Colouring colouring;
+    colouring.colour_of.resize(graph.vertex_count(), Colouring::none);
+    const detail::VertexSet all{graph.vertex_count()};
+    const detail::Colours<detail::FourBytes<>> colours(colouring.colour_of);
+    if (all.count >= detail::few_vertices) {
+      using Width = detail::Narrow<>;
+      std::vector<std::uint8_t> bytes(all.count, detail::Colours<Width>::none);
+      try {
+        colouring.count = detail::colour_in_bytes<detail::Blocked, Width>(
+            executor_, graph, colouring.colour_of, all, bytes);
+        return colouring;
+      } catch (const detail::TooManyColours&) {
+      }
+      detail::Blocked::run(executor_, graph, all, colours);
+    } else {
+      detail::Serial::run(executor_, graph, all, colours);
+    }
+    colouring.count = detail::colour_count(executor_, colouring.colour_of);
+    return colouring;
   }
 
   /// A colouring is stale where something changed: who was woken in this window comes back in the
@@ -296,10 +321,7 @@ class Rounds {
       apply_plans(blocks);
     }
     const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
-    const std::size_t updates = deferred_.size();
-    report_.committed += updates;
-    if (updates == 0) return;
-    deferred_.commit(
+    report_.committed += deferred_.commit(
         [&](std::uint32_t owner, Update& update) { op_.commit(owner, std::move(update)); });
   }
 
@@ -398,7 +420,7 @@ class Rounds {
 
   Commit<Op> new_commit() {
     Commit<Op> commit;
-    commit.deferred_ = &deferred_;
+    commit.deferrer_ = deferred_.deferrer();
     commit.woken_ = &woken_;
     if constexpr (ColouredOperator<Op>) {
       commit.woken_at_ = woken_at_.data();

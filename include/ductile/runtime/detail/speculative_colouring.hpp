@@ -1,20 +1,18 @@
 /// @file
 /// Parallel colourings that speculate: every vertex takes the least colour it sees free, without
 /// waiting for anybody; neighbours that did so at the same moment may clash, and one of them is
-/// coloured again. Rounds go on until there is no clash. The colours depend on timing; a team of
-/// one has no clashes to look for and gives serial first-fit's.
-/// Threads take windows of vertices in ascending order, so that all lower vertices have a colour,
-/// but for those of the windows other threads are at. Of two that clash each saw the other without
-/// a colour: only who saw that of a lower vertex of another window is looked at again.
+/// coloured again. Rounds go on until there is no clash. The colours depend on timing.
+/// Threads take windows of vertices, each from a part of its own while that lasts, and mark them
+/// before they start. Of two that clash one at least saw the other's mark, as each thread marks
+/// before it reads: only who saw a mark is looked at again.
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
@@ -24,6 +22,10 @@
 namespace ductile::runtime::detail {
 
 constexpr LoopOptions speculative_loop{.grain = 256, .serial_below = 1024};
+
+/// As many threads know their own windows; more look again at all that were coloured before a
+/// neighbour. The more marks, the sooner a colour is beyond TakenColours.
+constexpr std::uint32_t speculative_marks = 16;
 
 /// The first round, which colours all vertices of the graph.
 template <class Width, Graph G>
@@ -35,67 +37,77 @@ class FirstRound {
         colours_(colours),
         suspects_(executor, {.order = WorkOrder::arrival}) {}
 
-  /// Returns, in any order, the vertices that may clash with a lower one; no others do.
+  /// Returns vertices in any order; of any two that clash, one at least is among them.
   std::vector<std::uint32_t> run() {
     const auto threads = static_cast<std::size_t>(executor_.threads());
     const std::size_t n = colours_.vertex_count();
-    const std::size_t size = std::clamp<std::size_t>(n / (32 * threads), 256, 16384);
-    // The first window is a half, so that neighbouring windows are not in step: where ids follow
-    // the graph a vertex then finds its neighbours in the window before coloured.
-    const std::size_t windows = (n + size / 2 + size - 1) / size;
-    parallel_for(executor_, threads,
-                 [&](std::size_t) {
-                   for (std::size_t w = atomic_count(next_); w < windows; w = atomic_count(next_))
-                     colour_window(w * size - std::min(w * size, size / 2),
-                                   std::min((w + 1) * size - size / 2, n));
-                 },
-                 {.grain = 1});
+    const std::size_t size = std::clamp<std::size_t>(n / (32 * threads), 64, 1024);
+    parallel_for_blocks(executor_, n, size, [&](std::size_t, std::size_t begin, std::size_t end) {
+      colour_window(begin, end);
+    });
     suspects_.collect();
     return suspects_.take();
   }
 
  private:
   void colour_window(std::size_t begin, std::size_t end) {
-    const auto first = static_cast<std::uint32_t>(begin);
     const auto& rows = in_registers(graph_);
     const Colours<Width> colours = colours_;
+    const std::uint32_t thread = static_cast<std::uint32_t>(this_thread()) % Width::marks;
+    // Threads that share a mark cannot tell theirs from the other's.
+    const bool alone = executor_.threads() <= static_cast<int>(Width::marks);
+    for (std::size_t i = begin; i < end; ++i)
+      colours.set(static_cast<std::uint32_t>(i), Colours<Width>::mark(thread));
+    // Pairs with that of any other window: one of the two sees the other's marks, or its colours.
+    std::atomic_thread_fence(std::memory_order_seq_cst);
     for (std::size_t i = begin; i < end; ++i) {
       prefetch_after(rows, {colours.vertex_count()}, i);
       const auto v = static_cast<std::uint32_t>(i);
       TakenColours<Colours<Width>> seen;
-      std::uint32_t lower = 0;  // the bits of all colours seen of lower windows
-      rows.for_each_neighbour(v, [&](std::uint32_t u) {
-        const std::uint32_t colour = colours[u];
-        seen.add(colour);
-        lower |= u < first ? colour : 0;
-      });
+      rows.for_each_neighbour(v, [&](std::uint32_t u) { seen.add(colours[u]); });
       colours.set(v, least_free(rows, v, colours, seen));
-      // No colour has the highest bit, or hardly any.
-      if (lower > Colours<Width>::none / 2) [[unlikely]]
+      if (seen.shows_others(alone ? thread : none_of_them)) [[unlikely]]
         suspects_.append(v);
     }
   }
+
+  static constexpr std::uint32_t none_of_them = Width::marks;
 
   const Executor& executor_;
   const G& graph_;
   Colours<Width> colours_;
   Worklist<std::uint32_t> suspects_;
-  alignas(128) std::uint32_t next_ = 0;  // window
 };
+
+/// Whom a vertex must differ from to be left as it is. Any may clash with a suspect of the first
+/// round, which knows of it alone; later both are listed, and the one of lower id stays.
+enum class Rivals { all, lower };
+
+template <class Width, Graph G>
+bool clashes(const G& graph, std::uint32_t v, const Colours<Width>& colours, Rivals rivals) {
+  const std::uint32_t own = colours[v];
+  unsigned clash = 0;
+  graph.for_each_neighbour(v, [&](std::uint32_t u) {
+    const bool counts = rivals == Rivals::all ? u != v : u < v;
+    clash |= static_cast<unsigned>(counts) & static_cast<unsigned>(colours[u] == own);
+  });
+  return clash != 0;
+}
 
 /// The scheme of Catalyurek et al.: colour, barrier, find the clashes, barrier.
 struct TwoPhase {
+  static constexpr std::uint32_t marks = speculative_marks;
+
   template <class Width, Graph G>
-  static void run(const Executor& executor, const G& graph, VertexSet all, Colours<Width> colours) {
-    if (executor.threads() == 1) return Serial::run(executor, graph, all, colours);
+  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
     std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, colours).run();
     Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
-    while (!list.empty()) {
+    for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
       parallel_for(
           executor, list.size(),
           [&](std::size_t i) {
             prefetch_after(graph, {list.size(), list.data()}, i);
-            if (clashes(graph, list[i], colours)) clashing.append(list[i]);
+            if (clashes(graph, list[i], colours, rivals)) clashing.append(list[i]);
           },
           speculative_loop);
       clashing.collect();
@@ -111,18 +123,19 @@ struct TwoPhase {
 /// The scheme of Rokos et al.: who finds a clash recolours at once and is looked at again in the
 /// next round; a barrier separates rounds, none is within.
 struct DetectAgain {
+  static constexpr std::uint32_t marks = speculative_marks;
+
   template <class Width, Graph G>
-  static void run(const Executor& executor, const G& graph, VertexSet all, Colours<Width> colours) {
-    if (executor.threads() == 1) return Serial::run(executor, graph, all, colours);
+  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
     std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, colours).run();
     Worklist<std::uint32_t> recoloured(executor, {.order = WorkOrder::arrival});
-    while (!list.empty()) {
+    for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
       parallel_for(
           executor, list.size(),
           [&](std::size_t i) {
             const std::uint32_t v = list[i];
             prefetch_after(graph, {list.size(), list.data()}, i);
-            if (!clashes(graph, v, colours)) return;
+            if (!clashes(graph, v, colours, rivals)) return;
             colours.set(v, least_free(graph, v, colours));
             recoloured.append(v);
           },

@@ -1,0 +1,177 @@
+/// @file
+/// Deferrer: one thread's way into a DeferredUpdate, in as few steps as can be, for loops take them
+/// for every update. A thread has a buffer for each group of owners ("bucket"); a deferrer knows
+/// where to look up where the next update of each goes.
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <span>
+#include <utility>
+
+#include "ductile/runtime/detail/buckets.hpp"
+#include "ductile/runtime/detail/source_order.hpp"
+
+namespace ductile::runtime {
+
+namespace detail {
+template <class T>
+class DeferLane;
+
+// What is kept of an update, as the order of commits needs it.
+template <class T>
+struct PlainUpdate {
+  std::uint32_t owner;
+  T update;
+};
+template <class T>
+struct SourcedUpdate {
+  std::uint64_t source;
+  std::uint32_t owner;
+  T update;
+};
+}  // namespace detail
+
+/// Valid until its DeferredUpdate releases its memory. Copies are as good.
+/// Thread safety: the thread that asked for it, while it may defer at all.
+template <class T>
+class Deferrer {
+ public:
+  Deferrer() = default;
+
+  /// As DeferredUpdate::defer().
+  void defer(std::uint32_t owner, std::uint64_t source, T&& update) const {
+    keep(owner, source, std::move(update));
+  }
+  void defer(std::uint32_t owner, std::uint64_t source,
+             const T& update) const requires std::copy_constructible<T> {
+    keep(owner, source, update);
+  }
+
+ private:
+  friend detail::DeferLane<T>;
+  using Room = detail::Room;
+
+  static constexpr unsigned neighbour_bits = 8;    // owners in a row that share a bucket
+  static constexpr std::size_t write_ahead = 512;  // bytes
+
+  template <class Value>
+  void keep(std::uint32_t owner, std::uint64_t source, Value&& update) const {
+    if (by_source_) {
+      append<detail::SourcedUpdate<T>>(owner, source, owner, std::forward<Value>(update));
+    } else {
+      append<detail::PlainUpdate<T>>(owner, owner, std::forward<Value>(update));
+    }
+  }
+
+  template <class Entry, class... Arguments>
+  void append(std::uint32_t owner, Arguments&&... arguments) const {
+    constexpr int shift = static_cast<int>(neighbour_bits) - std::countr_zero(sizeof(Room));
+    const std::size_t offset = (owner >> shift) & offset_mask_;
+    Room* room = reinterpret_cast<Room*>(reinterpret_cast<std::byte*>(rooms_) + offset);
+    if (room->next == room->end) [[unlikely]]
+      room = lane_->make_room(owner >> neighbour_bits);
+    // Where many lists grow in turn, the processor does not see by itself what comes next in each.
+    const auto ahead = reinterpret_cast<std::uintptr_t>(room->next) + write_ahead;
+    __builtin_prefetch(reinterpret_cast<const void*>(ahead), 1);
+    auto* const place = static_cast<Entry*>(room->next);
+    ::new (room->next) Entry{std::forward<Arguments>(arguments)...};
+    room->next = place + 1;
+  }
+
+  static inline Room no_room_;  // full
+
+  Room* rooms_ = &no_room_;  // of the buckets
+  detail::DeferLane<T>* lane_ = nullptr;
+  std::uint32_t offset_mask_ = 0;  // of a bucket's room in rooms_, in bytes
+  bool by_source_ = false;
+};
+
+namespace detail {
+
+/// What one thread deferred: plain or sourced updates, not both.
+template <class T>
+class DeferLane {
+ public:
+  Buckets<PlainUpdate<T>> plain;
+  Buckets<SourcedUpdate<T>> sourced;
+  SourceOrder<SourcedUpdate<T>> order;  // scratch of commits
+
+  /// `bucket_count` is a power of two.
+  void set_up(std::uint32_t bucket_count, bool by_source) {
+    bucket_count_ = bucket_count;
+    deferrer_.lane_ = this;
+    deferrer_.by_source_ = by_source;
+  }
+
+  /// For one update: has no buckets before the first.
+  const Deferrer<T>& deferrer() const { return deferrer_; }
+
+  /// For many. Throws std::bad_alloc.
+  const Deferrer<T>& ready_deferrer() {
+    if (deferrer_.rooms_ == &Deferrer<T>::no_room_) provide();
+    return deferrer_;
+  }
+
+  /// For one more update of the bucket whose number is this one modulo their count. Not inlined, so
+  /// as to keep the caller's loop tight. Throws std::bad_alloc.
+  [[gnu::noinline]] Room* make_room(std::uint32_t number) {
+    if (deferrer_.rooms_ == &Deferrer<T>::no_room_) provide();
+    number &= bucket_count_ - 1;
+    if (deferrer_.by_source_) {
+      sourced.grow(number);
+    } else {
+      plain.grow(number);
+    }
+    return deferrer_.rooms_ + number;
+  }
+
+  std::size_t size() const { return plain.size() + sourced.size(); }
+
+  /// Of the buckets that may have updates.
+  std::span<const std::uint32_t> touched() const {
+    return deferrer_.by_source_ ? sourced.touched() : plain.touched();
+  }
+
+  /// Drops a bucket's updates. Thread safety: one thread at a time for each bucket.
+  void clear(std::uint32_t number) {
+    plain.clear(number);
+    sourced.clear(number);
+  }
+
+  /// Drops all updates and keeps the memory.
+  void clear() {
+    plain.clear();
+    sourced.clear();
+  }
+
+  /// Drops all updates and gives the memory back.
+  void release() {
+    plain.release();
+    sourced.release();
+    order = {};
+    deferrer_.rooms_ = &Deferrer<T>::no_room_;
+    deferrer_.offset_mask_ = 0;
+  }
+
+ private:
+  void provide() {
+    if (deferrer_.by_source_) {
+      sourced.provide(bucket_count_);
+      deferrer_.rooms_ = sourced.rooms();
+    } else {
+      plain.provide(bucket_count_);
+      deferrer_.rooms_ = plain.rooms();
+    }
+    deferrer_.offset_mask_ = (bucket_count_ - 1) * static_cast<std::uint32_t>(sizeof(Room));
+  }
+
+  Deferrer<T> deferrer_;
+  std::uint32_t bucket_count_ = 0;
+};
+
+}  // namespace detail
+}  // namespace ductile::runtime
