@@ -32,6 +32,7 @@ struct Tuning<2> {
   static constexpr double calm = 0.03;           ///< share of changes below which it is near
   static constexpr double kept_shape = 1;        ///< of Rules, on the way to the metric
   static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
+  static constexpr int rearrangements = 3;       ///< passes
   static constexpr double swap_below = 0.9;      ///< mean ratio of elements that are swapped
   static constexpr double optimise_below = 0.8;  ///< of those that are optimised in the end
   /// ... and of those around a vertex on the whole where they are finished together.
@@ -46,6 +47,7 @@ struct Tuning<3> {
   static constexpr double calm = 0.05;
   static constexpr double kept_shape = 0.2;
   static constexpr double stretched_edge = 1.55;
+  static constexpr int rearrangements = 2;
   static constexpr double swap_below = 0.8;
   static constexpr double optimise_below = 0.6;
   static constexpr double mean_below = 0;
@@ -231,14 +233,14 @@ void Adapter<Dim>::rearrange() {
   if (!options_.insert) return;
   aim_ = Aim::rearrange;
   seen_by_coarsen_ = 0;
-  for (int pass = 0; pass < 2; ++pass) {
-    seen_by_smooth_ = mesh_.epoch - 1;
+  seen_by_smooth_ = mesh_.epoch - 1;
+  for (int pass = 0; pass < Tuning<Dim>::rearrangements; ++pass) {
     coarsen();
     swap(4, Tuning<Dim>::swap_below);
     smooth(1, Tuning<Dim>::optimise_below, true);
     refine();
     swap(4, Tuning<Dim>::swap_below);
-    smooth(1, Tuning<Dim>::optimise_below, true);
+    if (Dim == 2) smooth(1, Tuning<Dim>::optimise_below, true);  // else what comes next does
   }
 }
 
@@ -247,7 +249,7 @@ template <int Dim>
 void Adapter<Dim>::polish() {
   for (int pass = 0; pass < 2; ++pass) {
     smooth(3, 0.5, true);
-    swap(4, 0.95);
+    swap(4, Tuning<Dim>::swap_below);
   }
   smooth(2, Tuning<Dim>::optimise_below, false);
 }
