@@ -287,7 +287,7 @@ std::size_t Adapter<Dim>::coarsen() {
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
     add(report_.coarsen, rounds);
     changes += rounds.applied;
-    if (share(rounds.applied) < 5e-3) break;
+    if (share(rounds.applied) < 0.02) break;
   }
   tell("coarsen", changes);
   return changes;
@@ -318,7 +318,7 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
     add(report_.swap, rounds);
     changes += rounds.applied;
-    if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 5e-3)) break;
+    if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 0.015)) break;
   }
   tell("swap", changes);
   return changes;

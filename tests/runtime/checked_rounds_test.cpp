@@ -182,7 +182,7 @@ class Lower {
   };
   struct Update {};
 
-  enum class Tells { nobody, woken, reconsidered };
+  enum class Tells { none, woken, reconsidered };
 
   Lower(std::size_t n, Tells tells) : value(all_items(n)), tells_(tells) {
     for (Vertex& v : value) v = mix32(v);
@@ -214,7 +214,7 @@ class Lower {
 
 TEST(RunRoundsChecked, CatchesAStalePlanOfAWaitingItem) {
   const std::string message =
-      caught(ContractRule::waiting_plan_kept, Lower(100, Lower::Tells::nobody), all_items(100));
+      caught(ContractRule::waiting_plan_kept, Lower(100, Lower::Tells::none), all_items(100));
   EXPECT_NE(message.find("its plan changed while it waited"), std::string::npos) << message;
   for (const auto tells : {Lower::Tells::woken, Lower::Tells::reconsidered}) {
     Lower right(100, tells);

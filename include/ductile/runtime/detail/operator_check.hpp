@@ -38,12 +38,13 @@ class OperatorCheck {
     }
   }
 
-  /// After a batch, for an item for which waits(item) holds: it is still to have its turn and was
-  /// not woken.
-  void expect_kept(const Op& op, Item item, auto&& waits) const requires ColouredOperator<Op> {
+  /// After a batch, for an item for which is_waiting(item) holds: it is still to have its turn and
+  /// was not woken.
+  void expect_kept(const Op& op, Item item, auto&& is_waiting) const requires ColouredOperator<Op> {
     const std::size_t i = place_of_[item];
     for (const std::uint32_t other : conflicts_of(op, item))
-      if (waits(other) && !std::binary_search(conflicts_[i].begin(), conflicts_[i].end(), other))
+      if (is_waiting(other) &&
+          !std::binary_search(conflicts_[i].begin(), conflicts_[i].end(), other))
         refuse(ContractRule::waiting_conflicts_kept, item, i,
                "it got a new conflict, with item " + std::to_string(other) +
                    ", while both waited for their turn, and nobody woke one of them");

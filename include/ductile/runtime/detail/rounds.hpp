@@ -176,11 +176,11 @@ class Rounds {
 
   /// Those that wait for a later turn begin here.
   void check_waiting(std::size_t begin) {
-    const auto waits = [&](const Item& item) {
+    const auto is_waiting = [&](const Item& item) {
       return turn_of_[item] > turn_ && turn_of_[item] != absent && woken_at_[item] != window_;
     };
     for (std::size_t i = begin; i < by_class_.size(); ++i)
-      if (waits(by_class_[i])) check_.expect_kept(op_, by_class_[i], waits);
+      if (is_waiting(by_class_[i])) check_.expect_kept(op_, by_class_[i], is_waiting);
   }
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
