@@ -45,7 +45,7 @@ class Coarsen {
   std::size_t item_count() const { return mesh_.vertex_slots(); }
   void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
-  // ---- Apply: stretch or remove own elements, defer their vertices' lists, wake the whole ball
+  // ---- Apply: stretch or remove own elements, defer their vertices' lists, wake whom it concerns
   // ----
   void apply(const Plan& plan, runtime::Commit<Coarsen>& commit);
 

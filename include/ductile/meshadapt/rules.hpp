@@ -10,9 +10,8 @@ struct Rules {
   double stretched_edge = 1.41421356237309505;  ///< ... if that makes no edge longer than this
   bool extends_long_edges = true;  ///< ... or than the longest edge there is around, nearly
   double accepted_shape = 0.1;     ///< a collapse may not make elements worse than this ...
-                                   ///< ... unless the worst before was no better,
-  double kept_shape = 1;           ///< ... or would be times this: far from the metric, good
-                                   ///< shapes are still to come
+  double kept_shape = 1;           ///< ... or than this fraction of the worst before, if that is
+                                   ///< less: far from the metric, good shapes are still to come
   double poor_shape = 0.001;       ///< from elements this bad a split makes none that are worse
   double split_keeps = 0.3;        ///< a split may lower the worst shape to this fraction
   double shortest_split = 0.5;     ///< a split makes no edge shorter than this

@@ -31,7 +31,8 @@ struct VertexSet {
   }
 };
 
-/// There is no such colour in these words; the colouring starts again with longer ones.
+/// There is no such colour in these words; the colouring goes on, or starts again, with longer
+/// ones.
 struct TooManyColours {};
 
 /// Words that hold colours; the greatest are two that say that a vertex has no colour, and Marks

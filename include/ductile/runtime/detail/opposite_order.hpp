@@ -74,6 +74,7 @@ class OppositeOrder {
         commit.deferrer_ = deferred.deferrer();
         commit.woken_ = &woken;
         commit.woken_at_ = woken_at.data();
+        commit.reconsidered_ = nullptr;
         if (plans[i]) twin_->apply(*plans[i], commit);
       }
       commit_all(*twin_, deferred);
