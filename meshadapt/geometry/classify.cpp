@@ -1,12 +1,14 @@
 #include "geometry/classify.hpp"
 
-#include <boost/container/small_vector.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
+#include <span>
 #include <tuple>
 #include <unordered_map>
 
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/sort.hpp"
 
 namespace ductile::meshadapt {
 
@@ -58,11 +60,10 @@ class Classifier {
         mesh_(mesh),
         facets_(std::move(facets)),
         tolerance_(flatness * extent(executor, mesh)) {
-    at_side_.reserve(Dim * facets_.size() / 2);
-    for (std::uint32_t f = 0; f < facets_.size(); ++f)
-      each_side<Dim>(facets_[f].corners, [&](Key key) { at_side_[key].push_back(f); });
     if constexpr (Dim == 3)
       for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
+    sort_sides();
+    find_neighbours();
   }
 
   void run() {
@@ -73,18 +74,73 @@ class Classifier {
   }
 
  private:
+  // ---- Sides: what facets share ----
+
+  /// One facet's side.
+  struct Side {
+    Key key;
+    std::uint32_t facet;
+    std::uint8_t number;  // among the facet's
+    auto operator<=>(const Side&) const = default;
+  };
+
+  void sort_sides() {
+    sides_.resize(Dim * facets_.size());
+    runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
+      std::uint8_t number = 0;
+      each_side<Dim>(facets_[f].corners, [&](Key key) {
+        sides_[Dim * f + number] = {key, static_cast<std::uint32_t>(f), number};
+        ++number;
+      });
+    });
+    runtime::parallel_sort(executor_, std::span(sides_));
+  }
+
+  /// The facets at a side that begins here, in order.
+  std::span<const Side> run_at(std::size_t begin) const {
+    std::size_t end = begin + 1;
+    while (end < sides_.size() && sides_[end].key == sides_[begin].key) ++end;
+    return std::span(sides_).subspan(begin, end - begin);
+  }
+  bool begins_run(std::size_t i) const { return i == 0 || sides_[i - 1].key != sides_[i].key; }
+
+  std::span<const Side> facets_at(Key key) const {
+    const auto at = std::lower_bound(sides_.begin(), sides_.end(), Side{key, 0, 0});
+    if (at == sides_.end() || at->key != key) return {};
+    return run_at(static_cast<std::size_t>(at - sides_.begin()));
+  }
+
+  /// Sets across_, where a side does not separate patches by itself.
+  void find_neighbours() {
+    std::array<std::uint32_t, Dim> nobody;
+    nobody.fill(none);
+    across_.assign(facets_.size(), nobody);
+    runtime::parallel_for(executor_, sides_.size(), [&](std::size_t i) {
+      if (!begins_run(i)) return;
+      const auto both = run_at(i);
+      if (both.size() != 2 || separates(both[0].key)) return;
+      across_[both[0].facet][both[0].number] = both[1].facet;
+      across_[both[1].facet][both[1].number] = both[0].facet;
+    });
+  }
+
+  bool separates(Key key) const {
+    if constexpr (Dim == 3) return listed_.contains(key);
+    const VertexKind& kind = mesh_.kind_of[static_cast<VertexId>(key)];
+    return kind.corner || kind.required;
+  }
+
   // ---- Patches: grow each from its largest facet over flat neighbours that agree with it ----
 
   void find_patches() {
     mesh_.patches.assign(1, {});
-    std::vector<std::uint32_t> order(facets_.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::vector<double> size(facets_.size());
-    for (std::size_t f = 0; f < size.size(); ++f)
-      size[f] = norm(normal_of<Dim>(mesh_, facets_[f].corners));
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return size[a] > size[b]; });
-    for (const std::uint32_t seed : order)
+    using Seed = std::pair<double, std::uint32_t>;
+    std::vector<Seed> order(facets_.size());
+    runtime::parallel_for(executor_, order.size(), [&](std::size_t f) {
+      order[f] = {-norm(normal_of<Dim>(mesh_, facets_[f].corners)), static_cast<std::uint32_t>(f)};
+    });
+    runtime::parallel_sort(executor_, std::span(order));
+    for (const auto& [size, seed] : order)
       if (facets_[seed].patch == 0) grow_patch(seed);
   }
 
@@ -99,8 +155,9 @@ class Classifier {
     while (!front.empty()) {
       const std::uint32_t f = front.back();
       front.pop_back();
+      std::size_t side = 0;
       each_side<Dim>(facets_[f].corners, [&](Key key) {
-        const std::uint32_t next = across(f, key);
+        const std::uint32_t next = across_[f][side++];
         if (next == none || facets_[next].patch != 0 || !agree(f, next)) return;
         if (!in_plane(facets_[next].corners, origin, patch.normal)) return;
         if (folds_back(facets_[f].corners, facets_[next].corners, key)) return;
@@ -109,19 +166,6 @@ class Classifier {
       });
     }
     mesh_.patches.push_back(patch);
-  }
-
-  /// The one other facet at this side, if the side does not separate patches by itself.
-  std::uint32_t across(std::uint32_t facet, Key key) const {
-    const auto& both = at_side_.at(key);
-    if (both.size() != 2) return none;
-    if constexpr (Dim == 2) {
-      const VertexKind& kind = mesh_.kind_of[static_cast<VertexId>(key)];
-      if (kind.corner || kind.required) return none;
-    } else if (listed_.contains(key)) {
-      return none;
-    }
-    return both[0] == facet ? both[1] : both[0];
   }
 
   bool agree(std::uint32_t f, std::uint32_t g) const {
@@ -187,8 +231,7 @@ class Classifier {
 
   std::vector<PatchId> patches_at(Key key) const {
     std::vector<PatchId> patches;
-    if (const auto found = at_side_.find(key); found != at_side_.end())
-      for (const std::uint32_t f : found->second) patches.push_back(facets_[f].patch);
+    for (const Side& side : facets_at(key)) patches.push_back(facets_[side.facet].patch);
     std::sort(patches.begin(), patches.end());
     return patches;
   }
@@ -196,9 +239,12 @@ class Classifier {
   void find_curves() {
     mesh_.curves.assign(1, {});
     std::vector<Key> keys;
-    for (const auto& [key, facets] : at_side_)
-      if (facets.size() != 2 || facets_[facets[0]].patch != facets_[facets[1]].patch)
-        keys.push_back(key);
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      if (!begins_run(i)) continue;
+      const auto both = run_at(i);
+      if (both.size() != 2 || facets_[both[0].facet].patch != facets_[both[1].facet].patch)
+        keys.push_back(both[0].key);
+    }
     for (const auto& [key, edge] : listed_) keys.push_back(key);
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
@@ -259,16 +305,34 @@ class Classifier {
   // ---- Vertices ----
 
   void classify_vertices() {
-    std::vector<std::vector<PatchId>> patches_at_vertex(mesh_.vertex_slots());
-    for (const TaggedFacet<Dim>& f : facets_)
-      for (const VertexId v : f.corners) patches_at_vertex[v].push_back(f.patch);
+    const std::vector<std::uint64_t> corners = corners_with_patches();  // vertex, then patch
+    const auto vertex_at = [&](std::size_t i) { return static_cast<VertexId>(corners[i] >> 32U); };
+    std::vector<std::uint32_t> first_of(mesh_.vertex_slots(), none);  // [vertex], among corners
+    runtime::parallel_for(executor_, corners.size(), [&](std::size_t i) {
+      if (i == 0 || vertex_at(i - 1) != vertex_at(i))
+        first_of[vertex_at(i)] = static_cast<std::uint32_t>(i);
+    });
     runtime::parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t v) {
-      auto& patches = patches_at_vertex[v];
-      const std::size_t facet_count = patches.size();
-      std::sort(patches.begin(), patches.end());
-      patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+      std::vector<PatchId> patches;
+      std::size_t facet_count = 0;
+      for (std::size_t i = first_of[v]; i < corners.size() && vertex_at(i) == v; ++i) {
+        const auto patch = static_cast<PatchId>(corners[i]);
+        if (patches.empty() || patches.back() != patch) patches.push_back(patch);
+        ++facet_count;
+      }
       classify_vertex(static_cast<VertexId>(v), patches, facet_count);
     });
+  }
+
+  /// The corners of all facets, each with its facet's patch, sorted.
+  std::vector<std::uint64_t> corners_with_patches() const {
+    std::vector<std::uint64_t> corners(Dim * facets_.size());
+    runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
+      for (std::size_t i = 0; i < Dim; ++i)
+        corners[Dim * f + i] = std::uint64_t{facets_[f].corners[i]} << 32U | facets_[f].patch;
+    });
+    runtime::parallel_sort(executor_, std::span(corners));
+    return corners;
   }
 
   void classify_vertex(VertexId v, const std::vector<PatchId>& patches, std::size_t facet_count) {
@@ -309,14 +373,13 @@ class Classifier {
     return false;
   }
 
-  using FacetsAtSide = boost::container::small_vector<std::uint32_t, 2>;
-
   const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
   std::vector<TaggedFacet<Dim>> facets_;
   double tolerance_;
-  std::unordered_map<Key, FacetsAtSide> at_side_;  // side -> facets
-  std::unordered_map<Key, ListedEdge> listed_;     // 3D
+  std::vector<Side> sides_;                             // sorted
+  std::vector<std::array<std::uint32_t, Dim>> across_;  // [facet][side], the other facet or none
+  std::unordered_map<Key, ListedEdge> listed_;          // 3D
   std::vector<CurveEdge> curve_edges_;
   std::unordered_map<VertexId, std::vector<std::uint32_t>> edges_at_;
 };

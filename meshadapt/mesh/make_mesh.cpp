@@ -97,7 +97,8 @@ class MeshMaker {
       mesh_.kind_of[checked_vertex(v, "corner")].corner = true;
     for (const std::uint32_t v : any_.required_vertices)
       mesh_.kind_of[checked_vertex(v, "required vertex")].required = true;
-    mesh_.corners_of = cells.vertices;
+    parallel_for(executor_, cells.size(),
+                 [&](std::size_t e) { mesh_.corners_of[e] = cells.vertices[e]; });
     const auto& required = Dim == 2 ? any_.required_triangles : any_.required_tetrahedra;
     const auto locked = marked(cells.size(), required, element_name<Dim>());
     number_regions(cells.reference, locked);

@@ -1,94 +1,144 @@
+/// @file
+/// A mesh as files hold it. What is to be listed is found on all threads and gathered in the order
+/// of vertices or elements, so that the lists do not depend on their number.
+
 #include <algorithm>
 
 #include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
 
+using runtime::Executor;
+using runtime::parallel_collect;
+using runtime::parallel_for;
+
 namespace {
+
+template <int Dim>
+struct ListedFacet {
+  Facet<Dim> corners;
+  PatchId patch;
+};
 
 /// A facet is written once, by the element with the lower number.
 template <int Dim>
-void add_facets(const Mesh<Dim>& mesh, AnyMesh& any) {
-  for (ElementId e = 0; e < mesh.element_slots(); ++e)
-    for (int i = 0; i <= Dim; ++i) {
-      const PatchId id = mesh.patches_of[e][static_cast<std::size_t>(i)];
-      if (id == 0 || !mesh.patches[id].listed) continue;
-      const ElementId other = neighbour(mesh, e, i);
-      if (other != none && other < e) continue;
-      const Patch<Dim>& patch = mesh.patches[id];
-      const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[e], i);
-      if constexpr (Dim == 2) {
-        if (patch.ridge) any.ridges.push_back(static_cast<std::uint32_t>(any.edges.size()));
-        if (patch.required)
-          any.required_edges.push_back(static_cast<std::uint32_t>(any.edges.size()));
-        any.edges.add(corners, patch.reference);
-      } else {
-        if (patch.required)
-          any.required_triangles.push_back(static_cast<std::uint32_t>(any.triangles.size()));
-        any.triangles.add(corners, patch.reference);
-      }
+void add_facets(const Executor& executor, const Mesh<Dim>& mesh, AnyMesh& any) {
+  const auto facets = parallel_collect<ListedFacet<Dim>>(
+      executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
+        const auto element = static_cast<ElementId>(e);
+        for (int i = 0; i <= Dim; ++i) {
+          const PatchId id = mesh.patches_of[e][static_cast<std::size_t>(i)];
+          if (id == 0 || !mesh.patches[id].listed) continue;
+          const ElementId other = neighbour(mesh, element, i);
+          if (other != none && other < element) continue;
+          append({facet_of<Dim>(mesh.corners_of[e], i), id});
+        }
+      });
+  for (const ListedFacet<Dim>& facet : facets) {
+    const Patch<Dim>& patch = mesh.patches[facet.patch];
+    if constexpr (Dim == 2) {
+      const auto number = static_cast<std::uint32_t>(any.edges.size());
+      if (patch.ridge) any.ridges.push_back(number);
+      if (patch.required) any.required_edges.push_back(number);
+      any.edges.add(facet.corners, patch.reference);
+    } else {
+      const auto number = static_cast<std::uint32_t>(any.triangles.size());
+      if (patch.required) any.required_triangles.push_back(number);
+      any.triangles.add(facet.corners, patch.reference);
     }
+  }
 }
 
-void add_curves(const Mesh<3>& mesh, AnyMesh& any) {
-  for (VertexId v = 0; v < mesh.vertex_slots(); ++v)
-    for (const CurveLink& link : mesh.links_of.of(v)) {
-      const Curve& curve = mesh.curves[link.curve];
-      if (link.to < v || !curve.listed) continue;
-      const auto number = static_cast<std::uint32_t>(any.edges.size());
-      if (curve.ridge) any.ridges.push_back(number);
-      if (curve.required) any.required_edges.push_back(number);
-      any.edges.add({v, link.to}, curve.reference);
-    }
+void add_curves(const Executor& executor, const Mesh<3>& mesh, AnyMesh& any) {
+  struct Edge {
+    VertexId from, to;
+    CurveId curve;
+  };
+  const auto edges =
+      parallel_collect<Edge>(executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        const auto vertex = static_cast<VertexId>(v);
+        for (const CurveLink& link : mesh.links_of.of(vertex))
+          if (link.to >= vertex && mesh.curves[link.curve].listed)
+            append({vertex, link.to, link.curve});
+      });
+  for (const Edge& edge : edges) {
+    const Curve& curve = mesh.curves[edge.curve];
+    const auto number = static_cast<std::uint32_t>(any.edges.size());
+    if (curve.ridge) any.ridges.push_back(number);
+    if (curve.required) any.required_edges.push_back(number);
+    any.edges.add({edge.from, edge.to}, curve.reference);
+  }
+}
+
+/// The numbers below n that something holds of, in order.
+template <class Holds>
+std::vector<std::uint32_t> numbers_of(const Executor& executor, std::size_t n, Holds&& holds) {
+  return parallel_collect<std::uint32_t>(executor, n, [&](std::size_t i, auto&& append) {
+    if (holds(i)) append(static_cast<std::uint32_t>(i));
+  });
 }
 
 template <int Dim>
-void add_elements(const Mesh<Dim>& mesh, AnyMesh& any) {
+void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, AnyMesh& any) {
+  any.vertex_reference.resize(mesh.vertex_slots());
+  any.coordinates.resize(mesh.vertex_slots() * Dim);
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
+    any.vertex_reference[v] = mesh.reference_of[v];
+    std::copy_n(mesh.site_of[v].position.x.begin(), Dim, &any.coordinates[v * Dim]);
+  });
+  any.corners = numbers_of(executor, mesh.vertex_slots(),
+                           [&](std::size_t v) { return mesh.kind_of[v].corner; });
+  any.required_vertices = numbers_of(executor, mesh.vertex_slots(),
+                                     [&](std::size_t v) { return mesh.kind_of[v].required; });
+}
+
+template <int Dim>
+void add_elements(const Executor& executor, const Mesh<Dim>& mesh, AnyMesh& any) {
   Cells<Dim + 1>& cells = elements_in<Dim>(any);
-  auto& required = Dim == 2 ? any.required_triangles : any.required_tetrahedra;
-  cells.vertices = mesh.corners_of;
+  cells.vertices.resize(mesh.element_slots());
   cells.reference.resize(mesh.element_slots());
-  for (ElementId e = 0; e < mesh.element_slots(); ++e) {
+  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    cells.vertices[e] = mesh.corners_of[e];
     cells.reference[e] = mesh.regions[mesh.region_of[e]].reference;
-    if (mesh.required_element(e)) required.push_back(e);
-  }
+  });
+  auto& required = Dim == 2 ? any.required_triangles : any.required_tetrahedra;
+  required = numbers_of(executor, mesh.element_slots(), [&](std::size_t e) {
+    return mesh.required_element(static_cast<ElementId>(e));
+  });
 }
 
 }  // namespace
 
 template <int Dim>
-AnyMesh to_any_mesh(const Mesh<Dim>& mesh) {
+AnyMesh to_any_mesh(const Executor& executor, const Mesh<Dim>& mesh) {
   AnyMesh any;
   any.dimension = Dim;
-  any.vertex_reference = mesh.reference_of;
-  any.coordinates.resize(mesh.vertex_slots() * Dim);
-  for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
-    std::copy_n(mesh.site_of[v].position.x.begin(), Dim, &any.coordinates[std::size_t{v} * Dim]);
-    if (mesh.kind_of[v].corner) any.corners.push_back(v);
-    if (mesh.kind_of[v].required) any.required_vertices.push_back(v);
-  }
-  add_elements(mesh, any);
-  add_facets(mesh, any);
-  if constexpr (Dim == 3) add_curves(mesh, any);
+  add_vertices(executor, mesh, any);
+  add_elements(executor, mesh, any);
+  add_facets(executor, mesh, any);
+  if constexpr (Dim == 3) add_curves(executor, mesh, any);
   return any;
 }
 
 template <int Dim>
-AnyField to_any_field(const Mesh<Dim>& mesh) {
+AnyField to_any_field(const Executor& executor, const Mesh<Dim>& mesh) {
   AnyField field;
   field.dimension = Dim;
   field.vertex_count = mesh.vertex_slots();
   field.types = {AnyField::Type::symmetric};
   field.values.resize(mesh.vertex_slots() * Metric<Dim>::size);
-  for (std::size_t v = 0; v < mesh.vertex_slots(); ++v)
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
     std::copy_n(mesh.site_of[v].metric.m.begin(), Metric<Dim>::size,
                 &field.values[v * Metric<Dim>::size]);
+  });
   return field;
 }
 
-template AnyMesh to_any_mesh(const Mesh<2>&);
-template AnyMesh to_any_mesh(const Mesh<3>&);
-template AnyField to_any_field(const Mesh<2>&);
-template AnyField to_any_field(const Mesh<3>&);
+template AnyMesh to_any_mesh(const Executor&, const Mesh<2>&);
+template AnyMesh to_any_mesh(const Executor&, const Mesh<3>&);
+template AnyField to_any_field(const Executor&, const Mesh<2>&);
+template AnyField to_any_field(const Executor&, const Mesh<3>&);
 
 }  // namespace ductile::meshadapt

@@ -52,7 +52,8 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   adapter.report().setup_seconds = seconds();
   if (auto* recording = executor.recording()) recording->begin_section("other");
   adapter.run();
-  AdaptedMesh result{to_any_mesh(adapter.mesh()), to_any_field(adapter.mesh()), adapter.report()};
+  AdaptedMesh result{to_any_mesh(executor, adapter.mesh()), to_any_field(executor, adapter.mesh()),
+                     adapter.report()};
   result.report.warnings = std::move(warnings);
   result.report.total_seconds = seconds();
   return result;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "ductile/runtime/parallel_for.hpp"
@@ -157,14 +158,18 @@ std::size_t Adapter<Dim>::feasible_changes() {
   const auto crowded = Coarsen<Dim>::crowded_vertices(executor_, mesh_, rules().short_edge, 0);
   const auto edges = Refine<Dim>::long_edges(executor_, mesh_, rules().long_edge, 0);
   const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
-  const auto changes = [&](std::size_t i) -> std::size_t {
+  std::vector<std::size_t> changes(all / step);
+  const auto look = [&](std::size_t i) {
     const std::size_t k = i * step;
-    if (k < crowded.size()) return coarsening.plan(crowded[k]).has_value();
-    const LongEdge& edge = edges[k - crowded.size()];
-    return refinement.plan(edge) ? splits_of(edge) : 0;
+    if (k < crowded.size()) {
+      changes[i] = coarsening.plan(crowded[k]).has_value();
+    } else {
+      const LongEdge& edge = edges[k - crowded.size()];
+      changes[i] = refinement.plan(edge) ? splits_of(edge) : 0;
+    }
   };
-  return step *
-         runtime::parallel_reduce(executor_, all / step, std::size_t{0}, changes, std::plus<>());
+  parallel_for(executor_, changes.size(), look, {.grain = 2});
+  return step * std::accumulate(changes.begin(), changes.end(), std::size_t{0});
 }
 
 /// About how many times an edge will be split.

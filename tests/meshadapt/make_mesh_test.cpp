@@ -283,7 +283,7 @@ TEST(ToAnyMesh, GivesBackWhatWasMade) {
   any.required_tetrahedra = {3, 5};
   any.required_triangles = {7};
   any.required_vertices = {11};
-  const AnyMesh back = to_any_mesh(make<3>(any).mesh);
+  const AnyMesh back = to_any_mesh(Executor({.threads = 2}), make<3>(any).mesh);
   const auto changes = test::changes_of_what_is_kept(any, back);
   EXPECT_TRUE(changes.empty()) << test::joined(changes);
   EXPECT_EQ(back.tetrahedra.vertices, any.tetrahedra.vertices);

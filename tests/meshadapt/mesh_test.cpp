@@ -52,7 +52,7 @@ TYPED_TEST(MeshIn, RenumberingKeepsEverything) {
   renumber(executor, mesh);
   const auto faults = check_mesh(executor, mesh);
   EXPECT_TRUE(faults.empty()) << test::joined(faults);
-  const AnyMesh back = to_any_mesh(mesh);
+  const AnyMesh back = to_any_mesh(executor, mesh);
   const auto changes = test::changes_of_what_is_kept(any, back);
   EXPECT_TRUE(changes.empty()) << test::joined(changes);
   EXPECT_EQ(back.vertex_count(), any.vertex_count());

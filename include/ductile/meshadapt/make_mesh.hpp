@@ -29,12 +29,13 @@ Mesh<Dim> make_mesh(const runtime::Executor& executor, const AnyMesh& any,
                     std::vector<std::string>& warnings);
 
 /// The mesh as a file holds it: boundary and interface facets, curves, corners and required
-/// entities with their references. The mesh must be compact (see renumber).
+/// entities with their references. The mesh must be compact (see renumber). Thread safety: one
+/// caller; runs on the executor.
 template <int Dim>
-AnyMesh to_any_mesh(const Mesh<Dim>& mesh);
+AnyMesh to_any_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
 
-/// The metric at the vertices, as a field to write beside to_any_mesh.
+/// The metric at the vertices, as a field to write beside to_any_mesh. Thread safety: as above.
 template <int Dim>
-AnyField to_any_field(const Mesh<Dim>& mesh);
+AnyField to_any_field(const runtime::Executor& executor, const Mesh<Dim>& mesh);
 
 }  // namespace ductile::meshadapt
