@@ -46,7 +46,7 @@ auto Refine<Dim>::plan(const Item& edge) const -> std::optional<Plan> {
   shell_of(mesh_, edge.a, edge.b, plan.shell);
   if (plan.shell.empty() || !may_split(plan.shell, edge.a, edge.b)) return {};
   locate(plan);
-  if (!makes_no_short_edge(plan) || !keeps_shapes(plan)) return {};
+  if (!makes_no_short_edge(plan) || !keeps_shapes(plan, edge.length)) return {};
   return plan;
 }
 
@@ -104,13 +104,16 @@ bool Refine<Dim>::makes_no_short_edge(const Plan& plan) const {
   return true;
 }
 
+/// Shapes tell little of elements over which the metric changes a lot, as those of overlong edges.
 template <int Dim>
-bool Refine<Dim>::keeps_shapes(const Plan& plan) const {
+bool Refine<Dim>::keeps_shapes(const Plan& plan, double length) const {
   double before = 1;
   for (const ElementId e : plan.shell) before = std::min<double>(before, mesh_.shape_of[e]);
-  const double least = before < rules_.poor_shape
-                           ? before
-                           : std::min(rules_.split_keeps * before, rules_.accepted_shape);
+  const double excess = std::max(1.0, length / rules_.overlong_edge);
+  const double least =
+      before < rules_.poor_shape
+          ? before
+          : std::min(rules_.split_keeps * before, rules_.accepted_shape) / (excess * excess);
   for (const ElementId e : plan.shell)
     for (const VertexId end : {plan.a, plan.b}) {
       auto sites = mesh_.sites(mesh_.corners_of[e]);

@@ -72,7 +72,7 @@ class Refine {
  private:
   // ---- Rules ----
   bool may_split(const Shell& shell, VertexId a, VertexId b) const;
-  bool keeps_shapes(const Plan& plan) const;
+  bool keeps_shapes(const Plan& plan, double length) const;
   bool makes_no_short_edge(const Plan& plan) const;
 
   void locate(Plan& plan) const;

@@ -13,7 +13,9 @@ struct Rules {
   double kept_shape = 1;           ///< ... or than this fraction of the worst before, if that is
                                    ///< less: far from the metric, good shapes are still to come
   double poor_shape = 0.001;       ///< from elements this bad a split makes none that are worse
-  double split_keeps = 0.3;        ///< a split may lower the worst shape to this fraction
+  double split_keeps = 0.3;        ///< a split may lower the worst shape to this fraction, if
+                                   ///< that is less than accepted_shape ...
+  double overlong_edge = 2;        ///< ... and of longer edges, to less by the square of the length
   double shortest_split = 0.5;     ///< a split makes no edge shorter than this
 };
 
