@@ -27,7 +27,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 21> options{{
+constexpr std::array<Option, 22> options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
@@ -42,6 +42,7 @@ constexpr std::array<Option, 21> options{{
     {"-m", "MB", "takes at most this much memory, in megabytes", "--memory"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
     {"--iterations", "N", "at most this many rounds of all kernels"},
+    {"--thorough", "", "goes on for better shapes and lengths"},
     {"--racing", "", "works in order of arrival: valid too, but runs may differ"},
     {"--json", "FILE", "writes counts, times, quality and memory there"},
     {"--vtu", "FILE", "writes the adapted mesh for ParaView, too"},
@@ -105,6 +106,7 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
     throw UsageError("option -hgrad: expected a factor of 1 or more, or -1 for none, found '" +
                      *arguments.text("-hgrad") + "'");
   adapt.gradation = gradation > 0 ? gradation : 0;
+  adapt.thorough = arguments.has("--thorough");
   adapt.move = !arguments.has("-nomove");
   adapt.swap = !arguments.has("-noswap");
   adapt.insert = !arguments.has("-noinsert");

@@ -22,6 +22,13 @@ using runtime::RoundsReport;
 
 namespace {
 
+/// How much is done for better shapes.
+struct Care {
+  double calm;   ///< share of changes below which the mesh is near the metric
+  int polishes;  ///< passes
+  double far;    ///< of SmoothOptions
+};
+
 /// What differs between the dimensions. Shares are of the number of elements.
 template <int Dim>
 struct Tuning;
@@ -30,7 +37,8 @@ template <>
 struct Tuning<2> {
   /// How much longer than the rules want edges must be to be split, by stage.
   static constexpr double stages[] = {1};
-  static constexpr double calm = 0.03;           ///< share of changes below which it is near
+  static constexpr Care normal{.calm = 0.03, .polishes = 1, .far = 0.16};
+  static constexpr Care thorough{.calm = 0.03, .polishes = 2, .far = 0.08};
   static constexpr double kept_shape = 1;        ///< of Rules, on the way to the metric
   static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
   static constexpr int rearrangements = 3;       ///< passes
@@ -45,7 +53,8 @@ struct Tuning<3> {
   /// Coarsening and swapping shorten many long edges, so the first stage splits none, and each
   /// after it what is left of the longest.
   static constexpr double stages[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25, 1};
-  static constexpr double calm = 0.05;
+  static constexpr Care normal{.calm = 0.1, .polishes = 1, .far = 0.2};
+  static constexpr Care thorough{.calm = 0.05, .polishes = 2, .far = 0.08};
   static constexpr double kept_shape = 0.2;
   static constexpr double stretched_edge = 1.55;
   static constexpr int rearrangements = 2;
@@ -95,6 +104,11 @@ Mesh<Dim> with_metrics(const runtime::Executor& executor, Mesh<Dim> mesh,
   return mesh;
 }
 
+template <int Dim>
+const Care& care_of(const AdaptOptions& options) {
+  return options.thorough ? Tuning<Dim>::thorough : Tuning<Dim>::normal;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -118,7 +132,7 @@ void Adapter<Dim>::run() {
     const double changed = share(iterate());
     // Few changes may be the beginning of many, where a thin layer is split in halves.
     const bool calm =
-        changed < Tuning<Dim>::calm && (changed < 5e-3 || share(splits_to_come()) < 0.1);
+        changed < care_of<Dim>(options_).calm && (changed < 5e-3 || share(splits_to_come()) < 0.1);
     report_.converged = calm && !next_stage();
   }
   stage_ = std::size(Tuning<Dim>::stages) - 1;  // what is left is split at once
@@ -252,7 +266,7 @@ void Adapter<Dim>::rearrange() {
 /// Raises quality without aiming at lengths.
 template <int Dim>
 void Adapter<Dim>::polish() {
-  for (int pass = 0; pass < 2; ++pass) {
+  for (int pass = 0; pass < care_of<Dim>(options_).polishes; ++pass) {
     smooth(3, 0.5, true);
     swap(4, Tuning<Dim>::swap_below);
   }
@@ -337,6 +351,7 @@ std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplaci
                  {.laplacian = laplacian,
                   .optimise_below = optimise_below,
                   .mean_below = aim_ == Aim::finish ? Tuning<Dim>::mean_below : 0,
+                  .far = care_of<Dim>(options_).far,
                   .again = sweeps > 1});
   auto work = laplacian
                   ? Smooth<Dim>::movable_vertices(executor_, mesh_, end_epoch(seen_by_smooth_))

@@ -10,6 +10,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/statistics.hpp"
 #include "ductile/runtime/replay.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
@@ -234,6 +235,21 @@ TEST_P(Adapt, OnlyDoesWhatItMay) {
   options.swap = true;
   const AdaptedMesh swapped = adapt(Executor({.threads = 2}), mesh, metric, options);
   EXPECT_EQ(swapped.mesh.vertex_count(), mesh.vertex_count());
+}
+
+TEST_P(Adapt, MakesBetterShapesIfThorough) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 8));
+  const AnyField metric = layered(mesh, dimension() == 2 ? 10000 : 3000);
+  const Executor executor({.threads = 2});
+  const auto quality = [&](bool thorough) {
+    AdaptOptions options;
+    options.thorough = thorough;
+    const AdaptedMesh result = adapt(executor, mesh, metric, options);
+    const auto faults = test::faults_of(executor, mesh, result);
+    EXPECT_TRUE(faults.empty()) << test::joined(faults);
+    return measure(executor, result.mesh, &result.metric).quality.mean;
+  };
+  EXPECT_GT(quality(true), quality(false));
 }
 
 TEST_P(Adapt, RefusesAMetricOfTheWrongShape) {
