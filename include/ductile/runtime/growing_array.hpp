@@ -1,0 +1,102 @@
+/// @file
+/// GrowingArray: an array for graphs that grow while they are worked on. Its memory comes in pages
+/// straight from the system: growing moves page table entries where the system can do that (Linux)
+/// and copies nothing, and what is new is first touched, and so placed near, by whoever writes it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+namespace ductile::runtime {
+
+namespace detail {
+
+/// Bytes that are zero until they are written. Throws std::bad_alloc. Thread safety: one thread.
+class GrowingMemory {
+ public:
+  GrowingMemory() = default;
+  GrowingMemory(GrowingMemory&& other) noexcept { swap(other); }
+  GrowingMemory& operator=(GrowingMemory&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  GrowingMemory(const GrowingMemory&) = delete;
+  GrowingMemory& operator=(const GrowingMemory&) = delete;
+  ~GrowingMemory();
+
+  std::byte* data() const { return data_; }
+  std::size_t bytes() const { return bytes_; }
+
+  /// Makes room for at least so many bytes. Contents stay, but may move.
+  void reserve(std::size_t bytes);
+
+ private:
+  void swap(GrowingMemory& other) {
+    std::swap(data_, other.data_);
+    std::swap(bytes_, other.bytes_);
+  }
+
+  std::byte* data_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace detail
+
+/// Elements are as if made of zero bytes until they are set.
+/// Thread safety: elements as those of an array; what changes the size, one thread.
+template <class T>
+requires std::is_trivially_copyable_v<T>
+class GrowingArray {
+ public:
+  GrowingArray() = default;
+  GrowingArray(GrowingArray&& other) noexcept
+      : memory_(std::move(other.memory_)),
+        size_(std::exchange(other.size_, 0)),
+        touched_(std::exchange(other.touched_, 0)) {}
+  GrowingArray& operator=(GrowingArray&& other) noexcept {
+    std::swap(memory_, other.memory_);
+    std::swap(size_, other.size_);
+    std::swap(touched_, other.touched_);
+    return *this;
+  }
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T* data() { return reinterpret_cast<T*>(memory_.data()); }
+  const T* data() const { return reinterpret_cast<const T*>(memory_.data()); }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size_; }
+  T& operator[](std::size_t i) { return data()[i]; }
+  const T& operator[](std::size_t i) const { return data()[i]; }
+
+  /// Shrinks, which gives no memory back, or grows: what is new is zero. Pointers into the array
+  /// are valid until it grows. Throws std::bad_alloc, and is as before then.
+  void resize(std::size_t n) {
+    if (n * sizeof(T) > memory_.bytes()) memory_.reserve((n + n / 4) * sizeof(T));
+    touched_ = std::max(touched_, size_);
+    if (n > size_)  // what was there before it shrank
+      std::fill(reinterpret_cast<std::byte*>(data() + size_),
+                reinterpret_cast<std::byte*>(data() + std::max(size_, std::min(n, touched_))),
+                std::byte{0});
+    size_ = n;
+  }
+
+  /// Bytes of address space held; those never written take no memory.
+  std::size_t bytes() const { return memory_.bytes(); }
+
+  friend bool operator==(const GrowingArray& a, const GrowingArray& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
+
+ private:
+  detail::GrowingMemory memory_;
+  std::size_t size_ = 0;
+  std::size_t touched_ = 0;  // the largest size there was before the last change
+};
+
+}  // namespace ductile::runtime

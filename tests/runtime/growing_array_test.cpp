@@ -1,0 +1,70 @@
+#include "ductile/runtime/growing_array.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <random>
+#include <vector>
+
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime {
+namespace {
+
+struct Pair {
+  std::uint32_t a, b;
+  friend bool operator==(const Pair&, const Pair&) = default;
+};
+
+TEST(GrowingArray, IsLikeAVectorOfZeros) {
+  std::mt19937 random(3);
+  GrowingArray<Pair> array;
+  std::vector<Pair> expected;
+  for (int step = 0; step < 300; ++step) {
+    const std::size_t n = random() % 2 == 0 ? random() % 50000 : expected.size() + random() % 2000;
+    array.resize(n);
+    expected.resize(n);
+    ASSERT_TRUE(std::equal(array.begin(), array.end(), expected.begin(), expected.end())) << step;
+    for (std::size_t i = step % 3; i < n; i += 3)
+      array[i] = expected[i] = {static_cast<std::uint32_t>(random()), 1};
+  }
+}
+
+TEST(GrowingArray, IsWrittenByAllThreadsAfterItGrew) {
+  const Executor executor({.threads = 8});
+  GrowingArray<std::uint64_t> array;
+  for (const std::size_t n : {1000UL, 100000UL, 1000000UL}) {
+    array.resize(n);
+    parallel_for(executor, n, [&](std::size_t i) { array[i] += i; });
+  }
+  for (std::size_t i = 0; i < array.size(); ++i)
+    ASSERT_EQ(array[i], i * (i < 1000 ? 3 : i < 100000 ? 2 : 1));
+}
+
+TEST(GrowingArray, GivesItsElementsAwayWhenMoved) {
+  GrowingArray<int> a;
+  a.resize(10);
+  a[3] = 7;
+  GrowingArray<int> b(std::move(a));
+  EXPECT_EQ(b.size(), 10U);
+  EXPECT_EQ(b[3], 7);
+  GrowingArray<int> c;
+  c.resize(5000);
+  c = std::move(b);
+  EXPECT_EQ(c.size(), 10U);
+  EXPECT_EQ(c[3], 7);
+}
+
+TEST(GrowingArray, StaysAsItIsWhereMemoryRunsOut) {
+  GrowingArray<std::uint64_t> array;
+  array.resize(100);
+  array[99] = 5;
+  EXPECT_THROW(array.resize(std::numeric_limits<std::size_t>::max() / 64), std::bad_alloc);
+  EXPECT_EQ(array.size(), 100U);
+  EXPECT_EQ(array[99], 5U);
+}
+
+}  // namespace
+}  // namespace ductile::runtime
