@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -90,6 +91,18 @@ inline bool crowd_a_cache_set(const DigitCounts& place_of, std::size_t bytes) {
   return *std::max_element(digits_in.begin(), digits_in.end()) > 4 * (used / sets + 4);
 }
 
+/// Makes of each block's counts where its values go. Block by block, as that is how they lie in
+/// memory.
+inline void counts_to_places(std::vector<DigitCounts>& counts_of) {
+  DigitCounts place{};
+  for (const DigitCounts& counts : counts_of)
+    for (std::size_t d = 0; d < digit_count; ++d) place[d] += counts[d];
+  std::exclusive_scan(place.begin(), place.end(), place.begin(), std::size_t{0});
+  for (DigitCounts& counts : counts_of)
+    for (std::size_t d = 0; d < digit_count; ++d)
+      counts[d] = std::exchange(place[d], place[d] + counts[d]);
+}
+
 /// Stable: sorts `from` by the pass's digit into `to`. `lines` has room for one of each digit for
 /// every block, or is null if there are too few values for that to be of use.
 template <std::unsigned_integral T>
@@ -108,9 +121,7 @@ void scatter_by_digit(const Executor& executor, std::span<const T> from, std::sp
     }
   };
   parallel_for_blocks(executor, from.size(), pass.block, count);
-  std::size_t sum = 0;
-  for (std::size_t d = 0; d < digit_count; ++d)
-    for (DigitCounts& counts : pass.counts) sum += std::exchange(counts[d], sum);
+  counts_to_places(pass.counts);
   parallel_for_blocks(executor, from.size(), pass.block, scatter);
 }
 
@@ -123,12 +134,12 @@ void radix_sort(const Executor& executor, std::span<T> values) {
   const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
   const std::size_t block = std::max(radix_block, (values.size() + most_blocks - 1) / most_blocks);
   DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block)};
-  std::vector<T> scratch(values.size());
+  const auto scratch = std::make_unique_for_overwrite<T[]>(values.size());
   // All memory is taken before the first pass: later, running out of it would lose values.
   std::unique_ptr<Line<T>[]> lines;
   if (values.size_bytes() > 262144)
     lines = std::make_unique_for_overwrite<Line<T>[]>(pass.counts.size() * digit_count);
-  std::span<T> from = values, to = scratch;
+  std::span<T> from = values, to(scratch.get(), values.size());
   for (; pass.shift < bits; pass.shift += digit_bits) {
     scatter_by_digit<T>(executor, from, to, pass, lines.get());
     std::swap(from, to);
