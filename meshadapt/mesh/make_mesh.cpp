@@ -97,8 +97,11 @@ class MeshMaker {
       mesh_.kind_of[checked_vertex(v, "corner")].corner = true;
     for (const std::uint32_t v : any_.required_vertices)
       mesh_.kind_of[checked_vertex(v, "required vertex")].required = true;
-    parallel_for(executor_, cells.size(),
-                 [&](std::size_t e) { mesh_.corners_of[e] = cells.vertices[e]; });
+    parallel_for(executor_, cells.size(), [&](std::size_t e) {
+      mesh_.corners_of[e] = cells.vertices[e];
+      mesh_.patches_of[e].fill(0);
+      mesh_.changed_at[e] = mesh_.epoch;
+    });
     const auto& required = Dim == 2 ? any_.required_triangles : any_.required_tetrahedra;
     const auto locked = marked(cells.size(), required, element_name<Dim>());
     number_regions(cells.reference, locked);

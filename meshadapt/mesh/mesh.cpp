@@ -15,13 +15,11 @@ using runtime::parallel_for;
 
 template <int Dim>
 void Mesh<Dim>::grow(std::size_t vertices, std::size_t elements) {
-  Corners<Dim> gone;
-  gone.fill(none);
-  corners_of.resize(elements, gone);
+  corners_of.resize(elements);
   patches_of.resize(elements);
   region_of.resize(elements);
   shape_of.resize(elements);
-  changed_at.resize(elements, epoch);
+  changed_at.resize(elements);
   site_of.resize(vertices);
   kind_of.resize(vertices);
   entity_of.resize(vertices);

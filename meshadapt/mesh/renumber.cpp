@@ -88,8 +88,8 @@ std::vector<std::uint32_t> places_in(const Executor& executor,
   return place_of;
 }
 
-/// Puts arrays in a new order by way of a scratch array. There and back again: a new vector would
-/// be set to zero, and a full one copied when it grows, by one thread; these keep room to grow.
+/// Puts arrays in a new order by way of a scratch array. There and back again: pages that are there
+/// cost less than new ones.
 class Permutation {
  public:
   Permutation(const Executor& executor, const std::vector<std::uint32_t>& order,
@@ -101,7 +101,7 @@ class Permutation {
 
   /// values[i] becomes the old values[order[i]].
   template <class T>
-  void operator()(std::vector<T>& values) {
+  void operator()(GrowingArray<T>& values) {
     static_assert(std::is_trivially_copyable_v<T>);
     assert(sizeof(T) <= largest_);
     T* const moved = reinterpret_cast<T*>(scratch_.get());
@@ -110,7 +110,7 @@ class Permutation {
                  [&](std::size_t i) { std::construct_at(moved + i, values[order_[i]]); });
     values.resize(n);
     runtime::parallel_for_ranges(executor_, n, [&](std::size_t begin, std::size_t end) {
-      std::copy(moved + begin, moved + end, values.begin() + static_cast<std::ptrdiff_t>(begin));
+      std::copy(moved + begin, moved + end, values.begin() + begin);
     });
   }
 

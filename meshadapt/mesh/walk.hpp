@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <vector>
+#include <span>
 
 #include "ductile/meshadapt/simplex.hpp"
 
@@ -12,8 +12,8 @@ namespace ductile::meshadapt {
 /// Where the elements of a mesh lie.
 template <int Dim>
 struct Simplices {
-  const std::vector<Corners<Dim>>& corners_of;  // [element]
-  const std::vector<Vector<Dim>>& position_of;  // [vertex]
+  std::span<const Corners<Dim>> corners_of;  // [element]
+  std::span<const Vector<Dim>> position_of;  // [vertex]
 
   std::array<Vector<Dim>, Dim + 1> points(ElementId element) const {
     std::array<Vector<Dim>, Dim + 1> result;
@@ -26,7 +26,7 @@ struct Simplices {
 template <int Dim>
 struct Walkable {
   Simplices<Dim> elements;
-  const std::vector<std::array<ElementId, Dim + 1>>& neighbour_of;  // [element][facet]
+  std::span<const std::array<ElementId, Dim + 1>> neighbour_of;  // [element][facet]
 };
 
 template <int Dim>

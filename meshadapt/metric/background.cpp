@@ -11,10 +11,12 @@ namespace ductile::meshadapt {
 template <int Dim>
 Background<Dim>::Background(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                             Neighbours<Dim> neighbours)
-    : corners_of_(mesh.corners_of),
-      neighbours_(std::move(neighbours)),
-      position_of_(mesh.vertex_slots()),
-      log_metric_of_(mesh.vertex_slots()) {
+    : neighbours_(std::move(neighbours)) {
+  corners_of_.resize(mesh.element_slots());
+  runtime::parallel_for(executor, mesh.element_slots(),
+                        [&](std::size_t e) { corners_of_[e] = mesh.corners_of[e]; });
+  position_of_.resize(mesh.vertex_slots());
+  log_metric_of_.resize(mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
     position_of_[v] = mesh.site_of[v].position;
     log_metric_of_[v] = logarithm(mesh.site_of[v].metric);
@@ -56,10 +58,7 @@ auto Background<Dim>::sample(const Vector<Dim>& point, ElementId near) const -> 
 template <int Dim>
 std::size_t Background<Dim>::bytes() const {
   const auto* tree = tree_.made();
-  return corners_of_.capacity() * sizeof(corners_of_[0]) +
-         neighbours_.capacity() * sizeof(neighbours_[0]) +
-         position_of_.capacity() * sizeof(position_of_[0]) +
-         log_metric_of_.capacity() * sizeof(log_metric_of_[0]) +
+  return corners_of_.bytes() + neighbours_.bytes() + position_of_.bytes() + log_metric_of_.bytes() +
          (tree == nullptr ? 0 : (*tree)->bytes());
 }
 

@@ -46,10 +46,10 @@ class Background {
  private:
   ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
 
-  std::vector<Corners<Dim>> corners_of_;    // [element]
-  Neighbours<Dim> neighbours_;              // [element][facet]
-  std::vector<Vector<Dim>> position_of_;    // [vertex]
-  std::vector<Metric<Dim>> log_metric_of_;  // [vertex]
+  GrowingArray<Corners<Dim>> corners_of_;    // [element]
+  Neighbours<Dim> neighbours_;               // [element][facet]
+  GrowingArray<Vector<Dim>> position_of_;    // [vertex]
+  GrowingArray<Metric<Dim>> log_metric_of_;  // [vertex]
   // Seldom needed: few walks end at a hole or outside.
   mutable runtime::Lazy<std::unique_ptr<BoxTree<Dim>>> tree_;
 };

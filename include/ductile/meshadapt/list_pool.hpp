@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "ductile/runtime/arena.hpp"
+#include "ductile/runtime/growing_array.hpp"
 
 namespace ductile::meshadapt {
 
@@ -20,7 +20,8 @@ class ListPool {
 
   /// Forgets all lists and makes n empty ones. Thread safety: one thread.
   void reset(std::size_t n) {
-    slot_of_.assign(n, {});
+    slot_of_.resize(0);
+    slot_of_.resize(n);
     arena_->clear();
   }
 
@@ -79,13 +80,13 @@ class ListPool {
   std::uint32_t& count_of(std::uint32_t index) { return slot_of_[index].count; }
   T* data(std::uint32_t index) { return arena_->at(slot_of_[index].begin); }
 
-  std::size_t bytes() const { return arena_->bytes() + slot_of_.capacity() * sizeof(Slot); }
+  std::size_t bytes() const { return arena_->bytes() + slot_of_.bytes(); }
 
  private:
   struct Slot {
     std::uint32_t begin = 0, count = 0, capacity = 0;
   };
-  std::vector<Slot> slot_of_;
+  runtime::GrowingArray<Slot> slot_of_;
   std::unique_ptr<runtime::Arena<T>> arena_ = std::make_unique<runtime::Arena<T>>();
 };
 

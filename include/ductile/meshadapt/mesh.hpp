@@ -15,8 +15,11 @@
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/growing_array.hpp"
 
 namespace ductile::meshadapt {
+
+using runtime::GrowingArray;
 
 /// Number of a flat patch of facets or of a straight curve of edges; 0 is none.
 using PatchId = std::uint32_t;
@@ -51,7 +54,7 @@ struct CurveLink {
 
 /// The element across each facet, or none: [element][facet].
 template <int Dim>
-using Neighbours = std::vector<std::array<ElementId, Dim + 1>>;
+using Neighbours = GrowingArray<std::array<ElementId, Dim + 1>>;
 
 /// What a vertex may do. `freedom` is the dimension of the space it may move in: 0 never moves and
 /// is never removed (corner or required), 1 moves along a straight line, 2 in a flat patch or, in
@@ -72,23 +75,23 @@ struct Region {
 template <int Dim>
 struct Mesh {
   // ---- Elements; one is gone when its first corner is none ----
-  std::vector<Corners<Dim>> corners_of;                  // [element], positively oriented
-  std::vector<std::array<PatchId, Dim + 1>> patches_of;  // [element][facet], 0 inside
-  std::vector<std::uint32_t> region_of;                  // [element], index into regions
+  GrowingArray<Corners<Dim>> corners_of;                  // [element], positively oriented
+  GrowingArray<std::array<PatchId, Dim + 1>> patches_of;  // [element][facet], 0 inside
+  GrowingArray<std::uint32_t> region_of;                  // [element], index into regions
   // [element], see shape(). Rounded in another way by kernels that know it before they act; of
   // corners exactly as dense, any may have been the judge.
-  std::vector<float> shape_of;
-  std::vector<std::uint32_t> changed_at;  // [element], epoch of its last change
+  GrowingArray<float> shape_of;
+  GrowingArray<std::uint32_t> changed_at;  // [element], epoch of its last change
   std::uint32_t epoch = 1;  ///< what changes now is marked with this; a scan ends an epoch
 
   // ---- Vertices; one is gone when it has no elements ----
-  std::vector<Site<Dim>> site_of;          // [vertex]
-  std::vector<VertexKind> kind_of;         // [vertex]
-  std::vector<std::uint32_t> entity_of;    // [vertex], its patch or curve, or 0
-  std::vector<std::int32_t> reference_of;  // [vertex]
-  std::vector<ElementId> host_of;          // [vertex], background element it lies in
-  ListPool<ElementId> elements_of;         // [vertex], sorted
-  ListPool<CurveLink> links_of;            // [vertex], 3D only
+  GrowingArray<Site<Dim>> site_of;          // [vertex]
+  GrowingArray<VertexKind> kind_of;         // [vertex]
+  GrowingArray<std::uint32_t> entity_of;    // [vertex], its patch or curve, or 0
+  GrowingArray<std::int32_t> reference_of;  // [vertex]
+  GrowingArray<ElementId> host_of;          // [vertex], background element it lies in
+  ListPool<ElementId> elements_of;          // [vertex], sorted
+  ListPool<CurveLink> links_of;             // [vertex], 3D only
 
   // ---- Geometry; entry 0 stands for none ----
   std::vector<Patch<Dim>> patches;
@@ -122,8 +125,8 @@ struct Mesh {
   /// A vertex with more elements than this is left where it is; its edges can still be split.
   static constexpr std::size_t largest_ball = 512;
 
-  /// Makes room for this many vertices and elements; new ones are gone until they are set.
-  /// Thread safety: one thread.
+  /// Makes room for this many vertices and elements; new ones are to be set before anything else
+  /// looks at the mesh. Thread safety: one thread.
   void grow(std::size_t vertices, std::size_t elements);
 };
 
