@@ -23,6 +23,17 @@ std::uint32_t greatest(const Executor& executor, std::size_t n, GreatestIn great
 
 }  // namespace
 
+ColouringMethod choose(const Executor& executor, ColouringMethod method, std::size_t vertex_count) {
+  const bool by_degree =
+      method == ColouringMethod::largest_first || method == ColouringMethod::largest_log_first;
+  // A team of one has no clashes to look for.
+  const bool alone = executor.threads() == 1 && (method == ColouringMethod::detect_again ||
+                                                 method == ColouringMethod::two_phase);
+  if (alone || (vertex_count < few_vertices && !by_degree)) return ColouringMethod::serial;
+  // Of those that are deterministic, blocked is not far from the fastest.
+  return method == ColouringMethod::automatic ? ColouringMethod::blocked : method;
+}
+
 std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
                     std::span<std::uint32_t> colour_of) {
   return greatest(executor, bytes.size(), [&](std::size_t begin, std::size_t end) {

@@ -1,14 +1,15 @@
 /// @file
 /// What it costs to carry out a write for data that another thread may own: kept and committed
 /// (DeferredUpdate), or at once under a lock or by an atomic, or kept in other containers.
-/// Item i of a loop adds i to the sum of an owner. Floor: it writes both into an array of its own.
+/// Item i of a loop adds i to the sum of an owner. Floor: it writes what has to be kept into a
+/// place of its own; arrays.read_back is what else it takes to carry that out.
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <memory>
 #include <mutex>
 #include <numeric>
-#include <tuple>
 #include <utility>
 #ifdef DUCTILE_BENCH_TBB
 #include <tbb/concurrent_vector.h>
@@ -53,11 +54,15 @@ std::vector<Case> cases() {
       {"near_" + size, many, near}, {"anywhere_" + size, many, anywhere}, {"few_300", 300, near}};
 }
 
+std::string title(std::string subject, const Case& c, const std::string& candidate) {
+  return subject.append("/").append(c.name).append("/").append(candidate);
+}
+
 /// `make(executor, case)` returns a function that carries out all updates of a case on sums.
 template <class Make>
-void add_buffers(const std::string& candidate, Make make) {
+void add_buffers(const std::string& subject, const std::string& candidate, Make make) {
   for (const Case& c : cases())
-    add("buffers/" + c.name + '/' + candidate, thread_counts(),
+    add(title(subject, c, candidate), thread_counts(),
         [c, make](benchmark::State& state, int threads) {
           const Executor executor({.threads = threads});
           Sums sums(c.count);
@@ -73,18 +78,83 @@ void add_buffers(const std::string& candidate, Make make) {
         });
 }
 
+/// The bytes that are kept of an update.
+struct Plain {
+  std::uint32_t owner, value;
+  Plain() = default;
+  Plain(std::size_t, const Update& update) : owner(update.owner), value(update.value) {}
+};
+struct Sourced {
+  std::uint64_t source;
+  std::uint32_t owner, value;
+  Sourced() = default;
+  Sourced(std::size_t item, const Update& update)
+      : source(item), owner(update.owner), value(update.value) {}
+};
+
+/// What nobody who keeps updates can do without: what is kept is written to an array.
+template <class Kept>
 void add_floor(const std::string& subject) {
   for (const Case& c : cases())
-    add(subject + '/' + c.name + "/floor", thread_counts(),
-        [c](benchmark::State& state, int threads) {
-          const Executor executor({.threads = threads});
-          std::vector<Update> own(c.count);
-          for (auto _ : state) {
-            parallel_for(executor, c.count, [&](std::size_t i) { own[i] = c.update(i); });
-            benchmark::ClobberMemory();
-          }
-        });
+    add(title(subject, c, "floor"), thread_counts(), [c](benchmark::State& state, int threads) {
+      const Executor executor({.threads = threads});
+      const auto own = std::make_unique_for_overwrite<Kept[]>(c.count);
+      for (auto _ : state) {
+        parallel_for(executor, c.count, [&](std::size_t i) { own[i] = Kept(i, c.update(i)); });
+        benchmark::ClobberMemory();
+      }
+    });
 }
+
+/// The least that does for updates to be carried out afterwards, in no particular order: they are
+/// written to arrays, of each thread one for every thread; then each thread reads those for it and
+/// carries them out. A thread owns a run of owners.
+template <class Kept>
+class ArraysForThreads {
+ public:
+  ArraysForThreads(const Executor& executor, const Case& c)
+      : executor_(&executor), case_(&c), lanes_(executor) {
+    const std::uint32_t share = (c.count - 1) / static_cast<std::uint32_t>(executor.threads()) + 1;
+    shift_ = static_cast<unsigned>(std::bit_width(share - 1));
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      for (std::size_t u = 0; u < lanes_.size(); ++u)
+        lanes_[t].for_thread.push_back(std::make_unique_for_overwrite<Kept[]>(c.count));
+  }
+
+  void operator()(Sums& sums) {
+    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].next = starts(lanes_[t]);
+    runtime::parallel_for_ranges(*executor_, case_->count, [&](std::size_t begin, std::size_t end) {
+      Kept** const next = lanes_.mine().next.data();
+      for (std::size_t i = begin; i < end; ++i) {
+        const Update update = case_->update(i);
+        *next[update.owner >> shift_]++ = Kept(i, update);
+      }
+    });
+    const auto carry_out = [&](std::size_t thread) {
+      for (std::size_t t = 0; t < lanes_.size(); ++t)
+        for (const Kept* u = lanes_[t].for_thread[thread].get(); u != lanes_[t].next[thread]; ++u)
+          sums[u->owner] += u->value;
+    };
+    parallel_for(*executor_, lanes_.size(), carry_out, {.grain = 1});
+  }
+
+ private:
+  struct Lane {
+    std::vector<std::unique_ptr<Kept[]>> for_thread;
+    std::vector<Kept*> next;  // [thread], where its next update goes
+  };
+
+  static std::vector<Kept*> starts(const Lane& lane) {
+    std::vector<Kept*> all;
+    for (const auto& array : lane.for_thread) all.push_back(array.get());
+    return all;
+  }
+
+  const Executor* executor_;
+  const Case* case_;
+  unsigned shift_;  // of an owner, to its thread
+  runtime::PerThread<Lane> lanes_;
+};
 
 using Deferred = runtime::DeferredUpdate<std::uint32_t>;
 
@@ -93,6 +163,13 @@ enum class Way {
   each,  ///< DeferredUpdate::defer() for every update
   run,   ///< a Deferrer for every run of iterations that a thread gets, as run_rounds has it
 };
+
+std::string name_of(Way way) {
+  return way == Way::each ? "ductile.deferred" : "ductile.deferred_in_runs";
+}
+
+/// Of a subject: in order, updates are kept with their sources, which are as many bytes again.
+std::string suffix(CommitOrder order) { return order == CommitOrder::any ? "" : "_by_source"; }
 
 void defer_all(const Executor& executor, const Case& c, Deferred& deferred, Way way) {
   if (way == Way::each) {
@@ -111,21 +188,23 @@ void defer_all(const Executor& executor, const Case& c, Deferred& deferred, Way 
   }
 }
 
-void add_deferred(const std::string& name, CommitOrder order, Way way) {
-  add_buffers(name, [order, way](const Executor& executor, const Case& c) {
-    return [&executor, &c, way,
-            deferred = std::make_unique<Deferred>(
-                executor, runtime::DeferredUpdateOptions{.order = order})](Sums& sums) {
-      defer_all(executor, c, *deferred, way);
-      deferred->commit([&](std::uint32_t owner, std::uint32_t value) { sums[owner] += value; });
-    };
-  });
+void add_deferred(CommitOrder order, Way way) {
+  add_buffers(
+      "buffers" + suffix(order), name_of(way),
+      [order, way](const Executor& executor, const Case& c) {
+        return [&executor, &c, way,
+                deferred = std::make_unique<Deferred>(
+                    executor, runtime::DeferredUpdateOptions{.order = order})](Sums& sums) {
+          defer_all(executor, c, *deferred, way);
+          deferred->commit([&](std::uint32_t owner, std::uint32_t value) { sums[owner] += value; });
+        };
+      });
 }
 
 /// Without the commit: what a loop pays for an update that it defers.
-void add_deferring(const std::string& name, CommitOrder order, Way way) {
+void add_deferring(CommitOrder order, Way way) {
   for (const Case& c : cases())
-    add("deferring/" + c.name + '/' + name, thread_counts(),
+    add(title("deferring" + suffix(order), c, name_of(way)), thread_counts(),
         [c, order, way](benchmark::State& state, int threads) {
           const Executor executor({.threads = threads});
           Deferred deferred(executor, {.order = order});
@@ -139,7 +218,7 @@ void add_deferring(const std::string& name, CommitOrder order, Way way) {
 }
 
 void add_atomic() {
-  add_buffers("atomic.fetch_add", [](const Executor& executor, const Case& c) {
+  add_buffers("buffers", "atomic.fetch_add", [](const Executor& executor, const Case& c) {
     return [&](Sums& sums) {
       parallel_for(executor, c.count, [&](std::size_t i) {
         const Update update = c.update(i);
@@ -151,7 +230,7 @@ void add_atomic() {
 
 /// Locks shared among the owners in turn.
 void add_mutexes(const std::string& name, std::size_t lock_count) {
-  add_buffers(name, [lock_count](const Executor& executor, const Case& c) {
+  add_buffers("buffers", name, [lock_count](const Executor& executor, const Case& c) {
     struct alignas(64) Lock {
       std::mutex mutex;
     };
@@ -168,7 +247,7 @@ void add_mutexes(const std::string& name, std::size_t lock_count) {
 #ifdef DUCTILE_BENCH_TBB
 /// One list for all owners, so that one thread commits it.
 void add_concurrent_vector() {
-  add_buffers("tbb.concurrent_vector", [](const Executor& executor, const Case& c) {
+  add_buffers("buffers", "tbb.concurrent_vector", [](const Executor& executor, const Case& c) {
     return [&, list = std::make_shared<tbb::concurrent_vector<Update>>()](Sums& sums) {
       list->clear();
       parallel_for(executor, c.count, [&](std::size_t i) { list->push_back(c.update(i)); });
@@ -227,26 +306,32 @@ class TwoPasses {
   std::vector<Update> list_;             // by group, then block
 };
 
-void add_all() {
-  add_floor("buffers");
-  add_floor("deferring");
-  const std::tuple<const char*, CommitOrder, Way> ways[] = {
-      {"ductile.any_order", CommitOrder::any, Way::each},
-      {"ductile.any_order_in_runs", CommitOrder::any, Way::run},
-      {"ductile.by_source", CommitOrder::by_source, Way::each},
-      {"ductile.by_source_in_runs", CommitOrder::by_source, Way::run}};
-  for (const auto& [name, order, way] : ways) {
-    add_deferred(name, order, way);
-    add_deferring(name, order, way);
+/// What commits in this order, of which Kept is kept.
+template <class Kept>
+void add_keepers(CommitOrder order) {
+  const std::string buffers = "buffers" + suffix(order), deferring = "deferring" + suffix(order);
+  add_floor<Kept>(buffers);
+  add_floor<Kept>(deferring);
+  for (const Way way : {Way::each, Way::run}) {
+    add_deferred(order, way);
+    add_deferring(order, way);
   }
+  add_buffers(buffers, "arrays.read_back", [](const Executor& executor, const Case& c) {
+    return ArraysForThreads<Kept>(executor, c);
+  });
+  add_buffers(buffers, "prefix_sum.two_passes",
+              [](const Executor& executor, const Case& c) { return TwoPasses(executor, c); });
+}
+
+void add_all() {
+  add_keepers<Plain>(CommitOrder::any);
+  add_keepers<Sourced>(CommitOrder::by_source);
   add_atomic();
   add_mutexes("mutex.one", 1);
   add_mutexes("mutex.striped", 1024);
 #ifdef DUCTILE_BENCH_TBB
   add_concurrent_vector();
 #endif
-  add_buffers("prefix_sum.two_passes",
-              [](const Executor& executor, const Case& c) { return TwoPasses(executor, c); });
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ductile/runtime/detail/blocked_colouring.hpp"
+#include "ductile/runtime/detail/compiled_graphs.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
 #include "ductile/runtime/detail/marked_colouring.hpp"
 #include "ductile/runtime/detail/priority_colouring.hpp"
@@ -48,45 +49,74 @@ namespace detail {
 constexpr std::size_t few_vertices = 256;    // coloured on the caller, in order
 constexpr std::size_t many_vertices = 8192;  // worth the launches of MarkedBlocks
 
+/// What a method comes down to for so many vertices on these threads.
+ColouringMethod choose(const Executor& executor, ColouringMethod method, std::size_t vertex_count);
+
+/// Calls use(Method()), with the class that choose() stands for, and returns what it returns.
+template <class Use>
+bool with_class_of(ColouringMethod chosen, std::size_t vertex_count, Use&& use) {
+  switch (chosen) {
+    case ColouringMethod::serial:
+      return use(Serial());
+    case ColouringMethod::by_priority:
+      return use(ByPriority());
+    case ColouringMethod::largest_first:
+      return use(ByDegree<Degree::itself>());
+    case ColouringMethod::largest_log_first:
+      return use(ByDegree<Degree::logarithm>());
+    case ColouringMethod::detect_again:
+      return use(DetectAgain());
+    case ColouringMethod::two_phase:
+      return use(TwoPhase());
+    default:
+      return vertex_count < many_vertices ? use(Blocked()) : use(MarkedBlocks());
+  }
+}
+
+/// Colours vertices by a method, in words of one byte, which say `none`. Returns false if there are
+/// too many colours for them.
+template <class Method, class Width, Graph G>
+bool colour_in(const Executor& executor, const G& graph, std::vector<std::uint8_t>& bytes,
+               VertexSet vertices) {
+  try {
+    Method::run(executor, graph, vertices, Colours<Width>(bytes));
+    return true;
+  } catch (const TooManyColours&) {
+    return false;
+  }
+}
+
+/// The same, with the kind of words that is read fastest and holds the colours. Hubs, which take
+/// many, often come first, so that it shows soon what does not.
+template <class Method, Graph G>
+bool colour_in_bytes(const Executor& executor, const G& graph, std::vector<std::uint8_t>& bytes,
+                     VertexSet vertices) {
+  using Short = Narrow<Method::marks>;
+  using Long = OneByte<Method::marks>;
+  if constexpr (!requires { Method::bound_by_memory; }) {
+    if (colour_in<Method, Short>(executor, graph, bytes, vertices)) return true;
+    if constexpr (!requires { Method::resumes; })
+      std::fill(bytes.begin(), bytes.end(), Colours<Long>::none);
+  }
+  return colour_in<Method, Long>(executor, graph, bytes, vertices);
+}
+
+/// The same for all vertices by a method that is bound by memory: AnyGraph costs it little.
+template <CompiledGraph G>
+bool colour_slowly_in_bytes(const Executor& executor, const G& graph, ColouringMethod chosen,
+                            std::vector<std::uint8_t>& bytes);
+
+/// Colours all vertices with words of four bytes. Returns one more than the greatest colour.
+template <CompiledGraph G>
+std::uint32_t colour_in_words(const Executor& executor, const G& graph, ColouringMethod chosen,
+                              std::vector<std::uint32_t>& colour_of);
+
 /// Copies colours of one byte to words of four. Returns one more than the greatest.
 std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
                     std::span<std::uint32_t> colour_of);
 
 /// One more than the greatest colour.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
-
-/// Colours all, in this order, by a method, with words of one byte: these, which say `none`.
-/// Returns one more than the greatest colour. Throws TooManyColours.
-template <class Method, class Width, Graph G>
-std::uint32_t colour_in_bytes(const Executor& executor, const G& graph,
-                              std::vector<std::uint32_t>& colour_of, VertexSet vertices,
-                              std::vector<std::uint8_t>& bytes) {
-  Method::run(executor, graph, vertices, Colours<Width>(bytes));
-  return widen(executor, bytes, colour_of);
-}
-
-/// The same, with the shortest words that hold the colours. Hubs, which take many, often come
-/// first, so that it shows soon what does not.
-template <class Method, Graph G>
-std::uint32_t colour_all(const Executor& executor, const G& graph,
-                         std::vector<std::uint32_t>& colour_of, VertexSet vertices) {
-  using Short = Narrow<Method::marks>;
-  using Long = OneByte<Method::marks>;
-  std::vector<std::uint8_t> bytes(colour_of.size(), Colours<Short>::none);
-  try {
-    return colour_in_bytes<Method, Short>(executor, graph, colour_of, vertices, bytes);
-  } catch (const TooManyColours&) {
-  }
-  if constexpr (!requires { Method::resumes; })
-    std::fill(bytes.begin(), bytes.end(), Colours<Long>::none);
-  try {
-    return colour_in_bytes<Method, Long>(executor, graph, colour_of, vertices, bytes);
-  } catch (const TooManyColours&) {
-  }
-  std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
-  Method::run(executor, graph, vertices, Colours<FourBytes<Method::marks>>(colour_of));
-  return colour_count(executor, colour_of);
-}
 
 }  // namespace detail
 
@@ -96,48 +126,20 @@ std::uint32_t colour_all(const Executor& executor, const G& graph,
 template <Graph G>
 Colouring colour(const Executor& executor, const G& graph,
                  ColouringMethod method = ColouringMethod::automatic) {
-  Colouring colouring;
-  auto& colour_of = colouring.colour_of;
-  colour_of.resize(graph.vertex_count());
-  const bool by_degree =
-      method == ColouringMethod::largest_first || method == ColouringMethod::largest_log_first;
-  // A team of one has no clashes to look for.
-  const bool alone = executor.threads() == 1 && (method == ColouringMethod::detect_again ||
-                                                 method == ColouringMethod::two_phase);
-  if (alone || (colour_of.size() < detail::few_vertices && !by_degree))
-    method = ColouringMethod::serial;
-  const auto by = [&]<class Method>(Method) {
-    colouring.count =
-        detail::colour_all<Method>(executor, graph, colour_of, detail::VertexSet{colour_of.size()});
-  };
-  switch (method) {
-    case ColouringMethod::serial:
-      by(detail::Serial());
-      break;
-    case ColouringMethod::automatic:  // blocked is deterministic and not far from the fastest
-    case ColouringMethod::blocked:
-      if (colour_of.size() < detail::many_vertices) {
-        by(detail::Blocked());
-      } else {
-        by(detail::MarkedBlocks());
-      }
-      break;
-    case ColouringMethod::by_priority:
-      by(detail::ByPriority());
-      break;
-    case ColouringMethod::largest_first:
-      by(detail::ByDegree<false>());
-      break;
-    case ColouringMethod::largest_log_first:
-      by(detail::ByDegree<true>());
-      break;
-    case ColouringMethod::detect_again:
-      by(detail::DetectAgain());
-      break;
-    case ColouringMethod::two_phase:
-      by(detail::TwoPhase());
-      break;
-  }
+  const std::size_t n = graph.vertex_count();
+  Colouring colouring{std::vector<std::uint32_t>(n)};
+  std::vector<std::uint8_t> bytes(n, detail::Colours<detail::OneByte<>>::none);
+  method = detail::choose(executor, method, n);
+  const bool fits = detail::with_class_of(method, n, [&]<class Method>(Method) {
+    if constexpr (requires { Method::bound_by_memory; }) {
+      return detail::colour_slowly_in_bytes(executor, detail::as_compiled(graph), method, bytes);
+    } else {
+      return detail::colour_in_bytes<Method>(executor, graph, bytes, {n});
+    }
+  });
+  colouring.count = fits ? detail::widen(executor, bytes, colouring.colour_of)
+                         : detail::colour_in_words(executor, detail::as_compiled(graph), method,
+                                                   colouring.colour_of);
   return colouring;
 }
 
@@ -197,5 +199,16 @@ bool is_proper(const Executor& executor, const G& graph, const Colouring& colour
   };
   return parallel_reduce(executor, graph.vertex_count(), 0, bad, std::plus<>()) == 0;
 }
+
+// Of the common graphs: compiled once.
+extern template Colouring colour(const Executor&, const CsrGraph<std::uint32_t>&, ColouringMethod);
+extern template Colouring colour(const Executor&, const CsrGraph<std::uint64_t>&, ColouringMethod);
+extern template Colouring colour(const Executor&, const AnyGraph&, ColouringMethod);
+extern template void recolour(const Executor&, const CsrGraph<std::uint32_t>&,
+                              std::span<const std::uint32_t>, Colouring&);
+extern template void recolour(const Executor&, const CsrGraph<std::uint64_t>&,
+                              std::span<const std::uint32_t>, Colouring&);
+extern template void recolour(const Executor&, const AnyGraph&, std::span<const std::uint32_t>,
+                              Colouring&);
 
 }  // namespace ductile::runtime

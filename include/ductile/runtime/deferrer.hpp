@@ -58,17 +58,9 @@ class Deferrer {
   static constexpr unsigned neighbour_bits = 8;    // owners in a row that share a bucket
   static constexpr std::size_t write_ahead = 512;  // bytes
 
+  // What depends on the order comes last and is short: compilers then make a loop for each order.
   template <class Value>
   void keep(std::uint32_t owner, std::uint64_t source, Value&& update) const {
-    if (by_source_) {
-      append<detail::SourcedUpdate<T>>(owner, source, owner, std::forward<Value>(update));
-    } else {
-      append<detail::PlainUpdate<T>>(owner, owner, std::forward<Value>(update));
-    }
-  }
-
-  template <class Entry, class... Arguments>
-  void append(std::uint32_t owner, Arguments&&... arguments) const {
     constexpr int shift = static_cast<int>(neighbour_bits) - std::countr_zero(sizeof(Room));
     const std::size_t offset = (owner >> shift) & offset_mask_;
     Room* room = reinterpret_cast<Room*>(reinterpret_cast<std::byte*>(rooms_) + offset);
@@ -77,17 +69,26 @@ class Deferrer {
     // Where many lists grow in turn, the processor does not see by itself what comes next in each.
     const auto ahead = reinterpret_cast<std::uintptr_t>(room->next) + write_ahead;
     __builtin_prefetch(reinterpret_cast<const void*>(ahead), 1);
-    auto* const place = static_cast<Entry*>(room->next);
-    ::new (room->next) Entry{std::forward<Arguments>(arguments)...};
-    room->next = place + 1;
+    if ((offset_mask_ & by_source) != 0) {
+      append<detail::SourcedUpdate<T>>(*room, source, owner, std::forward<Value>(update));
+    } else {
+      append<detail::PlainUpdate<T>>(*room, owner, std::forward<Value>(update));
+    }
   }
 
-  static inline Room no_room_;  // full
+  template <class Entry, class... Arguments>
+  static void append(Room& room, Arguments&&... arguments) {
+    auto* const place = static_cast<Entry*>(room.next);
+    ::new (room.next) Entry{std::forward<Arguments>(arguments)...};
+    room.next = place + 1;
+  }
+
+  static constexpr std::uint32_t by_source = 1U << 31U;  // beyond all offsets
+  static inline Room no_room_;                           // full
 
   Room* rooms_ = &no_room_;  // of the buckets
   detail::DeferLane<T>* lane_ = nullptr;
-  std::uint32_t offset_mask_ = 0;  // of a bucket's room in rooms_, in bytes
-  bool by_source_ = false;
+  std::uint32_t offset_mask_ = 0;  // of a bucket's room in rooms_, in bytes; and by_source
 };
 
 namespace detail {
@@ -103,8 +104,9 @@ class DeferLane {
   /// `bucket_count` is a power of two.
   void set_up(std::uint32_t bucket_count, bool by_source) {
     bucket_count_ = bucket_count;
+    by_source_ = by_source;
     deferrer_.lane_ = this;
-    deferrer_.by_source_ = by_source;
+    set_offset_mask(0);
   }
 
   /// For one update: has no buckets before the first.
@@ -121,7 +123,7 @@ class DeferLane {
   [[gnu::noinline]] Room* make_room(std::uint32_t number) {
     if (deferrer_.rooms_ == &Deferrer<T>::no_room_) provide();
     number &= bucket_count_ - 1;
-    if (deferrer_.by_source_) {
+    if (by_source_) {
       sourced.grow(number);
     } else {
       plain.grow(number);
@@ -133,7 +135,7 @@ class DeferLane {
 
   /// Of the buckets that may have updates.
   std::span<const std::uint32_t> touched() const {
-    return deferrer_.by_source_ ? sourced.touched() : plain.touched();
+    return by_source_ ? sourced.touched() : plain.touched();
   }
 
   /// Drops a bucket's updates. Thread safety: one thread at a time for each bucket.
@@ -154,23 +156,28 @@ class DeferLane {
     sourced.release();
     order = {};
     deferrer_.rooms_ = &Deferrer<T>::no_room_;
-    deferrer_.offset_mask_ = 0;
+    set_offset_mask(0);
   }
 
  private:
   void provide() {
-    if (deferrer_.by_source_) {
+    if (by_source_) {
       sourced.provide(bucket_count_);
       deferrer_.rooms_ = sourced.rooms();
     } else {
       plain.provide(bucket_count_);
       deferrer_.rooms_ = plain.rooms();
     }
-    deferrer_.offset_mask_ = (bucket_count_ - 1) * static_cast<std::uint32_t>(sizeof(Room));
+    set_offset_mask((bucket_count_ - 1) * static_cast<std::uint32_t>(sizeof(Room)));
+  }
+
+  void set_offset_mask(std::uint32_t mask) {
+    deferrer_.offset_mask_ = mask | (by_source_ ? Deferrer<T>::by_source : 0);
   }
 
   Deferrer<T> deferrer_;
   std::uint32_t bucket_count_ = 0;
+  bool by_source_ = false;
 };
 
 }  // namespace detail

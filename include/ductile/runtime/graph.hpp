@@ -1,7 +1,7 @@
 /// @file
 /// Graphs as the runtime sees them: anything that can name its vertex count and visit the
 /// neighbours of a vertex. Here are the concept, views of arrays and callbacks, and the square of
-/// a graph; boost_graph.hpp adapts Boost.Graph.
+/// a graph; boost_graph.hpp adapts Boost.Graph, any_graph.hpp spares compile time.
 /// Edges are symmetric: where u is a neighbour of v, v is one of u. Repeated neighbours and
 /// loops are allowed. Views do not own what they show; visiting is thread-safe, as it only reads.
 #pragma once

@@ -123,8 +123,16 @@ Colouring colour_in_order(const Executor& executor, const G& graph,
   colouring.colour_of.resize(graph.vertex_count());
   if (!detail::names_each_once(order, colouring.colour_of.size()))
     throw std::invalid_argument("colour_in_order: expected each vertex once");
-  colouring.count = detail::colour_all<detail::InOrder>(executor, graph, colouring.colour_of,
-                                                        {order.size(), order.data()});
+  const detail::VertexSet vertices{order.size(), order.data()};
+  std::vector<std::uint8_t> bytes(order.size(), detail::Colours<detail::OneByte<>>::none);
+  if (detail::colour_in_bytes<detail::InOrder>(executor, graph, bytes, vertices)) {
+    colouring.count = detail::widen(executor, bytes, colouring.colour_of);
+    return colouring;
+  }
+  const detail::Colours<detail::FourBytes<>> words(colouring.colour_of);
+  std::fill(colouring.colour_of.begin(), colouring.colour_of.end(), Colouring::none);
+  detail::InOrder::run(executor, graph, vertices, words);
+  colouring.count = detail::colour_count(executor, colouring.colour_of);
   return colouring;
 }
 

@@ -4,7 +4,7 @@
 /// colours of earlier steps and its own; the ids of two neighbours tell whether they are coloured
 /// at the same time. Blocks of a step are far apart, so where ids follow the graph there are hardly
 /// any such pairs, and else they are few because a step is a small part of all. Repair is by hashed
-/// priority, see priority_colouring.hpp.
+/// priority, see blocks.hpp.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,6 @@
 
 #include "ductile/runtime/detail/blocks.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
-#include "ductile/runtime/detail/priority_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -74,7 +73,7 @@ class BlockedRun {
       parallel_for(executor_, rows,
                    [&](std::size_t row) { colour_block(layout_.block_of(row, step)); },
                    {.grain = 1});
-    colour_by_priority(executor_, graph_, losers(executor_, blind_, colours_), colours_, outranks);
+    repair(executor_, as_compiled(graph_), blind_, colours_.words());
   }
 
   /// The colour of u as v sees it: none if it is coloured at the same time.

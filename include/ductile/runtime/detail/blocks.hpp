@@ -5,18 +5,16 @@
 /// turns out to have lost against its neighbour is coloured anew at the end.
 #pragma once
 
-#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/detail/first_fit.hpp"
-#include "ductile/runtime/detail/priority_colouring.hpp"
+#include "ductile/runtime/detail/compiled_graphs.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -63,23 +61,10 @@ class SeenFrom {
 /// Neighbours that were coloured at the same time, as threads noted them.
 using BlindPairs = PerThread<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
 
-/// Of the pairs that have one colour, those that are outranked; ascending.
-template <class Width>
-std::vector<std::uint32_t> losers(const Executor& executor, const BlindPairs& blind,
-                                  const Colours<Width>& colours) {
-  std::vector<std::span<const std::pair<std::uint32_t, std::uint32_t>>> parts;
-  for (std::size_t t = 0; t < blind.size(); ++t)
-    for (std::span left(blind[t]); !left.empty(); left = left.subspan(parts.back().size()))
-      parts.push_back(left.first(std::min<std::size_t>(left.size(), 256)));
-  Worklist<std::uint32_t> lost(executor, {.unique = true});
-  parallel_for(executor, parts.size(),
-               [&](std::size_t p) {
-                 for (const auto& [u, v] : parts[p])
-                   if (colours[u] == colours[v]) lost.append(outranks(u, v) ? v : u);
-               },
-               {.grain = 1, .serial_below = 4});
-  lost.collect();
-  return lost.take();
-}
+/// Of the pairs that have one colour, those that are outranked get another, by priority. Nobody is
+/// being coloured any more, so no words are marks.
+template <std::unsigned_integral Word, CompiledGraph G>
+void repair(const Executor& executor, const G& graph, const BlindPairs& blind,
+            std::span<Word> colour_of);
 
 }  // namespace ductile::runtime::detail

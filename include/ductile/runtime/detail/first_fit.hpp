@@ -70,6 +70,7 @@ class Colours {
 
   explicit Colours(std::span<Word> words) : words_(words) {}
 
+  std::span<Word> words() const { return words_; }
   std::size_t vertex_count() const { return words_.size(); }
   Word operator[](std::uint32_t v) const {
     return std::atomic_ref(words_[v]).load(std::memory_order_relaxed);

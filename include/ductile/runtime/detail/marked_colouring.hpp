@@ -4,7 +4,7 @@
 /// A block is marked with its row's number before its step, so that a look at the colours of a
 /// vertex's neighbours shows who has one that is coloured at the same time; see Words. Such a
 /// vertex hides its colour until the step is over, so that it does not show earlier to some.
-/// Repair is by hashed priority, see priority_colouring.hpp.
+/// Repair is by hashed priority, see blocks.hpp.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,6 @@
 
 #include "ductile/runtime/detail/blocks.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
-#include "ductile/runtime/detail/priority_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -35,6 +34,10 @@ inline BlockLayout marked_rows(std::size_t vertex_count) {
   const int block_bits = std::max(0, bits - step_bits - width_bits);
   return {static_cast<unsigned>(block_bits), static_cast<unsigned>(step_bits)};
 }
+
+struct alignas(128) MarkedRow {
+  std::vector<std::uint32_t> hiding;  ///< vertices of its last block, `waiting` for others to see
+};
 
 /// Colours all vertices of the graph.
 template <class Width, Graph G>
@@ -72,7 +75,7 @@ class MarkedRun {
         mark(row, step + 1);
       });
     for (std::size_t row = 0; row < rows_.size(); ++row) show_hidden(row, layout_.step_count() - 1);
-    colour_by_priority(executor_, graph_, losers(executor_, blind_, colours_), colours_, outranks);
+    repair(executor_, as_compiled(graph_), blind_, colours_.words());
   }
 
   /// The colour of u as v sees it: none if it is coloured at the same time.
@@ -86,10 +89,6 @@ class MarkedRun {
   }
 
  private:
-  struct alignas(128) Row {
-    std::vector<std::uint32_t> hiding;  // vertices of its last block, `waiting` for others to see
-  };
-
   void mark(std::size_t row, std::uint32_t step) {
     if (step == layout_.step_count()) return;
     const auto [begin, end] = range(row, step);
@@ -163,7 +162,7 @@ class MarkedRun {
   const G& graph_;
   Colours<Width> colours_;
   BlockLayout layout_;
-  std::vector<Row> rows_;
+  std::vector<MarkedRow> rows_;
   std::unique_ptr<Word[]> hidden_;  // [odd or even step][row][place in block]
   BlindPairs blind_;
 };

@@ -27,7 +27,10 @@
 namespace ductile::runtime::detail {
 
 /// An object and not a function, so that it is inlined where it is handed on.
-constexpr auto outranks = [](std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); };
+struct Outranks {
+  bool operator()(std::uint32_t u, std::uint32_t v) const { return mix32(u) < mix32(v); }
+};
+inline constexpr Outranks outranks;
 
 /// Takes the colours of vertices away and gives them new ones. `before(u, v)` is a strict order.
 template <class Width, Graph G, class Before>
@@ -130,6 +133,7 @@ inline std::vector<std::uint32_t> listed(const VertexSet& vertices) {
 
 struct ByPriority {
   static constexpr std::uint32_t marks = 0;
+  static constexpr bool bound_by_memory = true;  ///< has no use for words that are read faster
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
@@ -138,28 +142,45 @@ struct ByPriority {
   }
 };
 
+/// Greater sizes first, ties by hash.
+struct Greater {
+  const std::uint32_t* size_of;  // [vertex]
+
+  bool operator()(std::uint32_t u, std::uint32_t v) const {
+    return size_of[u] != size_of[v] ? size_of[u] > size_of[v] : outranks(u, v);
+  }
+};
+
+/// What vertices are taken by the size of.
+enum class Degree { itself, logarithm };
+
+template <class Width, Graph G>
+void colour_by_degree(const Executor& executor, const G& graph, VertexSet vertices,
+                      Colours<Width> colours, Degree size) {
+  std::vector<std::uint32_t> size_of(colours.vertex_count());
+  parallel_for(executor, vertices.count,
+               [&](std::size_t i) {
+                 std::uint32_t degree = 0;
+                 graph.for_each_neighbour(vertices[i], [&](std::uint32_t) { ++degree; });
+                 size_of[vertices[i]] = size == Degree::itself
+                                            ? degree
+                                            : static_cast<std::uint32_t>(std::bit_width(degree));
+               },
+               {.grain = 256, .serial_below = 1024});
+  colour_by_priority(executor, graph, listed(vertices), colours, Greater{size_of.data()});
+}
+
 /// Greater degrees first, or greater binary logarithms of them, which makes shorter chains of
 /// vertices that wait for each other (Hasenplaugh et al., SPAA 2014). Ties by hash.
-template <bool OfLogarithm>
+template <Degree size>
 struct ByDegree {
   static constexpr std::uint32_t marks = 0;
+  static constexpr bool bound_by_memory = true;
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
                   Colours<Width> colours) {
-    std::vector<std::uint32_t> size_of(colours.vertex_count());
-    parallel_for(executor, vertices.count,
-                 [&](std::size_t i) {
-                   std::uint32_t degree = 0;
-                   graph.for_each_neighbour(vertices[i], [&](std::uint32_t) { ++degree; });
-                   size_of[vertices[i]] =
-                       OfLogarithm ? static_cast<std::uint32_t>(std::bit_width(degree)) : degree;
-                 },
-                 {.grain = 256, .serial_below = 1024});
-    colour_by_priority(executor, graph, listed(vertices), colours,
-                       [&](std::uint32_t u, std::uint32_t v) {
-                         return size_of[u] != size_of[v] ? size_of[u] > size_of[v] : outranks(u, v);
-                       });
+    colour_by_degree(executor, graph, vertices, colours, size);
   }
 };
 

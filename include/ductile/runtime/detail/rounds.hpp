@@ -152,13 +152,11 @@ class Rounds {
     if (all.count >= detail::few_vertices) {
       using Width = detail::Narrow<>;
       std::vector<std::uint8_t> bytes(all.count, detail::Colours<Width>::none);
-      try {
-        colouring.count = detail::colour_in_bytes<detail::Blocked, Width>(
-            executor_, graph, colouring.colour_of, all, bytes);
+      if (detail::colour_in<detail::Blocked, Width>(executor_, graph, bytes, all)) {
+        colouring.count = detail::widen(executor_, bytes, colouring.colour_of);
         return colouring;
-      } catch (const detail::TooManyColours&) {
       }
-      detail::Blocked::run(executor_, graph, all, colours);
+      detail::Blocked::run(executor_, AnyGraph(graph), all, colours);
     } else {
       detail::Serial::run(executor_, graph, all, colours);
     }
