@@ -77,11 +77,13 @@ std::uint32_t colour_all(const Executor& executor, const G& graph,
     return colour_in_bytes<Method, Short>(executor, graph, colour_of, vertices, bytes);
   } catch (const TooManyColours&) {
   }
-  if constexpr (!requires { Method::resumes; })
-    std::fill(bytes.begin(), bytes.end(), Colours<Long>::none);
-  try {
-    return colour_in_bytes<Method, Long>(executor, graph, colour_of, vertices, bytes);
-  } catch (const TooManyColours&) {
+  if constexpr (!requires { Method::lengthens; }) {
+    if constexpr (!requires { Method::resumes; })
+      std::fill(bytes.begin(), bytes.end(), Colours<Long>::none);
+    try {
+      return colour_in_bytes<Method, Long>(executor, graph, colour_of, vertices, bytes);
+    } catch (const TooManyColours&) {
+    }
   }
   std::fill(colour_of.begin(), colour_of.end(), Colouring::none);
   Method::run(executor, graph, vertices, Colours<FourBytes<Method::marks>>(colour_of));
