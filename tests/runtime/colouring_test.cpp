@@ -158,7 +158,8 @@ TEST(Colouring, TakesAsManyColoursAsAreNeeded) {
 /// Windows that are coloured at the same time share many edges here; 40 threads share marks.
 TEST(Colouring, FindsAllClashesOfSpeculation) {
   for (const auto& graph : {test::mesh_graph(300), test::shuffled(test::mesh_graph(300), 7),
-                            test::random_graph(20000, 400000, 8), test::rmat_graph(14, 200000, 9)})
+                            test::random_graph(20000, 400000, 8), test::rmat_graph(14, 200000, 9),
+                            test::rmat_graph(12, 400000, 15)})
     for (const ColouringMethod method : {ColouringMethod::detect_again, ColouringMethod::two_phase})
       for (int threads : {2, 3, 4, 8, 40}) {
         const Executor executor({.threads = threads});
@@ -181,17 +182,21 @@ TEST(Colouring, OfBlocksWithManyClashesIsTheSameAtAnyThreadCount) {
   }
 }
 
+/// In the second graph there are too many colours for short words, and vertices of many neighbours.
 TEST(Colouring, OfACallbackIsThatOfItsRows) {
-  const auto graph = test::random_graph(5000, 30000, 10);
-  const CsrGraph<> rows = graph.view();
-  const auto callback = callback_graph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {
-    rows.for_each_neighbour(v, visit);
-  });
-  const Executor executor({.threads = 2});
-  for (const ColouringMethod method :
-       {ColouringMethod::serial, ColouringMethod::blocked, ColouringMethod::by_priority})
-    EXPECT_EQ(colour(executor, callback, method).colour_of,
-              colour(executor, rows, method).colour_of);
+  for (const auto& graph :
+       {test::random_graph(5000, 30000, 10), test::rmat_graph(12, 200000, 14)}) {
+    const CsrGraph<> rows = graph.view();
+    const auto callback = callback_graph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {
+      rows.for_each_neighbour(v, visit);
+    });
+    const Executor executor({.threads = 2});
+    for (const ColouringMethod method :
+         {ColouringMethod::serial, ColouringMethod::blocked, ColouringMethod::by_priority})
+      EXPECT_EQ(colour(executor, callback, method).colour_of,
+                colour(executor, rows, method).colour_of)
+          << graph.name;
+  }
 }
 
 /// The vertices of a graph whose hash leaves a remainder below `share` of 64.

@@ -95,6 +95,7 @@ bool colour_in_bytes(const Executor& executor, const G& graph, std::vector<std::
   using Long = OneByte<Method::marks>;
   if constexpr (!requires { Method::bound_by_memory; }) {
     if (colour_in<Method, Short>(executor, graph, bytes, vertices)) return true;
+    if constexpr (requires { Method::lengthens; }) return false;
     if constexpr (!requires { Method::resumes; })
       std::fill(bytes.begin(), bytes.end(), Colours<Long>::none);
   }

@@ -31,6 +31,13 @@ concept PrefetchingGraph = Graph<G> && requires(const G& graph, std::uint32_t v)
   graph.prefetch(v);
 };
 
+/// A graph whose neighbours of a vertex lie side by side in memory: row(v). Thread safety: as
+/// visiting.
+template <class G>
+concept RowGraph = Graph<G> && requires(const G& graph, std::uint32_t v) {
+  { graph.row(v) } -> std::convertible_to<std::span<const std::uint32_t>>;
+};
+
 /// Compressed rows: the neighbours of v are neighbour[offset[v]] to neighbour[offset[v + 1] - 1].
 template <std::unsigned_integral Offset = std::uint32_t>
 struct CsrGraph {
@@ -43,7 +50,13 @@ struct CsrGraph {
     const Offset end = offset[std::size_t{v} + 1];
     for (Offset i = offset[v]; i < end; ++i) visit(neighbour[i]);
   }
-  void prefetch(std::uint32_t v) const { __builtin_prefetch(neighbour.data() + offset[v]); }
+  std::span<const std::uint32_t> row(std::uint32_t v) const {
+    return {neighbour.data() + offset[v], neighbour.data() + offset[std::size_t{v} + 1]};
+  }
+  /// Inlined always: GCC leaves out calls of functions that do nothing but prefetch.
+  [[gnu::always_inline]] void prefetch(std::uint32_t v) const {
+    __builtin_prefetch(neighbour.data() + offset[v]);
+  }
 };
 
 /// A graph known through a function neighbours_of(v, visit).

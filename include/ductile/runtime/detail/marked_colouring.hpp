@@ -113,7 +113,7 @@ class MarkedRun {
     for (std::uint32_t v = begin; v < end; ++v) {
       prefetch_after(rows, all, v + prefetch_distance < end ? v : next - (end - v));
       TakenColours<Colours<Width>> seen;
-      rows.for_each_neighbour(v, [&](std::uint32_t u) { seen.add(colours[u]); });
+      visit_in_pairs(rows, v, [&](std::uint32_t u) { seen.add(colours[u]); });
       if (seen.shows_others(number)) [[unlikely]] {
         colour_with_care(v, step);
       } else {

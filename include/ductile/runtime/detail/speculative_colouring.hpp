@@ -11,9 +11,11 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/fronts.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -27,10 +29,18 @@ constexpr LoopOptions speculative_loop{.grain = 256, .serial_below = 1024};
 /// neighbour. The more marks, the sooner a colour is beyond TakenColours.
 constexpr std::uint32_t speculative_marks = 16;
 
-/// The first round, which colours all vertices of the graph.
+/// What words of a byte become when short ones do not have enough colours.
+template <class Width>
+using LongOf = std::conditional_t<sizeof(typename Width::Word) == 1, OneByte<Width::marks>, Width>;
+
+/// The first round, which colours all vertices of the graph. Where short words do not have enough
+/// colours, it goes on with long ones: who still reads those as short ones takes them for other
+/// colours, and at worst takes one more than it needs.
 template <class Width, Graph G>
 class FirstRound {
  public:
+  using Long = LongOf<Width>;
+
   FirstRound(const Executor& executor, const G& graph, Colours<Width> colours)
       : executor_(executor),
         graph_(graph),
@@ -39,43 +49,82 @@ class FirstRound {
 
   /// Returns vertices in any order; of any two that clash, one at least is among them.
   std::vector<std::uint32_t> run() {
-    const auto threads = static_cast<std::size_t>(executor_.threads());
-    const std::size_t n = colours_.vertex_count();
-    const std::size_t size = std::clamp<std::size_t>(n / (32 * threads), 64, 1024);
-    parallel_for_blocks(executor_, n, size, [&](std::size_t, std::size_t begin, std::size_t end) {
-      colour_window(begin, end);
-    });
+    Fronts fronts(graph_, static_cast<std::uint32_t>(executor_.threads()));
+    parallel_for(executor_, fronts.seeds().size(),
+                 [&](std::size_t i) { colour(fronts.seeds()[i]); }, {.grain = 1});
+    parallel_for(executor_, fronts.count(),
+                 [&](std::size_t i) {
+                   while (const auto window = fronts[i].take_first()) colour(*window);
+                   while (Front* const other = fronts.slowest())
+                     while (const auto window = other->take_last()) colour(*window);
+                 },
+                 {.grain = 1});
     suspects_.collect();
     return suspects_.take();
   }
 
  private:
-  void colour_window(std::size_t begin, std::size_t end) {
-    const auto& rows = in_registers(graph_);
-    const Colours<Width> colours = colours_;
-    const std::uint32_t thread = static_cast<std::uint32_t>(this_thread()) % Width::marks;
-    // Threads that share a mark cannot tell theirs from the other's.
-    const bool alone = executor_.threads() <= static_cast<int>(Width::marks);
-    for (std::size_t i = begin; i < end; ++i)
-      colours.set(static_cast<std::uint32_t>(i), Colours<Width>::mark(thread));
+  void colour(Window window) {
+    const auto mark = Colours<Width>::mark(number());
+    for (std::uint32_t v = window.begin; v < window.end; ++v) colours_.set(v, mark);
     // Pairs with that of any other window: one of the two sees the other's marks, or its colours.
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    for (std::size_t i = begin; i < end; ++i) {
-      prefetch_after(rows, {colours.vertex_count()}, i);
-      const auto v = static_cast<std::uint32_t>(i);
-      TakenColours<Colours<Width>> seen;
-      rows.for_each_neighbour(v, [&](std::uint32_t u) { seen.add(colours[u]); });
-      colours.set(v, least_free(rows, v, colours, seen));
-      if (seen.shows_others(alone ? thread : none_of_them)) [[unlikely]]
-        suspects_.append(v);
+    std::uint32_t done = 0;
+    if constexpr (!std::is_same_v<Width, Long>) {
+      // Relaxed: whoever has not heard of it finds out for itself.
+      if (!long_.load(std::memory_order_relaxed)) {
+        try {
+          return colour_in_order<Width>(window, 0);
+        } catch (const TooManyColours&) {
+          long_.store(true, std::memory_order_relaxed);
+          while (colours_[window[done]] != mark) ++done;
+        }
+      }
+    }
+    colour_in_order<Long>(window, done);
+  }
+
+  template <class As>
+  void colour_in_order(Window window, std::uint32_t done) {
+    if (window.ascending) {
+      colour_in_order<As, true>(window, done);
+    } else {
+      colour_in_order<As, false>(window, done);
     }
   }
 
+  /// Not inlined, so that each loop has the registers it needs.
+  template <class As, bool ascending>
+  [[gnu::noinline]] void colour_in_order(Window window, std::uint32_t done) {
+    const auto& rows = in_registers(graph_);
+    const Colours<As> colours = colours_.template as<As>();
+    const VertexSet all{colours.vertex_count()};
+    // Threads that share a mark cannot tell theirs from the other's.
+    const bool alone = executor_.threads() <= static_cast<int>(Width::marks);
+    const std::uint32_t mine = alone ? number() : none_of_them;
+    for (std::uint32_t i = done; i < window.size(); ++i) {
+      const std::uint32_t v = ascending ? window.begin + i : window.end - 1 - i;
+      if constexpr (ascending) {
+        prefetch_after(rows, all, v);
+      } else {
+        prefetch_before(rows, v);
+      }
+      const auto [colour, sees_others] = first_fit(rows, v, colours, mine);
+      colours.set(v, colour);
+      if (sees_others != 0) [[unlikely]]
+        suspect(v);
+    }
+  }
+
+  [[gnu::noinline]] void suspect(std::uint32_t v) { suspects_.append(v); }
+
+  static std::uint32_t number() { return static_cast<std::uint32_t>(this_thread()) % Width::marks; }
   static constexpr std::uint32_t none_of_them = Width::marks;
 
   const Executor& executor_;
   const G& graph_;
   Colours<Width> colours_;
+  std::atomic<bool> long_{false};  // there are more colours than short words have
   Worklist<std::uint32_t> suspects_;
 };
 
@@ -97,10 +146,12 @@ bool clashes(const G& graph, std::uint32_t v, const Colours<Width>& colours, Riv
 /// The scheme of Catalyurek et al.: colour, barrier, find the clashes, barrier.
 struct TwoPhase {
   static constexpr std::uint32_t marks = speculative_marks;
+  static constexpr bool lengthens = true;  ///< given short words, goes on with long ones
 
   template <class Width, Graph G>
-  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
-    std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, colours).run();
+  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> words) {
+    std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, words).run();
+    const auto colours = words.template as<LongOf<Width>>();
     Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
     for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
       parallel_for(
@@ -124,10 +175,12 @@ struct TwoPhase {
 /// next round; a barrier separates rounds, none is within.
 struct DetectAgain {
   static constexpr std::uint32_t marks = speculative_marks;
+  static constexpr bool lengthens = true;  ///< given short words, goes on with long ones
 
   template <class Width, Graph G>
-  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
-    std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, colours).run();
+  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> words) {
+    std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, words).run();
+    const auto colours = words.template as<LongOf<Width>>();
     Worklist<std::uint32_t> recoloured(executor, {.order = WorkOrder::arrival});
     for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
       parallel_for(
