@@ -191,11 +191,21 @@ class MeshMaker {
 
   static constexpr ElementId crowded = none - 1;  // more than one element across a facet
 
+  /// Each pair of neighbours is found by the one with the lower number.
   void find_neighbours() {
     neighbours_.resize(mesh_.element_slots());
+    parallel_for(executor_, mesh_.element_slots(),
+                 [&](std::size_t e) { neighbours_[e].fill(none); });
     parallel_for(executor_, mesh_.element_slots(), [&](std::size_t e) {
-      for (int i = 0; i <= Dim; ++i)
-        neighbours_[e][static_cast<std::size_t>(i)] = across(static_cast<ElementId>(e), i);
+      const auto element = static_cast<ElementId>(e);
+      for (int i = 0; i <= Dim; ++i) {
+        const ElementId other = across(element, i);
+        if (other == none) continue;
+        neighbours_[e][static_cast<std::size_t>(i)] = other;
+        if (other == crowded) continue;
+        const int back = facet_number(other, facet_of<Dim>(mesh_.corners_of[e], i));
+        neighbours_[other][static_cast<std::size_t>(back)] = element;
+      }
     });
     const std::size_t bad = first_bad(executor_, mesh_.element_slots(), [&](std::size_t e) {
       return contains(neighbours_[e], crowded);
@@ -203,12 +213,13 @@ class MeshMaker {
     if (bad != no_index) fail_crowded(static_cast<ElementId>(bad));
   }
 
-  /// The element across a facet: one that has the facet's corners in the opposite order.
+  /// The element across a facet, if it has a greater number: one that has the facet's corners in
+  /// the opposite order.
   ElementId across(ElementId element, int facet) const {
     const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
     ElementId found = none;
     for (const ElementId other : mesh_.elements_of.of(corners[0])) {
-      if (other == element || !has_all(other, corners)) continue;
+      if (other <= element || !has_all(other, corners)) continue;
       if (found != none || same_side(other, corners)) return crowded;
       found = other;
     }
