@@ -92,6 +92,7 @@ class MeshMaker {
     parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
       mesh_.site_of[v].position = position_in<Dim>(any_, v);
       mesh_.reference_of[v] = any_.vertex_reference[v];
+      mesh_.kind_of[v] = {};
     });
     for (const std::uint32_t v : any_.corners)
       mesh_.kind_of[checked_vertex(v, "corner")].corner = true;

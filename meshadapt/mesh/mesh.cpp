@@ -15,16 +15,16 @@ using runtime::parallel_for;
 
 template <int Dim>
 void Mesh<Dim>::grow(std::size_t vertices, std::size_t elements) {
-  corners_of.resize(elements);
-  patches_of.resize(elements);
-  region_of.resize(elements);
-  shape_of.resize(elements);
-  changed_at.resize(elements);
-  site_of.resize(vertices);
-  kind_of.resize(vertices);
-  entity_of.resize(vertices);
-  reference_of.resize(vertices);
-  host_of.resize(vertices);
+  corners_of.resize_for_overwrite(elements);
+  patches_of.resize_for_overwrite(elements);
+  region_of.resize_for_overwrite(elements);
+  shape_of.resize_for_overwrite(elements);
+  changed_at.resize_for_overwrite(elements);
+  site_of.resize_for_overwrite(vertices);
+  kind_of.resize_for_overwrite(vertices);
+  entity_of.resize_for_overwrite(vertices);
+  reference_of.resize_for_overwrite(vertices);
+  host_of.resize_for_overwrite(vertices);
   elements_of.grow(vertices);
   if constexpr (Dim == 3) links_of.grow(vertices);
 }

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <type_traits>
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/collect.hpp"
@@ -102,7 +101,6 @@ class Permutation {
   /// values[i] becomes the old values[order[i]].
   template <class T>
   void operator()(GrowingArray<T>& values) {
-    static_assert(std::is_trivially_copyable_v<T>);
     assert(sizeof(T) <= largest_);
     T* const moved = reinterpret_cast<T*>(scratch_.get());
     const std::size_t n = order_.size();

@@ -57,6 +57,22 @@ TEST(Fronts, HaveEveryVertexOnceHoweverWindowsAreTaken) {
     }
 }
 
+/// So many vertices without neighbours; their number is of a type of 32 bits.
+struct Lonely {
+  std::uint32_t count;
+  std::uint32_t vertex_count() const { return count; }
+  void for_each_neighbour(std::uint32_t, auto&&) const {}
+};
+
+TEST(Fronts, ShareOutMoreVerticesThanProductsOf32BitsHold) {
+  const Lonely graph{1U << 28U};
+  Fronts fronts(graph, 16);
+  std::uint64_t vertices = 0;
+  for (std::size_t f = 0; f < fronts.count(); ++f)
+    while (const auto window = fronts[f].take_first()) vertices += window->size();
+  EXPECT_EQ(vertices, graph.count);
+}
+
 TEST(Fronts, GoUpAndDownFromASeedOfFewVertices) {
   for (const auto& mesh : meshes()) {
     const auto n = static_cast<std::uint32_t>(mesh.view().vertex_count());

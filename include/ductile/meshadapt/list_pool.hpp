@@ -80,8 +80,6 @@ class ListPool {
   std::uint32_t& count_of(std::uint32_t index) { return slot_of_[index].count; }
   T* data(std::uint32_t index) { return arena_->at(slot_of_[index].begin); }
 
-  std::size_t bytes() const { return arena_->bytes() + slot_of_.bytes(); }
-
  private:
   struct Slot {
     std::uint32_t begin = 0, count = 0, capacity = 0;

@@ -15,7 +15,8 @@ struct Rules {
   double poor_shape = 0.001;       ///< from elements this bad a split makes none that are worse
   double split_keeps = 0.3;        ///< a split may lower the worst shape to this fraction, if
                                    ///< that is less than accepted_shape ...
-  double overlong_edge = 2;        ///< ... and of longer edges, to less by the square of the length
+  double overlong_edge = 2;        ///< ... and of edges longer than this, to less by the square of
+                                   ///< how much longer, which may be below poor_shape
   double shortest_split = 0.5;     ///< a split makes no edge shorter than this
 };
 

@@ -14,7 +14,7 @@
 
 namespace ductile::runtime {
 
-/// Keeps a reference to the graph it shows. Thread safety: as the graph.
+/// Keeps a reference to the graph it shows, which must outlive it. Thread safety: as the graph.
 class AnyGraph {
  public:
   template <Graph G>

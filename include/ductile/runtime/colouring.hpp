@@ -95,11 +95,14 @@ bool colour_in_bytes(const Executor& executor, const G& graph, std::vector<std::
   using Long = OneByte<Method::marks>;
   if constexpr (!requires { Method::bound_by_memory; }) {
     if (colour_in<Method, Short>(executor, graph, bytes, vertices)) return true;
-    if constexpr (requires { Method::lengthens; }) return false;
     if constexpr (!requires { Method::resumes; })
       std::fill(bytes.begin(), bytes.end(), Colours<Long>::none);
   }
-  return colour_in<Method, Long>(executor, graph, bytes, vertices);
+  if constexpr (requires { Method::lengthens; }) {
+    return false;
+  } else {
+    return colour_in<Method, Long>(executor, graph, bytes, vertices);
+  }
 }
 
 /// The same for all vertices by a method that is bound by memory: AnyGraph costs it little.

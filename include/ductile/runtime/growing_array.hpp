@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
+#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -45,11 +47,10 @@ class GrowingMemory {
 
 }  // namespace detail
 
-/// Elements are as if made of zero bytes until they are set.
 /// Thread safety: elements as those of an array; what changes the size, one thread.
 template <class T>
-requires std::is_trivially_copyable_v<T>
-class GrowingArray {
+requires(std::is_trivially_copyable_v<T> &&
+         alignof(T) <= alignof(std::max_align_t)) class GrowingArray {
  public:
   GrowingArray() = default;
   GrowingArray(GrowingArray&& other) noexcept
@@ -74,15 +75,23 @@ class GrowingArray {
   T& operator[](std::size_t i) { return data()[i]; }
   const T& operator[](std::size_t i) const { return data()[i]; }
 
-  /// Shrinks, which gives no memory back, or grows: what is new is zero. Pointers into the array
-  /// are valid until it grows. Throws std::bad_alloc, and is as before then.
+  /// Shrinks, which gives no memory back, or grows: what is new is as if made of zero bytes.
+  /// Pointers into the array are valid until it grows. Throws std::bad_alloc, and is as before
+  /// then.
   void resize(std::size_t n) {
+    const std::size_t before = size_;
+    resize_for_overwrite(n);
+    if (n > before)  // what was there before it shrank
+      std::fill(reinterpret_cast<std::byte*>(data() + before),
+                reinterpret_cast<std::byte*>(data() + std::max(before, std::min(n, touched_))),
+                std::byte{0});
+  }
+
+  /// The same, but what is new may hold anything.
+  void resize_for_overwrite(std::size_t n) {
+    if (n > std::numeric_limits<std::size_t>::max() / 2 / sizeof(T)) throw std::bad_alloc();
     if (n * sizeof(T) > memory_.bytes()) memory_.reserve((n + n / 4) * sizeof(T));
     touched_ = std::max(touched_, size_);
-    if (n > size_)  // what was there before it shrank
-      std::fill(reinterpret_cast<std::byte*>(data() + size_),
-                reinterpret_cast<std::byte*>(data() + std::max(size_, std::min(n, touched_))),
-                std::byte{0});
     size_ = n;
   }
 

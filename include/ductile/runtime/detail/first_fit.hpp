@@ -225,9 +225,11 @@ class ShownBytes {
     if (free == shown_.begin() + Width::most + 1) throw TooManyColours{};
     return static_cast<std::uint8_t>(free - shown_.begin());
   }
-  bool shows_others(std::uint32_t number) {
-    if (number < Width::marks) shown_[Colours<Width>::mark(number)] = 0;
-    return std::find(shown_.begin() + Width::most + 1, shown_.end() - 1, 1) != shown_.end() - 1;
+  bool shows_others(std::uint32_t number) const {
+    const std::size_t own = number < Width::marks ? Colours<Width>::mark(number) : shown_.size();
+    for (std::size_t byte = Width::most + 1; byte + 1 < shown_.size(); ++byte)
+      if (shown_[byte] != 0 && byte != own) return true;
+    return false;
   }
 
  private:

@@ -33,7 +33,7 @@ struct Window {
 /// windows only, so their orders are relaxed.
 class Front {
  public:
-  /// Whoever helps leaves the last `least_help` - 1 windows to the front's own thread.
+  /// Help begins only while at least `least_help` windows are left.
   Front(const Window& part, std::uint32_t window_size, std::uint32_t least_help)
       : part_(part),
         window_size_(window_size),
@@ -46,11 +46,12 @@ class Front {
     const std::uint64_t left = left_.load(std::memory_order_relaxed);
     return begin(left) == 0 || size(left) < least_help_ ? 0 : size(left);
   }
+  /// The next window of its own thread, if any is left.
   std::optional<Window> take_first() {
     return take([](std::uint64_t left) { return left + word(1, 0); },
                 [this](std::uint64_t left) { return window(begin(left)); });
   }
-  /// In the opposite order, as the next window taken so is the one before.
+  /// That of who helps. In the opposite order, as the next window taken so is the one before.
   std::optional<Window> take_last() {
     return take([](std::uint64_t left) { return left - 1; },
                 [this](std::uint64_t left) {
@@ -97,8 +98,9 @@ class Fronts {
   Fronts(const G& graph, std::uint32_t count)
       : window_size_(static_cast<std::uint32_t>(
             std::clamp<std::size_t>(graph.vertex_count() / (32 * std::size_t{count}), 64, 1024))) {
+    const std::uint64_t n = graph.vertex_count();  // which may be of a shorter type
     const auto border = [&](std::uint32_t front) {
-      return static_cast<std::uint32_t>(graph.vertex_count() * std::min(front, count) / count);
+      return static_cast<std::uint32_t>(n * std::min(front, count) / count);
     };
     for (std::uint32_t front = 0; front < count; front += 2) {
       const std::uint32_t begin = border(front), middle = border(front + 1),

@@ -34,8 +34,9 @@ template <class Width>
 using LongOf = std::conditional_t<sizeof(typename Width::Word) == 1, OneByte<Width::marks>, Width>;
 
 /// The first round, which colours all vertices of the graph. Where short words do not have enough
-/// colours, it goes on with long ones: who still reads those as short ones takes them for other
-/// colours, and at worst takes one more than it needs.
+/// colours, it goes on with long ones. Who still reads those as short ones takes them for lower
+/// colours, or for marks: it may pass over colours that are free, or find too soon that short words
+/// do not do, but takes none that a neighbour has.
 template <class Width, Graph G>
 class FirstRound {
  public:
