@@ -42,9 +42,11 @@ void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
     });
   };
   each_corner([&](VertexId v, ElementId) { runtime::atomic_count(count[v]); });
-  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
-    if (count[v] != 0) lists.reserve(static_cast<VertexId>(v), count[v] + list_slack<Dim>);
-  });
+  const auto make_room = [&](std::size_t, std::size_t begin, std::size_t end) {
+    lists.reserve_all(static_cast<VertexId>(begin), static_cast<VertexId>(end),
+                      [&](VertexId v) { return count[v] == 0 ? 0 : count[v] + list_slack<Dim>; });
+  };
+  runtime::parallel_for_blocks(executor, mesh.vertex_slots(), list_block, make_room);
   each_corner([&](VertexId v, ElementId element) {
     lists.data(v)[runtime::atomic_count(lists.count_of(v))] = element;
   });

@@ -126,12 +126,16 @@ void renumber_elements_of(const Executor& executor, Mesh<Dim>& mesh,
                           const std::vector<ElementId>& new_element) {
   ListPool<ElementId> moved;
   moved.reset(vertices.size());
-  parallel_for(executor, vertices.size(), [&](std::size_t i) {
-    const auto vertex = static_cast<VertexId>(i);
-    const auto elements = mesh.elements_of.of(vertices[i]);
-    moved.reserve(vertex, static_cast<std::uint32_t>(elements.size()) + list_slack<Dim>);
-    for (const ElementId e : elements) moved.insert(vertex, new_element[e]);
-  });
+  const auto old_list = [&](VertexId v) { return mesh.elements_of.of(vertices[v]); };
+  const auto move = [&](std::size_t, std::size_t begin, std::size_t end) {
+    const auto first = static_cast<VertexId>(begin), last = static_cast<VertexId>(end);
+    moved.reserve_all(first, last, [&](VertexId v) {
+      return static_cast<std::uint32_t>(old_list(v).size()) + list_slack<Dim>;
+    });
+    for (VertexId v = first; v < last; ++v)
+      for (const ElementId e : old_list(v)) moved.insert(v, new_element[e]);
+  };
+  runtime::parallel_for_blocks(executor, vertices.size(), list_block, move);
   std::swap(mesh.elements_of, moved);
 }
 

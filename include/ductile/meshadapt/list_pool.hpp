@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "ductile/runtime/arena.hpp"
 #include "ductile/runtime/growing_array.hpp"
@@ -74,6 +75,16 @@ class ListPool {
     const std::uint32_t begin = arena_->allocate(capacity);
     if (slot.count != 0) std::copy_n(arena_->at(slot.begin), slot.count, arena_->at(begin));
     slot = {begin, slot.count, capacity};
+  }
+
+  /// Gives the empty lists [begin, end) room for capacity_of(index) each, side by side: one request
+  /// to the arena, which threads would else wait for each other to make.
+  void reserve_all(std::uint32_t begin, std::uint32_t end, auto&& capacity_of) {
+    std::uint32_t total = 0;
+    for (std::uint32_t i = begin; i < end; ++i) total += slot_of_[i].capacity = capacity_of(i);
+    std::uint32_t place = arena_->allocate(total);
+    for (std::uint32_t i = begin; i < end; ++i)
+      slot_of_[i].begin = std::exchange(place, place + slot_of_[i].capacity);
   }
 
   /// Raw access for the parallel construction: count and storage of one list.

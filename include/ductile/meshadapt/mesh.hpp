@@ -134,6 +134,9 @@ struct Mesh {
 template <int Dim>
 inline constexpr std::uint32_t list_slack = Dim == 2 ? 3 : 10;
 
+/// Vertices whose lists are made together.
+inline constexpr std::size_t list_block = 64;
+
 /// Rebuilds elements_of from corners_of. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void rebuild_elements_of(const runtime::Executor& executor, Mesh<Dim>& mesh);
