@@ -6,7 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
 #include <thread>
@@ -31,6 +33,34 @@ void spin(std::chrono::nanoseconds time) {
   const auto end = std::chrono::steady_clock::now() + time;
   while (std::chrono::steady_clock::now() < end) {
   }
+}
+
+/// Small bodies may be copied, but not those that somebody else sees, change, or cannot be copied.
+TEST(ParallelForBody, KeepsItsState) {
+  struct Counter {
+    std::size_t calls = 0;
+    void operator()(std::size_t) { ++calls; }
+  };
+  struct ConstCounter {
+    mutable std::size_t calls = 0;
+    void operator()(std::size_t) const { ++calls; }
+  };
+  const Executor executor({.threads = 1});
+  Counter counter;
+  parallel_for(executor, 1000, counter);
+  EXPECT_EQ(counter.calls, 1000);
+  const ConstCounter const_counter;
+  parallel_for(executor, 1000, const_counter);
+  EXPECT_EQ(const_counter.calls, 1000);
+
+  std::size_t last = 0;
+  parallel_for(executor, 1000,
+               [&last, calls = std::size_t{0}](std::size_t) mutable { last = ++calls; });
+  EXPECT_EQ(last, 1000);
+  std::size_t sum = 0;
+  parallel_for(executor, 1000,
+               [&sum, one = std::make_unique<std::size_t>(1)](std::size_t) { sum += *one; });
+  EXPECT_EQ(sum, 1000);
 }
 
 class ParallelFor : public testing::TestWithParam<Schedule> {};

@@ -189,7 +189,7 @@ TEST(Recording, TakesCostsFromTheOperator) {
   std::vector<std::uint32_t> work(20480);
   std::iota(work.begin(), work.end(), 0U);
   recording.begin_section("countdown");
-  const RoundsReport report = run_rounds(executor, countdown, work, {.windows = 1});
+  const RoundsReport report = run_rounds(executor, countdown, work, {.window = 0});
   EXPECT_EQ(report.rounds, 2U);
   EXPECT_EQ(report.batches, 2U);
   EXPECT_EQ(report.woken, 20480U);

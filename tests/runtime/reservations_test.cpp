@@ -107,10 +107,39 @@ TEST(RunRounds, MatchesByReservationTheSameAtEachThreadCount) {
 TEST(RunRounds, MatchesByReservationInArrivalOrder) {
   const auto edges = random_edges(3000, false);
   for (int run = 0; run < 5; ++run) {
-    Matching matching(3000);
-    run_rounds(Executor({.threads = 4, .deterministic = false}), matching, edges);
-    expect_maximal(matching, edges);
+    for (const std::size_t window : {0, 37}) {
+      Matching matching(3000);
+      run_rounds(Executor({.threads = 4, .deterministic = false}), matching, edges,
+                 {.reserving_window = window});
+      expect_maximal(matching, edges);
+    }
   }
+}
+
+TEST(RunRounds, WindowsOfReservationsDoNotChangeWhatIsReached) {
+  const auto edges = random_edges(3000, false);
+  for (const std::size_t window : {1, 37, 1000, 5000, 100000}) {
+    SCOPED_TRACE(window);
+    std::vector<Edge> first;
+    for (const int threads : thread_counts) {
+      Matching matching(3000);
+      const RoundsReport report =
+          run_rounds(Executor({.threads = threads}), matching, edges, {.reserving_window = window});
+      expect_maximal(matching, edges);
+      EXPECT_EQ(report.applied, matching.matched.size());
+      if (first.empty()) first = matching.matched;
+      EXPECT_EQ(matching.matched, first) << threads << " threads";
+    }
+  }
+}
+
+TEST(RunRounds, AnEarlierWindowOfReservationsGoesFirst) {
+  const std::vector<Edge> path = {{0, 1, 1}, {2, 3, 1}, {1, 2, 9}};  // heavier edges go first
+  Matching all_at_once(4), by_two(4);
+  run_rounds(Executor({.threads = 2}), all_at_once, path);
+  run_rounds(Executor({.threads = 2}), by_two, path, {.reserving_window = 2});
+  EXPECT_EQ(all_at_once.matched, std::vector(path.begin() + 2, path.end()));
+  EXPECT_EQ(by_two.matched.size(), 2U);
 }
 
 /// With priorities that all differ, reservations give what greed in the order of priority gives.

@@ -165,7 +165,8 @@ void recolour(const Executor& executor, const G& graph, std::span<const std::uin
     detail::Serial::run(executor, graph, set, colours);
   } else if (vertices.size() < colour_of.size() / 16) {
     // Scattered vertices hardly wait for each other, and blocks would cost as if all were there.
-    detail::colour_by_priority(executor, graph, vertices, colours, detail::outranks);
+    detail::colour_by_priority<detail::AwaitedByPlace>(executor, graph, vertices, colours,
+                                                       detail::outranks);
   } else {
     detail::Blocked::run(executor, graph, set, colours);
   }

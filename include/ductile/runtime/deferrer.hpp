@@ -62,14 +62,15 @@ class Deferrer {
   template <class Value>
   void keep(std::uint32_t owner, std::uint64_t source, Value&& update) const {
     constexpr int shift = static_cast<int>(neighbour_bits) - std::countr_zero(sizeof(Room));
-    const std::size_t offset = (owner >> shift) & offset_mask_;
+    const std::uint32_t mask = offset_mask_;  // make_room() does not change the order in it
+    const std::size_t offset = (owner >> shift) & mask;
     Room* room = reinterpret_cast<Room*>(reinterpret_cast<std::byte*>(rooms_) + offset);
     if (room->next == room->end) [[unlikely]]
       room = lane_->make_room(owner >> neighbour_bits);
     // Where many lists grow in turn, the processor does not see by itself what comes next in each.
     const auto ahead = reinterpret_cast<std::uintptr_t>(room->next) + write_ahead;
     __builtin_prefetch(reinterpret_cast<const void*>(ahead), 1);
-    if ((offset_mask_ & by_source) != 0) {
+    if ((mask & by_source) != 0) {
       append<detail::SourcedUpdate<T>>(*room, source, owner, std::forward<Value>(update));
     } else {
       append<detail::PlainUpdate<T>>(*room, owner, std::forward<Value>(update));

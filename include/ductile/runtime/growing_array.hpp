@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <limits>
 #include <new>
-#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -65,7 +64,6 @@ requires(std::is_trivially_copyable_v<T> &&
   }
 
   std::size_t size() const { return size_; }
-  bool empty() const { return size_ == 0; }
   T* data() { return reinterpret_cast<T*>(memory_.data()); }
   const T* data() const { return reinterpret_cast<const T*>(memory_.data()); }
   T* begin() { return data(); }

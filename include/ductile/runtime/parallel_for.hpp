@@ -50,6 +50,22 @@ void parallel_for_ranges(const Executor& executor, std::size_t n, Body&& body,
       const_cast<std::remove_const_t<Plain>*>(&body), options);
 }
 
+namespace detail {
+/// What a loop calls for each iteration: of a small body that is a temporary, a copy. Compilers
+/// keep what that refers to in registers, as nothing that an iteration writes can change it.
+template <class Body>
+decltype(auto) own_copy(std::remove_reference_t<Body>& body) {
+  // False of references, that is, of bodies that are not temporaries.
+  constexpr bool is_small = std::is_trivially_copyable_v<Body> &&
+                            std::is_copy_constructible_v<Body> && sizeof(Body) <= 64;
+  if constexpr (is_small && std::is_invocable_v<const Body&, std::size_t>) {
+    return Body(body);
+  } else {
+    return (body);
+  }
+}
+}  // namespace detail
+
 /// Calls body(i) once for every i in [0, n).
 template <class Body>
 void parallel_for(const Executor& executor, std::size_t n, Body&& body,
@@ -57,7 +73,8 @@ void parallel_for(const Executor& executor, std::size_t n, Body&& body,
   parallel_for_ranges(
       executor, n,
       [&body](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) body(i);
+        auto&& own_body = detail::own_copy<Body>(body);
+        for (std::size_t i = begin; i < end; ++i) own_body(i);
       },
       options);
 }

@@ -11,13 +11,15 @@ namespace ductile::runtime {
 struct RoundsOptions {
   int most_rounds = 1000;                ///< stop there even if work is left
   CommitOrder order = CommitOrder::any;  ///< by_source if an owner's updates do not commute
-  /// Colouring: a round goes over its work in windows, one after the other: no more of them than
-  /// this, and of no fewer items than that unless there are fewer. Small windows stay in cache
-  /// while their classes run; large ones keep many threads busy.
-  std::size_t windows = 4;
-  std::size_t window = 16384;
+  /// Colouring: a round goes over its work in windows of at most so many items, one after the
+  /// other; 0: all at once. Small windows stay in cache while their classes run; large ones keep
+  /// many threads busy.
+  std::size_t window = 32768;
+  /// Reservations: the same, but an item of a window then runs before one of a later window, of
+  /// whatever priority. 0: the highest priority of all goes first.
+  std::size_t reserving_window = 0;
   /// Reservations: if a smaller share than this of those that asked held all, fewer ask in the next
-  /// round and the others wait their turn, which saves them planning in vain. 0: all ask always.
+  /// window and the others wait their turn, which saves them planning in vain. 0: all ask always.
   double least_won = 0;
 };
 

@@ -13,6 +13,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <type_traits>
 
@@ -212,6 +213,14 @@ struct Fit {
   std::uint64_t sees_others;  ///< 1 if one is `waiting`, or has another's mark
 };
 
+/// Neighbours for which ShownBytes pay.
+constexpr std::size_t many_neighbours = 128;
+
+/// There are bytes for more colours than TakenColours has room for.
+template <class View>
+constexpr bool has_many_colours =
+    sizeof(typename View::Word) == 1 && View::most >= TakenColours<View>::count;
+
 /// Which bytes the neighbours of a vertex show: room for all colours, so that one look is enough,
 /// but more to clear and to search than the bits of TakenColours.
 template <class Width>
@@ -221,9 +230,9 @@ class ShownBytes {
 
   /// Throws TooManyColours.
   std::uint8_t least_free() const {
-    const auto free = std::find(shown_.begin(), shown_.begin() + Width::most + 1, 0);
-    if (free == shown_.begin() + Width::most + 1) throw TooManyColours{};
-    return static_cast<std::uint8_t>(free - shown_.begin());
+    const void* const free = std::memchr(shown_.data(), 0, std::size_t{Width::most} + 1);
+    if (free == nullptr) throw TooManyColours{};
+    return static_cast<std::uint8_t>(static_cast<const std::uint8_t*>(free) - shown_.data());
   }
   bool shows_others(std::uint32_t number) const {
     const std::size_t own = number < Width::marks ? Colours<Width>::mark(number) : shown_.size();
@@ -253,10 +262,8 @@ template <Graph G, class View>
 [[gnu::always_inline]] inline Fit<typename View::Word> first_fit(const G& graph, std::uint32_t v,
                                                                  View colours,
                                                                  std::uint32_t number) {
-  constexpr std::size_t many = 128;
-  if constexpr (RowGraph<G> && sizeof(typename View::Word) == 1 &&
-                View::most >= TakenColours<View>::count)
-    if (graph.row(v).size() >= many) {
+  if constexpr (RowGraph<G> && has_many_colours<View>)
+    if (graph.row(v).size() >= many_neighbours) {
       const auto [colour, sees_others] = first_fit_of_many(graph, v, colours, number);
       return {colour, sees_others};
     }

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,9 @@ class MarkedRun {
   }
 
  private:
+  using Seen = std::conditional_t<has_many_colours<Width>, ShownBytes<Width>,
+                                  TakenColours<SeenFrom<MarkedRun>>>;
+
   void mark(std::size_t row, std::uint32_t step) {
     if (step == layout_.step_count()) return;
     const auto [begin, end] = range(row, step);
@@ -112,6 +116,10 @@ class MarkedRun {
     const auto number = static_cast<std::uint32_t>(row);
     for (std::uint32_t v = begin; v < end; ++v) {
       prefetch_after(rows, all, v + prefetch_distance < end ? v : next - (end - v));
+      if (wants_one_look(rows, v)) {
+        colour_with_care(v, step);
+        continue;
+      }
       TakenColours<Colours<Width>> seen;
       visit_in_pairs(rows, v, [&](std::uint32_t u) { seen.add(colours[u]); });
       if (seen.shows_others(number)) [[unlikely]] {
@@ -122,25 +130,52 @@ class MarkedRun {
     }
   }
 
-  /// Colours v, of whose neighbours one may be coloured at the same time, or have a hidden colour.
+  /// Whether v has so many neighbours that a look without care would likely have to be repeated.
+  static bool wants_one_look(const auto& rows, std::uint32_t v) {
+    if constexpr (RowGraph<G> && has_many_colours<Width>) {
+      return rows.row(v).size() >= many_neighbours;
+    } else {
+      return false;
+    }
+  }
+
+  /// Colours v, of whose neighbours some may be coloured at the same time, or have a hidden colour.
   /// Not inlined, so as to keep the caller's loop tight.
   [[gnu::noinline]] void colour_with_care(std::uint32_t v, std::uint32_t step) {
+    const auto& rows = in_registers(graph_);
+    const Colours<Width> colours = colours_;
+    Seen seen;
     bool hides = false;
-    TakenColours<SeenFrom<MarkedRun>> seen;
-    graph_.for_each_neighbour(v, [&](std::uint32_t u) {
-      const Word shown = colours_[u];
-      if (shown <= most || shown == Colours<Width>::none) return seen.add(shown);
-      if (layout_.step_of(u) != step || layout_.same_block(u, v))
-        return seen.add(colour_seen(u, v));
-      hides = true;
-      if (u < v) blind_.mine().emplace_back(u, v);  // one of the two notes it
+    visit_in_pairs(rows, v, [&](std::uint32_t u) {
+      const Word shown = colours[u];
+      seen.add(shown);
+      if (static_cast<Word>(shown + 1) > most + 1) [[unlikely]]  // neither a colour nor `none`
+        seen.add(look_closer(u, v, step, hides));
     });
-    const Word colour = least_free(graph_, v, SeenFrom(*this, v), seen);
+    const Word colour = least_free_of(v, seen);
     if (hides) {
       hidden(v, step) = colour;
       rows_[layout_.row_of(v)].hiding.push_back(v);
     }
     colours_.set(v, hides ? Colours<Width>::waiting : colour);
+  }
+
+  /// What v, which has its turn in this step, sees of u, which shows no colour. Sets `hides` if
+  /// they are coloured at the same time, and lists them.
+  [[gnu::noinline]] Word look_closer(std::uint32_t u, std::uint32_t v, std::uint32_t step,
+                                     bool& hides) {
+    if (layout_.step_of(u) != step || layout_.same_block(u, v)) return colour_seen(u, v);
+    hides = true;
+    if (u < v) blind_.mine().emplace_back(u, v);  // one of the two notes it
+    return Colours<Width>::none;
+  }
+
+  Word least_free_of(std::uint32_t v, const Seen& seen) const {
+    if constexpr (has_many_colours<Width>) {
+      return seen.least_free();
+    } else {
+      return least_free(graph_, v, SeenFrom(*this, v), seen);
+    }
   }
 
   /// Where v, which has its turn in this step, hides its colour, until the next step is over.

@@ -7,6 +7,7 @@
 /// The result is that of serial first-fit in descending order of priority.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -32,26 +33,56 @@ struct Outranks {
 };
 inline constexpr Outranks outranks;
 
+/// For how many neighbours each vertex waits, by vertex.
+class AwaitedByVertex {
+ public:
+  AwaitedByVertex(std::size_t vertex_count, std::span<const std::uint32_t>)
+      : count_(std::make_unique_for_overwrite<std::uint32_t[]>(vertex_count)) {}
+  void begin(std::uint32_t v) { count_[v] = 0; }
+  std::uint32_t& operator[](std::uint32_t v) { return count_[v]; }
+
+ private:
+  std::unique_ptr<std::uint32_t[]> count_;
+};
+
+/// The same where few of the vertices are given, in ascending order, and hardly any is a neighbour
+/// of another: as little memory as they need, and a search for those that wait.
+class AwaitedByPlace {
+ public:
+  AwaitedByPlace(std::size_t, std::span<const std::uint32_t> vertices)
+      : vertices_(vertices), count_(vertices.size()) {}
+  void begin(std::uint32_t) {}
+  std::uint32_t& operator[](std::uint32_t v) {
+    const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), v);
+    return count_[static_cast<std::size_t>(at - vertices_.begin())];
+  }
+
+ private:
+  std::span<const std::uint32_t> vertices_;
+  std::vector<std::uint32_t> count_;
+};
+
 /// Takes the colours of vertices away and gives them new ones. `before(u, v)` is a strict order.
-template <class Width, Graph G, class Before>
+template <class Awaited, class Width, Graph G, class Before>
 class PriorityRun {
  public:
-  PriorityRun(const Executor& executor, const G& graph, Colours<Width> colours,
-              const Before& before)
+  PriorityRun(const Executor& executor, const G& graph, std::span<const std::uint32_t> vertices,
+              Colours<Width> colours, const Before& before)
       : executor_(executor),
         graph_(graph),
+        vertices_(vertices),
         colours_(colours),
         before_(before),
-        awaited_(std::make_unique_for_overwrite<std::uint32_t[]>(colours.vertex_count())),
+        awaited_(colours.vertex_count(), vertices),
         free_(executor, {.order = WorkOrder::arrival}) {}
 
-  void run(std::span<const std::uint32_t> vertices) {
-    for_each(vertices, [&](std::uint32_t v) {
+  void run() {
+    for_each(vertices_, [&](std::uint32_t v) {
       colours_.set(v, Colours<Width>::waiting);
-      awaited_[v] = 0;
+      awaited_.begin(v);
     });
-    for_each(vertices, [&](std::uint32_t v) { colour_or_announce(v); });
-    for_each(vertices, [&](std::uint32_t v) {
+    for_each(vertices_, [&](std::uint32_t v) { colour_or_announce(v); });
+    for_each(vertices_, [&](std::uint32_t v) {
       if (colours_[v] == Colours<Width>::waiting && awaited_[v] == 0) free_.append(v);
     });
     for (free_.collect(); !free_.empty(); free_.collect()) {
@@ -112,17 +143,18 @@ class PriorityRun {
 
   const Executor& executor_;
   const G& graph_;
+  std::span<const std::uint32_t> vertices_;
   Colours<Width> colours_;
   const Before& before_;
-  std::unique_ptr<std::uint32_t[]> awaited_;  // [vertex], neighbours it waits for; of those given
-  Worklist<std::uint32_t> free_;              // wait for nobody
+  Awaited awaited_;               // [vertex], neighbours it waits for; of those given
+  Worklist<std::uint32_t> free_;  // wait for nobody
 };
 
-template <class Width, Graph G, class Before>
+template <class Awaited = AwaitedByVertex, class Width, Graph G, class Before>
 void colour_by_priority(const Executor& executor, const G& graph,
                         std::span<const std::uint32_t> vertices, Colours<Width> colours,
                         const Before& before) {
-  PriorityRun<Width, G, Before>(executor, graph, colours, before).run(vertices);
+  PriorityRun<Awaited, Width, G, Before>(executor, graph, vertices, colours, before).run();
 }
 
 inline std::vector<std::uint32_t> listed(const VertexSet& vertices) {

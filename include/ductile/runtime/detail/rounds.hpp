@@ -52,10 +52,9 @@ class Rounds {
 
   RoundsReport run(std::vector<Item> work) {
     for (int round = 1; !work.empty() && round <= options_.most_rounds; ++round) {
-      round_ = static_cast<std::uint32_t>(round);
       ++report_.rounds;
       if (recording_ != nullptr) recording_->begin_round();
-      if constexpr (Check::on) check_.begin_round(op_, round_, work);
+      if constexpr (Check::on) check_.begin_round(op_, static_cast<std::uint32_t>(round), work);
       if constexpr (ColouredOperator<Op>) {
         work = coloured_round(std::move(work));
       } else {
@@ -79,28 +78,31 @@ class Rounds {
     return std::clamp<std::size_t>(items / 512, 8, block);
   }
 
+  /// Cuts a round's work into parts of at most so many items, which run one after the other; 0: it
+  /// is one part.
+  void for_each_window(std::span<Item> work, std::size_t largest, auto&& run) {
+    const std::size_t n = work.size();
+    const std::size_t windows = Check::on || largest == 0 ? 1 : (n + largest - 1) / largest;
+    for (std::size_t w = 0; w < windows; ++w) {
+      // Where the numbers of windows in keys begin anew, what was reserved is forgotten.
+      if ((++window_ & last_window) == 0) reserved_ = {};
+      const std::size_t begin = n * w / windows, end = n * (w + 1) / windows;
+      run(work.subspan(begin, end - begin));
+    }
+  }
+
   // ---- Colouring: cut the round into classes of items that do not conflict ----
 
   /// Goes over the work window by window, so that what one window's classes touch stays in cache.
   std::vector<Item> coloured_round(std::vector<Item> work) requires ColouredOperator<Op> {
     woken_at_.resize(executor_, op_.item_count(), 0);
     turn_of_.resize(executor_, op_.item_count(), absent);
-    const std::size_t windows = Check::on ? 1 : window_count(work.size());
-    for (std::size_t w = 0; w < windows; ++w) {
-      const std::size_t begin = work.size() * w / windows, end = work.size() * (w + 1) / windows;
-      ++window_;
-      run_window(std::span(work).subspan(begin, end - begin));
-    }
+    for_each_window(work, options_.window, [&](std::span<const Item> part) { run_window(part); });
     const std::vector<Item> woken = take_woken();
     // Who was woken by one window and planned in a later one has been considered again.
     return parallel_collect<Item>(executor_, woken.size(), [&](std::size_t i, auto&& append) {
       if (woken_at_[woken[i]] != 0) append(woken[i]);
     });
-  }
-
-  std::size_t window_count(std::size_t items) const {
-    const std::size_t least = std::max<std::size_t>(1, options_.window);
-    return std::clamp<std::size_t>(items / least, 1, std::max<std::size_t>(1, options_.windows));
   }
 
   void run_window(std::span<const Item> work) {
@@ -183,7 +185,24 @@ class Rounds {
 
   // ---- Reservation: the highest priority on all of its footprint runs, the others wait ----
 
+  /// Goes over the work window by window, so that what is reserved, planned and applied one after
+  /// the other stays in cache.
   std::vector<Item> reserved_round(std::vector<Item> work) requires ReservingOperator<Op> {
+    std::vector<Item> rest;
+    for_each_window(work, options_.reserving_window,
+                    [&](std::span<Item> part) { reserve_and_run(part, rest); });
+    std::vector<Item> woken = take_woken();
+    append(rest, woken);
+    return rest;
+  }
+
+  static void append(std::vector<Item>& to, std::vector<Item>& items) {
+    to.insert(to.end(), std::make_move_iterator(items.begin()),
+              std::make_move_iterator(items.end()));
+  }
+
+  /// Runs the items of a window that win, and appends those that have to wait to `rest`.
+  void reserve_and_run(std::span<Item> work, std::vector<Item>& rest) {
     std::vector<std::uint8_t> outcome(work.size());
     {
       const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
@@ -205,24 +224,21 @@ class Rounds {
           by_block);
     }
     std::vector<Item> winners = select(work, outcome, runs);
-    std::vector<Item> rest = select(work, outcome, waits | passes);
-    const std::size_t lost = rest.size() - (share_ < everyone ? count(outcome, passes) : 0);
+    std::vector<Item> losers = select(work, outcome, waits | passes);
+    const std::size_t lost = losers.size() - (share_ < everyone ? count(outcome, passes) : 0);
     report_.lost += lost;
     adapt_share(winners.size(), lost);
     execute(winners);
-    std::vector<Item> woken = take_woken();
-    rest.insert(rest.end(), std::make_move_iterator(woken.begin()),
-                std::make_move_iterator(woken.end()));
-    return rest;
+    append(rest, losers);
   }
 
-  /// Whether the item at this position asks for its footprint in this round.
+  /// Whether the item at this position asks for its footprint in this window.
   bool asks(std::size_t position) const {
     if (share_ == everyone) return true;
-    return mix32(static_cast<std::uint32_t>(position) ^ (round_ * 0x85ebca6bU)) <= share_;
+    return mix32(static_cast<std::uint32_t>(position) ^ (window_ * 0x85ebca6bU)) <= share_;
   }
 
-  /// Fewer ask in the next round if too few of those that asked won, and more if most did.
+  /// Fewer ask in the next window if too few of those that asked won, and more if most did.
   void adapt_share(std::size_t won, std::size_t lost) {
     const double asked = static_cast<double>(won + lost), wanted = options_.least_won * asked;
     if (won + lost < block || static_cast<double>(won) > (asked + wanted) / 2) {
@@ -238,14 +254,14 @@ class Rounds {
     return parallel_reduce(executor_, outcome.size(), std::size_t{0}, one_if_wanted, sum);
   }
 
-  /// A later round always has the lower key, so reservations never have to be cleared.
+  /// A later window always has the lower key, so reservations never have to be cleared.
   std::uint64_t key_of(const Item& item, std::size_t position) {
     std::uint64_t rank = 0;
     if constexpr (RankedOperator<Op>) rank = op_.priority(item);
     const auto place = static_cast<std::uint32_t>(position);
     const std::uint32_t tie =
-        executor_.deterministic() ? mix32(place ^ (round_ * 0x9e3779b9U)) : ticket_of_[position];
-    return (std::uint64_t{~round_ & 0xffffffU} << 40U) | (rank << 32U) | tie;
+        executor_.deterministic() ? mix32(place ^ (window_ * 0x9e3779b9U)) : ticket_of_[position];
+    return (std::uint64_t{~window_ & last_window} << 40U) | (rank << 32U) | tie;
   }
 
   std::uint8_t reserve(const Item& item, std::size_t position) {
@@ -267,7 +283,7 @@ class Rounds {
   }
 
   /// Moves the items with one of these outcomes out of the work, in order.
-  std::vector<Item> select(std::vector<Item>& work, const std::vector<std::uint8_t>& outcome,
+  std::vector<Item> select(std::span<Item> work, const std::vector<std::uint8_t>& outcome,
                            std::uint8_t wanted) {
     std::vector<std::uint32_t> offset((work.size() + block - 1) / block);
     parallel_for_blocks(
@@ -459,7 +475,7 @@ class Rounds {
 
   static constexpr std::uint32_t absent = 0xffffffffU;
   static constexpr std::uint8_t gone = 0, waits = 1, runs = 2, passes = 4;
-  static constexpr std::uint32_t everyone = 0xffffffffU;
+  static constexpr std::uint32_t everyone = 0xffffffffU, last_window = 0xffffffU;
 
   const Executor& executor_;
   Op& op_;
@@ -469,10 +485,9 @@ class Rounds {
   Recording* recording_;  // null but for replays
   DeferredUpdate<Update> deferred_;
   Worklist<Item> woken_;
-  std::uint32_t round_ = 0;
+  std::uint32_t window_ = 0;  // the window being run
 
   // ---- Colouring ----
-  std::uint32_t window_ = 0;                     // the window being run
   detail::FilledArray<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
   detail::FilledArray<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its
                                                  // class, or absent
