@@ -9,7 +9,6 @@
 #include <span>
 
 #include "ductile/meshadapt/mesh.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "mesh/hilbert.hpp"
@@ -32,56 +31,89 @@ Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh) {
       [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
 }
 
-/// Ids by their keys, those of equal keys in order. keyed(i, append) appends a key and an id below
-/// `count`; as many of a key's `key_bits` highest bits count as find place beside an id in a word.
-std::vector<std::uint32_t> sorted_ids(const Executor& executor, std::size_t count,
-                                      unsigned key_bits, auto&& keyed) {
-  const auto id_bits = static_cast<unsigned>(std::bit_width(count));
-  const std::uint64_t ids = (std::uint64_t{1} << id_bits) - 1;
-  const auto join = [&](std::uint64_t key, std::uint32_t id) {
-    return key_bits + id_bits <= 64 ? key << id_bits | id : (key << (64 - key_bits) & ~ids) | id;
-  };
-  auto words =
-      runtime::parallel_collect<std::uint64_t>(executor, count, [&](std::size_t i, auto&& append) {
-        keyed(i, [&](std::uint64_t key, std::uint32_t id) { append(join(key, id)); });
-      });
-  runtime::parallel_sort(executor, std::span(words));
-  std::vector<std::uint32_t> order(words.size());
-  parallel_for(executor, words.size(),
-               [&](std::size_t i) { order[i] = static_cast<std::uint32_t>(words[i] & ids); });
+/// An array that one thread alone neither fills nor touches first.
+template <class T>
+class Unset {
+ public:
+  explicit Unset(std::size_t size)
+      : values_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+  std::size_t size() const { return size_; }
+  T* begin() { return values_.get(); }
+  T& operator[](std::size_t i) { return values_[i]; }
+  const T& operator[](std::size_t i) const { return values_[i]; }
+
+ private:
+  std::unique_ptr<T[]> values_;
+  std::size_t size_;
+};
+using Ids = Unset<std::uint32_t>;
+
+/// Keys with their ids in the low bits of a word, so that sorting words sorts ids by their keys,
+/// those of equal keys in order.
+class KeyedWords {
+ public:
+  /// As many of a key's `key_bits` highest bits count as find place beside an id below `count`.
+  KeyedWords(std::size_t count, unsigned key_bits)
+      : id_bits_(static_cast<unsigned>(std::bit_width(count))), key_bits_(key_bits) {}
+
+  std::uint64_t word(std::uint64_t key, std::uint64_t id) const {
+    return fits() ? key << id_bits_ | id : (key << (64 - key_bits_) & ~ids()) | id;
+  }
+  /// Greater than all others; the greatest id is below the number that all its bits would make.
+  std::uint64_t gone() const {
+    return fits() ? std::uint64_t{1} << (key_bits_ + id_bits_) : ~std::uint64_t{0};
+  }
+  std::uint32_t id(std::uint64_t word) const { return static_cast<std::uint32_t>(word & ids()); }
+
+ private:
+  bool fits() const { return key_bits_ + id_bits_ < 64; }
+  std::uint64_t ids() const { return (std::uint64_t{1} << id_bits_) - 1; }
+
+  unsigned id_bits_, key_bits_;
+};
+
+/// The ids below `count` that are alive, by key_of(id); is_alive(id) says whether one is.
+Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, auto&& is_alive,
+               auto&& key_of) {
+  const KeyedWords keyed(count, key_bits);
+  Unset<std::uint64_t> words(count);
+  parallel_for(executor, count, [&](std::size_t id) {
+    words[id] = is_alive(id) ? keyed.word(key_of(id), id) : keyed.gone();
+  });
+  const std::span all(words.begin(), count);
+  runtime::parallel_sort(executor, all);
+  const auto end = std::lower_bound(all.begin(), all.end(), keyed.gone());
+  Ids order(static_cast<std::size_t>(end - all.begin()));
+  parallel_for(executor, order.size(), [&](std::size_t i) { order[i] = keyed.id(words[i]); });
   return order;
 }
 
 /// Living vertices in the order of the curve.
 template <int Dim>
-std::vector<VertexId> sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
+Ids sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
   const Box<Dim> box = bounding_box(executor, mesh);
-  return sorted_ids(executor, mesh.vertex_slots(), hilbert_bits<Dim>,
-                    [&](std::size_t v, auto&& append) {
-                      const auto vertex = static_cast<VertexId>(v);
-                      if (mesh.vertex_alive(vertex))
-                        append(hilbert_key(mesh.site_of[v].position, box), vertex);
-                    });
+  return sorted_ids(
+      executor, mesh.vertex_slots(), hilbert_bits<Dim>,
+      [&](std::size_t v) { return mesh.vertex_alive(static_cast<VertexId>(v)); },
+      [&](std::size_t v) { return hilbert_key(mesh.site_of[v].position, box); });
 }
 
 /// Living elements by their lowest vertex in the new numbering.
 template <int Dim>
-std::vector<ElementId> sorted_elements(const Executor& executor, const Mesh<Dim>& mesh,
-                                       const std::vector<VertexId>& new_id) {
-  const auto key_bits = static_cast<unsigned>(std::bit_width(new_id.size()));
-  return sorted_ids(executor, mesh.element_slots(), key_bits, [&](std::size_t e, auto&& append) {
-    const auto element = static_cast<ElementId>(e);
-    if (!mesh.alive(element)) return;
+Ids sorted_elements(const Executor& executor, const Mesh<Dim>& mesh, const Ids& new_id) {
+  const auto lowest_vertex = [&](std::size_t e) {
     VertexId lowest = none;
     for (const VertexId v : mesh.corners_of[e]) lowest = std::min(lowest, new_id[v]);
-    append(lowest, element);
-  });
+    return lowest;
+  };
+  return sorted_ids(
+      executor, mesh.element_slots(), static_cast<unsigned>(std::bit_width(new_id.size())),
+      [&](std::size_t e) { return mesh.alive(static_cast<ElementId>(e)); }, lowest_vertex);
 }
 
-/// For each old id its place in the order; none for those that are not in it.
-std::vector<std::uint32_t> places_in(const Executor& executor,
-                                     const std::vector<std::uint32_t>& order, std::size_t count) {
-  std::vector<std::uint32_t> place_of(count, none);
+/// For each old id its place in the order, for those that are in it.
+Ids places_in(const Executor& executor, const Ids& order, std::size_t count) {
+  Ids place_of(count);
   parallel_for(executor, order.size(),
                [&](std::size_t i) { place_of[order[i]] = static_cast<std::uint32_t>(i); });
   return place_of;
@@ -91,8 +123,7 @@ std::vector<std::uint32_t> places_in(const Executor& executor,
 /// cost less than new ones.
 class Permutation {
  public:
-  Permutation(const Executor& executor, const std::vector<std::uint32_t>& order,
-              std::size_t largest)
+  Permutation(const Executor& executor, const Ids& order, std::size_t largest)
       : executor_(executor),
         order_(order),
         largest_(largest),
@@ -114,16 +145,15 @@ class Permutation {
 
  private:
   const Executor& executor_;
-  const std::vector<std::uint32_t>& order_;
+  const Ids& order_;
   [[maybe_unused]] std::size_t largest_;  // bytes of a value there is room for
   std::unique_ptr<std::byte[]> scratch_;
 };
 
 /// The lists of elements in the new order of vertices, with the new ids of elements.
 template <int Dim>
-void renumber_elements_of(const Executor& executor, Mesh<Dim>& mesh,
-                          const std::vector<VertexId>& vertices,
-                          const std::vector<ElementId>& new_element) {
+void renumber_elements_of(const Executor& executor, Mesh<Dim>& mesh, const Ids& vertices,
+                          const Ids& new_element) {
   ListPool<ElementId> moved;
   moved.reset(vertices.size());
   const auto old_list = [&](VertexId v) { return mesh.elements_of.of(vertices[v]); };
@@ -139,8 +169,8 @@ void renumber_elements_of(const Executor& executor, Mesh<Dim>& mesh,
   std::swap(mesh.elements_of, moved);
 }
 
-void renumber_links(const Executor& executor, Mesh<3>& mesh, const std::vector<VertexId>& vertices,
-                    const std::vector<VertexId>& new_vertex) {
+void renumber_links(const Executor& executor, Mesh<3>& mesh, const Ids& vertices,
+                    const Ids& new_vertex) {
   ListPool<CurveLink> moved;
   moved.reset(vertices.size());
   parallel_for(executor, vertices.size(), [&](std::size_t i) {
@@ -151,8 +181,7 @@ void renumber_links(const Executor& executor, Mesh<3>& mesh, const std::vector<V
 }
 
 template <int Dim>
-void permute_elements(const Executor& executor, Mesh<Dim>& mesh,
-                      const std::vector<ElementId>& order) {
+void permute_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& order) {
   Permutation permute(executor, order, sizeof(Corners<Dim>));
   permute(mesh.corners_of);
   permute(mesh.patches_of);
@@ -162,8 +191,7 @@ void permute_elements(const Executor& executor, Mesh<Dim>& mesh,
 }
 
 template <int Dim>
-void permute_vertices(const Executor& executor, Mesh<Dim>& mesh,
-                      const std::vector<VertexId>& order) {
+void permute_vertices(const Executor& executor, Mesh<Dim>& mesh, const Ids& order) {
   Permutation permute(executor, order, sizeof(Site<Dim>));
   permute(mesh.site_of);
   permute(mesh.kind_of);

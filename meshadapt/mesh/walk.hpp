@@ -2,6 +2,7 @@
 /// walk: finds the element that a point lies in by stepping from one nearby towards it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -65,19 +66,24 @@ WalkEnd<Dim> walk(const Walkable<Dim>& mesh, const Vector<Dim>& point, ElementId
   constexpr int longest_walk = 2000;  // more go in circles or around a hole
   WalkEnd<Dim> at{near, {}, false};
   for (int step = 0; step < longest_walk; ++step) {
+    if constexpr (Dim == 3)  // large meshes, long walks: where to go next is known too late
+      for (const ElementId e : mesh.neighbour_of[at.element])
+        if (e != none) {
+          __builtin_prefetch(&mesh.elements.corners_of[e]);
+          __builtin_prefetch(&mesh.neighbour_of[e]);
+        }
     at.weight = barycentric<Dim>(mesh.elements.points(at.element), point);
+    double lowest = at.weight[0];
+    for (std::size_t i = 1; i <= Dim; ++i) lowest = std::min(lowest, at.weight[i]);
+    at.inside = lowest >= -walk_tolerance;
+    if (at.inside) break;
     ElementId next = none;
-    double lowest = -walk_tolerance;
-    bool inside = true;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      if (at.weight[i] >= -walk_tolerance) continue;
-      inside = false;
+    lowest = -walk_tolerance;
+    for (std::size_t i = 0; i <= Dim; ++i)
       if (at.weight[i] < lowest && mesh.neighbour_of[at.element][i] != none) {
         lowest = at.weight[i];
         next = mesh.neighbour_of[at.element][i];
       }
-    }
-    at.inside = inside;
     if (next == none) break;
     at.element = next;
   }

@@ -49,9 +49,10 @@ auto Background<Dim>::sample(const Vector<Dim>& point, ElementId near) const -> 
   }
   double sum = 0;
   for (double& w : weight) sum += w = std::max(w, 0.0);
+  const double scale = 1 / sum;
   Metric<Dim> log_metric;
   for (std::size_t i = 0; i <= Dim; ++i)
-    if (weight[i] > 0) log_metric += (weight[i] / sum) * log_metric_of_[corners_of_[host][i]];
+    log_metric += (scale * weight[i]) * log_metric_of_[corners_of_[host][i]];
   return {host, exponential(log_metric)};
 }
 

@@ -80,11 +80,34 @@ Metric<Dim> logarithm(const Metric<Dim>& a) {
   return compose(axes);
 }
 
-template <int Dim>
-Metric<Dim> exponential(const Metric<Dim>& a) {
-  PrincipalAxes<Dim> axes = principal_axes(a);
+namespace {
+
+/// In closed form: what rounding adds to an eigenvalue of a logarithm is, unlike what it adds to
+/// one of a metric, as harmless beside small ones as beside large ones.
+Metric<2> exponential_of(const Metric<2>& a) {
+  const double mean = 0.5 * (a.m[0] + a.m[2]), half = 0.5 * (a.m[0] - a.m[2]), off = a.m[1];
+  const double radius = std::sqrt(half * half + off * off);
+  if (!(radius > 1e-150)) return isotropic<2>(std::exp(-0.5 * mean));  // its square is hardly there
+  const double large = std::exp(mean + radius), small = std::exp(mean - radius);
+  // the eigenvectors are (far, off) and (-off, far), or that with axes exchanged
+  const double far = radius + std::abs(half), share = 0.5 / (radius * far);
+  const double near2 = share * off * off, far2 = share * far * far;
+  const double first = large * far2 + small * near2, second = large * near2 + small * far2;
+  const double mixed = (large - small) * off * (0.5 / radius);
+  return {{half > 0 ? first : second, mixed, half > 0 ? second : first}};
+}
+
+Metric<3> exponential_of(const Metric<3>& a) {
+  PrincipalAxes<3> axes = principal_axes(a);
   for (double& value : axes.value) value = std::exp(value);
   return compose(axes);
+}
+
+}  // namespace
+
+template <int Dim>
+Metric<Dim> exponential(const Metric<Dim>& a) {
+  return exponential_of(a);
 }
 
 template PrincipalAxes<2> principal_axes(const Metric<2>&);

@@ -18,6 +18,7 @@
 namespace ductile::meshadapt {
 
 using runtime::parallel_for;
+using runtime::RoundsOptions;
 using runtime::RoundsReport;
 
 namespace {
@@ -65,6 +66,10 @@ struct Tuning<3> {
 
 /// A mesh of which a smaller share would change is left alone, or only finished.
 constexpr double nothing = 2e-4, little = 5e-3;
+
+/// Refinement and swapping take the longest edges and the worst elements first only within windows,
+/// which stay in cache while they are reserved, planned and applied.
+constexpr RoundsOptions by_windows{.reserving_window = 32768};
 
 /// Rearranging also collapses edges that are hardly long enough: some would end up too short.
 constexpr double eager = 1.03;
@@ -319,7 +324,7 @@ std::size_t Adapter<Dim>::refine() {
   auto work = Refine<Dim>::long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
   Refine<Dim> op(mesh_, background_, rules());
-  const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
+  const RoundsReport rounds = run_rounds(executor_, op, std::move(work), by_windows);
   add(report_.refine, rounds);
   tell("refine", rounds.applied);
   return rounds.applied;
@@ -334,7 +339,7 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
     auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below);
     if (work.empty()) break;
     Swap<Dim> op(mesh_);
-    const RoundsReport rounds = run_rounds(executor_, op, std::move(work));
+    const RoundsReport rounds = run_rounds(executor_, op, std::move(work), by_windows);
     add(report_.swap, rounds);
     changes += rounds.applied;
     if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 0.015)) break;

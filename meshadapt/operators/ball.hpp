@@ -1,26 +1,23 @@
 /// @file
 /// Ball: the elements around a vertex as bases under an apex that may move (base.hpp), eight side
-/// by side: loops over lanes are such that the compiler evaluates several elements at a time.
+/// by side (lanes.hpp). Determinants and sums of squared lengths are double, as terms may cancel in
+/// them; what follows from these is float, like the shapes that a mesh keeps.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <span>
 
 #include "operators/base.hpp"
 #include "operators/cavity.hpp"
+#include "operators/lanes.hpp"
 
 namespace ductile::meshadapt {
 
-inline constexpr std::size_t lane_count = 8;
-using Lanes = std::array<double, lane_count>;  ///< one number of each of so many elements
-template <int Size>
-using LanesOf = std::array<Lanes, Size>;  ///< a vector or tensor of each
-
-/// What Base holds, of eight elements. Where shapes may be doubtful the metrics of all corners of
-/// the facets are kept, else that of the densest; it comes first.
+/// Facets opposite to a vertex, as if they were bases of eight elements. Where shapes may be
+/// doubtful the metrics of all corners of the facets are kept, else that of the densest.
 template <int Dim>
 struct BaseLanes {
   static constexpr int size = Metric<Dim>::size;
@@ -29,9 +26,20 @@ struct BaseLanes {
   LanesOf<Dim> normal, centre;
   LanesOf<size> spread;
   std::array<LanesOf<size>, judges> metric;
-  std::array<Lanes, judges> squares;  // by each of the metrics
-  Lanes density;                      // of the densest corner
-  Lanes counts;                       // 1, or 0 where there is no element but a copy of another
+  std::array<Lanes, judges> density;  // of their corners
+  ShapeLanes shape;                   // as the mesh has it
+  ShapeLanes counts;                  // 1, or 0 where there is no element but a copy of another
+};
+
+/// The shapes of the elements around a vertex, in the order of its list; of more than `most`,
+/// which is rare, the first. Copied as a whole, as it is small.
+template <int Dim>
+struct BallShapes {
+  static constexpr std::size_t blocks = Dim == 2 ? 1 : 5, most = blocks * lane_count;
+  std::array<ShapeLanes, blocks> lanes{};
+
+  float operator[](std::size_t i) const { return lanes[i / lane_count][i % lane_count]; }
+  friend bool operator==(const BallShapes&, const BallShapes&) = default;
 };
 
 template <int Dim>
@@ -39,77 +47,98 @@ class Ball {
  public:
   struct Score {
     double worst = 0, sum = 0;
+    double volume = 0;  ///< the least, times 2 in 2D or 6 in 3D, as rounding leaves it
   };
-  /// One of each element, in the order of the vertex's list.
-  using Shapes = Buffer<float, Dim == 2 ? 8 : 32>;
+  using Shapes = BallShapes<Dim>;
 
   Ball(const Mesh<Dim>& mesh, VertexId vertex)
       : origin_(mesh.site_of[vertex].position), size_(mesh.elements_of.of(vertex).size()) {
-    const auto elements = mesh.elements_of.of(vertex);
     blocks_.resize((size_ + lane_count - 1) / lane_count, boost::container::default_init);
-    for (std::size_t b = 0; b < blocks_.size(); ++b) fill(mesh, vertex, elements, b);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) fill(mesh, vertex, b);
   }
 
   std::size_t size() const { return size_; }
 
+  /// Worst and sum of all shapes as the mesh has them.
+  Score present() const {
+    float worst = 1;
+    ShapeLanes sum{};
+    for (const Block& block : blocks_) {
+      worst = std::min(worst, least(block.shape));
+      for (std::size_t l = 0; l < lane_count; ++l) sum[l] += block.counts[l] * block.shape[l];
+    }
+    return {worst, total(sum)};
+  }
+
   /// Worst and sum of all shapes with this apex; just a worst of -1 if one is below the bound, has
   /// no positive volume or is not a number.
   Score score(const Site<Dim>& apex, double bound) const {
-    double worst = 1;
-    Lanes sum{};
-    for (const Block& block : blocks_) {
-      const Lanes shape = shapes_in(block, apex);
-      worst = std::min(worst, least(shape));
+    Shapes shapes;
+    return score(apex, bound, shapes);
+  }
+  /// The same; sets the shapes, too.
+  Score score(const Site<Dim>& apex, double bound, Shapes& shapes) const {
+    if (!(apex.density > 0)) return {-1, 0};  // else no judge: comparisons pass over no number
+    float worst = 1;
+    double volume = std::numeric_limits<double>::infinity();
+    ShapeLanes sum{};
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Judged judged = judge(blocks_[b], apex);
+      worst = std::min(worst, least(judged.shape));
+      volume = std::min(volume, least(judged.determinant));
       if (!(worst > 0) || worst < bound) return {-1, 0};
-      for (std::size_t l = 0; l < lane_count; ++l) sum[l] += block.counts[l] * shape[l];
+      if (b < Shapes::blocks) shapes.lanes[b] = judged.shape;
+      for (std::size_t l = 0; l < lane_count; ++l) sum[l] += blocks_[b].counts[l] * judged.shape[l];
     }
-    const double all = total(sum);
-    return all > 0 ? Score{worst, all} : Score{-1, 0};  // least() does not see what is no number
+    const float all = total(sum);
+    if (!(all > 0) || std::isinf(all)) return {-1, 0};  // least() may overlook what is no number
+    return {worst, all, volume};
+  }
+
+  /// Is it certain that volumes are positive if the least of them comes out as this with the vertex
+  /// here? Rounding changes the determinants of judge() by no more than 28 in 2D, or 300 in 3D,
+  /// times epsilon times the product of the largest coordinates along each axis.
+  bool is_certain(double volume, const Vector<Dim>& position) const {
+    double scale = (Dim == 2 ? 64 : 512) * std::numeric_limits<double>::epsilon();
+    for (int i = 0; i < Dim; ++i) scale *= std::max(reach(i), std::abs(position[i] - origin_[i]));
+    return volume > scale;
   }
 
   /// Calls visit(i, shape) for each element.
   void visit_shapes(const Site<Dim>& apex, auto&& visit) const {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes shape = shapes_in(blocks_[b], apex);
+      const ShapeLanes shape = judge(blocks_[b], apex).shape;
       const std::size_t begin = b * lane_count, end = std::min(size_, begin + lane_count);
-      for (std::size_t i = begin; i < end; ++i) visit(i, shape[i - begin]);
+      for (std::size_t i = begin; i < end; ++i) visit(i, static_cast<double>(shape[i - begin]));
     }
-  }
-
-  Shapes shapes(const Site<Dim>& apex) const {
-    Shapes result;
-    visit_shapes(apex,
-                 [&](std::size_t, double shape) { result.push_back(static_cast<float>(shape)); });
-    return result;
   }
 
   /// Every element pulls its apex to where it would be regular over its base, or half-way from
-  /// there to where its edges have unit length, by this metric; bad elements pull harder,
-  /// by the inverse of shape_of(i). The mean pull, from where the vertex is.
-  Vector<Dim> mean_pull(const Metric<Dim>& metric, auto&& shape_of) const {
-    const Metric<Dim> dual = inverse(metric);
-    LanesOf<Dim> sum{};
+  /// there to where its edges have unit length, by the metric of this site; bad elements pull
+  /// harder, by the inverse of their shapes. The mean pull, from where the vertex is. As it is no
+  /// more than a guess, roots are taken of numbers without a unit, in single precision.
+  Vector<Dim> mean_pull(const Site<Dim>& site) const {
+    const Metric<Dim> dual = inverse(site.metric);
+    LanesOf<Dim> centres{}, normals{};
     Lanes weights{};
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Block& block = blocks_[b];
-      Lanes weight{};
-      const std::size_t begin = b * lane_count, end = std::min(size_, begin + lane_count);
-      for (std::size_t i = begin; i < end; ++i)
-        weight[i - begin] = 1 / std::max(0.01, static_cast<double>(shape_of(i)));
+    for (const Block& block : blocks_)
       for (std::size_t l = 0; l < lane_count; ++l) {
-        const double square = contraction(metric, at_tensor(block.spread, l)) / (2 * Dim - 3);
+        const double weight = block.counts[l] / std::max(0.01F, block.shape[l]);
         // the geometric mean of the facet's size and 1
-        const double height = std::sqrt(std::sqrt(square)) * std::sqrt(Dim == 2 ? 0.75 : 2.0 / 3);
-        const Vector<Dim> normal = at(block.normal, l), up = product(dual, normal);
-        const double stretch = height / std::sqrt(dot(normal, up));
-        const Vector<Dim> place = at(block.centre, l) + stretch * up;
-        for (std::size_t i = 0; i < Dim; ++i) sum[i][l] += weight[l] * place.x[i];
-        weights[l] += weight[l];
+        const double square = contraction(site.metric, at_tensor(block.spread, l)) / (2 * Dim - 3);
+        const Vector<Dim> normal = at(block.normal, l), centre = at(block.centre, l);
+        // place = centre + stretch * dual * normal
+        const double stretch = weight * height_over_normal(square, normal, dual, site.density);
+        for (std::size_t i = 0; i < Dim; ++i) {
+          centres[i][l] += weight * centre.x[i];
+          normals[i][l] += stretch * normal.x[i];
+        }
+        weights[l] += weight;
       }
-    }
-    Vector<Dim> pull;
-    for (std::size_t i = 0; i < Dim; ++i) pull.x[i] = total(sum[i]) / total(weights);
-    return pull;
+    Vector<Dim> centre, normal;
+    for (std::size_t i = 0; i < Dim; ++i) centre.x[i] = total(centres[i]);
+    for (std::size_t i = 0; i < Dim; ++i) normal.x[i] = total(normals[i]);
+    return (1 / total(weights)) * (centre + product(dual, normal));
   }
 
   /// Gradient of an element's shape, which is this, by the position of its apex, in the metric that
@@ -118,11 +147,15 @@ class Ball {
     const Block& block = blocks_[element / lane_count];
     const std::size_t l = element % lane_count;
     const Vector<Dim> up = apex.position - origin_ - at(block.centre, l);
-    const auto by = [&](const Metric<Dim>& metric) {
-      return squares_over(contraction(metric, at_tensor(block.spread, l)), metric, up);
-    };
-    Metric<Dim> judge =
-        apex.density > block.density[l] ? apex.metric : at_tensor(block.metric[0], l);
+    const Metric<Dim> all = all_edges(at_tensor(block.spread, l), up);
+    const auto by = [&](const Metric<Dim>& metric) { return contraction(metric, all); };
+    Metric<Dim> judge = apex.metric;
+    double density = apex.density;
+    for (std::size_t j = Block::judges; j-- > 0;)
+      if (!(block.density[j][l] < density)) {
+        judge = at_tensor(block.metric[j], l);
+        density = block.density[j][l];
+      }
     double squares = by(judge);
     if (shape <= doubtful_shape<Dim>) {
       const auto ask = [&](const Metric<Dim>& metric) {
@@ -152,89 +185,150 @@ class Ball {
     for (std::size_t i = 0; i < m.m.size(); ++i) m.m[i] = lanes[i][l];
     return m;
   }
-  static double folded(Lanes lanes, auto&& join) {
-    for (std::size_t half = lane_count / 2; half > 0; half /= 2)
-      for (std::size_t l = 0; l < half; ++l) lanes[l] = join(lanes[l], lanes[l + half]);
-    return lanes[0];
-  }
-  static double total(const Lanes& lanes) { return folded(lanes, std::plus<>()); }
-  static double least(const Lanes& lanes) {
-    return folded(lanes, [](double a, double b) { return a < b ? a : b; });
+
+  /// By what to multiply dual * normal to get as far up from the centre of a facet, of the mean
+  /// squared edge length `square`, as the apex of a regular element, or half-way between that and
+  /// where it is 1 high. In 2D the normal is as long as the edge.
+  static double height_over_normal(double square, const Vector<Dim>& normal,
+                                   const Metric<Dim>& dual, double density) {
+    const float side = std::sqrt(static_cast<float>(square));
+    if constexpr (Dim == 2) return density * (std::sqrt(0.75F) / std::sqrt(side));
+    const double area2 = density * density * squared_length(dual, normal);
+    return density * std::sqrt(2.0F / 3 * side / static_cast<float>(area2));
   }
 
-  /// shape_over() of each.
-  Lanes shapes_in(const Block& block, const Site<Dim>& apex) const {
+  struct Judged {
+    Lanes determinant;
+    ShapeLanes shape;
+  };
+
+  /// shape() of each, but for rounding.
+  Judged judge(const Block& block, const Site<Dim>& apex) const {
     const Vector<Dim> offset = apex.position - origin_;
-    Lanes shape;
+    Judged judged;
     for (std::size_t l = 0; l < lane_count; ++l) {
       const Vector<Dim> up = offset - at(block.centre, l);
       const double determinant = dot(at(block.normal, l), up);
-      const double by_apex =
-          squares_over(contraction(apex.metric, at_tensor(block.spread, l)), apex.metric, up);
-      const double by_judge = squares_over(block.squares[0][l], at_tensor(block.metric[0], l), up);
-      const bool apex_judges = apex.density > block.density[l];
-      const double volume = (apex_judges ? apex.density : block.density[l]) * determinant;
-      double value = shape_from<Dim>(volume, apex_judges ? by_apex : by_judge);
-      if constexpr (Block::judges > 1) {
-        double most = by_apex > by_judge ? by_apex : by_judge;
-        for (std::size_t j = 1; j < Block::judges; ++j) {
-          const double by_other =
-              squares_over(block.squares[j][l], at_tensor(block.metric[j], l), up);
-          most = by_other > most ? by_other : most;
-        }
-        const double strict = shape_from<Dim>(volume, most);
-        value = value > doubtful_shape<Dim> ? value : strict;
+      const Metric<Dim> all = all_edges(at_tensor(block.spread, l), up);
+      const double by_apex = contraction(apex.metric, all);
+      double most = by_apex, squares = by_apex, density = apex.density;
+      for (std::size_t j = Block::judges; j-- > 0;) {
+        const double by_other = contraction(at_tensor(block.metric[j], l), all);
+        squares = block.density[j][l] < density ? squares : by_other;
+        density = block.density[j][l] < density ? density : block.density[j][l];
+        most = by_other > most ? by_other : most;
       }
-      shape[l] = value;
+      const double volume = density * determinant;
+      if constexpr (Block::judges > 1)
+        squares = shape_from<Dim>(volume, 1.0) > doubtful_shape<Dim> * squares ? squares : most;
+      judged.determinant[l] = determinant;
+      judged.shape[l] = shape_from<Dim>(static_cast<float>(volume), static_cast<float>(squares));
     }
-    return shape;
+    return judged;
   }
 
-  void fill(const Mesh<Dim>& mesh, VertexId vertex, std::span<const ElementId> elements,
-            std::size_t b) {
+  /// The spread_of() all edges of an element, from that of its base: see squares_over(). Written
+  /// out, as loops in a loop over lanes keep it from being vectorised.
+  static Metric<Dim> all_edges(const Metric<Dim>& spread, const Vector<Dim>& up) {
+    constexpr double base = (Dim + 1.0) / Dim;
+    const double x = Dim * up[0], y = Dim * up[1];
+    Metric<Dim> all;
+    all.m[0] = base * spread.m[0] + x * up[0];
+    all.m[1] = base * spread.m[1] + 2 * x * up[1];
+    all.m[2] = base * spread.m[2] + y * up[1];
+    if constexpr (Dim == 3) {
+      all.m[3] = base * spread.m[3] + 2 * x * up[2];
+      all.m[4] = base * spread.m[4] + 2 * y * up[2];
+      all.m[5] = base * spread.m[5] + Dim * up[2] * up[2];
+    }
+    return all;
+  }
+
+  /// No corner is farther from where the vertex is along this axis; from the centre of its facet it
+  /// is no farther than the facet is wide.
+  double reach(int axis) const {
+    const auto i = static_cast<std::size_t>(axis);
+    Lanes centre{}, width2{};
+    for (const Block& block : blocks_)
+      for (std::size_t l = 0; l < lane_count; ++l) {
+        centre[l] = std::max(centre[l], std::abs(block.centre[i][l]));
+        width2[l] = std::max(width2[l], block.spread[i * (i + 3) / 2][l]);
+      }
+    return greatest(centre) + std::sqrt(greatest(width2));
+  }
+
+  /// Reads eight elements. Where to find them is looked up one by one, all else side by side.
+  void fill(const Mesh<Dim>& mesh, VertexId vertex, std::size_t b) {
+    const auto elements = mesh.elements_of.of(vertex);
     Block& block = blocks_[b];
-    std::array<LanesOf<Dim>, Dim> corner;
+    block.counts = first_lanes(elements.size() - b * lane_count);
+    std::array<SiteOfLane, Dim> site;
     for (std::size_t l = 0; l < lane_count; ++l) {
       const std::size_t i = b * lane_count + l;
-      block.counts[l] = i < elements.size() ? 1 : 0;
-      const Corners<Dim>& corners = mesh.corners_of[elements[std::min(i, elements.size() - 1)]];
-      const Facet<Dim> facet = facet_of<Dim>(corners, corner_of(corners, vertex));
-      std::size_t densest = 0;
-      for (std::size_t k = 0; k < Dim; ++k) {
-        const Site<Dim>& site = mesh.site_of[facet[k]];
-        for (std::size_t j = 0; j < Dim; ++j) corner[k][j][l] = site.position.x[j] - origin_.x[j];
-        if (site.density > mesh.site_of[facet[densest]].density) densest = k;
-      }
-      block.density[l] = mesh.site_of[facet[densest]].density;
-      for (std::size_t j = 0; j < Block::judges; ++j) {
-        const Metric<Dim>& metric = mesh.site_of[facet[(densest + j) % Dim]].metric;
-        for (std::size_t k = 0; k < metric.m.size(); ++k) block.metric[j][k][l] = metric.m[k];
-      }
+      const ElementId e = elements[std::min(i, elements.size() - 1)];
+      block.shape[l] = mesh.shape_of[e];
+      const Facet<Dim> facet = facet_opposite<Dim>(mesh.corners_of[e], vertex);
+      for (std::size_t k = 0; k < Dim; ++k) site[k][l] = &mesh.site_of[facet[k]];
     }
+    std::array<LanesOf<Dim>, Dim> corner;
+    for (std::size_t k = 0; k < Dim; ++k) read_position(site[k], corner[k]);
+    read_judges(site, block);
     raise(block, corner);
   }
 
+  using SiteOfLane = std::array<const Site<Dim>*, lane_count>;
+  static_assert(sizeof(Site<Dim>) == (Dim + Block::size + 1) * sizeof(double));
+
+  [[gnu::always_inline]] static void read_position(const SiteOfLane& site, LanesOf<Dim>& position) {
+    transpose(site, 0, {&position[0], &position[1], Dim == 3 ? &position[Dim - 1] : nullptr});
+  }
+  [[gnu::always_inline]] static void read_metric(const SiteOfLane& site,
+                                                 LanesOf<Block::size>& metric, Lanes& density) {
+    if constexpr (Dim == 2) {
+      transpose(site, Dim, {&metric[0], &metric[1], &metric[2], &density});
+    } else {
+      transpose(site, Dim, {&metric[0], &metric[1], &metric[2], &metric[3]});
+      transpose(site, Dim + 3, {nullptr, &metric[4], &metric[5], &density});
+    }
+  }
+
+  [[gnu::always_inline]] static void read_judges(const std::array<SiteOfLane, Dim>& site,
+                                                 Block& block) {
+    if constexpr (Block::judges > 1) {
+      for (std::size_t j = 0; j < Block::judges; ++j)
+        read_metric(site[j], block.metric[j], block.density[j]);
+    } else {
+      SiteOfLane densest = site[0];
+      for (std::size_t k = 1; k < Dim; ++k)
+        for (std::size_t l = 0; l < lane_count; ++l) {  // no branches: any may be the one
+          const std::array<const Site<Dim>*, 2> either{densest[l], site[k][l]};
+          densest[l] = either[either[1]->density > either[0]->density ? 1 : 0];
+        }
+      read_metric(densest, block.metric[0], block.density[0]);
+    }
+  }
+
   /// What follows from the corners of the facets.
-  static void raise(Block& block, const std::array<LanesOf<Dim>, Dim>& corner) {
+  void raise(Block& block, const std::array<LanesOf<Dim>, Dim>& corner) const {
+    const Vector<Dim> origin = origin_;
     for (std::size_t l = 0; l < lane_count; ++l) {
-      const Vector<Dim> first = at(corner[0], l), side = at(corner[1], l) - first;
-      Vector<Dim> normal, centre = first + at(corner[1], l);
+      const Vector<Dim> first = at(corner[0], l) - origin, second = at(corner[1], l) - origin;
+      const Vector<Dim> side = second - first;
+      Vector<Dim> normal, centre = first + second;
       Metric<Dim> spread;
       if constexpr (Dim == 2) {
         normal = {{-side[1], side[0]}};
         spread = spread_of(side);
       } else {
-        const Vector<Dim> other = at(corner[2], l) - first;
+        const Vector<Dim> third = at(corner[2], l) - origin, other = third - first;
         normal = cross(other, side);
         spread = spread_of(side, other);
-        centre += at(corner[2], l);
+        centre += third;
       }
       centre *= 1.0 / Dim;
       for (std::size_t i = 0; i < Dim; ++i) block.normal[i][l] = normal.x[i];
       for (std::size_t i = 0; i < Dim; ++i) block.centre[i][l] = centre.x[i];
       for (std::size_t i = 0; i < spread.m.size(); ++i) block.spread[i][l] = spread.m[i];
-      for (std::size_t j = 0; j < Block::judges; ++j)
-        block.squares[j][l] = contraction(at_tensor(block.metric[j], l), spread);
     }
   }
 

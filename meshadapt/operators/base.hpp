@@ -1,24 +1,15 @@
 /// @file
-/// Base: a facet as the base of elements with different apexes. What does not depend on the apex is
-/// computed once, so that a kernel can try many apexes over one facet, or two sides of it.
+/// Base: a triangle as the base of tetrahedra with different apexes, on both sides of it. What does
+/// not depend on the apex is computed once. Nothing is a branch: which corner is the densest, and
+/// which tetrahedron is good, is a matter of chance.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "ductile/meshadapt/quality.hpp"
 
 namespace ductile::meshadapt {
-
-template <int Dim>
-struct Base {
-  Vector<Dim>
-      normal;  ///< towards the side of the element; as long as the facet is large, twice in 3D
-  Vector<Dim> centre;
-  Metric<Dim> spread;  ///< of its edges, see spread_of()
-  std::array<const Site<Dim>*, Dim> corner{};
-  const Site<Dim>* judge = nullptr;  ///< the densest of them
-  double squares = 0;                ///< sum of its squared edge lengths there, once weighed
-};
 
 /// The tensor whose contraction() with a metric is the sum of the squared lengths of a facet's
 /// edges: the sum of their tensor products with themselves. 2D: the facet is one edge.
@@ -41,50 +32,6 @@ double contraction(const Metric<Dim>& metric, const Metric<Dim>& spread) {
   return sum;
 }
 
-/// Sum of the squared lengths of the base's edges.
-template <int Dim>
-double base_squares(const Base<Dim>& base, const Metric<Dim>& metric) {
-  return contraction(metric, base.spread);
-}
-
-/// The base whose element lies behind the facet, of which these are the corners in outward order.
-/// It is to be weighed before shapes are asked for; whether an apex is above it can be asked at
-/// once.
-template <int Dim>
-Base<Dim> make_base(const std::array<const Site<Dim>*, Dim>& corner) {
-  Base<Dim> base;
-  base.corner = corner;
-  base.judge = corner[0];
-  Vector<Dim> sum = corner[0]->position;
-  std::array<Vector<Dim>, Dim - 1> side;
-  for (std::size_t i = 1; i < Dim; ++i) {
-    side[i - 1] = corner[i]->position - corner[0]->position;
-    sum += corner[i]->position;
-    if (corner[i]->density > base.judge->density) base.judge = corner[i];
-  }
-  base.centre = (1.0 / Dim) * sum;
-  if constexpr (Dim == 2) {
-    base.normal = {{-side[0][1], side[0][0]}};
-    base.spread = spread_of(side[0]);
-  } else {
-    base.normal = cross(side[1], side[0]);
-    base.spread = spread_of(side[0], side[1]);
-  }
-  return base;
-}
-
-template <int Dim>
-void weigh(Base<Dim>& base) {
-  base.squares = base_squares(base, base.judge->metric);
-}
-
-/// Twice the area, or six times the volume, of the element with this apex; negative underneath. Its
-/// sign is not certain.
-template <int Dim>
-double volume_over(const Base<Dim>& base, const Vector<Dim>& apex) {
-  return dot(base.normal, apex - base.centre);
-}
-
 /// The sum of all squared edge lengths of an element whose apex is `up` from the centre of its
 /// base, in a metric in which those of the base sum up to `squares`: the squares of the distances
 /// from a facet's centre to its corners sum up to `squares` / Dim.
@@ -93,42 +40,35 @@ double squares_over(double squares, const Metric<Dim>& metric, const Vector<Dim>
   return (Dim + 1.0) / Dim * squares + Dim * squared_length(metric, up);
 }
 
-/// The same in the metric of a site.
-template <int Dim>
-double squares_at(const Base<Dim>& base, const Vector<Dim>& apex, const Site<Dim>& site) {
-  return squares_over(base_squares(base, site.metric), site.metric, apex - base.centre);
+struct Base {
+  Vector<3> normal;  ///< towards the side that is above it; as long as twice its area
+  Vector<3> centre;
+  Metric<3> spread;      ///< of its edges, see spread_of()
+  const Site<3>* judge;  ///< the densest of its corners
+};
+
+/// The triangle with these corners; they turn clockwise seen from above.
+[[gnu::always_inline]] inline Base make_base(const std::array<const Site<3>*, 3>& corner) {
+  const Vector<3>& first = corner[0]->position;
+  const Vector<3> u = corner[1]->position - first, v = corner[2]->position - first;
+  const Site<3>* judge = corner[1]->density > corner[0]->density ? corner[1] : corner[0];
+  judge = corner[2]->density > std::max(corner[0]->density, corner[1]->density) ? corner[2] : judge;
+  return {cross(v, u), (1.0 / 3) * (first + corner[1]->position + corner[2]->position),
+          spread_of(u, v), judge};
 }
 
-/// Of the element with this apex, the corner whose metric shape() takes the lengths in if it is
-/// doubtful.
-template <int Dim>
-const Site<Dim>& strictest(const Base<Dim>& base, const Site<Dim>& apex) {
-  const Site<Dim>* found = &apex;
-  double largest = squares_at(base, apex.position, apex);
-  for (const Site<Dim>* site : base.corner) {
-    const double squares = squares_at(base, apex.position, *site);
-    if (squares > largest) found = site;
-    largest = std::max(largest, squares);
-  }
-  return *found;
-}
-
-/// shape() of the element with this apex over the base, or under it, but for rounding: 0 or less
-/// only says that the volume is not positive. To be confirmed by certain_determinant() before it is
-/// acted on.
-template <int Dim>
-double shape_over(const Base<Dim>& base, const Site<Dim>& apex, bool under = false) {
-  const double above = volume_over(base, apex.position);
-  const double determinant = under ? -above : above;
-  if (!(determinant > 0)) return determinant;
-  const bool apex_judges = apex.density > base.judge->density;
-  const Site<Dim>& judge = apex_judges ? apex : *base.judge;
-  const double squares = squares_over(apex_judges ? base_squares(base, judge.metric) : base.squares,
-                                      judge.metric, apex.position - base.centre);
-  const double value = shape_from<Dim>(judge.density * determinant, squares);
-  if (value > doubtful_shape<Dim>) return value;
-  return shape_from<Dim>(judge.density * determinant,
-                         squares_at(base, apex.position, strictest(base, apex)));
+/// The square of shape() of the tetrahedron with this apex, but for rounding; -1 if its volume is
+/// not positive. `side` is 1 if the apex shall be above the base, -1 if it shall be underneath. To
+/// be confirmed by certain_determinant() before it is acted on.
+[[gnu::always_inline]] inline double squared_shape_over(const Base& base, const Site<3>& apex,
+                                                        double side) {
+  static_assert(doubtful_shape<3> == 0);
+  const Vector<3> up = apex.position - base.centre;
+  const Site<3>& judge = apex.density > base.judge->density ? apex : *base.judge;
+  const double volume = judge.density * (side * dot(base.normal, up));
+  const double squares = squares_over(contraction(judge.metric, base.spread), judge.metric, up);
+  const double square = 432 * (volume * volume) / (squares * squares * squares);
+  return volume > 0 && square >= 0 ? square : -1;  // no number if lengths are out of all range
 }
 
 }  // namespace ductile::meshadapt

@@ -90,13 +90,37 @@ void defer_remove(Commit& commit, VertexId owner, ElementId element) {
   commit.defer(owner, {ListChange::Kind::remove_element, element});
 }
 
-/// The vertices that share an element with `vertex`, each once, in order of first appearance.
+/// Do elements close a ring around this vertex, in which each neighbour comes first in the facet
+/// opposite to the vertex of one element?
+template <int Dim>
+bool is_in_a_ring(const Mesh<Dim>& mesh, VertexId vertex) {
+  return Dim == 2 && mesh.kind_of[vertex].freedom == Dim;
+}
+
+/// Visits the vertices that share an element with `vertex`, some of them several times, unless they
+/// are in a ring.
+template <int Dim>
+void visit_neighbours(const Mesh<Dim>& mesh, VertexId vertex, auto&& visit) {
+  if (is_in_a_ring(mesh, vertex)) {
+    for (const ElementId element : mesh.elements_of.of(vertex))
+      visit(facet_opposite<Dim>(mesh.corners_of[element], vertex)[0]);
+    return;
+  }
+  for (const ElementId element : mesh.elements_of.of(vertex))
+    for (const VertexId other : facet_opposite<Dim>(mesh.corners_of[element], vertex)) visit(other);
+}
+
+/// The vertices that share an element with `vertex`, each once, in an order that follows from the
+/// order of its elements.
 template <int Dim>
 VertexBuffer neighbours_of(const Mesh<Dim>& mesh, VertexId vertex) {
+  if (is_in_a_ring(mesh, vertex)) {
+    VertexBuffer ring;
+    visit_neighbours(mesh, vertex, [&](VertexId other) { ring.push_back(other); });
+    return ring;
+  }
   Numbering seen;
-  for (const ElementId element : mesh.elements_of.of(vertex))
-    for (const VertexId other : mesh.corners_of[element])
-      if (other != vertex) seen.number_of(other);
+  visit_neighbours(mesh, vertex, [&](VertexId other) { seen.number_of(other); });
   return std::move(seen.vertices());
 }
 

@@ -37,11 +37,7 @@ class Coarsen {
   std::optional<Plan> plan(VertexId gone) const;
 
   // ---- Conflict rule: adjacent vertices share elements, so only one of them may go ----
-  void conflicts(VertexId vertex, auto&& visit) const {
-    for (const ElementId element : mesh_.elements_of.of(vertex))
-      for (const VertexId other : mesh_.corners_of[element])
-        if (other != vertex) visit(other);
-  }
+  void conflicts(VertexId vertex, auto&& visit) const { visit_neighbours(mesh_, vertex, visit); }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
   void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 

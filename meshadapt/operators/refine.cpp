@@ -46,6 +46,8 @@ auto Refine<Dim>::plan(const Item& edge) const -> std::optional<Plan> {
   shell_of(mesh_, edge.a, edge.b, plan.shell);
   if (plan.shell.empty() || !may_split(plan.shell, edge.a, edge.b)) return {};
   locate(plan);
+  // Where metrics are as thin as rounding is fine, what is between them may be no metric.
+  if (!(plan.site.density > 0)) return {};
   if (!makes_no_short_edge(plan) || !keeps_shapes(plan, edge.length)) return {};
   return plan;
 }

@@ -15,7 +15,10 @@ inline std::array<VertexId, 2> others(const Corners<3>& corners, VertexId a, Ver
                                         {{3, 2}, {0, 0}, {0, 3}, {2, 0}},
                                         {{1, 3}, {3, 0}, {0, 0}, {0, 1}},
                                         {{2, 1}, {0, 2}, {1, 0}, {0, 0}}};
-  const auto& r = rest[corner_of(corners, a)][corner_of(corners, b)];
+  const auto place = [&](VertexId v) {  // no branches: any corner may be the one
+    return (corners[1] == v) + 2 * (corners[2] == v) + 3 * (corners[3] == v);
+  };
+  const auto& r = rest[place(a)][place(b)];
   return {corners[static_cast<std::size_t>(r[0])], corners[static_cast<std::size_t>(r[1])]};
 }
 
@@ -62,9 +65,9 @@ class Ring {
   std::size_t before(VertexId vertex) const { return find<1>(vertex); }
   template <std::size_t End>
   std::size_t find(VertexId vertex) const {
-    std::size_t i = 0;
-    while (i < sides_.size() && sides_[i][End] != vertex) ++i;
-    return i;
+    std::size_t found = sides_.size();
+    for (std::size_t i = sides_.size(); i-- > 0;) found = sides_[i][End] == vertex ? i : found;
+    return found;
   }
 
   boost::container::static_vector<std::array<VertexId, 2>, most_elements> sides_;

@@ -59,15 +59,12 @@ template <int Dim>
 auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
   const auto elements = mesh_.elements_of.of(vertex);
   if (elements.empty() || elements.size() > mesh_.largest_ball) return {};
-  Place best{mesh_.site_of[vertex], mesh_.host_of[vertex], {1, 0}};
-  for (const ElementId e : elements) {
-    best.score.worst = std::min<double>(best.score.worst, mesh_.shape_of[e]);
-    best.score.sum += mesh_.shape_of[e];
-  }
   constexpr double sound = 1e-6;  // the inverse of a shape tells something
   const double good_enough = shape_of_mean_ratio<Dim>(options_.optimise_below);
-  if (!options_.laplacian && best.score.worst >= good_enough) return {};
+  const auto is_good = [&](ElementId e) { return mesh_.shape_of[e] >= good_enough; };
+  if (!options_.laplacian && std::all_of(elements.begin(), elements.end(), is_good)) return {};
   const Ball<Dim> ball(mesh_, vertex);
+  Place best{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present(), {}};
   bool moved = options_.laplacian && relax(vertex, ball, best);
   if (best.score.worst < good_enough) {
     const double poor = shape_of_mean_ratio<Dim>(options_.mean_below);
@@ -78,7 +75,7 @@ auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
   if (!moved) return {};
   const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
   const bool far = squared_length(best.site.metric, step) > options_.far * options_.far;
-  return Plan{vertex, best.host, best.site, ball.shapes(best.site), far};
+  return Plan{vertex, best.host, best.site, best.shapes, far};
 }
 
 /// Is it certain that every element around the vertex has a positive volume if it moves there, and
@@ -107,9 +104,13 @@ auto Smooth<Dim>::place(VertexId vertex, const Ball<Dim>& ball, const Vector<Dim
   const auto beats_bar = [&](const Score& score) { return score.worst > 0 && score.sum > bar.sum; };
   if (!beats_bar(ball.score({position, near.site.metric, near.site.density}, bar.worst))) return {};
   const auto sample = background_.sample(position, near.host);
-  Place result{make_site(position, sample.metric), sample.host, {}};
-  result.score = ball.score(result.site, bar.worst);
-  if (!beats_bar(result.score) || !keeps_volumes(vertex, position)) return {};
+  std::optional<Place> result(Place{make_site(position, sample.metric), sample.host, {}, {}});
+  result->score = ball.score(result->site, bar.worst, result->shapes);
+  const auto is_certain = [&] {
+    return mesh_.kind_of[vertex].freedom == Dim && ball.is_certain(result->score.volume, position);
+  };
+  if (!beats_bar(result->score) || (!is_certain() && !keeps_volumes(vertex, position)))
+    result.reset();
   return result;
 }
 
@@ -130,9 +131,7 @@ Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) cons
 /// Goes towards where the elements want it as far as their shapes get better.
 template <int Dim>
 bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, Place& best) const {
-  const auto elements = mesh_.elements_of.of(vertex);
-  const auto shape_of = [&](std::size_t i) { return mesh_.shape_of[elements[i]]; };
-  const Vector<Dim> step = allowed(vertex, ball.mean_pull(best.site.metric, shape_of));
+  const Vector<Dim> step = allowed(vertex, ball.mean_pull(best.site));
   if (squared_length(best.site.metric, step) < 1e-4) return false;
   const Score bar{std::min(best.score.worst, shape_of_mean_ratio<Dim>(0.7)),
                   best.score.sum * (1 + 1e-4)};
@@ -221,7 +220,10 @@ void Smooth<Dim>::apply(const Plan& plan, runtime::Commit<Smooth>& commit) {
   mesh_.host_of[plan.vertex] = plan.host;
   const auto elements = mesh_.elements_of.of(plan.vertex);
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    mesh_.shape_of[elements[i]] = plan.shapes[i];
+    const ElementId e = elements[i];
+    mesh_.shape_of[e] = i < BallShapes<Dim>::most
+                            ? plan.shapes[i]
+                            : static_cast<float>(mesh_.shape_at(mesh_.corners_of[e]));
     if (plan.far) mesh_.changed_at[elements[i]] = mesh_.epoch;  // else it is too little to matter
   }
   if (!plan.far || !options_.again) return;

@@ -20,8 +20,8 @@ struct VertexMove {
   VertexId vertex;
   ElementId host;
   Site<Dim> site;
-  typename Ball<Dim>::Shapes shapes;  // of the elements around, as they will be
-  bool far;                           // far enough for the neighbours to be worth another look
+  BallShapes<Dim> shapes;  // of the elements around, as they will be
+  bool far;                // far enough for the neighbours to be worth another look
   friend bool operator==(const VertexMove&, const VertexMove&) = default;
 };
 
@@ -58,11 +58,7 @@ class Smooth {
   std::optional<Plan> plan(VertexId vertex) const;
 
   // ---- Conflict rule: a vertex stands still while its neighbours move ----
-  void conflicts(VertexId vertex, auto&& visit) const {
-    for (const ElementId element : mesh_.elements_of.of(vertex))
-      for (const VertexId other : mesh_.corners_of[element])
-        if (other != vertex) visit(other);
-  }
+  void conflicts(VertexId vertex, auto&& visit) const { visit_neighbours(mesh_, vertex, visit); }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
   void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
@@ -80,6 +76,7 @@ class Smooth {
     Site<Dim> site;
     ElementId host;
     Score score;
+    BallShapes<Dim> shapes;
   };
   bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
   std::optional<Place> place(VertexId vertex, const Ball<Dim>& ball, const Vector<Dim>& position,

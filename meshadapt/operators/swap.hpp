@@ -46,9 +46,15 @@ class Swap {
 
   // ---- Conflict rule: nobody else touches the elements to go; the worst go first ----
   void footprint(const Item& item, auto&& visit) const {
-    visit_shell(mesh_, item.a, item.b, [&](ElementId e) {
-      if (item.c == none || contains(mesh_.corners_of[e], item.c)) visit(e);
-    });
+    const auto of_a = mesh_.elements_of.of(item.a), of_b = mesh_.elements_of.of(item.b);
+    const bool fewer = of_b.size() < of_a.size();
+    const VertexId other = fewer ? item.a : item.b, third = item.c == none ? other : item.c;
+    for (const ElementId e : fewer ? of_b : of_a) {
+      int found = 0;  // no branches: any corner may be the one
+      for (const VertexId v : mesh_.corners_of[e])
+        found |= static_cast<int>(v == other) | 2 * static_cast<int>(v == third);
+      if (found == 3) visit(e);
+    }
   }
   std::size_t resource_count() const { return mesh_.element_slots(); }
   std::uint8_t priority(const Item& item) const {

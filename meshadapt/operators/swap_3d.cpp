@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <limits>
+#include <span>
 
 #include "ductile/runtime/collect.hpp"
 #include "operators/base.hpp"
@@ -38,12 +40,17 @@ bool removable(const Mesh<3>& mesh, const Shell& shell, VertexId a, VertexId b, 
 class RingTriangulation {
  public:
   RingTriangulation(const Mesh<3>& mesh, const Ring& ring, VertexId a, VertexId b, double bar)
-      : ring_(ring), a_(a), b_(b), site_a_(&mesh.site_of[a]), site_b_(&mesh.site_of[b]), bar_(bar) {
+      : ring_(ring),
+        a_(a),
+        b_(b),
+        site_a_(&mesh.site_of[a]),
+        site_b_(&mesh.site_of[b]),
+        bar_(bar > 0 ? bar * bar : 0) {
     for (std::size_t i = 0; i < ring.vertices.size(); ++i)
       site_[i] = &mesh.site_of[ring.vertices[i]];
   }
 
-  /// Fills `elements`; false if no triangulation beats the bar.
+  /// Fills the plan's new elements; false if no triangulation beats the bar.
   bool find(Replacement<3>& plan) {
     const std::size_t n = ring_.vertices.size();
     for (std::size_t length = 2; length < n; ++length)
@@ -59,7 +66,7 @@ class RingTriangulation {
     for (std::size_t k = i + 1; k < j; ++k) {
       const double sides = std::min(j - k > 1 ? worst_[k][j] : 1.0, k - i > 1 ? worst_[i][k] : 1.0);
       if (!(sides > std::max(best, bar_))) continue;
-      const double here = std::min(sides, triangle(i, k, j, std::max(best, bar_)));
+      const double here = std::min(sides, triangle(i, k, j));
       if (here > best) {
         best = here;
         apex_[i][j] = static_cast<std::uint8_t>(k);
@@ -68,14 +75,10 @@ class RingTriangulation {
     worst_[i][j] = best;
   }
 
-  /// The worse of a ring triangle's two elements; the second is not looked at if the first is bad.
-  double triangle(std::size_t i, std::size_t k, std::size_t j, double bar) const {
-    Base<3> base = make_base<3>({site_[i], site_[j], site_[k]});
-    if (!(volume_over(base, site_b_->position) > 0 && volume_over(base, site_a_->position) < 0))
-      return -1;
-    weigh(base);
-    const double up = shape_over(base, *site_b_);
-    return up > bar ? std::min(up, shape_over(base, *site_a_, true)) : -1;
+  /// Of the worse of a ring triangle's two elements.
+  double triangle(std::size_t i, std::size_t k, std::size_t j) const {
+    const Base base = make_base({site_[i], site_[j], site_[k]});
+    return std::min(squared_shape_over(base, *site_b_, 1), squared_shape_over(base, *site_a_, -1));
   }
 
   void collect(std::size_t i, std::size_t j, Replacement<3>& plan) const {
@@ -93,8 +96,8 @@ class RingTriangulation {
   std::array<const Site<3>*, largest_ring> site_{};
   const Site<3>* site_a_;
   const Site<3>* site_b_;
-  double bar_;
-  std::array<std::array<double, largest_ring>, largest_ring> worst_{};
+  double bar_;                                                          // as worst_, squared
+  std::array<std::array<double, largest_ring>, largest_ring> worst_{};  // shape, squared
   std::array<std::array<std::uint8_t, largest_ring>, largest_ring> apex_{};
 };
 
@@ -115,24 +118,23 @@ std::optional<Replacement<3>> triangulate(const Mesh<3>& mesh, const Swappable& 
   return result;
 }
 
-std::optional<Replacement<3>> plan_edge_removal(const Mesh<3>& mesh, const Swappable& edge,
-                                                const Shell& shell, const Ring& ring, double bar) {
+/// May the edge give way to the elements found? If so, adds what goes with them.
+bool accept_edge_removal(const Mesh<3>& mesh, const Swappable& edge, const Shell& shell,
+                         const Ring& ring, Replacement<3>& result) {
   PatchId patch = 0;
-  if (!removable(mesh, shell, edge.a, edge.b, patch)) return {};
+  if (!removable(mesh, shell, edge.a, edge.b, patch)) return false;
   // A patch on a closed ring is an interface or a sheet inside a region: its edges stay.
-  if (ring.open != (patch != 0)) return {};
-  auto result = triangulate(mesh, edge, ring, bar);
-  if (!result) return {};
-  for (const Corners<3>& corners : result->new_elements)
-    if (!(mesh.shape_at(corners) > 0)) return {};
-  result->old_elements.assign(shell.begin(), shell.end());
+  if (ring.open != (patch != 0)) return false;
+  for (const Corners<3>& corners : result.new_elements)
+    if (!(mesh.shape_at(corners) > 0)) return false;
+  result.old_elements.assign(shell.begin(), shell.end());
   if (ring.open) {
     const VertexId first = ring.vertices.front(), last = ring.vertices.back();
-    if (!convex_in_patch(mesh, {edge.a, first, edge.b, last}, patch)) return {};
-    result->new_facets = {{edge.a, first, last}, {edge.b, first, last}};
-    result->new_patch = patch;
+    if (!convex_in_patch(mesh, {edge.a, first, edge.b, last}, patch)) return false;
+    result.new_facets = {{edge.a, first, last}, {edge.b, first, last}};
+    result.new_patch = patch;
   }
-  return result;
+  return true;
 }
 
 /// The face a-b-c gives way to the edge from p to q, where (a, b, p, c) and (a, b, c, q) are the
@@ -186,7 +188,9 @@ std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
                   [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }) ||
       ring.vertices.size() > largest_ring)
     return {};
-  return plan_edge_removal(mesh_, item, shell, ring, bar(worst));
+  auto result = triangulate(mesh_, item, ring, bar(worst));
+  if (!result || !accept_edge_removal(mesh_, item, shell, ring, *result)) return {};
+  return result;
 }
 
 template <>
@@ -218,72 +222,83 @@ struct Gauge {
 class EdgeSearch {
  public:
   EdgeSearch(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after, float good_enough)
-      : mesh_(mesh), vertex_(vertex), good_enough_(good_enough), star_(mesh, vertex, after) {
-    gauge_of_.resize(star_.entries.size());
+      : mesh_(mesh),
+        vertex_(vertex),
+        good_enough_(good_enough),
+        ball_(mesh.elements_of.of(vertex)),
+        star_(mesh, vertex, after) {
+    gauge_of_.resize(ball_.size());
   }
 
   void run(auto&& append) {
-    for (const Star::Edge& edge : star_.edges)
-      if (edge.count <= Star::most_around && worth_a_look(edge)) try_edge(edge, append);
+    for (std::size_t i = 0; i < star_.size(); ++i)
+      if (worth_a_look(star_.edge(i)) && worth_removing(i))
+        append(Swappable{vertex_, star_.edge(i).to, none, star_.edge(i).worst_shape});
   }
 
  private:
-  /// The more elements are around an edge, the longer are those worth removing.
-  static double long_edge(std::size_t elements) {
-    return elements < 5 ? 0.9 : elements == 5 ? 1.1 : 1.3;
+  static constexpr double longest = 3;  ///< of an element's edges, by Gauge::relative_square()
+
+  /// The square of the length, as Gauge has it, above which an edge may be worth removing. The more
+  /// elements are around it, and the better the worst of them is, the longer it is; elements at the
+  /// boundary count twice, as if mirrored there. Fitted to what was found (docs/performance.md).
+  static double long_edge(const Star::Edge& edge) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    constexpr std::array slope = {never, never, never, 1.0, 2.2, 3.2, 4.6, 9.0, 9.0};
+    static_assert(slope.size() == Star::most_around + 1);
+    const std::size_t around = edge.count * (edge.ends == 0 ? 1U : 2U);
+    if (around >= slope.size()) return never;
+    const double shape = std::max(0.0F, edge.worst_shape);
+    return 0.4 + slope[around] * (shape * shape);
   }
 
   bool worth_a_look(const Star::Edge& edge) {
-    bool changed = false;
-    std::size_t worst = edge.around[0];
-    for (std::uint32_t i = 0; i < edge.count; ++i) {
-      const std::size_t entry = edge.around[i];
-      changed = changed || star_.entries[entry].changed;
-      if (star_.entries[entry].shape < star_.entries[worst].shape) worst = entry;
-    }
-    if (!changed || !(star_.entries[worst].shape < good_enough_)) return false;
-    Gauge& gauge = gauge_of_[worst];
-    if (gauge.metric == nullptr) gauge = Gauge(mesh_, star_.entries[worst].corners);
+    if (!edge.changed || !(edge.worst_shape < good_enough_)) return false;
+    const double limit = long_edge(edge);
+    if (limit > longest) return false;
+    Gauge& gauge = gauge_of_[edge.worst];
+    if (gauge.metric == nullptr) gauge = Gauge(mesh_, mesh_.corners_of[ball_[edge.worst]]);
     const Vector<3> along = mesh_.site_of[edge.to].position - mesh_.site_of[vertex_].position;
-    return gauge.relative_square(along) > long_edge(edge.count);
+    return gauge.relative_square(along) > limit;
   }
 
-  void try_edge(const Star::Edge& edge, auto&& append) const {
+  bool worth_removing(std::size_t i) const {
+    const Star::Edge& edge = star_.edge(i);
+    const auto element = [&](std::size_t k) { return ball_[star_.around(i)[k]]; };
+    const auto corners = [&](std::size_t k) { return mesh_.corners_of[element(k)]; };
     Ring ring;
-    if (!ring.close(edge.count, vertex_, edge.to,
-                    [&](std::size_t i) { return star_.entries[edge.around[i]].corners; }) ||
-        ring.vertices.size() > largest_ring)
-      return;
+    if (!ring.close(edge.count, vertex_, edge.to, corners) || ring.vertices.size() > largest_ring)
+      return false;
+    const double bar = Swap<3>::bar(edge.worst_shape);
+    auto result = triangulate(mesh_, {vertex_, edge.to}, ring, bar);
+    if (!result) return false;
     Shell shell;
-    Swappable item{vertex_, edge.to, none, 1};
-    for (std::uint32_t i = 0; i < edge.count; ++i) {
-      const Star::Entry& entry = star_.entries[edge.around[i]];
-      shell.push_back(entry.element);
-      item.worst = std::min(item.worst, entry.shape);
-    }
-    if (plan_edge_removal(mesh_, item, shell, ring, Swap<3>::bar(item.worst))) append(item);
+    for (std::size_t k = 0; k < edge.count; ++k) shell.push_back(element(k));
+    return accept_edge_removal(mesh_, {vertex_, edge.to}, shell, ring, *result);
   }
 
   const Mesh<3>& mesh_;
   VertexId vertex_;
   float good_enough_;
+  std::span<const ElementId> ball_;
   Star star_;
-  Buffer<Gauge, 64> gauge_of_;  // [entry], made when first needed
+  Buffer<Gauge, 64> gauge_of_;  // [place in ball_], made when first needed
 };
 
 /// The facet whose opposite corner is the lowest over it: the largest, by Heron's formula in
 /// squared lengths.
 int lowest_corner(const Mesh<3>& mesh, const Corners<3>& corners, const Metric<3>& metric) {
   const auto corner = mesh.sites(corners);
-  std::array<double, 4> area;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vector<3>& p = corner[(i + 1) % 4]->position;
-    const Vector<3> u = corner[(i + 2) % 4]->position - p, v = corner[(i + 3) % 4]->position - p;
-    const double a = squared_length(metric, u), b = squared_length(metric, v),
-                 c = squared_length(metric, v - u);
-    area[i] = 2 * (a * b + b * c + c * a) - (a * a + b * b + c * c);
-  }
-  return static_cast<int>(std::max_element(area.begin(), area.end()) - area.begin());
+  const auto square = [&](std::size_t i, std::size_t j) {
+    return squared_length(metric, corner[j]->position - corner[i]->position);
+  };
+  const auto area = [](double a, double b, double c) {
+    return 2 * (a * b + b * c + c * a) - (a * a + b * b + c * c);
+  };
+  const double a = square(0, 1), b = square(0, 2), c = square(0, 3), d = square(1, 2),
+               e = square(1, 3), f = square(2, 3);
+  const std::array areas = {area(d, e, f), area(b, c, f), area(a, c, e), area(a, b, d)};
+  return static_cast<int>(std::max_element(areas.begin(), areas.end()) - areas.begin());
 }
 
 /// Is the largest facet of a poor element worth piercing? Found from the worse of its two elements.

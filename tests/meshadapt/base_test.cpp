@@ -37,34 +37,29 @@ struct RandomElement {
 };
 
 template <class Dimension>
-class BaseOf : public testing::Test {};
+class ShapeOf : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(BaseOf, Dimensions);
+TYPED_TEST_SUITE(ShapeOf, Dimensions);
 
-TYPED_TEST(BaseOf, GivesTheShapeOfTheElementOnEitherSide) {
-  constexpr int Dim = TypeParam::value;
+TEST(Base, GivesTheShapeOfTheElementOnEitherSide) {
   Random random(21);
   for (int trial = 0; trial < 5000; ++trial) {
-    RandomElement<Dim> made(random);
+    RandomElement<3> made(random);
     auto& element = made.corners;
-    const int apex = trial % (Dim + 1);
-    std::array<const Site<Dim>*, Dim> facet;
-    for (std::size_t k = 0; k < Dim; ++k)
-      facet[k] =
-          element[static_cast<std::size_t>(Simplex<Dim>::facet[static_cast<std::size_t>(apex)][k])];
-    Base<Dim> base = make_base<Dim>(facet);
-    weigh(base);
-    const Site<Dim>& top = made.sites[static_cast<std::size_t>(apex)];
-    const bool positive = shape<Dim>(element) > 0;
-    EXPECT_EQ(volume_over(base, top.position) > 0, positive);
-    EXPECT_EQ(shape_over(base, top) > 0, positive);
-    EXPECT_EQ(shape_over(base, top, true) > 0, !positive);
-    if (!positive) std::swap(element[0], element[1]);
-    EXPECT_NEAR(shape_over(base, top, !positive), shape<Dim>(element), 1e-12);
+    const auto apex = static_cast<std::size_t>(trial % 4);
+    std::array<const Site<3>*, 3> facet;
+    for (std::size_t k = 0; k < 3; ++k)
+      facet[k] = element[static_cast<std::size_t>(Simplex<3>::facet[apex][k])];
+    const Base base = make_base(facet);
+    const double side = shape<3>(element) > 0 ? 1 : -1;
+    EXPECT_EQ(squared_shape_over(base, made.sites[apex], -side), -1);
+    if (side < 0) std::swap(element[0], element[1]);
+    EXPECT_NEAR(std::sqrt(squared_shape_over(base, made.sites[apex], side)), shape<3>(element),
+                1e-12);
   }
 }
 
-TYPED_TEST(BaseOf, AgreesThatAShapeIsAboveABar) {
+TYPED_TEST(ShapeOf, AgreesThatAShapeIsAboveABar) {
   constexpr int Dim = TypeParam::value;
   Random random(22);
   for (int trial = 0; trial < 5000; ++trial) {

@@ -37,6 +37,23 @@ TYPED_TEST(MetricIn, TheExponentialUndoesTheLogarithm) {
     }
 }
 
+/// By the definition: of the eigenvalues. Turned by little or much, nearly or quite isotropic.
+TYPED_TEST(MetricIn, TheExponentialIsThatOfTheEigenvalues) {
+  constexpr int Dim = TypeParam::value;
+  Random random(5);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double lowest = test::chance(random, 0.2) ? -170 : -18;  // whose squares are subnormal
+    const double spread = std::pow(10.0, uniform(random, lowest, 1));
+    Metric<Dim> log_metric = uniform(random, -20, 20) * isotropic<Dim>(1);
+    for (double& entry : log_metric.m)
+      entry += test::chance(random, 0.2) ? 0 : spread * uniform(random, -1, 1);
+    auto axes = principal_axes(log_metric);
+    for (double& value : axes.value) value = std::exp(value);
+    EXPECT_LT(difference(compose(axes), exponential(log_metric)), 1e-13) << spread;
+  }
+  EXPECT_EQ(exponential(Metric<Dim>{}), isotropic<Dim>(1));
+}
+
 /// At 1e8 the entries of a turned metric cannot hold its smallest eigenvalue any more; along the
 /// axes they can.
 TYPED_TEST(MetricIn, TheLogarithmIsFiniteUpToTheLargestAnisotropy) {

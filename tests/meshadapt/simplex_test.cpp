@@ -89,5 +89,19 @@ TEST(Simplex, FacetsAreOppositeTheirCornersAndFaceOutwards) {
   expect_facets_face_outwards<3>();
 }
 
+template <int Dim>
+void expect_opposite_facets() {
+  Corners<Dim> corners;
+  for (std::size_t i = 0; i <= Dim; ++i) corners[i] = static_cast<VertexId>(10 + 3 * i);
+  for (std::size_t i = 0; i <= Dim; ++i)
+    EXPECT_EQ(facet_opposite<Dim>(corners, corners[i]),
+              facet_of<Dim>(corners, static_cast<int>(i)));
+}
+
+TEST(Simplex, FindsTheFacetOppositeACorner) {
+  expect_opposite_facets<2>();
+  expect_opposite_facets<3>();
+}
+
 }  // namespace
 }  // namespace ductile::meshadapt

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <numbers>
+#include <set>
+
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
@@ -62,6 +67,88 @@ TYPED_TEST(SmoothIn, KeepsVerticesOnTheirPatches) {
     }
   }
   EXPECT_GT(moves, 100U);
+}
+
+template <int Dim>
+struct SmoothScene {
+  Mesh<Dim> mesh;
+  std::unique_ptr<Background<Dim>> background;
+
+  /// Unit metric everywhere.
+  SmoothScene(const Executor& executor, const AnyMesh& any) {
+    Neighbours<Dim> neighbours;
+    std::vector<std::string> warnings;
+    mesh = make_mesh<Dim>(executor, any, {.complete_boundary = true}, neighbours, warnings);
+    for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
+      mesh.site_of[v] = make_site(mesh.site_of[v].position, isotropic<Dim>(1));
+      mesh.host_of[v] = mesh.elements_of.of(v).front();
+    }
+    update_shapes(executor, mesh);
+    background = std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours));
+  }
+};
+
+TYPED_TEST(SmoothIn, ConflictsWithAllNeighbours) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 1});
+  Random random(7);
+  test::Grid grid = test::unit_grid(Dim, 6);
+  grid.region = test::with_hole(6);
+  AnyMesh any = test::make_grid(grid);
+  test::jiggle(any, random, 0.2);
+  SmoothScene<Dim> scene(executor, any);
+  const Smooth<Dim> op(scene.mesh, *scene.background, {});
+  for (VertexId v = 0; v < scene.mesh.vertex_slots(); ++v) {
+    std::set<VertexId> found, expected;
+    op.conflicts(v, [&](VertexId other) { found.insert(other); });
+    for (const ElementId e : scene.mesh.elements_of.of(v))
+      expected.insert(scene.mesh.corners_of[e].begin(), scene.mesh.corners_of[e].end());
+    expected.erase(v);
+    EXPECT_EQ(found, expected);
+    const auto neighbours = neighbours_of(scene.mesh, v);
+    EXPECT_EQ(std::set<VertexId>(neighbours.begin(), neighbours.end()), expected);
+    EXPECT_EQ(neighbours.size(), expected.size());
+  }
+}
+
+/// A disc of 30 triangles around a vertex off its middle; 3D: two cones of tetrahedra on it.
+template <int Dim>
+AnyMesh wheel() {
+  constexpr std::uint32_t rim = 30, top = rim + 1, bottom = rim + 2;
+  AnyMesh any;
+  any.dimension = Dim;
+  const auto add = [&](const std::array<double, 3>& p) {
+    any.coordinates.insert(any.coordinates.end(), p.begin(), p.begin() + Dim);
+    any.vertex_reference.push_back(0);
+  };
+  add({0.4, 0.3, 0.1});
+  for (std::uint32_t i = 0; i < rim; ++i) {
+    const double angle = 2 * std::numbers::pi * i / rim;
+    add({std::cos(angle), std::sin(angle), 0});
+  }
+  if (Dim == 3) add({0, 0, 1}), add({0, 0, -1});
+  for (std::uint32_t i = 0; i < rim; ++i) {
+    const std::uint32_t a = 1 + i, b = 1 + (i + 1) % rim;
+    if (Dim == 2) any.triangles.vertices.push_back({0, a, b});
+    if (Dim == 3) any.tetrahedra.vertices.push_back({0, a, b, top});
+    if (Dim == 3) any.tetrahedra.vertices.push_back({0, b, a, bottom});
+  }
+  any.triangles.reference.resize(any.triangles.vertices.size());
+  any.tetrahedra.reference.resize(any.tetrahedra.vertices.size());
+  return any;
+}
+
+/// More elements than a plan has room for the shapes of.
+TYPED_TEST(SmoothIn, KeepsTheShapesOfALargeBallUpToDate) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 1});
+  SmoothScene<Dim> scene(executor, wheel<Dim>());
+  ASSERT_GT(scene.mesh.elements_of.of(0).size(), std::size_t{BallShapes<Dim>::most});
+  const Vector<Dim> before = scene.mesh.site_of[0].position;
+  Smooth<Dim> op(scene.mesh, *scene.background, {});
+  EXPECT_GE(runtime::run_rounds(executor, op, std::vector<VertexId>{0}).applied, 1U);
+  EXPECT_LT(norm(scene.mesh.site_of[0].position), 0.5 * norm(before));
+  EXPECT_TRUE(check_mesh(executor, scene.mesh).empty());
 }
 
 }  // namespace

@@ -76,6 +76,20 @@ TEST(Swap, RemovesALongEdgeInsideThreeTetrahedra) {
   EXPECT_EQ(found[0].c, none);
 }
 
+TEST(Swap, RemovesALongEdgeOfAFlatBoundary) {
+  auto mesh = mesh_of<3>({{{-1, 0, 0}}, {{1, 0, 0}}, {{0, -0.6, 0}}, {{0, 0.6, 0}}, {{0, 0, 0.8}}},
+                         {{0, 1, 3, 4}, {0, 2, 1, 4}});
+  const auto found = improvements(mesh);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(std::pair(found[0].a, found[0].b), std::pair(VertexId{0}, VertexId{1}));
+  EXPECT_EQ(found[0].c, none);
+}
+
+TEST(Swap, LeavesTheEdgesOfASingleTetrahedronAlone) {
+  auto mesh = mesh_of<3>({{{0, 0, 0}}, {{2, 0, 0}}, {{0, 0.5, 0}}, {{0, 0, 0.5}}}, {{0, 1, 2, 3}});
+  EXPECT_TRUE(improvements(mesh).empty());
+}
+
 TEST(Swap, PiercesTheLargeFaceOfFlatTetrahedra) {
   for (const double below : {-0.3, -0.2, -0.9}) {
     auto mesh = mesh_of<3>(

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
+#include <numbers>
 
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
@@ -88,12 +90,13 @@ template <int Dim>
 }
 
 /// Shape from the metric volume, times 2 in 2D or 6 in 3D, and the sum of squared edge lengths.
-template <int Dim>
-double shape_from(double volume, double squares) {
+template <int Dim, std::floating_point Number>
+Number shape_from(Number volume, Number squares) {
+  constexpr auto root3 = std::numbers::sqrt3_v<Number>;
   if constexpr (Dim == 2)
-    return 2 * std::sqrt(3.0) * volume / squares;
+    return 2 * root3 * volume / squares;
   else
-    return 12 * std::sqrt(3.0) * volume / (squares * std::sqrt(squares));
+    return 12 * root3 * volume / (squares * std::sqrt(squares));
 }
 
 /// Elements of a shape below this are judged with caution. Good ones look alike from every corner.
