@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -67,8 +68,8 @@ struct Tuning<3> {
 /// A mesh of which a smaller share would change is left alone, or only finished.
 constexpr double nothing = 2e-4, little = 5e-3;
 
-/// Refinement and swapping take the longest edges and the worst elements first only within windows,
-/// which stay in cache while they are reserved, planned and applied.
+/// Swapping takes the worst elements first only within windows, which stay in cache while they are
+/// reserved, planned and applied.
 constexpr RoundsOptions by_windows{.reserving_window = 32768};
 
 /// Rearranging also collapses edges that are hardly long enough: some would end up too short.
@@ -172,7 +173,7 @@ template <int Dim>
 std::size_t Adapter<Dim>::feasible_changes() {
   aim_ = Aim::finish;
   const Coarsen<Dim> coarsening(mesh_, rules());
-  const Refine<Dim> refinement(mesh_, background_, rules());
+  const Refine<Dim> refinement(executor_, mesh_, background_, rules());
   aim_ = Aim::approach;
   const auto crowded = Coarsen<Dim>::crowded_vertices(executor_, mesh_, rules().short_edge, 0);
   const auto edges = Refine<Dim>::long_edges(executor_, mesh_, rules().long_edge, 0);
@@ -184,7 +185,7 @@ std::size_t Adapter<Dim>::feasible_changes() {
       changes[i] = coarsening.plan(crowded[k]).has_value();
     } else {
       const LongEdge& edge = edges[k - crowded.size()];
-      changes[i] = refinement.plan(edge) ? splits_of(edge) : 0;
+      changes[i] = refinement.splits(edge) ? splits_of(edge) : 0;
     }
   };
   parallel_for(executor_, changes.size(), look, {.grain = 2});
@@ -319,12 +320,13 @@ std::size_t Adapter<Dim>::coarsen() {
 
 template <int Dim>
 std::size_t Adapter<Dim>::refine() {
-  const KernelTimer timer(executor_, "refine", report_.refine.seconds);
   const double limit = options_.rules.long_edge * Tuning<Dim>::stages[stage_];
+  if (std::isinf(limit)) return 0;
+  const KernelTimer timer(executor_, "refine", report_.refine.seconds);
   auto work = Refine<Dim>::long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
-  Refine<Dim> op(mesh_, background_, rules());
-  const RoundsReport rounds = run_rounds(executor_, op, std::move(work), by_windows);
+  Refine<Dim> refinement(executor_, mesh_, background_, rules());
+  const RoundsReport rounds = refinement.run(std::move(work));
   add(report_.refine, rounds);
   tell("refine", rounds.applied);
   return rounds.applied;

@@ -16,11 +16,26 @@
 
 namespace ductile::meshadapt {
 
-/// Does this triangle stand for its edge from p to q? Of the two that share it, the one where it
-/// goes from the lower number to the higher; on the boundary there is but one.
-inline bool stands_for(const Mesh<2>& mesh, ElementId element, int facet, VertexId p, VertexId q) {
-  return p < q || (mesh.patches_of[element][static_cast<std::size_t>(facet)] != 0 &&
-                   neighbour(mesh, element, facet) == none);
+/// Does this element stand for its k-th edge, from p to q? Of two triangles, the one where it goes
+/// from the lower number to the higher; on the boundary there is but one.
+inline bool stands_for(const Mesh<2>& mesh, ElementId element, std::size_t k, VertexId p,
+                       VertexId q) {
+  const std::size_t facet = (k + 2) % 3;
+  return p < q || (mesh.patches_of[element][facet] != 0 &&
+                   neighbour(mesh, element, static_cast<int>(facet)) == none);
+}
+
+/// In 3D, the first of those around the edge.
+inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t, VertexId p,
+                       VertexId q) {
+  const auto of_p = mesh.elements_of.of(p), of_q = mesh.elements_of.of(q);
+  std::size_t i = 0, j = 0;
+  while (of_p[i] != of_q[j]) {
+    const bool p_is_behind = of_p[i] < of_q[j];
+    i += p_is_behind;
+    j += !p_is_behind;
+  }
+  return of_p[i] == element;
 }
 
 /// Bits for those edges of an element that may be shorter than a limit, and for those that may not;
@@ -82,44 +97,25 @@ struct WantedEdges {
 /// Calls find(a, b, append) for every wanted edge a < b, once; append(item) adds to the result,
 /// whose order does not depend on threads.
 /// Thread safety: one caller; runs on the executor.
-template <class Item>
-std::vector<Item> collect_edges(const runtime::Executor& executor, const Mesh<2>& mesh,
+template <class Item, int Dim>
+std::vector<Item> collect_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                 const WantedEdges& wanted, auto&& find) {
   const std::vector<std::uint8_t>& marked = wanted.marked;
   const double limit = wanted.no_shorter_than;
   return runtime::parallel_collect<Item>(
       executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
         const auto element = static_cast<ElementId>(e);
-        const Corners<2>& corners = mesh.corners_of[e];
-        if (!mesh.alive(element) || !any_marked<2>(marked, corners)) return;
-        unsigned left = compare_edges<2>(mesh.sites(corners), limit).longer;
+        const Corners<Dim>& corners = mesh.corners_of[e];
+        if (!mesh.alive(element) || !any_marked<Dim>(marked, corners)) return;
+        unsigned left = compare_edges<Dim>(mesh.sites(corners), limit).longer;
         for (; left != 0; left &= left - 1) {
-          const int facet = (std::countr_zero(left) + 2) % 3;
-          const auto [p, q] = facet_of<2>(corners, facet);
-          if ((marked[p] || marked[q]) && stands_for(mesh, element, facet, p, q) &&
+          const auto k = static_cast<std::size_t>(std::countr_zero(left));
+          const VertexId p = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][0])];
+          const VertexId q = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][1])];
+          if ((marked[p] || marked[q]) && stands_for(mesh, element, k, p, q) &&
               !shorter_than(mesh.site_of[p], mesh.site_of[q], limit))
             find(std::min(p, q), std::max(p, q), append);
         }
-      });
-}
-
-/// In 3D an edge is in five elements or so: it is found from its vertices.
-template <class Item>
-std::vector<Item> collect_edges(const runtime::Executor& executor, const Mesh<3>& mesh,
-                                const WantedEdges& wanted, auto&& find) {
-  const std::vector<std::uint8_t>& marked = wanted.marked;
-  const double limit = wanted.no_shorter_than;
-  return runtime::parallel_collect<Item>(
-      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
-        const auto a = static_cast<VertexId>(v);
-        if (!marked[a]) return;
-        Numbering seen;
-        for (const ElementId element : mesh.elements_of.of(a))
-          for (const VertexId b : mesh.corners_of[element])
-            if (a < b || !marked[b]) seen.number_of(b);
-        for (const VertexId b : seen.vertices())
-          if (!shorter_than(mesh.site_of[a], mesh.site_of[b], limit))
-            find(std::min(a, b), std::max(a, b), append);
       });
 }
 

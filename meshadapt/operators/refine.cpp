@@ -2,13 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/phase_timer.hpp"
+#include "operators/cavity.hpp"
 #include "operators/edges.hpp"
 
 namespace ductile::meshadapt {
 
+using runtime::parallel_for;
+using runtime::Phase;
+using runtime::PhaseTimer;
+
 namespace {
+
+/// Where more than this share of the elements is split, lists are made anew.
+constexpr double many = 0.08;
 
 /// Where along a-b its two halves have the same metric length, the size varying geometrically.
 template <int Dim>
@@ -17,6 +31,18 @@ double metric_middle(const Site<Dim>& a, const Site<Dim>& b) {
   const double ratio = std::sqrt(squared_length(b.metric, d) / squared_length(a.metric, d));
   if (std::abs(ratio - 1) < 1e-3) return 0.5;
   return std::clamp(std::log(0.5 * (1 + ratio)) / std::log(ratio), 0.2, 0.8);
+}
+
+/// Which edge of an element a-b is.
+template <int Dim>
+std::size_t edge_of(const Corners<Dim>& corners, VertexId a, VertexId b) {
+  std::size_t k = 0;
+  for (; k + 1 < Simplex<Dim>::edges; ++k) {
+    const VertexId p = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][0])];
+    const VertexId q = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][1])];
+    if ((p == a && q == b) || (p == b && q == a)) break;
+  }
+  return k;
 }
 
 }  // namespace
@@ -33,153 +59,389 @@ std::vector<LongEdge> Refine<Dim>::long_edges(const runtime::Executor& executor,
 }
 
 template <int Dim>
-std::uint8_t Refine<Dim>::priority(const Item& edge) const {
-  const double doublings = std::log2(std::max(1.0F, edge.length));
-  return static_cast<std::uint8_t>(255 - std::min(255, static_cast<int>(24 * doublings)));
+bool Refine<Dim>::splits(const LongEdge& edge) const {
+  Split split;
+  Shell shell;
+  shell_of(mesh_, edge.a, edge.b, shell);
+  if (!locate(edge, shell, split)) return false;
+  return std::all_of(shell.begin(), shell.end(), [&](ElementId element) {
+    Cuts cuts{};
+    const std::size_t k = edge_of<Dim>(mesh_.corners_of[element], edge.a, edge.b);
+    Points points = points_of(element, cuts);
+    points[middle_of<Dim>(k)] = &split.site;
+    Pieces<Dim> pieces;
+    Shapes shapes{mesh_.shape_of[element]};
+    return cut(pieces, shapes, k, edge, split, points);
+  });
 }
 
 template <int Dim>
-auto Refine<Dim>::plan(const Item& edge) const -> std::optional<Plan> {
-  Plan plan;
-  plan.a = edge.a;
-  plan.b = edge.b;
-  shell_of(mesh_, edge.a, edge.b, plan.shell);
-  if (plan.shell.empty() || !may_split(plan.shell, edge.a, edge.b)) return {};
-  locate(plan);
+runtime::RoundsReport Refine<Dim>::run(std::vector<LongEdge> edges) {
+  edges_ = std::move(edges);
+  report_.planned = edges_.size();
+  if (edges_.empty()) return report_;
+  {
+    const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
+    plan();
+  }
+  {
+    const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
+    refuse();
+  }
+  {
+    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    number();
+  }
+  grow();
+  return report_;
+}
+
+// ---- Where the new vertices go ----
+
+/// Sets what becomes of the edges, and which of them cut which elements.
+template <int Dim>
+void Refine<Dim>::plan() {
+  splits_.resize_for_overwrite(edges_.size());
+  refused_in_.resize(edges_.size());
+  asked_.resize(edges_.size());
+  std::vector<std::uint8_t> is_cut(mesh_.element_slots());
+  const auto around = runtime::parallel_collect<Around>(
+      executor_, edges_.size(), [&](std::size_t i, auto&& append) {
+        const auto number = static_cast<std::uint32_t>(i);
+        Shell shell;
+        shell_of(mesh_, edges_[i].a, edges_[i].b, shell);
+        refused_in_[i] = !locate(edges_[i], shell, splits_[i]);
+        if (!is_split(number)) return;
+        for (const ElementId element : shell) {
+          runtime::atomic_mark(is_cut[element]);
+          append({element, number});
+        }
+      });
+  elements_ = MarkedSet(executor_, is_cut);
+  cuts_.resize(elements_.size());
+  parallel_for(executor_, around.size(), [&](std::size_t i) {
+    const auto& [element, number] = around[i];
+    const LongEdge& edge = edges_[number];
+    cuts_[elements_.place_of(element)]
+        .split[edge_of<Dim>(mesh_.corners_of[element], edge.a, edge.b)] = number + 1;
+  });
+}
+
+/// False, and little is set, where the edge is refused for what it is or where it lies.
+template <int Dim>
+bool Refine<Dim>::locate(const LongEdge& edge, const Shell& shell, Split& split) const {
+  if (!may_split(edge, shell)) return false;
+  const Site<Dim>& a = mesh_.site_of[edge.a];
+  const Site<Dim>& b = mesh_.site_of[edge.b];
+  // Off the middle by up to 5 %, lest a regular mesh be refined into a regular mesh of worse
+  // shapes, in which no single change is an improvement.
+  const double chance = runtime::mix32(edge.a * 31 + edge.b) * (2.0 / 4294967296.0) - 1;
+  const double t = metric_middle(a, b) + 0.05 * chance;
+  const Vector<Dim> position = (1 - t) * a.position + t * b.position;
+  const auto sample = background_.sample(position, mesh_.host_of[t < 0.5 ? edge.a : edge.b]);
+  split.site = make_site(position, sample.metric);
+  split.host = sample.host;
   // Where metrics are as thin as rounding is fine, what is between them may be no metric.
-  if (!(plan.site.density > 0)) return {};
-  if (!makes_no_short_edge(plan) || !keeps_shapes(plan, edge.length)) return {};
-  return plan;
+  if (!(split.site.density > 0)) return false;
+  classify(edge, shell, split);
+  return !shorter_than(a, split.site, rules_.shortest_split) &&
+         !shorter_than(b, split.site, rules_.shortest_split);
 }
 
 /// Required elements, facets and edges stay as they are.
 template <int Dim>
-bool Refine<Dim>::may_split(const Shell& shell, VertexId a, VertexId b) const {
+bool Refine<Dim>::may_split(const LongEdge& edge, const Shell& shell) const {
   for (const ElementId e : shell) {
     if (mesh_.required_element(e)) return false;
     for (std::size_t i = 0; i <= Dim; ++i) {
       const VertexId opposite = mesh_.corners_of[e][i];
-      if (opposite != a && opposite != b && mesh_.patches[mesh_.patches_of[e][i]].required)
+      if (opposite != edge.a && opposite != edge.b &&
+          mesh_.patches[mesh_.patches_of[e][i]].required)
         return false;
     }
   }
   if constexpr (Dim == 3) {
-    const CurveId curve = mesh_.curve_of(a, b);
+    const CurveId curve = mesh_.curve_of(edge.a, edge.b);
     if (curve != 0 && mesh_.curves[curve].required) return false;
   }
   return true;
 }
 
-/// Position, metric and classification of the new vertex.
 template <int Dim>
-void Refine<Dim>::locate(Plan& plan) const {
-  const Site<Dim>& a = mesh_.site_of[plan.a];
-  const Site<Dim>& b = mesh_.site_of[plan.b];
-  // Off the middle by up to 5 %, lest a regular mesh be refined into a regular mesh of worse
-  // shapes, in which no single change is an improvement.
-  const double chance = runtime::mix32(plan.a * 31 + plan.b) * (2.0 / 4294967296.0) - 1;
-  const double t = metric_middle(a, b) + 0.05 * chance;
-  const Vector<Dim> position = (1 - t) * a.position + t * b.position;
-  const auto sample = background_.sample(position, mesh_.host_of[t < 0.5 ? plan.a : plan.b]);
-  plan.site = make_site(position, sample.metric);
-  plan.host = sample.host;
-  plan.kind.freedom = Dim;
-  for (const ElementId e : plan.shell)
-    if (const PatchId patch = patch_of_edge(mesh_, e, plan.a, plan.b)) {
-      plan.entity = patch;
-      plan.kind.freedom = Dim - 1;
+void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& split) const {
+  split.kind = {.freedom = Dim};
+  split.entity = 0;
+  split.worst_around = 1;
+  for (const ElementId e : shell) {
+    split.worst_around = std::min(split.worst_around, mesh_.shape_of[e]);
+    if (const PatchId patch = patch_of_edge(mesh_, e, edge.a, edge.b)) {
+      split.entity = patch;
+      split.kind.freedom = Dim - 1;
     }
+  }
   if constexpr (Dim == 3)
-    if (const CurveId curve = mesh_.curve_of(plan.a, plan.b)) {
-      plan.entity = curve;
-      plan.kind.freedom = 1;
+    if (const CurveId curve = mesh_.curve_of(edge.a, edge.b)) {
+      split.entity = curve;
+      split.kind.freedom = 1;
     }
-  const std::int32_t reference = mesh_.reference_of[plan.a];
-  plan.reference = reference == mesh_.reference_of[plan.b] ? reference : 0;
+  const std::int32_t reference = mesh_.reference_of[edge.a];
+  split.reference = reference == mesh_.reference_of[edge.b] ? reference : 0;
+}
+
+// ---- Who refuses ----
+
+template <int Dim>
+void Refine<Dim>::refuse() {
+  round_ = 1;
+  parallel_for(executor_, elements_.size(), [&](std::size_t place) { look(place); });
+  for (auto refused = take_refused(); !refused.empty(); refused = take_refused())
+    parallel_for(executor_, refused.size(), [&](std::size_t i) {
+      const LongEdge& edge = edges_[refused[i]];
+      visit_shell(mesh_, edge.a, edge.b, [&](ElementId element) {
+        const std::uint32_t place = elements_.place_of(element);
+        if (first_refused_of(cuts_[place], refused[i])) look(place);
+      });
+    });
+  report_.rounds = round_ - 1;
+}
+
+/// Edges that somebody has refused since the last call.
+template <int Dim>
+std::vector<std::uint32_t> Refine<Dim>::take_refused() {
+  ++round_;
+  return runtime::parallel_collect<std::uint32_t>(executor_, edges_.size(),
+                                                  [&](std::size_t i, auto&& append) {
+                                                    if (!asked_[i] || refused_in_[i] != 0) return;
+                                                    refused_in_[i] = round_;
+                                                    append(static_cast<std::uint32_t>(i));
+                                                  });
+}
+
+/// An element that several edges refused in this round cut looks again once.
+template <int Dim>
+bool Refine<Dim>::first_refused_of(const Cuts& cuts, std::uint32_t number) const {
+  for (const std::uint32_t split : cuts.split)
+    if (split != 0 && split - 1 < number && refused_in_[split - 1] == round_) return false;
+  return true;
+}
+
+/// Cuts an element for trial, and refuses the edges by which it may not be cut.
+template <int Dim>
+void Refine<Dim>::look(std::size_t place) {
+  const ElementId element = elements_[place];
+  Cuts& cuts = cuts_[place];
+  const Order order = order_of(cuts);
+  const Points points = points_of(element, cuts);
+  if (cut_freely(cuts, order, points)) return;
+  Pieces<Dim> pieces;
+  cuts.shape[0] = mesh_.shape_of[element];
+  for (std::size_t i = 0; i < order.size; ++i) {
+    const std::uint32_t number = cuts.split[order.edge[i]] - 1;
+    if (!cut(pieces, cuts.shape, order.edge[i], edges_[number], splits_[number], points))
+      runtime::atomic_mark(asked_[number]);
+  }
+  cuts.pieces = static_cast<std::uint32_t>(pieces.size());
 }
 
 template <int Dim>
-bool Refine<Dim>::makes_no_short_edge(const Plan& plan) const {
-  for (const ElementId e : plan.shell)
-    for (const VertexId v : mesh_.corners_of[e])
-      if (shorter_than(mesh_.site_of[v], plan.site, rules_.shortest_split)) return false;
+auto Refine<Dim>::order_of(const Cuts& cuts) const -> Order {
+  Order order;
+  const auto before = [&](std::uint32_t i, std::uint32_t k) {
+    return edges_[i].length != edges_[k].length ? edges_[i].length > edges_[k].length : i < k;
+  };
+  for (std::size_t k = 0; k < cuts.split.size(); ++k) {
+    if (cuts.split[k] == 0 || !is_split(cuts.split[k] - 1)) continue;
+    std::size_t at = order.size++;
+    for (; at != 0 && before(cuts.split[k] - 1, cuts.split[order.edge[at - 1]] - 1); --at)
+      order.edge[at] = order.edge[at - 1];
+    order.edge[at] = static_cast<std::uint8_t>(k);
+  }
+  return order;
+}
+
+template <int Dim>
+auto Refine<Dim>::points_of(ElementId element, const Cuts& cuts) const -> Points {
+  Points points{};
+  for (std::size_t i = 0; i <= Dim; ++i) points[i] = &mesh_.site_of[mesh_.corners_of[element][i]];
+  for (std::size_t k = 0; k < cuts.split.size(); ++k)
+    if (cuts.split[k] != 0) points[middle_of<Dim>(k)] = &splits_[cuts.split[k] - 1].site;
+  return points;
+}
+
+template <int Dim>
+static std::array<const Site<Dim>*, Dim + 1> sites_of(
+    const Piece<Dim>& piece, const std::array<const Site<Dim>*, points_of_cut<Dim>>& points) {
+  std::array<const Site<Dim>*, Dim + 1> sites;
+  for (std::size_t i = 0; i <= Dim; ++i) sites[i] = points[piece.corners[i]];
+  return sites;
+}
+
+/// Cuts an element into pieces that any rule accepts, whatever came before; false if there are
+/// others.
+template <int Dim>
+bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& points) const {
+  Pieces<Dim> pieces;
+  for (std::size_t i = 0; i < order.size; ++i) {
+    if (!keeps_distance(pieces, order.edge[i], points)) return false;
+    pieces.cut(order.edge[i]);
+  }
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    cuts.shape[p] = static_cast<float>(shape<Dim>(sites_of<Dim>(pieces[p], points)));
+    if (!(cuts.shape[p] >= rules_.accepted_shape)) return false;
+  }
+  cuts.pieces = static_cast<std::uint32_t>(pieces.size());
+  return true;
+}
+
+/// Cuts pieces along one edge, unless that makes an edge or a shape that the rules refuse; they
+/// stay as they are then.
+template <int Dim>
+bool Refine<Dim>::cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const LongEdge& as,
+                      const Split& split, const Points& points) const {
+  if (!keeps_distance(pieces, edge, points)) return false;
+  Pieces<Dim> halves = pieces;
+  halves.cut(edge);
+  Shapes after = shapes;
+  const auto is_fine = [&](std::size_t half, double before) {
+    const double value = shape<Dim>(sites_of<Dim>(halves[half], points));
+    after[half] = static_cast<float>(value);
+    return value > 0 &&
+           value >= least_shape(std::min<double>(before, split.worst_around), as.length);
+  };
+  std::size_t second = pieces.size();
+  for (std::size_t first = 0; first < pieces.size(); ++first)
+    if (pieces.has_edge(first, edge) &&
+        (!is_fine(first, shapes[first]) || !is_fine(second++, shapes[first])))
+      return false;
+  pieces = halves;
+  shapes = after;
+  return true;
+}
+
+/// Is the middle of an edge far enough from the other corners of the pieces that it cuts?
+template <int Dim>
+bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
+                                 const Points& points) const {
+  const auto [a, b] = Simplex<Dim>::edge[edge];
+  const Site<Dim>& middle = *points[middle_of<Dim>(edge)];
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    if (!pieces.has_edge(p, edge)) continue;
+    for (const PointOfCut c : pieces[p].corners)
+      if (c != a && c != b && shorter_than(*points[c], middle, rules_.shortest_split)) return false;
+  }
   return true;
 }
 
 /// Shapes tell little of elements over which the metric changes a lot, as those of overlong edges.
 template <int Dim>
-bool Refine<Dim>::keeps_shapes(const Plan& plan, double length) const {
-  double before = 1;
-  for (const ElementId e : plan.shell) before = std::min<double>(before, mesh_.shape_of[e]);
+double Refine<Dim>::least_shape(double before, double length) const {
+  if (before < rules_.poor_shape) return before;
   const double excess = std::max(1.0, length / rules_.overlong_edge);
-  const double least =
-      before < rules_.poor_shape
-          ? before
-          : std::min(rules_.split_keeps * before, rules_.accepted_shape) / (excess * excess);
-  for (const ElementId e : plan.shell)
-    for (const VertexId end : {plan.a, plan.b}) {
-      auto sites = mesh_.sites(mesh_.corners_of[e]);
-      sites[static_cast<std::size_t>(corner_of(mesh_.corners_of[e], end))] = &plan.site;
-      const double after = shape<Dim>(sites);
-      if (!(after > 0) || after < least) return false;
+  return std::min(rules_.split_keeps * before, rules_.accepted_shape) / (excess * excess);
+}
+
+// ---- New vertices and elements ----
+
+template <int Dim>
+void Refine<Dim>::number() {
+  place_of_.resize(edges_.size());
+  first_piece_.resize(elements_.size());
+  parallel_for(executor_, edges_.size(),
+               [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); });
+  parallel_for(executor_, elements_.size(),
+               [&](std::size_t i) { first_piece_[i] = cuts_[i].pieces - 1; });
+  first_vertex_ = static_cast<VertexId>(mesh_.vertex_slots());
+  first_element_ = static_cast<ElementId>(mesh_.element_slots());
+  report_.applied = runtime::exclusive_scan<std::uint32_t>(executor_, place_of_);
+  const std::uint32_t pieces = runtime::exclusive_scan<std::uint32_t>(executor_, first_piece_);
+  mesh_.grow(first_vertex_ + report_.applied, first_element_ + pieces);
+}
+
+/// Makes what is numbered, and brings the lists of vertices up to date: change by change, or all of
+/// them anew where much has changed.
+template <int Dim>
+void Refine<Dim>::grow() {
+  const bool anew =
+      static_cast<double>(report_.applied) > many * static_cast<double>(first_element_);
+  runtime::DeferredUpdate<ListChange> deferred(executor_);
+  const auto defer = [&](VertexId owner, const ListChange& change) {
+    if (!anew || change.curve != 0) deferred.defer(owner, 0, change);
+  };
+  {
+    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    parallel_for(executor_, edges_.size(), [&](std::size_t i) {
+      const auto number = static_cast<std::uint32_t>(i);
+      if (!is_split(number)) return;
+      write_vertex(number);
+      if constexpr (Dim == 3) write_links(number, defer);
+    });
+    parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });
+  }
+  const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
+  report_.committed = deferred.commit(
+      [&](VertexId owner, const ListChange& change) { change_list(mesh_, owner, change); });
+  if (anew) rebuild_elements_of(executor_, mesh_);
+}
+
+template <int Dim>
+void Refine<Dim>::write_vertex(std::uint32_t number) {
+  const Split& split = splits_[number];
+  const VertexId v = vertex_of(number);
+  mesh_.site_of[v] = split.site;
+  mesh_.kind_of[v] = split.kind;
+  mesh_.entity_of[v] = split.entity;
+  mesh_.reference_of[v] = split.reference;
+  mesh_.host_of[v] = split.host;
+}
+
+/// The parts of a curve that is split: each end is linked to the middle, and no longer to the other
+/// end.
+template <int Dim>
+void Refine<Dim>::write_links(std::uint32_t number, auto&& defer) {
+  const Split& split = splits_[number];
+  if (split.kind.freedom != 1) return;
+  using Kind = ListChange::Kind;
+  const LongEdge& edge = edges_[number];
+  const VertexId middle = vertex_of(number);
+  for (const auto& [end, other] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)}) {
+    defer(end, {Kind::remove_link, other, split.entity});
+    defer(end, {Kind::add_link, middle, split.entity});
+    mesh_.links_of.insert(middle, {end, split.entity});
+  }
+}
+
+/// The first piece keeps the element's number.
+template <int Dim>
+void Refine<Dim>::write_pieces(std::size_t place, auto&& defer) {
+  const ElementId element = elements_[place];
+  const Cuts& cuts = cuts_[place];
+  if (cuts.pieces == 1) return;
+  const Order order = order_of(cuts);
+  Pieces<Dim> pieces;
+  for (std::size_t i = 0; i < order.size; ++i) pieces.cut(order.edge[i]);
+  std::array<VertexId, points_of_cut<Dim>> vertices;
+  for (std::size_t i = 0; i <= Dim; ++i) vertices[i] = mesh_.corners_of[element][i];
+  for (std::size_t i = 0; i < order.size; ++i)
+    vertices[middle_of<Dim>(order.edge[i])] = vertex_of(cuts.split[order.edge[i]] - 1);
+
+  const Corners<Dim> before = mesh_.corners_of[element];
+  const auto patches = mesh_.patches_of[element];
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const Piece<Dim>& piece = pieces[p];
+    const ElementId to =
+        p == 0 ? element : first_element_ + first_piece_[place] + static_cast<std::uint32_t>(p) - 1;
+    for (std::size_t c = 0; c <= Dim; ++c) {
+      const VertexId v = vertices[piece.corners[c]];
+      const std::uint8_t facet = piece.facet_of[c];
+      mesh_.corners_of[to][c] = v;
+      mesh_.patches_of[to][c] = facet == Piece<Dim>::inside ? 0 : patches[facet];
+      if (p != 0 || v != before[c]) defer(v, {ListChange::Kind::add_element, to});
+      if (p == 0 && v != before[c]) defer(before[c], {ListChange::Kind::remove_element, element});
     }
-  return true;
-}
-
-template <int Dim>
-std::array<std::uint32_t, 2> Refine<Dim>::grow(const std::array<std::uint32_t, 2>& total) {
-  const auto vertices = static_cast<std::uint32_t>(mesh_.vertex_slots());
-  const auto elements = static_cast<std::uint32_t>(mesh_.element_slots());
-  mesh_.grow(vertices + total[0], elements + total[1]);
-  return {vertices, elements};
-}
-
-template <int Dim>
-void Refine<Dim>::apply(const Plan& plan, runtime::Commit<Refine>& commit) {
-  const VertexId middle = commit.fresh(0);
-  mesh_.site_of[middle] = plan.site;
-  mesh_.kind_of[middle] = plan.kind;
-  mesh_.entity_of[middle] = plan.entity;
-  mesh_.reference_of[middle] = plan.reference;
-  mesh_.host_of[middle] = plan.host;
-  mesh_.elements_of.reserve(
-      middle, 2 * static_cast<std::uint32_t>(plan.shell.size()) + (Dim == 2 ? 4 : 16));
-  for (const ElementId element : plan.shell) mesh_.elements_of.insert(middle, element);
-  for (const ElementId element : plan.shell) {
-    const ElementId fresh = commit.fresh(1);
-    split_element(element, fresh, middle, plan);
-    mesh_.elements_of.insert(middle, fresh);
-    defer_remove(commit, plan.b, element);
-    for (const VertexId v : mesh_.corners_of[fresh])
-      if (v != middle) defer_add(commit, v, fresh);
+    mesh_.region_of[to] = mesh_.region_of[element];
+    mesh_.shape_of[to] = cuts.shape[p];
+    mesh_.changed_at[to] = mesh_.epoch;
   }
-  if constexpr (Dim == 3) {
-    if (plan.kind.freedom != 1) return;
-    using Kind = ListChange::Kind;
-    commit.defer(plan.a, {Kind::remove_link, plan.b, plan.entity});
-    commit.defer(plan.a, {Kind::add_link, middle, plan.entity});
-    commit.defer(plan.b, {Kind::remove_link, plan.a, plan.entity});
-    commit.defer(plan.b, {Kind::add_link, middle, plan.entity});
-    mesh_.links_of.insert(middle, {plan.a, plan.entity});
-    mesh_.links_of.insert(middle, {plan.b, plan.entity});
-  }
-}
-
-/// The element keeps its half at a, `fresh` is the half at b; the facet between them is new.
-template <int Dim>
-void Refine<Dim>::split_element(ElementId element, ElementId fresh, VertexId middle,
-                                const Plan& plan) {
-  const auto at_a = static_cast<std::size_t>(corner_of(mesh_.corners_of[element], plan.a));
-  const auto at_b = static_cast<std::size_t>(corner_of(mesh_.corners_of[element], plan.b));
-  mesh_.corners_of[fresh] = mesh_.corners_of[element];
-  mesh_.patches_of[fresh] = mesh_.patches_of[element];
-  mesh_.region_of[fresh] = mesh_.region_of[element];
-  mesh_.corners_of[fresh][at_a] = middle;
-  mesh_.patches_of[fresh][at_b] = 0;
-  mesh_.corners_of[element][at_b] = middle;
-  mesh_.patches_of[element][at_a] = 0;
-  update_element(mesh_, element);
-  update_element(mesh_, fresh);
 }
 
 template class Refine<2>;

@@ -1,15 +1,22 @@
 /// @file
-/// Refine: splits edges that are too long. One edge at a time and the longest first, in independent
-/// sets: a new vertex near the middle of the edge cuts every element around it in two.
+/// Refine: splits edges that are too long, all at once. A new vertex near the middle of each, and
+/// every element is cut in halves along its edges, the longest first. How a facet is cut follows
+/// from its own edges alone, so the elements on both sides agree without asking each other, and no
+/// two splits are in each other's way.
 #pragma once
 
 #include <array>
-#include <optional>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "ductile/meshadapt/background.hpp"
+#include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/rules.hpp"
-#include "ductile/runtime/run_rounds.hpp"
+#include "ductile/runtime/rounds_report.hpp"
 #include "operators/cavity.hpp"
+#include "operators/marked_set.hpp"
+#include "operators/pieces.hpp"
 
 namespace ductile::meshadapt {
 
@@ -20,67 +27,102 @@ struct LongEdge {
 };
 
 template <int Dim>
-struct EdgeSplit {
-  VertexId a = none, b = none;
-  Site<Dim> site;  // of the new vertex
-  ElementId host = none;
-  VertexKind kind;
-  std::uint32_t entity = 0;  // patch or curve that the edge lies on, or 0
-  std::int32_t reference = 0;
-  Shell shell;  // the elements to be halved
-  friend bool operator==(const EdgeSplit&, const EdgeSplit&) = default;
-};
-
-template <int Dim>
 class Refine {
  public:
-  // ---- What it works on ----
-  using Item = LongEdge;
-  using Plan = EdgeSplit<Dim>;
-  using Update = ListChange;
-  static constexpr bool forgoes_wakes = true;  // the next stage looks at what has changed
-
-  Refine(Mesh<Dim>& mesh, const Background<Dim>& background, const Rules& rules)
-      : mesh_(mesh), background_(background), rules_(rules) {}
+  Refine(const runtime::Executor& executor, Mesh<Dim>& mesh, const Background<Dim>& background,
+         const Rules& rules)
+      : executor_(executor), mesh_(mesh), background_(background), rules_(rules) {}
 
   /// The edges no shorter than `long_edge`, each once, next to elements changed after an epoch.
   static std::vector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                           double long_edge, std::uint32_t after);
 
-  // ---- Plan: where the new vertex goes, unless a rule refuses. Reads only. ----
-  std::optional<Plan> plan(const Item& edge) const;
+  /// Would this edge be split if it were the only long one? Thread safety: any thread.
+  bool splits(const LongEdge& edge) const;
 
-  // ---- Conflict rule: nobody else touches the elements around the edge; the longest goes first
-  // ----
-  void footprint(const Item& edge, auto&& visit) const {
-    for (const ElementId element : mesh_.elements_of.of(edge.a))
-      if (contains(mesh_.corners_of[element], edge.b)) visit(element);
-  }
-  std::size_t resource_count() const { return mesh_.element_slots(); }
-  std::uint8_t priority(const Item& edge) const;
-
-  // ---- Apply: halve the elements around the edge, defer the change of their vertices' lists ----
-  std::array<std::uint32_t, 2> demand(const Plan& plan) const {
-    return {1, static_cast<std::uint32_t>(plan.shell.size())};
-  }
-  std::array<std::uint32_t, 2> grow(const std::array<std::uint32_t, 2>& total);
-  void apply(const Plan& plan, runtime::Commit<Refine>& commit);
-
-  // ---- Commit: one owner's list ----
-  void commit(std::uint32_t owner, const Update& update) { change_list(mesh_, owner, update); }
+  /// Splits all of these edges but those that a rule refuses. No edge comes twice. The result
+  /// depends on their order only where edges of an element are exactly as long. May be called once.
+  /// Rounds of the report are those in which elements looked whether rules refuse; conflicts, who
+  /// is cut by what, are the elements' looks. Thread safety: one caller; runs on the executor.
+  runtime::RoundsReport run(std::vector<LongEdge> edges);
 
  private:
-  // ---- Rules ----
-  bool may_split(const Shell& shell, VertexId a, VertexId b) const;
-  bool keeps_shapes(const Plan& plan, double length) const;
-  bool makes_no_short_edge(const Plan& plan) const;
+  /// What becomes of a long edge. Trivial, as it lives in memory that nobody has touched.
+  struct Split {
+    Site<Dim> site;  // of the new vertex
+    ElementId host;
+    std::uint32_t entity;  // patch or curve that the edge lies on, or 0
+    std::int32_t reference;
+    VertexKind kind;
+    float worst_around;  // shape of the worst element around the edge
+  };
+  /// An element around a long edge.
+  struct Around {
+    ElementId element;
+    std::uint32_t number;  // of the edge
+  };
+  /// How an element is cut.
+  struct Cuts {
+    std::array<std::uint32_t, Simplex<Dim>::edges> split;  // [edge], its number plus one, or 0
+    std::array<float, Pieces<Dim>::most> shape;            // [piece]
+    std::uint32_t pieces;
+  };
+  /// The edges of an element that are to be split, the longest first.
+  struct Order {
+    std::array<std::uint8_t, Simplex<Dim>::edges> edge;
+    std::size_t size = 0;
+  };
+  using Points = std::array<const Site<Dim>*, points_of_cut<Dim>>;
+  using Shapes = std::array<float, Pieces<Dim>::most>;
 
-  void locate(Plan& plan) const;
-  void split_element(ElementId element, ElementId fresh, VertexId middle, const Plan& plan);
+  // ---- 1. Where the new vertices go, and which elements each edge cuts ----
+  void plan();
+  bool locate(const LongEdge& edge, const Shell& shell, Split& split) const;
+  bool may_split(const LongEdge& edge, const Shell& shell) const;
+  void classify(const LongEdge& edge, const Shell& shell, Split& split) const;
 
+  // ---- 2. Who refuses: an element that would be cut into what the rules do not allow. Without
+  // the edges refused others may be cut otherwise, until none refuses any more. ----
+  void refuse();
+  std::vector<std::uint32_t> take_refused();
+  bool first_refused_of(const Cuts& cuts, std::uint32_t number) const;
+  void look(std::size_t place);
+  Order order_of(const Cuts& cuts) const;
+  Points points_of(ElementId element, const Cuts& cuts) const;
+  bool cut_freely(Cuts& cuts, const Order& order, const Points& points) const;
+  bool cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const LongEdge& as,
+           const Split& split, const Points& points) const;
+  bool keeps_distance(const Pieces<Dim>& pieces, std::size_t edge, const Points& points) const;
+  double least_shape(double before, double length) const;
+
+  // ---- 3. New vertices and elements take numbers in order; each element is cut on its own ----
+  void number();
+  void grow();
+  void write_vertex(std::uint32_t number);
+  void write_pieces(std::size_t place, auto&& defer);
+  void write_links(std::uint32_t number, auto&& defer);
+
+  bool is_split(std::uint32_t number) const { return refused_in_[number] == 0; }
+  VertexId vertex_of(std::uint32_t number) const { return first_vertex_ + place_of_[number]; }
+
+  const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
   const Background<Dim>& background_;
   Rules rules_;
+  runtime::RoundsReport report_;
+
+  std::vector<LongEdge> edges_;
+  GrowingArray<Split> splits_;             // [edge]
+  std::vector<std::uint32_t> refused_in_;  // [edge], the round, or 0
+  std::vector<std::uint8_t> asked_;        // [edge], somebody refuses it
+  std::uint32_t round_ = 0;
+  MarkedSet elements_;                   // those that are cut
+  GrowingArray<Cuts> cuts_;              // [place in elements_]
+  std::vector<std::uint32_t> place_of_;  // [edge], of its vertex among the new ones
+  std::vector<std::uint32_t>
+      first_piece_;  // [place in elements_], of its pieces among the new ones
+  VertexId first_vertex_ = 0;
+  ElementId first_element_ = 0;
 };
 
 }  // namespace ductile::meshadapt

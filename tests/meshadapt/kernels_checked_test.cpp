@@ -1,5 +1,6 @@
 /// @file
-/// Runs the kernels under the checks of their contracts with run_rounds, see checked_rounds.hpp.
+/// Runs the kernels that run_rounds runs under the checks of their contracts, see
+/// checked_rounds.hpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +11,6 @@
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/checked_rounds.hpp"
 #include "operators/coarsen.hpp"
-#include "operators/refine.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"
 #include "support/meshes.hpp"
@@ -77,16 +77,6 @@ TYPED_TEST(KernelsChecked, CoarsenKeepsItsContract) {
     const Rules rules;
     expect_sound(mesh, Coarsen<Dim>(mesh, rules),
                  Coarsen<Dim>::crowded_vertices(executor, mesh, rules.short_edge, 0));
-  }
-}
-
-TYPED_TEST(KernelsChecked, RefineKeepsItsContract) {
-  constexpr int Dim = TypeParam::value;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 500 : 250);
-    const Rules rules;
-    expect_sound(mesh, Refine<Dim>(mesh, *background, rules),
-                 Refine<Dim>::long_edges(executor, mesh, rules.long_edge, 0));
   }
 }
 

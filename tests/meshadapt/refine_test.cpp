@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
+#include "support/preserved.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -50,10 +55,11 @@ TYPED_TEST(RefineIn, SplitsOverlongEdgesIntoWorseShapes) {
     Mesh<Dim> mesh = wild_mesh<Dim>(executor, random, neighbours);
     const Background<Dim> background(executor, mesh, std::move(neighbours));
     const Rules rules;
-    const Refine<Dim> op(mesh, background, rules), patient_op(mesh, background, patient);
+    const Refine<Dim> hasty(executor, mesh, background, rules);
+    const Refine<Dim> patient_one(executor, mesh, background, patient);
     for (const LongEdge& edge : Refine<Dim>::long_edges(executor, mesh, rules.long_edge, 0)) {
-      const bool splits = op.plan(edge).has_value();
-      const bool patiently_splits = patient_op.plan(edge).has_value();
+      const bool splits = hasty.splits(edge);
+      const bool patiently_splits = patient_one.splits(edge);
       if (edge.length <= rules.overlong_edge)
         EXPECT_EQ(splits, patiently_splits);
       else
@@ -64,6 +70,94 @@ TYPED_TEST(RefineIn, SplitsOverlongEdgesIntoWorseShapes) {
   }
   EXPECT_GT(either_way, 100U);
   EXPECT_GT(overlong_only, 20U);
+}
+
+using Edge = std::pair<VertexId, VertexId>;
+
+template <int Dim>
+std::set<Edge> edges_of(const Mesh<Dim>& mesh) {
+  std::set<Edge> edges;
+  for (ElementId e = 0; e < mesh.element_slots(); ++e)
+    for (const auto& [i, j] : Simplex<Dim>::edge) {
+      const VertexId p = mesh.corners_of[e][static_cast<std::size_t>(i)];
+      const VertexId q = mesh.corners_of[e][static_cast<std::size_t>(j)];
+      edges.emplace(std::min(p, q), std::max(p, q));
+    }
+  return edges;
+}
+
+/// The first `most` of the long edges of a wild mesh are split, on so many threads.
+template <int Dim>
+struct Refined {
+  Mesh<Dim> mesh;
+  std::size_t vertices_before;
+  std::vector<LongEdge> long_edges;
+  runtime::RoundsReport report;
+
+  Refined(std::uint64_t seed, int threads, std::size_t most) {
+    const Executor executor({.threads = threads});
+    Random random(seed);
+    Neighbours<Dim> neighbours;
+    mesh = wild_mesh<Dim>(executor, random, neighbours);
+    for (VertexId v = 0; v < mesh.vertex_slots(); ++v)
+      mesh.host_of[v] = mesh.elements_of.of(v).front();
+    const Background<Dim> background(executor, mesh, std::move(neighbours));
+    vertices_before = mesh.vertex_slots();
+    const Rules rules;
+    long_edges = Refine<Dim>::long_edges(executor, mesh, rules.long_edge, 0);
+    long_edges.resize(std::min(most, long_edges.size()));
+    report = Refine<Dim>(executor, mesh, background, rules).run(long_edges);
+  }
+};
+
+/// With few edges and with many, as lists are brought up to date in another way then.
+TYPED_TEST(RefineIn, LeavesASoundMesh) {
+  constexpr int Dim = TypeParam::value;
+  for (const std::size_t most : {1, 5, 100000})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const Refined<Dim> refined(seed, 2, most);
+      const Mesh<Dim>& mesh = refined.mesh;
+      const auto faults = check_mesh(Executor({.threads = 1}), mesh);
+      EXPECT_TRUE(faults.empty()) << test::joined(faults);
+      EXPECT_EQ(mesh.vertex_slots(), refined.vertices_before + refined.report.applied);
+      const std::set<Edge> left = edges_of(mesh);
+      std::size_t whole = 0;
+      for (const LongEdge& edge : refined.long_edges) whole += left.count({edge.a, edge.b});
+      EXPECT_EQ(whole, refined.long_edges.size() - refined.report.applied);
+      for (ElementId e = 0; e < mesh.element_slots(); ++e)
+        EXPECT_EQ(mesh.shape_of[e], static_cast<float>(mesh.shape_at(mesh.corners_of[e])));
+    }
+}
+
+/// Most edges of a wild mesh are split together with others of their elements.
+TYPED_TEST(RefineIn, MakesNoShortEdge) {
+  constexpr int Dim = TypeParam::value;
+  std::size_t applied = 0, refused = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Refined<Dim> refined(seed, 1, 100000);
+    applied += refined.report.applied;
+    refused += refined.report.planned - refined.report.applied;
+    for (const auto& [a, b] : edges_of(refined.mesh))
+      if (b >= refined.vertices_before)
+        EXPECT_GE(refined.mesh.length(a, b), Rules{}.shortest_split * (1 - 1e-12));
+  }
+  EXPECT_GT(applied, 500U);
+  EXPECT_GT(refused, 50U);
+}
+
+TYPED_TEST(RefineIn, DoesNotDependOnThreads) {
+  constexpr int Dim = TypeParam::value;
+  for (const std::size_t most : {3, 100000}) {
+    const Refined<Dim> one(7, 1, most);
+    for (const int threads : {2, 3, 4, 8}) {
+      const Refined<Dim> many(7, threads, most);
+      EXPECT_EQ(many.mesh.corners_of, one.mesh.corners_of);
+      EXPECT_EQ(many.mesh.patches_of, one.mesh.patches_of);
+      EXPECT_EQ(many.mesh.shape_of, one.mesh.shape_of);
+      EXPECT_EQ(many.mesh.site_of, one.mesh.site_of);
+      EXPECT_EQ(many.mesh.host_of, one.mesh.host_of);
+    }
+  }
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class ListPool {
   /// Appends empty lists until there are n. Thread safety: one thread.
   void grow(std::size_t n) { slot_of_.resize(n); }
 
-  std::span<const T> of(std::uint32_t index) const {
+  [[gnu::always_inline]] std::span<const T> of(std::uint32_t index) const {
     const Slot& slot = slot_of_[index];
     return slot.count == 0 ? std::span<const T>{}
                            : std::span<const T>{arena_->at(slot.begin), slot.count};

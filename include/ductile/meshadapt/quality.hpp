@@ -34,7 +34,7 @@ struct EndSquares {
 };
 
 template <int Dim>
-EndSquares end_squares(const Site<Dim>& a, const Site<Dim>& b) {
+[[gnu::always_inline]] inline EndSquares end_squares(const Site<Dim>& a, const Site<Dim>& b) {
   const Vector<Dim> d = b.position - a.position;
   return {squared_length(a.metric, d), squared_length(b.metric, d)};
 }

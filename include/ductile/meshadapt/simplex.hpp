@@ -121,7 +121,8 @@ Facet<Dim> facet_of(const Corners<Dim>& corners, int i) {
 /// The facet opposite `vertex`, which is one of the corners; without branches, as which one it is
 /// cannot be foreseen.
 template <int Dim>
-Facet<Dim> facet_opposite(const Corners<Dim>& corners, VertexId vertex) {
+[[gnu::always_inline]] inline Facet<Dim> facet_opposite(const Corners<Dim>& corners,
+                                                        VertexId vertex) {
   int at = 0;
   for (int i = 1; i <= Dim; ++i)
     at += i * static_cast<int>(corners[static_cast<std::size_t>(i)] == vertex);

@@ -20,11 +20,11 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring.hpp"
 #include "ductile/runtime/detail/filled_array.hpp"
-#include "ductile/runtime/detail/phase_timer.hpp"
 #include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 
