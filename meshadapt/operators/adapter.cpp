@@ -176,7 +176,7 @@ std::size_t Adapter<Dim>::feasible_changes() {
   const Refine<Dim> refinement(executor_, mesh_, background_, rules());
   aim_ = Aim::approach;
   const auto crowded = Coarsen<Dim>::crowded_vertices(executor_, mesh_, rules().short_edge, 0);
-  const auto edges = Refine<Dim>::long_edges(executor_, mesh_, rules().long_edge, 0);
+  const auto edges = long_edges(executor_, mesh_, rules().long_edge, 0);
   const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
   std::vector<std::size_t> changes(all / step);
   const auto look = [&](std::size_t i) {
@@ -200,7 +200,7 @@ std::size_t Adapter<Dim>::splits_of(const LongEdge& edge) const {
 
 template <int Dim>
 std::size_t Adapter<Dim>::splits_to_come() const {
-  const auto edges = Refine<Dim>::long_edges(executor_, mesh_, options_.rules.long_edge, 0);
+  const auto edges = long_edges(executor_, mesh_, options_.rules.long_edge, 0);
   return runtime::parallel_reduce(
       executor_, edges.size(), std::size_t{0}, [&](std::size_t i) { return splits_of(edges[i]); },
       std::plus<>());
@@ -323,7 +323,7 @@ std::size_t Adapter<Dim>::refine() {
   const double limit = options_.rules.long_edge * Tuning<Dim>::stages[stage_];
   if (std::isinf(limit)) return 0;
   const KernelTimer timer(executor_, "refine", report_.refine.seconds);
-  auto work = Refine<Dim>::long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
+  auto work = long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
   Refine<Dim> refinement(executor_, mesh_, background_, rules());
   const RoundsReport rounds = refinement.run(std::move(work));

@@ -1,5 +1,5 @@
 /// @file
-/// collect_edges: goes over the long edges of a mesh, or of a part of it, each once.
+/// long_edges: finds the long edges of a mesh, or of the part that changed.
 /// mark_ends_of_short_edges: finds the vertices that have a short one.
 #pragma once
 
@@ -15,28 +15,6 @@
 #include "operators/cavity.hpp"
 
 namespace ductile::meshadapt {
-
-/// Does this element stand for its k-th edge, from p to q? Of two triangles, the one where it goes
-/// from the lower number to the higher; on the boundary there is but one.
-inline bool stands_for(const Mesh<2>& mesh, ElementId element, std::size_t k, VertexId p,
-                       VertexId q) {
-  const std::size_t facet = (k + 2) % 3;
-  return p < q || (mesh.patches_of[element][facet] != 0 &&
-                   neighbour(mesh, element, static_cast<int>(facet)) == none);
-}
-
-/// In 3D, the first of those around the edge.
-inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t, VertexId p,
-                       VertexId q) {
-  const auto of_p = mesh.elements_of.of(p), of_q = mesh.elements_of.of(q);
-  std::size_t i = 0, j = 0;
-  while (of_p[i] != of_q[j]) {
-    const bool p_is_behind = of_p[i] < of_q[j];
-    i += p_is_behind;
-    j += !p_is_behind;
-  }
-  return of_p[i] == element;
-}
 
 /// Bits for those edges of an element that may be shorter than a limit, and for those that may not;
 /// of the others it is certain. Decided without roots or branches: see shorter_than().
@@ -88,35 +66,54 @@ std::vector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& exec
   return ends;
 }
 
-/// Edges with an end among the marked vertices.
-struct WantedEdges {
-  const std::vector<std::uint8_t>& marked;
-  double no_shorter_than = 0;  ///< metric length
+struct LongEdge {
+  VertexId a, b;  ///< a < b
+  float length;
+  friend auto operator<=>(const LongEdge&, const LongEdge&) = default;
 };
 
-/// Calls find(a, b, append) for every wanted edge a < b, once; append(item) adds to the result,
-/// whose order does not depend on threads.
+/// Of the elements around an edge that changed after an epoch, one stands for it. Of two triangles,
+/// that is the one where it goes from the lower number to the higher. `element` is one of them.
+inline bool stands_for(const Mesh<2>& mesh, ElementId element, std::size_t edge, VertexId p,
+                       VertexId q, std::uint32_t after) {
+  if (p < q) return true;
+  const ElementId other = neighbour(mesh, element, static_cast<int>((edge + 2) % 3));
+  return other == none || mesh.changed_at[other] <= after;
+}
+
+/// In 3D the first.
+inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t, VertexId p, VertexId q,
+                       std::uint32_t after) {
+  const auto of_p = mesh.elements_of.of(p), of_q = mesh.elements_of.of(q);
+  for (std::size_t i = 0, j = 0;;) {
+    const ElementId x = of_p[i], y = of_q[j];
+    if (x == y && mesh.changed_at[x] > after) return x == element;
+    i += x <= y;
+    j += y <= x;
+  }
+}
+
+/// The edges no shorter than a limit around which an element changed after an epoch, each once; in
+/// an order that does not depend on threads.
 /// Thread safety: one caller; runs on the executor.
-template <class Item, int Dim>
-std::vector<Item> collect_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                const WantedEdges& wanted, auto&& find) {
-  const std::vector<std::uint8_t>& marked = wanted.marked;
-  const double limit = wanted.no_shorter_than;
-  return runtime::parallel_collect<Item>(
-      executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
-        const auto element = static_cast<ElementId>(e);
-        const Corners<Dim>& corners = mesh.corners_of[e];
-        if (!mesh.alive(element) || !any_marked<Dim>(marked, corners)) return;
-        unsigned left = compare_edges<Dim>(mesh.sites(corners), limit).longer;
-        for (; left != 0; left &= left - 1) {
-          const auto k = static_cast<std::size_t>(std::countr_zero(left));
-          const VertexId p = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][0])];
-          const VertexId q = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][1])];
-          if ((marked[p] || marked[q]) && stands_for(mesh, element, k, p, q) &&
-              !shorter_than(mesh.site_of[p], mesh.site_of[q], limit))
-            find(std::min(p, q), std::max(p, q), append);
-        }
-      });
+template <int Dim>
+std::vector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                 double limit, std::uint32_t after) {
+  const auto find = [&](std::size_t e, auto&& append) {
+    const auto element = static_cast<ElementId>(e);
+    if (mesh.changed_at[e] <= after || !mesh.alive(element)) return;
+    const Corners<Dim>& corners = mesh.corners_of[e];
+    unsigned left = compare_edges<Dim>(mesh.sites(corners), limit).longer;
+    for (; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      const VertexId p = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][0])];
+      const VertexId q = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][1])];
+      if (stands_for(mesh, element, k, p, q, after) &&
+          !shorter_than(mesh.site_of[p], mesh.site_of[q], limit))
+        append(LongEdge{std::min(p, q), std::max(p, q), static_cast<float>(mesh.length(p, q))});
+    }
+  };
+  return runtime::parallel_collect<LongEdge>(executor, mesh.element_slots(), find);
 }
 
 }  // namespace ductile::meshadapt

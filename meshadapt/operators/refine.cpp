@@ -10,8 +10,6 @@
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/phase_timer.hpp"
-#include "operators/cavity.hpp"
-#include "operators/edges.hpp"
 
 namespace ductile::meshadapt {
 
@@ -46,17 +44,6 @@ std::size_t edge_of(const Corners<Dim>& corners, VertexId a, VertexId b) {
 }
 
 }  // namespace
-
-template <int Dim>
-std::vector<LongEdge> Refine<Dim>::long_edges(const runtime::Executor& executor,
-                                              const Mesh<Dim>& mesh, double long_edge,
-                                              std::uint32_t after) {
-  const auto marked = mark_changed(executor, mesh, after);
-  return collect_edges<LongEdge>(executor, mesh, {marked, long_edge},
-                                 [&](VertexId a, VertexId b, auto&& append) {
-                                   append(LongEdge{a, b, static_cast<float>(mesh.length(a, b))});
-                                 });
-}
 
 template <int Dim>
 bool Refine<Dim>::splits(const LongEdge& edge) const {

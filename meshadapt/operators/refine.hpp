@@ -15,16 +15,11 @@
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "operators/cavity.hpp"
+#include "operators/edges.hpp"
 #include "operators/marked_set.hpp"
 #include "operators/pieces.hpp"
 
 namespace ductile::meshadapt {
-
-struct LongEdge {
-  VertexId a, b;
-  float length;
-  friend auto operator<=>(const LongEdge&, const LongEdge&) = default;
-};
 
 template <int Dim>
 class Refine {
@@ -32,10 +27,6 @@ class Refine {
   Refine(const runtime::Executor& executor, Mesh<Dim>& mesh, const Background<Dim>& background,
          const Rules& rules)
       : executor_(executor), mesh_(mesh), background_(background), rules_(rules) {}
-
-  /// The edges no shorter than `long_edge`, each once, next to elements changed after an epoch.
-  static std::vector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                          double long_edge, std::uint32_t after);
 
   /// Would this edge be split if it were the only long one? Thread safety: any thread.
   bool splits(const LongEdge& edge) const;

@@ -20,19 +20,26 @@ class EdgesIn : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(EdgesIn, Dimensions);
 
+/// The edges of the elements that changed after an epoch.
 template <int Dim>
-std::set<Edge> edges_with_an_end_in(const Mesh<Dim>& mesh,
-                                    const std::vector<std::uint8_t>& marked) {
+std::set<Edge> edges_changed(const Mesh<Dim>& mesh, std::uint32_t after) {
   std::set<Edge> edges;
-  for (const Corners<Dim>& corners : mesh.corners_of)
-    for (const VertexId a : corners)
-      for (const VertexId b : corners)
-        if (a < b && (marked[a] || marked[b])) edges.emplace(a, b);
+  for (ElementId e = 0; e < mesh.element_slots(); ++e)
+    for (const VertexId a : mesh.corners_of[e])
+      for (const VertexId b : mesh.corners_of[e])
+        if (a < b && mesh.changed_at[e] > after) edges.emplace(a, b);
   return edges;
 }
 
+std::set<Edge> ends_of(const std::vector<LongEdge>& edges) {
+  std::set<Edge> ends;
+  for (const LongEdge& edge : edges) ends.emplace(edge.a, edge.b);
+  EXPECT_EQ(ends.size(), edges.size()) << "some were found twice";
+  return ends;
+}
+
 /// Regions bring edges on interfaces, which both their triangles know to be on a patch.
-TYPED_TEST(EdgesIn, AreFoundOnceFromAnyMarking) {
+TYPED_TEST(EdgesIn, AreFoundOnceNextToAnyChanges) {
   constexpr int Dim = TypeParam::value;
   constexpr int n = Dim == 2 ? 12 : 6;
   test::Random random(3);
@@ -41,21 +48,15 @@ TYPED_TEST(EdgesIn, AreFoundOnceFromAnyMarking) {
   const AnyMesh any = test::make_grid(grid);
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
-  const auto mesh = make_mesh<Dim>(Executor({.threads = 1}), any, {}, neighbours, warnings);
+  auto mesh = make_mesh<Dim>(Executor({.threads = 1}), any, {}, neighbours, warnings);
   for (const double share : {1.0, 0.3, 0.01, 0.0}) {
-    std::vector<std::uint8_t> marked(mesh.vertex_slots());
-    for (auto& mark : marked) mark = test::chance(random, share);
-    std::vector<Edge> first;
+    for (std::uint32_t& epoch : mesh.changed_at) epoch = test::chance(random, share) ? 3 : 2;
+    std::vector<LongEdge> first;
     for (const int threads : {1, 2, 8}) {
-      const auto found = collect_edges<Edge>(Executor({.threads = threads}), mesh, {marked},
-                                             [](VertexId a, VertexId b, auto&& append) {
-                                               append(Edge{a, b});
-                                             });
+      const auto found = long_edges(Executor({.threads = threads}), mesh, 0, 2);
       if (threads == 1) first = found;
       EXPECT_EQ(found, first);
-      const std::set<Edge> each(found.begin(), found.end());
-      EXPECT_EQ(each.size(), found.size());
-      EXPECT_EQ(each, edges_with_an_end_in(mesh, marked));
+      EXPECT_EQ(ends_of(found), edges_changed(mesh, 2));
     }
   }
 }
@@ -81,7 +82,7 @@ TYPED_TEST(EdgesIn, AreLongOrShortAsTheirLengthsSay) {
   for (const double limit : {0.3, 0.7, 0.9, 1.0, 2.0}) {
     std::set<Edge> longer;
     std::vector<std::uint8_t> ends(mesh.vertex_slots());
-    for (const auto& [a, b] : edges_with_an_end_in(mesh, all)) {
+    for (const auto& [a, b] : edges_changed(mesh, 0)) {
       if (mesh.length(a, b) < limit)
         ends[a] = ends[b] = 1;
       else
@@ -90,12 +91,7 @@ TYPED_TEST(EdgesIn, AreLongOrShortAsTheirLengthsSay) {
     for (const int threads : {1, 2, 8}) {
       const Executor executor({.threads = threads});
       EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, all, limit), ends);
-      const auto found = collect_edges<Edge>(executor, mesh, {all, limit},
-                                             [](VertexId a, VertexId b, auto&& append) {
-                                               append(Edge{a, b});
-                                             });
-      EXPECT_EQ(found.size(), longer.size());
-      EXPECT_EQ(std::set<Edge>(found.begin(), found.end()), longer);
+      EXPECT_EQ(ends_of(long_edges(executor, mesh, limit, 0)), longer);
     }
   }
 }

@@ -57,7 +57,7 @@ TYPED_TEST(RefineIn, SplitsOverlongEdgesIntoWorseShapes) {
     const Rules rules;
     const Refine<Dim> hasty(executor, mesh, background, rules);
     const Refine<Dim> patient_one(executor, mesh, background, patient);
-    for (const LongEdge& edge : Refine<Dim>::long_edges(executor, mesh, rules.long_edge, 0)) {
+    for (const LongEdge& edge : long_edges(executor, mesh, rules.long_edge, 0)) {
       const bool splits = hasty.splits(edge);
       const bool patiently_splits = patient_one.splits(edge);
       if (edge.length <= rules.overlong_edge)
@@ -91,7 +91,7 @@ template <int Dim>
 struct Refined {
   Mesh<Dim> mesh;
   std::size_t vertices_before;
-  std::vector<LongEdge> long_edges;
+  std::vector<LongEdge> edges;
   runtime::RoundsReport report;
 
   Refined(std::uint64_t seed, int threads, std::size_t most) {
@@ -104,9 +104,9 @@ struct Refined {
     const Background<Dim> background(executor, mesh, std::move(neighbours));
     vertices_before = mesh.vertex_slots();
     const Rules rules;
-    long_edges = Refine<Dim>::long_edges(executor, mesh, rules.long_edge, 0);
-    long_edges.resize(std::min(most, long_edges.size()));
-    report = Refine<Dim>(executor, mesh, background, rules).run(long_edges);
+    edges = long_edges(executor, mesh, rules.long_edge, 0);
+    edges.resize(std::min(most, edges.size()));
+    report = Refine<Dim>(executor, mesh, background, rules).run(edges);
   }
 };
 
@@ -122,8 +122,8 @@ TYPED_TEST(RefineIn, LeavesASoundMesh) {
       EXPECT_EQ(mesh.vertex_slots(), refined.vertices_before + refined.report.applied);
       const std::set<Edge> left = edges_of(mesh);
       std::size_t whole = 0;
-      for (const LongEdge& edge : refined.long_edges) whole += left.count({edge.a, edge.b});
-      EXPECT_EQ(whole, refined.long_edges.size() - refined.report.applied);
+      for (const LongEdge& edge : refined.edges) whole += left.count({edge.a, edge.b});
+      EXPECT_EQ(whole, refined.edges.size() - refined.report.applied);
       for (ElementId e = 0; e < mesh.element_slots(); ++e)
         EXPECT_EQ(mesh.shape_of[e], static_cast<float>(mesh.shape_at(mesh.corners_of[e])));
     }
