@@ -60,64 +60,92 @@ constexpr std::uint64_t hilbert_key(std::array<std::uint32_t, Dim> x, int bits) 
   return key;
 }
 
-/// How the curve runs in a square: in which cells of 16 x 16 it arrives in which order, and how it
-/// runs in each of them.
+/// How the curve runs in a square or a cube: in which cells of a grid it arrives in which order,
+/// and how it runs in each of them.
+template <int Dim>
 class HilbertTable {
  public:
-  static constexpr int step = 4;  // bits an axis
-  static constexpr unsigned states = 16;
-
-  constexpr HilbertTable() {
-    for (unsigned state = 0; state < states; ++state)
-      for (unsigned cell = 0; cell < cells; ++cell)
-        entry_[state * cells + cell] = walk(state, cell);
-  }
-
-  /// The place along the curve of a cell of a square of this state; the state of the cell.
+  static constexpr int step = Dim == 2 ? 4 : 2;  // bits an axis: 16 x 16, or 4 x 4 x 4 cells
+  using Cell = std::array<std::uint32_t, Dim>;
   struct Place {
     unsigned place, state;
   };
-  constexpr Place of(unsigned state, unsigned x, unsigned y) const {
-    const unsigned entry = entry_[state * cells + (x << step | y)];
+
+  constexpr HilbertTable() {
+    std::array<Place, std::size_t{states} << unsigned{Dim}> after_bit{};  // [state][bits]
+    for (unsigned i = 0; i < after_bit.size(); ++i) after_bit[i] = pass(i >> Dim, i % corners);
+    for (unsigned i = 0; i < entry_.size(); ++i) {
+      Place at{0, i / cells};
+      for (int bit = step - 1; bit >= 0; --bit) {
+        unsigned bits = 0;
+        for (int axis = Dim - 1; axis >= 0; --axis)
+          bits = bits << 1U | (i >> (axis * step + bit) & 1U);
+        const Place& next = after_bit[at.state << Dim | bits];
+        at = {at.place << Dim | next.place, next.state};
+      }
+      entry_[i] = static_cast<std::uint16_t>(at.state * cells + at.place);
+    }
+  }
+
+  /// The place along the curve of the cell that these bits of coordinates give, in a square of this
+  /// state, 0 at first; the state of the cell.
+  constexpr Place of(unsigned state, const Cell& x, int shift) const {
+    unsigned cell = 0;
+    for (unsigned i = Dim; i-- > 0;) cell = cell << unsigned{step} | (x[i] >> shift & (side - 1));
+    const unsigned entry = entry_[state * cells + cell];
     return {entry % cells, entry / cells};
   }
 
  private:
-  static constexpr unsigned cells = 1U << (2 * step);
+  static constexpr unsigned side = 1U << step, cells = 1U << (Dim * step), corners = 1U << Dim;
+  static constexpr unsigned orders = Dim == 2 ? 2 : 6, states = orders << (Dim + 1);
+  static constexpr std::array<std::array<std::uint8_t, 3>, 6> axes{
+      {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}}};
 
-  /// hilbert_key() for the bits of one cell. A state says what it did to those below: bit 0, the
-  /// axes were exchanged; 1 and 2, then they were turned; 3, its `t`.
-  static constexpr std::uint16_t walk(unsigned state, unsigned cell) {
-    unsigned exchanged = state & 1U, turned[2] = {state >> 1U & 1U, state >> 2U & 1U};
-    unsigned t = state >> 3U, place = 0;
-    for (int bit = step - 1; bit >= 0; --bit) {
-      const unsigned raw[2] = {cell >> (step + bit) & 1U, cell >> bit & 1U};
-      const unsigned x = raw[exchanged] ^ turned[0], y = raw[exchanged ^ 1U] ^ turned[1];
-      place = place << 2U | (x ^ t) << 1U | (x ^ y ^ t);
-      t ^= x ^ y;
-      turned[0] ^= x ^ y;
-      if (y == 0) {
-        exchanged ^= 1U;
-        std::swap(turned[0], turned[1]);
+  /// hilbert_key() for one bit of each coordinate, the first lowest. A state says what it did to
+  /// those below: which coordinates were turned over, then its `t`, then how they were exchanged.
+  static constexpr Place pass(unsigned state, unsigned bits) {
+    auto axis = axes[state >> (Dim + 1)];
+    std::array<unsigned, Dim> turned{}, x{};
+    for (unsigned i = 0; i < Dim; ++i) {
+      turned[i] = state >> i & 1U;
+      x[i] = (bits >> axis[i] & 1U) ^ turned[i];
+    }
+    unsigned t = state >> unsigned{Dim} & 1U, place = 0;
+    for (unsigned i = 0; i < Dim; ++i) {
+      if (x[i] != 0) {
+        turned[0] ^= 1U;
+      } else {
+        std::swap(axis[0], axis[i]);
+        std::swap(turned[0], turned[i]);
       }
     }
-    return static_cast<std::uint16_t>(
-        (t << 3U | turned[1] << 2U | turned[0] << 1U | exchanged) * cells + place);
+    for (unsigned i = 0; i < Dim; ++i) {
+      if (i > 0) x[i] ^= x[i - 1];
+      place = place << 1U | (x[i] ^ t);
+    }
+    t ^= x[Dim - 1];
+    unsigned next = 0;
+    while (axes[next] != axis) ++next;
+    next = next << 1U | t;
+    for (unsigned i = Dim; i-- > 0;) next = next << 1U | turned[i];
+    return {place, next};
   }
 
   std::array<std::uint16_t, std::size_t{states} * cells> entry_{};
 };
-inline constexpr HilbertTable hilbert_table;
+template <int Dim>
+inline constexpr HilbertTable<Dim> hilbert_table;
 
-/// The same in 2D by table; `bits` is a multiple of its step.
-inline std::uint64_t hilbert_key(std::array<std::uint32_t, 2> x, int bits) {
-  constexpr int step = HilbertTable::step;
-  constexpr unsigned mask = (1U << step) - 1;
-  HilbertTable::Place at{0, 0};
+/// hilbert_key() by table; `bits` is a multiple of its step.
+template <int Dim>
+std::uint64_t hilbert_key_by_table(const std::array<std::uint32_t, Dim>& x, int bits) {
+  constexpr int step = HilbertTable<Dim>::step;
+  typename HilbertTable<Dim>::Place at{0, 0};
   std::uint64_t key = 0;
   for (int left = bits - step; left >= 0; left -= step) {
-    at = hilbert_table.of(at.state, x[0] >> left & mask, x[1] >> left & mask);
-    key = key << (2 * step) | at.place;
+    at = hilbert_table<Dim>.of(at.state, x, left);
+    key = key << unsigned{Dim * step} | at.place;
   }
   return key;
 }
@@ -125,7 +153,8 @@ inline std::uint64_t hilbert_key(std::array<std::uint32_t, 2> x, int bits) {
 /// Bits of the key of a point.
 template <int Dim>
 inline constexpr unsigned hilbert_bits = Dim == 2 ? 48 : 60;
-static_assert(hilbert_bits<2> / 2 % HilbertTable::step == 0);
+static_assert(hilbert_bits<2> / 2 % HilbertTable<2>::step == 0);
+static_assert(hilbert_bits<3> / 3 % HilbertTable<3>::step == 0);
 
 /// The same of a point in the box.
 template <int Dim>
@@ -137,7 +166,7 @@ std::uint64_t hilbert_key(const Vector<Dim>& point, const Box<Dim>& box) {
     const double at = (point[i] - box.low[i]) / width;
     cell[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(at * ((1U << bits) - 1));
   }
-  return hilbert_key(cell, bits);
+  return hilbert_key_by_table<Dim>(cell, bits);
 }
 
 }  // namespace ductile::meshadapt

@@ -2,36 +2,49 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <type_traits>
 
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
-using Cell = std::array<std::uint32_t, 2>;
+template <class Dimension>
+class Hilbert : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(Hilbert, Dimensions);
 
-TEST(Hilbert, TheTableKnowsTheCurve) {
+TYPED_TEST(Hilbert, TheTableKnowsTheCurve) {
+  constexpr int Dim = TypeParam::value, step = HilbertTable<Dim>::step;
   test::Random random(1);
-  for (int bits = 4; bits <= 24; bits += 4)
+  for (int bits = step; bits <= 20; bits += step)
     for (int i = 0; i < 2000; ++i) {
-      const Cell cell{static_cast<std::uint32_t>(random()) >> (32 - bits),
-                      static_cast<std::uint32_t>(random()) >> (32 - bits)};
-      EXPECT_EQ(hilbert_key(cell, bits), hilbert_key<2>(cell, bits));
+      std::array<std::uint32_t, Dim> cell;
+      for (auto& x : cell) x = static_cast<std::uint32_t>(random()) >> (32 - bits);
+      EXPECT_EQ(hilbert_key_by_table<Dim>(cell, bits), hilbert_key<Dim>(cell, bits));
     }
 }
 
-/// Of all cells of a square, each has its own place, and the next one is a neighbour.
-TEST(Hilbert, GoesFromNeighbourToNeighbour) {
-  constexpr std::uint32_t n = 16;
-  std::array<Cell, n * n> at;
-  at.fill({n, n});
-  for (std::uint32_t x = 0; x < n; ++x)
-    for (std::uint32_t y = 0; y < n; ++y) at[hilbert_key(Cell{x, y}, 4)] = {x, y};
-  const auto apart = [](std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; };
-  for (std::size_t i = 1; i < at.size(); ++i)
-    EXPECT_EQ(apart(at[i - 1][0], at[i][0]) + apart(at[i - 1][1], at[i][1]), 1U);
+/// Of all cells of a square or cube, each has its own place, and the next one is a neighbour.
+TYPED_TEST(Hilbert, GoesFromNeighbourToNeighbour) {
+  constexpr int Dim = TypeParam::value, bits = 4;
+  using Cell = std::array<std::uint32_t, Dim>;
+  std::array<Cell, std::size_t{1} << (Dim * bits)> at;
+  at.fill({1U << bits});
+  for (std::uint32_t i = 0; i < at.size(); ++i) {
+    Cell cell;
+    for (unsigned axis = 0; axis < Dim; ++axis) cell[axis] = i >> (axis * bits) & 15U;
+    at[hilbert_key_by_table<Dim>(cell, bits)] = cell;
+  }
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    std::uint32_t apart = 0;
+    for (std::size_t axis = 0; axis < Dim; ++axis)
+      apart += std::max(at[i][axis], at[i - 1][axis]) - std::min(at[i][axis], at[i - 1][axis]);
+    EXPECT_EQ(apart, 1U);
+  }
 }
 
 }  // namespace
