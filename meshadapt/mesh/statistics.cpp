@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -83,6 +84,7 @@ std::vector<std::uint64_t> unique_edges(const Executor& executor,
   });
   runtime::parallel_sort(executor, std::span(keys));
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  keys.shrink_to_fit();
   return keys;
 }
 
@@ -130,10 +132,10 @@ std::size_t count_if_below(const Executor& executor, const std::vector<double>& 
 
 template <int Dim>
 MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
-  const std::vector<Site<Dim>> site_of = make_sites<Dim>(executor, mesh, metric);
   const auto& elements = elements_in<Dim>(mesh).vertices;
-  std::vector<double> lengths =
-      edge_lengths<Dim>(executor, site_of, unique_edges<Dim>(executor, elements));
+  std::vector<std::uint64_t> edges = unique_edges<Dim>(executor, elements);  // takes most memory
+  const std::vector<Site<Dim>> site_of = make_sites<Dim>(executor, mesh, metric);
+  std::vector<double> lengths = edge_lengths<Dim>(executor, site_of, std::exchange(edges, {}));
 
   MeshStatistics result;
   result.in_metric = metric != nullptr;

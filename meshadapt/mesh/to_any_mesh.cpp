@@ -136,9 +136,32 @@ AnyField to_any_field(const Executor& executor, const Mesh<Dim>& mesh) {
   return field;
 }
 
+template <int Dim>
+MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
+  mesh.shape_of = {};
+  mesh.changed_at = {};
+  mesh.host_of = {};
+  mesh.entity_of = {};
+  MeshWithMetric result;
+  result.mesh.dimension = Dim;
+  add_facets(executor, mesh, result.mesh);
+  if constexpr (Dim == 3) add_curves(executor, mesh, result.mesh);
+  mesh.elements_of = {};
+  mesh.links_of = {};
+  mesh.patches_of = {};
+  add_elements(executor, mesh, result.mesh);
+  mesh.corners_of = {};
+  mesh.region_of = {};
+  add_vertices(executor, mesh, result.mesh);
+  result.metric = to_any_field(executor, mesh);
+  return result;
+}
+
 template AnyMesh to_any_mesh(const Executor&, const Mesh<2>&);
 template AnyMesh to_any_mesh(const Executor&, const Mesh<3>&);
 template AnyField to_any_field(const Executor&, const Mesh<2>&);
 template AnyField to_any_field(const Executor&, const Mesh<3>&);
+template MeshWithMetric take_apart(const Executor&, Mesh<2>);
+template MeshWithMetric take_apart(const Executor&, Mesh<3>);
 
 }  // namespace ductile::meshadapt

@@ -52,8 +52,8 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   adapter.report().setup_seconds = seconds();
   if (auto* recording = executor.recording()) recording->begin_section("other");
   adapter.run();
-  AdaptedMesh result{to_any_mesh(executor, adapter.mesh()), to_any_field(executor, adapter.mesh()),
-                     adapter.report()};
+  auto [adapted, metric_on_it] = take_apart(executor, adapter.take_mesh());
+  AdaptedMesh result{std::move(adapted), std::move(metric_on_it), adapter.report()};
   result.report.warnings = std::move(warnings);
   result.report.total_seconds = seconds();
   return result;

@@ -25,6 +25,8 @@ class Adapter {
   void run();
 
   const Mesh<Dim>& mesh() const { return mesh_; }
+  /// Gives the mesh away, which is the end of this adapter's work.
+  Mesh<Dim> take_mesh() { return std::move(mesh_); }
   AdaptReport& report() { return report_; }
 
  private:

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
@@ -90,7 +93,36 @@ TYPED_TEST(MeshIn, RenumberingIsTheSameAtEachThreadCount) {
     EXPECT_EQ(mesh.patches_of, first.patches_of);
     for (VertexId v = 0; v < mesh.vertex_slots(); ++v)
       EXPECT_EQ(mesh.site_of[v].position, first.site_of[v].position);
+    for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
+      const auto list = mesh.elements_of.of(v), of_first = first.elements_of.of(v);
+      EXPECT_TRUE(std::equal(list.begin(), list.end(), of_first.begin(), of_first.end()));
+      EXPECT_TRUE(std::is_sorted(list.begin(), list.end()));
+    }
   }
+}
+
+TYPED_TEST(MeshIn, TakingItApartLeavesNothingOut) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 2});
+  Mesh<Dim> mesh = made<Dim>(shuffled_box<Dim>(), 2);
+  renumber(executor, mesh);
+  const AnyMesh expected = to_any_mesh(executor, mesh);
+  const AnyField metric = to_any_field(executor, mesh);
+  const MeshWithMetric apart = take_apart(executor, std::move(mesh));
+  EXPECT_EQ(apart.mesh.dimension, Dim);
+  EXPECT_EQ(apart.mesh.coordinates, expected.coordinates);
+  EXPECT_EQ(apart.mesh.vertex_reference, expected.vertex_reference);
+  EXPECT_EQ(apart.mesh.edges.vertices, expected.edges.vertices);
+  EXPECT_EQ(apart.mesh.edges.reference, expected.edges.reference);
+  EXPECT_EQ(apart.mesh.triangles.vertices, expected.triangles.vertices);
+  EXPECT_EQ(apart.mesh.triangles.reference, expected.triangles.reference);
+  EXPECT_EQ(apart.mesh.tetrahedra.vertices, expected.tetrahedra.vertices);
+  EXPECT_EQ(apart.mesh.tetrahedra.reference, expected.tetrahedra.reference);
+  EXPECT_EQ(apart.mesh.corners, expected.corners);
+  EXPECT_EQ(apart.mesh.required_vertices, expected.required_vertices);
+  EXPECT_EQ(apart.mesh.ridges, expected.ridges);
+  EXPECT_EQ(apart.metric.values, metric.values);
+  EXPECT_EQ(apart.metric.vertex_count, metric.vertex_count);
 }
 
 TYPED_TEST(MeshIn, NeighboursAreMutual) {

@@ -38,4 +38,14 @@ AnyMesh to_any_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
 template <int Dim>
 AnyField to_any_field(const runtime::Executor& executor, const Mesh<Dim>& mesh);
 
+struct MeshWithMetric {
+  AnyMesh mesh;
+  AnyField metric;
+};
+
+/// Both, of a mesh that is needed no longer: its arrays are given back as soon as they have been
+/// read, so that there is less to hold at once. Thread safety: as above.
+template <int Dim>
+MeshWithMetric take_apart(const runtime::Executor& executor, Mesh<Dim> mesh);
+
 }  // namespace ductile::meshadapt
