@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <span>
 
-#include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/element_lists.hpp"
 
 namespace ductile::meshadapt {
 
@@ -29,31 +29,46 @@ void Mesh<Dim>::grow(std::size_t vertices, std::size_t elements) {
   if constexpr (Dim == 3) links_of.grow(vertices);
 }
 
+namespace {
+
+/// Calls visit(vertex, element) for all corners of all elements, on many threads at once.
 template <int Dim>
-void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
+void visit_corners(const Executor& executor, const Mesh<Dim>& mesh, auto&& visit) {
+  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    const auto element = static_cast<ElementId>(e);
+    if (!mesh.alive(element)) return;
+    for (const VertexId v : mesh.corners_of[element]) visit(v, element);
+  });
+}
+
+}  // namespace
+
+template <int Dim>
+void list_elements(const Executor& executor, Mesh<Dim>& mesh,
+                   std::span<const std::uint32_t> count_of) {
   auto& lists = mesh.elements_of;
-  lists.reset(mesh.vertex_slots());
-  std::vector<std::uint32_t> count(mesh.vertex_slots());
-  const auto each_corner = [&](auto&& visit) {
-    parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
-      const auto element = static_cast<ElementId>(e);
-      if (!mesh.alive(element)) return;
-      for (const VertexId v : mesh.corners_of[element]) visit(v, element);
+  lists.reset(count_of.size());
+  const auto make_room = [&](std::size_t, std::size_t begin, std::size_t end) {
+    lists.reserve_all(static_cast<VertexId>(begin), static_cast<VertexId>(end), [&](VertexId v) {
+      return count_of[v] == 0 ? 0 : count_of[v] + list_slack<Dim>;
     });
   };
-  each_corner([&](VertexId v, ElementId) { runtime::atomic_count(count[v]); });
-  const auto make_room = [&](std::size_t, std::size_t begin, std::size_t end) {
-    lists.reserve_all(static_cast<VertexId>(begin), static_cast<VertexId>(end),
-                      [&](VertexId v) { return count[v] == 0 ? 0 : count[v] + list_slack<Dim>; });
-  };
-  runtime::parallel_for_blocks(executor, mesh.vertex_slots(), list_block, make_room);
-  each_corner([&](VertexId v, ElementId element) {
-    lists.data(v)[runtime::atomic_count(lists.count_of(v))] = element;
+  runtime::parallel_for_blocks(executor, count_of.size(), list_block, make_room);
+  const bool alone = executor.threads() == 1;
+  visit_corners(executor, mesh, [&](VertexId v, ElementId element) {
+    lists.data(v)[count_up(lists.count_of(v), alone)] = element;
   });
-  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
-    const auto vertex = static_cast<VertexId>(v);
-    if (count[v] != 0) std::sort(lists.data(vertex), lists.data(vertex) + count[v]);
+  if (alone) return;
+  parallel_for(executor, count_of.size(), [&](std::size_t v) {
+    if (count_of[v] != 0) sort_by_insertion({lists.data(static_cast<VertexId>(v)), count_of[v]});
   });
+}
+
+template <int Dim>
+void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
+  std::vector<std::uint32_t> count_of(mesh.vertex_slots());
+  visit_corners(executor, mesh, [&](VertexId v, ElementId) { runtime::atomic_count(count_of[v]); });
+  list_elements<Dim>(executor, mesh, count_of);
 }
 
 /// Is any of these numbers larger than a bound? Without branches, so several at once.
@@ -99,6 +114,8 @@ void update_shapes(const Executor& executor, Mesh<Dim>& mesh) {
 
 template struct Mesh<2>;
 template struct Mesh<3>;
+template void list_elements(const Executor&, Mesh<2>&, std::span<const std::uint32_t>);
+template void list_elements(const Executor&, Mesh<3>&, std::span<const std::uint32_t>);
 template void rebuild_elements_of(const Executor&, Mesh<2>&);
 template void rebuild_elements_of(const Executor&, Mesh<3>&);
 template std::vector<std::uint8_t> mark_changed(const Executor&, const Mesh<2>&, std::uint32_t);

@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "mesh/element_lists.hpp"
 #include "mesh/hilbert.hpp"
 
 namespace ductile::meshadapt {
@@ -20,17 +21,6 @@ using runtime::parallel_for;
 
 namespace {
 
-template <int Dim>
-Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh) {
-  return runtime::parallel_reduce(
-      executor, mesh.vertex_slots(), Box<Dim>::empty(),
-      [&](std::size_t v) {
-        if (!mesh.vertex_alive(static_cast<VertexId>(v))) return Box<Dim>::empty();
-        return Box<Dim>{mesh.site_of[v].position, mesh.site_of[v].position};
-      },
-      [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
-}
-
 /// An array that one thread alone neither fills nor touches first.
 template <class T>
 class Unset {
@@ -39,6 +29,8 @@ class Unset {
       : values_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
   std::size_t size() const { return size_; }
   T* begin() { return values_.get(); }
+  std::span<T> all() { return {values_.get(), size_}; }
+  std::span<const T> all() const { return {values_.get(), size_}; }
   T& operator[](std::size_t i) { return values_[i]; }
   const T& operator[](std::size_t i) const { return values_[i]; }
 
@@ -47,6 +39,17 @@ class Unset {
   std::size_t size_;
 };
 using Ids = Unset<std::uint32_t>;
+
+template <int Dim>
+Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh, const Ids& count_of) {
+  return runtime::parallel_reduce(
+      executor, mesh.vertex_slots(), Box<Dim>::empty(),
+      [&](std::size_t v) {
+        if (count_of[v] == 0) return Box<Dim>::empty();
+        return Box<Dim>{mesh.site_of[v].position, mesh.site_of[v].position};
+      },
+      [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
+}
 
 /// Keys with their ids in the low bits of a word, so that sorting words sorts ids by their keys,
 /// those of equal keys in order.
@@ -88,27 +91,38 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
   return order;
 }
 
-/// Living vertices in the order of the curve.
+/// Vertices that have elements, in the order of the curve.
 template <int Dim>
-Ids sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
-  const Box<Dim> box = bounding_box(executor, mesh);
+Ids sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& count_of) {
+  const Box<Dim> box = bounding_box(executor, mesh, count_of);
   return sorted_ids(
       executor, mesh.vertex_slots(), hilbert_bits<Dim>,
-      [&](std::size_t v) { return mesh.vertex_alive(static_cast<VertexId>(v)); },
+      [&](std::size_t v) { return count_of[v] != 0; },
       [&](std::size_t v) { return hilbert_key(mesh.site_of[v].position, box); });
 }
 
-/// Living elements by their lowest vertex in the new numbering.
+/// Living elements by their lowest vertex, those of a vertex in order.
 template <int Dim>
-Ids sorted_elements(const Executor& executor, const Mesh<Dim>& mesh, const Ids& new_id) {
-  const auto lowest_vertex = [&](std::size_t e) {
-    VertexId lowest = none;
-    for (const VertexId v : mesh.corners_of[e]) lowest = std::min(lowest, new_id[v]);
-    return lowest;
+Ids sorted_elements(const Executor& executor, const Mesh<Dim>& mesh) {
+  const bool alone = executor.threads() == 1;
+  const auto each = [&](auto&& visit) {
+    parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+      const auto element = static_cast<ElementId>(e);
+      const Corners<Dim>& corners = mesh.corners_of[e];
+      if (mesh.alive(element)) visit(*std::min_element(corners.begin(), corners.end()), element);
+    });
   };
-  return sorted_ids(
-      executor, mesh.element_slots(), static_cast<unsigned>(std::bit_width(new_id.size())),
-      [&](std::size_t e) { return mesh.alive(static_cast<ElementId>(e)); }, lowest_vertex);
+  Ids end_of(mesh.vertex_slots());  // [vertex], in the order; at first how many elements it has
+  parallel_for(executor, end_of.size(), [&](std::size_t v) { end_of[v] = 0; });
+  each([&](VertexId v, ElementId) { count_up(end_of[v], alone); });
+  Ids order(runtime::exclusive_scan(executor, end_of.all()));
+  each([&](VertexId v, ElementId element) { order[count_up(end_of[v], alone)] = element; });
+  if (alone) return order;
+  parallel_for(executor, end_of.size(), [&](std::size_t v) {
+    const std::uint32_t begin = v == 0 ? 0 : end_of[v - 1];
+    sort_by_insertion(order.all().subspan(begin, end_of[v] - begin));
+  });
+  return order;
 }
 
 /// For each old id its place in the order, for those that are in it.
@@ -132,42 +146,32 @@ class Permutation {
   /// values[i] becomes the old values[order[i]].
   template <class T>
   void operator()(GrowingArray<T>& values) {
-    assert(sizeof(T) <= largest_);
-    T* const moved = reinterpret_cast<T*>(scratch_.get());
-    const std::size_t n = order_.size();
-    parallel_for(executor_, n,
-                 [&](std::size_t i) { std::construct_at(moved + i, values[order_[i]]); });
-    values.resize(n);
-    runtime::parallel_for_ranges(executor_, n, [&](std::size_t begin, std::size_t end) {
-      std::copy(moved + begin, moved + end, values.begin() + begin);
-    });
+    permute<T>([&](std::size_t i) -> T& { return values[i]; });
+    values.resize(order_.size());
+  }
+
+  /// The same, member by member, for which there must be room.
+  template <class T, class... Members>
+  void operator()(GrowingArray<T>& values, Members T::*... members) {
+    (permute<Members>([&](std::size_t i) -> Members& { return values[i].*members; }), ...);
+    values.resize(order_.size());
   }
 
  private:
+  template <class T>
+  void permute(auto&& value_at) {
+    assert(sizeof(T) <= largest_);
+    T* const moved = reinterpret_cast<T*>(scratch_.get());
+    parallel_for(executor_, order_.size(),
+                 [&](std::size_t i) { std::construct_at(moved + i, value_at(order_[i])); });
+    parallel_for(executor_, order_.size(), [&](std::size_t i) { value_at(i) = moved[i]; });
+  }
+
   const Executor& executor_;
   const Ids& order_;
   [[maybe_unused]] std::size_t largest_;  // bytes of a value there is room for
   std::unique_ptr<std::byte[]> scratch_;
 };
-
-/// The lists of elements in the new order of vertices, with the new ids of elements.
-template <int Dim>
-void renumber_elements_of(const Executor& executor, Mesh<Dim>& mesh, const Ids& vertices,
-                          const Ids& new_element) {
-  ListPool<ElementId> moved;
-  moved.reset(vertices.size());
-  const auto old_list = [&](VertexId v) { return mesh.elements_of.of(vertices[v]); };
-  const auto move = [&](std::size_t, std::size_t begin, std::size_t end) {
-    const auto first = static_cast<VertexId>(begin), last = static_cast<VertexId>(end);
-    moved.reserve_all(first, last, [&](VertexId v) {
-      return static_cast<std::uint32_t>(old_list(v).size()) + list_slack<Dim>;
-    });
-    for (VertexId v = first; v < last; ++v)
-      for (const ElementId e : old_list(v)) moved.insert(v, new_element[e]);
-  };
-  runtime::parallel_for_blocks(executor, vertices.size(), list_block, move);
-  std::swap(mesh.elements_of, moved);
-}
 
 void renumber_links(const Executor& executor, Mesh<3>& mesh, const Ids& vertices,
                     const Ids& new_vertex) {
@@ -181,45 +185,68 @@ void renumber_links(const Executor& executor, Mesh<3>& mesh, const Ids& vertices
 }
 
 template <int Dim>
-void permute_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& order) {
-  Permutation permute(executor, order, sizeof(Corners<Dim>));
-  permute(mesh.corners_of);
-  permute(mesh.patches_of);
-  permute(mesh.region_of);
-  permute(mesh.shape_of);
-  permute(mesh.changed_at);
-}
-
-template <int Dim>
 void permute_vertices(const Executor& executor, Mesh<Dim>& mesh, const Ids& order) {
-  Permutation permute(executor, order, sizeof(Site<Dim>));
-  permute(mesh.site_of);
+  Permutation permute(executor, order, sizeof(Metric<Dim>));
+  permute(mesh.site_of, &Site<Dim>::position, &Site<Dim>::metric, &Site<Dim>::density);
   permute(mesh.kind_of);
   permute(mesh.entity_of);
   permute(mesh.reference_of);
   permute(mesh.host_of);
 }
 
+/// How many elements each vertex has.
+template <int Dim>
+Ids element_counts(const Executor& executor, const Mesh<Dim>& mesh) {
+  Ids count_of(mesh.vertex_slots());
+  parallel_for(executor, count_of.size(), [&](std::size_t v) {
+    count_of[v] = static_cast<std::uint32_t>(mesh.elements_of.of(static_cast<VertexId>(v)).size());
+  });
+  return count_of;
+}
+
+/// Vertices and corners. Returns how many elements each vertex has, in the new order.
+template <int Dim>
+Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh) {
+  const Ids old_count_of = element_counts(executor, mesh);
+  const auto order = sorted_vertices(executor, mesh, old_count_of);
+  Ids count_of(order.size());
+  parallel_for(executor, order.size(),
+               [&](std::size_t v) { count_of[v] = old_count_of[order[v]]; });
+  const Ids new_vertex = places_in(executor, order, mesh.vertex_slots());
+  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    if (mesh.alive(static_cast<ElementId>(e)))
+      for (VertexId& v : mesh.corners_of[e]) v = new_vertex[v];
+  });
+  if constexpr (Dim == 3) renumber_links(executor, mesh, order, new_vertex);
+  permute_vertices(executor, mesh, order);
+  return count_of;
+}
+
 /// Neighbours are left alone if there are none.
 template <int Dim>
-void renumber_all(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>* neighbours) {
-  const auto vertices = sorted_vertices(executor, mesh);
-  const auto new_vertex = places_in(executor, vertices, mesh.vertex_slots());
-  const auto elements = sorted_elements(executor, mesh, new_vertex);
-  const auto new_element = places_in(executor, elements, mesh.element_slots());
-  renumber_elements_of(executor, mesh, vertices, new_element);
-  if constexpr (Dim == 3) renumber_links(executor, mesh, vertices, new_vertex);
-  permute_elements(executor, mesh, elements);
-  parallel_for(executor, elements.size(), [&](std::size_t e) {
-    for (VertexId& v : mesh.corners_of[e]) v = new_vertex[v];
-  });
-  permute_vertices(executor, mesh, vertices);
+void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>* neighbours) {
+  const auto order = sorted_elements(executor, mesh);
+  Permutation permute(executor, order, sizeof(Corners<Dim>));
+  permute(mesh.corners_of);
+  permute(mesh.patches_of);
+  permute(mesh.region_of);
+  permute(mesh.shape_of);
+  permute(mesh.changed_at);
   if (neighbours == nullptr) return;
-  Permutation(executor, elements, sizeof(Corners<Dim>))(*neighbours);
-  parallel_for(executor, elements.size(), [&](std::size_t e) {
+  const Ids new_element = places_in(executor, order, neighbours->size());
+  permute(*neighbours);
+  parallel_for(executor, neighbours->size(), [&](std::size_t e) {
     for (ElementId& other : (*neighbours)[e])
       if (other != none) other = new_element[other];
   });
+}
+
+/// Lists of elements are made anew in the memory that they had: there is no room for both.
+template <int Dim>
+void renumber_all(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>* neighbours) {
+  const Ids count_of = renumber_vertices(executor, mesh);
+  renumber_elements(executor, mesh, neighbours);
+  list_elements<Dim>(executor, mesh, count_of.all());
 }
 
 }  // namespace
