@@ -1,6 +1,9 @@
 #include "system.hpp"
 
 #include <sys/resource.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <unistd.h>
 
 #include <algorithm>
@@ -30,6 +33,13 @@ void wait_briefly([[maybe_unused]] char** arguments) {
   if (getenv("OMP_WAIT_POLICY") != nullptr || getenv("GOMP_SPINCOUNT") != nullptr) return;
   setenv("GOMP_SPINCOUNT", "2000", 0);
   execv("/proc/self/exe", arguments);  // returns only if that cannot be done: then as it is
+#endif
+}
+
+void reuse_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // larger arrays in pages of their own
+  mallopt(M_TRIM_THRESHOLD, 16 << 20);  // more than this, free at the heap's end, is given back
 #endif
 }
 

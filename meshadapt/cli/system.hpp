@@ -21,4 +21,8 @@ void wait_briefly(char** arguments);
 /// Whether a person is likely to watch standard error.
 bool stderr_is_terminal();
 
+/// What is freed is used again rather than given back and asked for anew: kernels take and free the
+/// same arrays in turns. With glibc; otherwise nothing.
+void reuse_memory();
+
 }  // namespace ductile::cli
