@@ -3,6 +3,8 @@
 /// vertex's neighbourhood, and the replacement of one set of elements by another.
 #pragma once
 
+#include <span>
+
 #include <boost/container/small_vector.hpp>
 #include <boost/container/static_vector.hpp>
 
@@ -18,34 +20,44 @@ using Shell = Buffer<ElementId, 16>;
 using VertexBuffer = Buffer<VertexId, 64>;
 
 /// Numbers vertices in the order in which they are first met; by hashing, for as few as meet around
-/// one vertex.
+/// one vertex. Whether one has been met before cannot be foreseen, so it is no branch.
 class Numbering {
  public:
   std::size_t number_of(VertexId vertex) {
-    if (vertices_.size() >= most_hashed) return search(vertex);
+    if (size_ >= most_hashed) [[unlikely]]
+      return search(vertex);
+    vertices_[0] = vertex;  // free places lead here, so that the search ends at one
     std::size_t at = (vertex * 2654435761U) >> 24U;
-    while (slots_[at] != 0 && vertices_[slots_[at] - 1U] != vertex) at = (at + 1) % slots_.size();
-    if (slots_[at] == 0) {
-      vertices_.push_back(vertex);
-      slots_[at] = static_cast<std::uint8_t>(vertices_.size());
-    }
+    while (vertices_[slots_[at]] != vertex) at = (at + 1) % slots_.size();
+    vertices_[size_ + 1] = vertex;
+    const bool fresh = slots_[at] == 0;
+    size_ += fresh;
+    slots_[at] = fresh ? static_cast<std::uint8_t>(size_) : slots_[at];
     return slots_[at] - 1U;
   }
-  std::size_t size() const { return vertices_.size(); }
-  VertexBuffer& vertices() { return vertices_; }
+  std::size_t size() const { return size_; }
+  std::span<const VertexId> vertices() const {
+    return size_ <= most_hashed ? std::span(vertices_).subspan(1, size_) : std::span(more_);
+  }
 
  private:
   static constexpr std::size_t most_hashed = 192;
 
   std::size_t search(VertexId vertex) {
-    const auto at = std::find(vertices_.begin(), vertices_.end(), vertex);
-    const auto number = static_cast<std::size_t>(at - vertices_.begin());
-    if (at == vertices_.end()) vertices_.push_back(vertex);
+    const std::span<const VertexId> known = vertices();
+    const auto at = std::find(known.begin(), known.end(), vertex);
+    const auto number = static_cast<std::size_t>(at - known.begin());
+    if (at != known.end()) return number;
+    if (size_ == most_hashed) more_.assign(known.begin(), known.end());
+    more_.push_back(vertex);
+    ++size_;
     return number;
   }
 
-  VertexBuffer vertices_;
-  std::array<std::uint8_t, 256> slots_{};  // number + 1, or 0
+  std::size_t size_ = 0;
+  std::array<VertexId, most_hashed + 1> vertices_;  // [number + 1], and one that may be anything
+  std::vector<VertexId> more_;                      // [number], if there are more
+  std::array<std::uint8_t, 256> slots_{};           // number + 1, or 0
 };
 
 /// One change to the lists of a vertex, carried out by whoever owns that vertex in the commit.
@@ -97,6 +109,15 @@ bool is_in_a_ring(const Mesh<Dim>& mesh, VertexId vertex) {
   return Dim == 2 && mesh.kind_of[vertex].freedom == Dim;
 }
 
+/// Those corners of a triangle from which the other two follow in descending order: two, or one
+/// twice; decided without branches. Triangles that close a ring around a corner all in the same
+/// turn name it at least once, as what goes round in it cannot ascend in all of them.
+inline std::array<VertexId, 2> before_descents(const Facet<3>& facet) {
+  const auto [a, b, c] = facet;
+  const VertexId if_not_c = c > a ? b : a, if_not_a = c > a ? b : c;
+  return {b > c ? a : if_not_a, a > b ? c : if_not_c};
+}
+
 /// Visits the vertices that share an element with `vertex`, some of them several times, unless they
 /// are in a ring.
 template <int Dim>
@@ -106,6 +127,14 @@ void visit_neighbours(const Mesh<Dim>& mesh, VertexId vertex, auto&& visit) {
       visit(facet_opposite<Dim>(mesh.corners_of[element], vertex)[0]);
     return;
   }
+  if constexpr (Dim == 3)
+    if (mesh.kind_of[vertex].freedom == Dim) {  // inside, where there is a ring around every edge
+      for (const ElementId element : mesh.elements_of.of(vertex))
+        for (const VertexId other :
+             before_descents(facet_opposite<Dim>(mesh.corners_of[element], vertex)))
+          visit(other);
+      return;
+    }
   for (const ElementId element : mesh.elements_of.of(vertex))
     for (const VertexId other : facet_opposite<Dim>(mesh.corners_of[element], vertex)) visit(other);
 }
@@ -114,14 +143,15 @@ void visit_neighbours(const Mesh<Dim>& mesh, VertexId vertex, auto&& visit) {
 /// order of its elements.
 template <int Dim>
 VertexBuffer neighbours_of(const Mesh<Dim>& mesh, VertexId vertex) {
+  VertexBuffer neighbours;
   if (is_in_a_ring(mesh, vertex)) {
-    VertexBuffer ring;
-    visit_neighbours(mesh, vertex, [&](VertexId other) { ring.push_back(other); });
-    return ring;
+    visit_neighbours(mesh, vertex, [&](VertexId other) { neighbours.push_back(other); });
+    return neighbours;
   }
   Numbering seen;
   visit_neighbours(mesh, vertex, [&](VertexId other) { seen.number_of(other); });
-  return std::move(seen.vertices());
+  neighbours.assign(seen.vertices().begin(), seen.vertices().end());
+  return neighbours;
 }
 
 /// The patch on which the edge a-b of this element lies, judging by the element's own facets.
