@@ -43,7 +43,8 @@ bool any_marked(const std::vector<std::uint8_t>& marked, const Corners<Dim>& cor
   return sum != 0;
 }
 
-/// The ends of all edges shorter than a limit whose element has a marked corner.
+/// The marked vertices that have an edge shorter than a limit. Elements all of whose marked corners
+/// are known to have one are not looked at.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 std::vector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& executor,
@@ -53,14 +54,18 @@ std::vector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& exec
   std::vector<std::uint8_t> ends(mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     const Corners<Dim>& corners = mesh.corners_of[e];
-    if (!mesh.alive(static_cast<ElementId>(e)) || !any_marked<Dim>(marked, corners)) return;
+    if (!mesh.alive(static_cast<ElementId>(e))) return;
+    unsigned wanted = 0;
+    for (const VertexId v : corners)
+      wanted += static_cast<unsigned>(marked[v] > runtime::atomic_is_marked(ends[v]));
+    if (wanted == 0) return;
     const auto sites = mesh.sites(corners);
     for (unsigned left = compare_edges<Dim>(sites, limit).shorter; left != 0; left &= left - 1) {
       const auto& edge = Simplex<Dim>::edge[static_cast<std::size_t>(std::countr_zero(left))];
       const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
       if (!shorter_than(*sites[i], *sites[j], limit)) continue;
-      runtime::atomic_mark(ends[corners[i]]);
-      runtime::atomic_mark(ends[corners[j]]);
+      for (const VertexId v : {corners[i], corners[j]})
+        if (marked[v] != 0) runtime::atomic_mark(ends[v]);
     }
   });
   return ends;

@@ -78,6 +78,7 @@ Mesh<Dim> jiggled_grid_in_a_metric(int n) {
 TYPED_TEST(EdgesIn, AreLongOrShortAsTheirLengthsSay) {
   constexpr int Dim = TypeParam::value;
   const auto mesh = jiggled_grid_in_a_metric<Dim>(6);
+  test::Random random(9);
   const std::vector<std::uint8_t> all(mesh.vertex_slots(), 1);
   for (const double limit : {0.3, 0.7, 0.9, 1.0, 2.0}) {
     std::set<Edge> longer;
@@ -92,6 +93,14 @@ TYPED_TEST(EdgesIn, AreLongOrShortAsTheirLengthsSay) {
       const Executor executor({.threads = threads});
       EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, all, limit), ends);
       EXPECT_EQ(ends_of(long_edges(executor, mesh, limit, 0)), longer);
+      for (const double share : {0.3, 0.01}) {
+        std::vector<std::uint8_t> marked(mesh.vertex_slots()), marked_ends(mesh.vertex_slots());
+        for (std::size_t v = 0; v < marked.size(); ++v) {
+          marked[v] = test::chance(random, share);
+          marked_ends[v] = marked[v] & ends[v];
+        }
+        EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, marked, limit), marked_ends);
+      }
     }
   }
 }

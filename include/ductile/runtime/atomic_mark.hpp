@@ -16,7 +16,12 @@ inline void atomic_mark(std::uint8_t& flag) {
   if (word.load(std::memory_order_relaxed) == 0) word.store(1, std::memory_order_relaxed);
 }
 
-/// The same where few threads set flags that lie near each other: one of a random pattern is set
+/// Is the flag set, as far as this thread knows? Thread safety: any thread.
+inline bool atomic_is_marked(std::uint8_t& flag) {
+  return std::atomic_ref(flag).load(std::memory_order_relaxed) != 0;
+}
+
+/// Sets a flag where few threads set flags that lie near each other: one of a random pattern is set
 /// faster than looked at. Thread safety: any thread.
 inline void atomic_set(std::uint8_t& flag) {
   std::atomic_ref(flag).store(1, std::memory_order_relaxed);
