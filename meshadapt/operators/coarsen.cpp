@@ -13,12 +13,19 @@ std::vector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& ex
                                                      std::uint32_t after) {
   const auto marked = mark_changed(executor, mesh, after);
   const auto crowded = mark_ends_of_short_edges(executor, mesh, marked, short_edge);
-  return runtime::parallel_collect<VertexId>(
-      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
-        if (marked[v] && crowded[v] && mesh.kind_of[v].freedom != 0)
-          append(static_cast<VertexId>(v));
-      });
+  return runtime::parallel_collect<VertexId>(executor, mesh.vertex_slots(),
+                                             [&](std::size_t v, auto&& append) {
+                                               if (crowded[v] && mesh.kind_of[v].freedom != 0)
+                                                 append(static_cast<VertexId>(v));
+                                             });
 }
+
+template <int Dim>
+Coarsen<Dim>::Coarsen(Mesh<Dim>& mesh, const Rules& rules)
+    : mesh_(mesh),
+      rules_(rules),
+      has_required_elements_(std::any_of(mesh.regions.begin(), mesh.regions.end(),
+                                         [](const Region& region) { return region.required; })) {}
 
 template <int Dim>
 auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
@@ -31,12 +38,14 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   const double longest = longest_allowed(ring);
   double worst = 1;
   for (const ElementId e : ball) {
-    if (mesh_.required_element(e)) return {};
+    if (has_required_elements_ && mesh_.required_element(e)) return {};
     worst = std::min<double>(worst, mesh_.shape_of[e]);
   }
   for (const Candidate& choice : choices) {
-    const Plan plan{gone, choice.kept};
-    if (keeps_edges_short(plan, ring, longest) && keeps_shapes(plan, worst)) return plan;
+    Plan plan{gone, choice.kept};
+    if (!keeps_edges_short(plan, ring, longest) || !keeps_shapes(plan, worst)) continue;
+    plan.crowded = crowded_after(plan, ring);
+    return plan;
   }
   return {};
 }
@@ -82,11 +91,17 @@ bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
   return false;
 }
 
-/// Where edges are too long already, new ones may be as long as the longest of them, nearly.
+/// Where edges are too long already, new ones may be as long as the longest of them, nearly. The
+/// one that looks longest goes first, so that hardly any other has to be measured closely.
 template <int Dim>
 double Coarsen<Dim>::longest_allowed(const Ring& ring) const {
   if (!rules_.extends_long_edges) return rules_.stretched_edge;
   double longest = rules_.long_edge / 1.02;
+  const auto looks_shorter = [](const EndSquares& one, const EndSquares& other) {
+    return one.at_a * one.at_b < other.at_a * other.at_b;
+  };
+  const auto first = std::max_element(ring.edges.begin(), ring.edges.end(), looks_shorter);
+  if (!shorter_than(*first, longest)) longest = edge_length(*first);
   for (const EndSquares& edge : ring.edges)
     if (!shorter_than(edge, longest)) longest = edge_length(edge);
   return std::max(rules_.stretched_edge, 1.02 * longest);
@@ -100,8 +115,9 @@ bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const Ring& ring, double 
   });
 }
 
+/// Notes the shapes in the plan.
 template <int Dim>
-bool Coarsen<Dim>::keeps_shapes(const Plan& plan, double worst_before) const {
+bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
   const double least = std::min(rules_.kept_shape * worst_before, rules_.accepted_shape);
   const bool on_boundary = mesh_.kind_of[plan.gone].freedom < Dim;
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
@@ -111,33 +127,61 @@ bool Coarsen<Dim>::keeps_shapes(const Plan& plan, double worst_before) const {
     if (on_boundary && !keeps_facets_turned(mesh_, e, plan.gone, kept.position)) return false;
     auto sites = mesh_.sites(corners);
     sites[static_cast<std::size_t>(corner_of(corners, plan.gone))] = &kept;
-    if (!shape_above<Dim>(sites, least)) return false;
+    const double shape = shape_if_above<Dim>(sites, least);
+    if (!(shape > 0)) return false;
+    if (plan.shapes.size() < plan.shapes.capacity())
+      plan.shapes.push_back(static_cast<float>(shape));
   }
   return true;
 }
 
+/// Does this neighbour of the vertex that goes get a short edge to the one that is kept?
+template <int Dim>
+bool Coarsen<Dim>::becomes_crowded(VertexId vertex, const Plan& plan) const {
+  return vertex != plan.kept && mesh_.kind_of[vertex].freedom != 0 &&
+         shorter_than(mesh_.site_of[vertex], mesh_.site_of[plan.kept], rules_.short_edge);
+}
+
+template <int Dim>
+auto Coarsen<Dim>::crowded_after(const Plan& plan, const Ring& ring) const
+    -> EdgeCollapse::Crowded {
+  EdgeCollapse::Crowded crowded;
+  for (const VertexId v : ring.vertices) {
+    if (!becomes_crowded(v, plan)) continue;
+    crowded.many = crowded.vertices.size() == crowded.vertices.capacity();
+    if (crowded.many) break;
+    crowded.vertices.push_back(v);
+  }
+  return crowded;
+}
+
 template <int Dim>
 void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
-  const VertexBuffer ring = neighbours_of(mesh_, plan.gone);
+  if (plan.crowded.many) {
+    for (const VertexId v : neighbours_of(mesh_, plan.gone))
+      if (becomes_crowded(v, plan)) commit.reconsider(v);
+  } else {
+    for (const VertexId v : plan.crowded.vertices) commit.reconsider(v);
+  }
   const auto ball = mesh_.elements_of.of(plan.gone);
   for (const ElementId e : ball)
     if (contains(mesh_.corners_of[e], plan.kept)) pass_patch_on(e, plan);
+  std::size_t stretched = 0;
   for (const ElementId e : ball) {
     Corners<Dim>& corners = mesh_.corners_of[e];
     if (contains(corners, plan.kept)) {
       remove_element(e, plan, commit);
-    } else {
-      corners[static_cast<std::size_t>(corner_of(corners, plan.gone))] = plan.kept;
-      update_element(mesh_, e);
-      defer_add(commit, plan.kept, e);
+      continue;
     }
+    corners[static_cast<std::size_t>(corner_of(corners, plan.gone))] = plan.kept;
+    const std::size_t i = stretched++;
+    mesh_.shape_of[e] =
+        i < plan.shapes.size() ? plan.shapes[i] : static_cast<float>(mesh_.shape_at(corners));
+    mesh_.changed_at[e] = mesh_.epoch;
+    defer_add(commit, plan.kept, e);
   }
   if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan, commit);
   mesh_.elements_of.clear(plan.gone);
-  for (const VertexId v : ring)
-    if (v != plan.kept && mesh_.kind_of[v].freedom != 0 &&
-        shorter_than(mesh_.site_of[v], mesh_.site_of[plan.kept], rules_.short_edge))
-      commit.reconsider(v);
   // All new neighbours are neighbours of this one.
   if (mesh_.kind_of[plan.kept].freedom != 0) commit.wake(plan.kept);
 }

@@ -12,7 +12,18 @@
 namespace ductile::meshadapt {
 
 struct EdgeCollapse {
+  /// Vertices that the collapse gives an edge shorter than the rules want; if there are more than
+  /// fit, as rarely happens, `many` is set.
+  struct Crowded {
+    boost::container::static_vector<VertexId, 8> vertices;
+    bool many = false;
+    friend bool operator==(const Crowded&, const Crowded&) = default;
+  };
   VertexId gone, kept;
+  Crowded crowded = {};
+  /// What the elements that stay will have, in the order of the list of `gone`; if there are more,
+  /// the first.
+  boost::container::static_vector<float, 40> shapes = {};
   friend bool operator==(const EdgeCollapse&, const EdgeCollapse&) = default;
 };
 
@@ -25,7 +36,7 @@ class Coarsen {
   using Update = ListChange;
   static constexpr bool forgoes_wakes = true;  // the next sweep finds who is not worth it at once
 
-  Coarsen(Mesh<Dim>& mesh, const Rules& rules) : mesh_(mesh), rules_(rules) {}
+  Coarsen(Mesh<Dim>& mesh, const Rules& rules);
 
   /// The vertices with an edge shorter than `short_edge` that could go, next to elements changed
   /// after an epoch.
@@ -66,7 +77,10 @@ class Coarsen {
   bool keeps_geometry(const Plan& plan) const;
   double longest_allowed(const Ring& ring) const;
   bool keeps_edges_short(const Plan& plan, const Ring& ring, double longest) const;
-  bool keeps_shapes(const Plan& plan, double worst_before) const;
+  bool keeps_shapes(Plan& plan, double worst_before) const;
+
+  bool becomes_crowded(VertexId vertex, const Plan& plan) const;
+  EdgeCollapse::Crowded crowded_after(const Plan& plan, const Ring& ring) const;
 
   void remove_element(ElementId element, const Plan& plan, runtime::Commit<Coarsen>& commit);
   void pass_patch_on(ElementId element, const Plan& plan);
@@ -74,6 +88,7 @@ class Coarsen {
 
   Mesh<Dim>& mesh_;
   Rules rules_;
+  bool has_required_elements_;
 };
 
 }  // namespace ductile::meshadapt

@@ -106,6 +106,32 @@ TEST(Shape, OfADoubtfulElementHardlyDependsOnWhichCornerIsDensest) {
   EXPECT_NEAR(judged(1.001, 1) / judged(1, 1.001), 1, 0.01);
 }
 
+template <int Dim>
+void expect_shapes_if_above(Random& random) {
+  int above = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Sites<Dim> sites;
+    std::array<const Site<Dim>*, Dim + 1> corner;
+    for (std::size_t k = 0; k < sites.size(); ++k) {
+      Vector<Dim> position;
+      for (int axis = 0; axis < Dim; ++axis) position[axis] = uniform(random, 0, 1);
+      sites[k] = make_site(position, isotropic<Dim>(uniform(random, 0.1, 1)));
+      corner[k] = &sites[k];
+    }
+    const double value = shape<Dim>(corner), bar = uniform(random, 0, 1);
+    EXPECT_EQ(shape_above<Dim>(corner, bar), value > bar);
+    EXPECT_DOUBLE_EQ(shape_if_above<Dim>(corner, bar), value > bar ? value : 0);
+    above += value > bar;
+  }
+  EXPECT_GT(above, 20);
+}
+
+TEST(ShapeIfAbove, SaysWhatTheShapeSays) {
+  Random random(17);
+  expect_shapes_if_above<2>(random);
+  expect_shapes_if_above<3>(random);
+}
+
 TEST(ShorterThan, SaysWhatTheLengthSays) {
   Random random(11);
   for (int trial = 0; trial < 20000; ++trial) {

@@ -134,13 +134,18 @@ double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   return shape_from<Dim>(volume, largest_sum_of_squares<Dim>(corner));
 }
 
-/// shape(corner) > bar, decided without the root and the division; bar is not negative.
+/// What shape() is made of; a volume of 0 if shape(corner) > bar does not hold, which is decided
+/// without the root and the division; bar is not negative.
+struct VolumeAndSquares {
+  double volume = 0, squares = 0;
+};
 template <int Dim>
-bool shape_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
+[[gnu::always_inline]] inline VolumeAndSquares if_shape_above(
+    const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
   std::array<Vector<Dim>, Dim + 1> p;
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
   const double determinant = certain_determinant<Dim>(p);
-  if (!(determinant > 0)) return false;
+  if (!(determinant > 0)) return {};
   const Site<Dim>& judge = densest<Dim>(corner);
   const double volume = judge.density * determinant;
   const auto above = [volume](double limit, double squares) {
@@ -150,8 +155,24 @@ bool shape_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar
       return 432 * volume * volume > limit * limit * (squares * squares * squares);
   };
   const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
-  if (above(std::max(bar, doubtful_shape<Dim>), squares)) return true;
-  return above(bar, squares) && above(bar, largest_sum_of_squares<Dim>(corner));
+  if (above(std::max(bar, doubtful_shape<Dim>), squares)) return {volume, squares};
+  if (!above(bar, squares)) return {};
+  const double largest = largest_sum_of_squares<Dim>(corner);
+  if (!above(bar, largest)) return {};
+  return {volume, largest};
+}
+
+/// shape(corner) > bar, decided without the root and the division; bar is not negative.
+template <int Dim>
+bool shape_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
+  return if_shape_above<Dim>(corner, bar).volume > 0;
+}
+
+/// shape(corner) if that is above a bar that is not negative, else 0.
+template <int Dim>
+double shape_if_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
+  const auto [volume, squares] = if_shape_above<Dim>(corner, bar);
+  return volume > 0 ? shape_from<Dim>(volume, squares) : 0;
 }
 
 /// Mean ratio from shape: 12 (3V)^(2/3) / (sum of the six squared lengths) in 3D (Liu & Joe, BIT
