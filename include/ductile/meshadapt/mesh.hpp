@@ -165,13 +165,11 @@ std::vector<VertexId> vertices_changed(const runtime::Executor& executor, const 
                                        std::uint32_t after);
 
 /// Starts to bring what is around a vertex into the cache, in stages that build on each other: 2,
-/// its list of elements; 1, those elements; 0, the sites of their corners; in 3D, where each is a
-/// corner of five elements or so, of two corners of each, so that hardly any is left out. A stage
-/// is of use if some time passes before the next one. Reads only.
+/// its list of elements; 1, those elements; 0, the sites of their corners. A stage is of use if
+/// some time passes before the next one. Reads only.
 template <int Dim>
 void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
   if (stage == 2) return mesh.elements_of.prefetch(vertex);
-  std::size_t turn = 0;  // which corners, differs from element to element
   for (const ElementId e : mesh.elements_of.of(vertex)) {
     if (stage == 1) {
       __builtin_prefetch(&mesh.corners_of[e]);
@@ -179,13 +177,11 @@ void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
       __builtin_prefetch(&mesh.shape_of[e]);
       continue;
     }
-    for (std::size_t i = 0; i <= Dim; i += Dim - 1) {
-      const VertexId v = mesh.corners_of[e][Dim == 3 ? (i + turn) % 4 : i];
+    for (const VertexId v : mesh.corners_of[e]) {
       const auto* const site = reinterpret_cast<const char*>(&mesh.site_of[v]);
       __builtin_prefetch(site);
       __builtin_prefetch(site + sizeof(Site<Dim>) - 1);
     }
-    ++turn;
   }
 }
 
