@@ -341,7 +341,7 @@ void Refine<Dim>::number() {
   first_element_ = static_cast<ElementId>(mesh_.element_slots());
   report_.applied = runtime::exclusive_scan<std::uint32_t>(executor_, place_of_);
   const std::uint32_t pieces = runtime::exclusive_scan<std::uint32_t>(executor_, first_piece_);
-  mesh_.grow(first_vertex_ + report_.applied, first_element_ + pieces);
+  mesh_.grow(first_vertex_ + report_.applied, std::size_t{first_element_} + pieces);
 }
 
 /// Makes what is numbered, and brings the lists of vertices up to date: change by change, or all of
