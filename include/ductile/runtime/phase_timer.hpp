@@ -10,6 +10,8 @@
 
 namespace ductile::runtime {
 
+/// From construction to destruction. Thread safety: one thread, outside of loops; the report and
+/// the executor outlive it.
 class PhaseTimer {
  public:
   PhaseTimer(double& seconds, const Executor& executor, Phase phase)
