@@ -129,7 +129,7 @@ bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
     sites[static_cast<std::size_t>(corner_of(corners, plan.gone))] = &kept;
     const double shape = shape_if_above<Dim>(sites, least);
     if (!(shape > 0)) return false;
-    if (plan.shapes.size() < plan.shapes.capacity())
+    if (plan.shapes.size() < EdgeCollapse::most_shapes)
       plan.shapes.push_back(static_cast<float>(shape));
   }
   return true;
@@ -148,7 +148,7 @@ auto Coarsen<Dim>::crowded_after(const Plan& plan, const Ring& ring) const
   EdgeCollapse::Crowded crowded;
   for (const VertexId v : ring.vertices) {
     if (!becomes_crowded(v, plan)) continue;
-    crowded.many = crowded.vertices.size() == crowded.vertices.capacity();
+    crowded.many = crowded.vertices.size() == EdgeCollapse::Crowded::most;
     if (crowded.many) break;
     crowded.vertices.push_back(v);
   }

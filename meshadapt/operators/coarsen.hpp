@@ -15,7 +15,8 @@ struct EdgeCollapse {
   /// Vertices that the collapse gives an edge shorter than the rules want; if there are more than
   /// fit, as rarely happens, `many` is set.
   struct Crowded {
-    boost::container::static_vector<VertexId, 8> vertices;
+    static constexpr std::size_t most = 8;
+    boost::container::static_vector<VertexId, most> vertices;
     bool many = false;
     friend bool operator==(const Crowded&, const Crowded&) = default;
   };
@@ -23,7 +24,8 @@ struct EdgeCollapse {
   Crowded crowded = {};
   /// What the elements that stay will have, in the order of the list of `gone`; if there are more,
   /// the first.
-  boost::container::static_vector<float, 40> shapes = {};
+  static constexpr std::size_t most_shapes = 40;
+  boost::container::static_vector<float, most_shapes> shapes = {};
   friend bool operator==(const EdgeCollapse&, const EdgeCollapse&) = default;
 };
 

@@ -79,16 +79,18 @@ struct LongEdge {
 
 /// Of the elements around an edge that changed after an epoch, one stands for it. Of two triangles,
 /// that is the one where it goes from the lower number to the higher. `element` is one of them.
-inline bool stands_for(const Mesh<2>& mesh, ElementId element, std::size_t edge, VertexId p,
-                       VertexId q, std::uint32_t after) {
+inline bool stands_for(const Mesh<2>& mesh, ElementId element, std::size_t edge,
+                       std::uint32_t after) {
+  const auto [p, q] = ends_of_edge<2>(mesh.corners_of[element], edge);
   if (p < q) return true;
   const ElementId other = neighbour(mesh, element, static_cast<int>((edge + 2) % 3));
   return other == none || mesh.changed_at[other] <= after;
 }
 
 /// In 3D the first.
-inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t, VertexId p, VertexId q,
+inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t edge,
                        std::uint32_t after) {
+  const auto [p, q] = ends_of_edge<3>(mesh.corners_of[element], edge);
   const auto of_p = mesh.elements_of.of(p), of_q = mesh.elements_of.of(q);
   for (std::size_t i = 0, j = 0;;) {
     const ElementId x = of_p[i], y = of_q[j];
@@ -111,9 +113,8 @@ std::vector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<D
     unsigned left = compare_edges<Dim>(mesh.sites(corners), limit).longer;
     for (; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      const VertexId p = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][0])];
-      const VertexId q = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][1])];
-      if (stands_for(mesh, element, k, p, q, after) &&
+      const auto [p, q] = ends_of_edge<Dim>(corners, k);
+      if (stands_for(mesh, element, k, after) &&
           !shorter_than(mesh.site_of[p], mesh.site_of[q], limit))
         append(LongEdge{std::min(p, q), std::max(p, q), static_cast<float>(mesh.length(p, q))});
     }

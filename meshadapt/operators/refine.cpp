@@ -36,8 +36,7 @@ template <int Dim>
 std::size_t edge_of(const Corners<Dim>& corners, VertexId a, VertexId b) {
   std::size_t k = 0;
   for (; k + 1 < Simplex<Dim>::edges; ++k) {
-    const VertexId p = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][0])];
-    const VertexId q = corners[static_cast<std::size_t>(Simplex<Dim>::edge[k][1])];
+    const auto [p, q] = ends_of_edge<Dim>(corners, k);
     if ((p == a && q == b) || (p == b && q == a)) break;
   }
   return k;
@@ -58,7 +57,7 @@ bool Refine<Dim>::splits(const LongEdge& edge) const {
     points[middle_of<Dim>(k)] = &split.site;
     Pieces<Dim> pieces;
     Shapes shapes{mesh_.shape_of[element]};
-    return cut(pieces, shapes, k, edge, split, points);
+    return cut(pieces, shapes, k, split, points);
   });
 }
 
@@ -158,6 +157,7 @@ template <int Dim>
 void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& split) const {
   split.kind = {.freedom = Dim};
   split.entity = 0;
+  split.length = edge.length;
   split.worst_around = 1;
   for (const ElementId e : shell) {
     split.worst_around = std::min(split.worst_around, mesh_.shape_of[e]);
@@ -224,7 +224,7 @@ void Refine<Dim>::look(std::size_t place) {
   cuts.shape[0] = mesh_.shape_of[element];
   for (std::size_t i = 0; i < order.size; ++i) {
     const std::uint32_t number = cuts.split[order.edge[i]] - 1;
-    if (!cut(pieces, cuts.shape, order.edge[i], edges_[number], splits_[number], points))
+    if (!cut(pieces, cuts.shape, order.edge[i], splits_[number], points))
       runtime::atomic_mark(asked_[number]);
   }
   cuts.pieces = static_cast<std::uint32_t>(pieces.size());
@@ -283,8 +283,8 @@ bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& point
 /// Cuts pieces along one edge, unless that makes an edge or a shape that the rules refuse; they
 /// stay as they are then.
 template <int Dim>
-bool Refine<Dim>::cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const LongEdge& as,
-                      const Split& split, const Points& points) const {
+bool Refine<Dim>::cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const Split& split,
+                      const Points& points) const {
   if (!keeps_distance(pieces, edge, points)) return false;
   Pieces<Dim> halves = pieces;
   halves.cut(edge);
@@ -293,7 +293,7 @@ bool Refine<Dim>::cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, con
     const double value = shape<Dim>(sites_of<Dim>(halves[half], points));
     after[half] = static_cast<float>(value);
     return value > 0 &&
-           value >= least_shape(std::min<double>(before, split.worst_around), as.length);
+           value >= least_shape(std::min<double>(before, split.worst_around), split.length);
   };
   std::size_t second = pieces.size();
   for (std::size_t first = 0; first < pieces.size(); ++first)

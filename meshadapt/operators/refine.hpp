@@ -45,6 +45,7 @@ class Refine {
     std::uint32_t entity;  // patch or curve that the edge lies on, or 0
     std::int32_t reference;
     VertexKind kind;
+    float length;        // of the edge
     float worst_around;  // shape of the worst element around the edge
   };
   /// An element around a long edge.
@@ -81,8 +82,8 @@ class Refine {
   Order order_of(const Cuts& cuts) const;
   Points points_of(ElementId element, const Cuts& cuts) const;
   bool cut_freely(Cuts& cuts, const Order& order, const Points& points) const;
-  bool cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const LongEdge& as,
-           const Split& split, const Points& points) const;
+  bool cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const Split& split,
+           const Points& points) const;
   bool keeps_distance(const Pieces<Dim>& pieces, std::size_t edge, const Points& points) const;
   double least_shape(double before, double length) const;
 

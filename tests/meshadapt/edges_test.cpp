@@ -49,6 +49,7 @@ TYPED_TEST(EdgesIn, AreFoundOnceNextToAnyChanges) {
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
   auto mesh = make_mesh<Dim>(Executor({.threads = 1}), any, {}, neighbours, warnings);
+  for (auto& site : mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
   for (const double share : {1.0, 0.3, 0.01, 0.0}) {
     for (std::uint32_t& epoch : mesh.changed_at) epoch = test::chance(random, share) ? 3 : 2;
     std::vector<LongEdge> first;

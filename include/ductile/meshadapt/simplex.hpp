@@ -108,6 +108,13 @@ bool contains(const std::array<VertexId, N>& corners, VertexId vertex) {
   return corner_of(corners, vertex) >= 0;
 }
 
+/// The corners that edge k joins.
+template <int Dim>
+std::array<VertexId, 2> ends_of_edge(const Corners<Dim>& corners, std::size_t k) {
+  const auto& [i, j] = Simplex<Dim>::edge[k];
+  return {corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>(j)]};
+}
+
 /// The corners of facet i, in outward order.
 template <int Dim>
 Facet<Dim> facet_of(const Corners<Dim>& corners, int i) {
