@@ -3,6 +3,7 @@
 /// Threads fill a list in any order, so it is sorted then; one thread alone fills it in order.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -16,8 +17,9 @@ inline std::uint32_t count_up(std::uint32_t& count, bool alone) {
   return alone ? count++ : runtime::atomic_count(count);
 }
 
-/// For what is short or hardly out of order.
-inline void sort_by_insertion(std::span<std::uint32_t> list) {
+/// For lists that are mostly short.
+inline void sort_short(std::span<std::uint32_t> list) {
+  if (list.size() > 64) return std::sort(list.begin(), list.end());
   for (std::size_t i = 1; i < list.size(); ++i) {
     const std::uint32_t value = list[i];
     std::size_t at = i;

@@ -60,14 +60,15 @@ void list_elements(const Executor& executor, Mesh<Dim>& mesh,
   });
   if (alone) return;
   parallel_for(executor, count_of.size(), [&](std::size_t v) {
-    if (count_of[v] != 0) sort_by_insertion({lists.data(static_cast<VertexId>(v)), count_of[v]});
+    if (count_of[v] != 0) sort_short({lists.data(static_cast<VertexId>(v)), count_of[v]});
   });
 }
 
 template <int Dim>
 void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
   std::vector<std::uint32_t> count_of(mesh.vertex_slots());
-  visit_corners(executor, mesh, [&](VertexId v, ElementId) { runtime::atomic_count(count_of[v]); });
+  const bool alone = executor.threads() == 1;
+  visit_corners(executor, mesh, [&](VertexId v, ElementId) { count_up(count_of[v], alone); });
   list_elements<Dim>(executor, mesh, count_of);
 }
 

@@ -120,7 +120,7 @@ Ids sorted_elements(const Executor& executor, const Mesh<Dim>& mesh) {
   if (alone) return order;
   parallel_for(executor, end_of.size(), [&](std::size_t v) {
     const std::uint32_t begin = v == 0 ? 0 : end_of[v - 1];
-    sort_by_insertion(order.all().subspan(begin, end_of[v] - begin));
+    sort_short(order.all().subspan(begin, end_of[v] - begin));
   });
   return order;
 }

@@ -11,6 +11,7 @@
 
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
+#include "ductile/runtime/run_rounds.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/refine.hpp"
 #include "operators/smooth.hpp"

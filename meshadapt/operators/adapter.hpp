@@ -10,8 +10,8 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/mesh.hpp"
-#include "ductile/runtime/run_rounds.hpp"
-#include "operators/refine.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+#include "operators/edges.hpp"
 
 namespace ductile::meshadapt {
 

@@ -36,13 +36,6 @@ MaybeEdges compare_edges(const std::array<const Site<Dim>*, Dim + 1>& corner, do
   return result;
 }
 
-template <int Dim>
-bool any_marked(const std::vector<std::uint8_t>& marked, const Corners<Dim>& corners) {
-  unsigned sum = 0;
-  for (const VertexId v : corners) sum += marked[v];
-  return sum != 0;
-}
-
 /// The marked vertices that have an edge shorter than a limit. Elements all of whose marked corners
 /// are known to have one are not looked at.
 /// Thread safety: one caller; runs on the executor.

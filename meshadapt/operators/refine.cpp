@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "ductile/runtime/atomic_mark.hpp"
@@ -19,7 +20,7 @@ using runtime::PhaseTimer;
 
 namespace {
 
-/// Where more than this share of the elements is split, lists are made anew.
+/// With more edges to split than this share of the number of elements, lists are made anew.
 constexpr double many = 0.08;
 
 /// Where along a-b its two halves have the same metric length, the size varying geometrically.
@@ -177,31 +178,68 @@ void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& spli
 
 // ---- Who refuses ----
 
+/// As if edges were split one after the other, the longest first: one is refused only once it is
+/// known which of those before it are.
 template <int Dim>
 void Refine<Dim>::refuse() {
-  round_ = 1;
   parallel_for(executor_, elements_.size(), [&](std::size_t place) { look(place); });
   for (auto refused = take_refused(); !refused.empty(); refused = take_refused())
     parallel_for(executor_, refused.size(), [&](std::size_t i) {
-      const LongEdge& edge = edges_[refused[i]];
-      visit_shell(mesh_, edge.a, edge.b, [&](ElementId element) {
-        const std::uint32_t place = elements_.place_of(element);
+      visit_cuts(refused[i], [&](std::size_t place) {
         if (first_refused_of(cuts_[place], refused[i])) look(place);
       });
     });
-  report_.rounds = round_ - 1;
+  report_.rounds = round_;
 }
 
-/// Edges that somebody has refused since the last call.
+/// Refuses what elements ask to, but where that may still change; returns the edges refused.
 template <int Dim>
 std::vector<std::uint32_t> Refine<Dim>::take_refused() {
   ++round_;
-  return runtime::parallel_collect<std::uint32_t>(executor_, edges_.size(),
-                                                  [&](std::size_t i, auto&& append) {
-                                                    if (!asked_[i] || refused_in_[i] != 0) return;
-                                                    refused_in_[i] = round_;
-                                                    append(static_cast<std::uint32_t>(i));
-                                                  });
+  const auto asked = runtime::parallel_collect<std::uint32_t>(
+      executor_, edges_.size(), [&](std::size_t i, auto&& append) {
+        const auto number = static_cast<std::uint32_t>(i);
+        if (asked_[i] != 0 && is_split(number)) append(number);
+      });
+  parallel_for(executor_, asked.size(),
+               [&](std::size_t i) { asked_[asked[i]] = is_asked(asked[i]); });
+  const auto refused = runtime::parallel_collect<std::uint32_t>(
+      executor_, asked.size(), [&](std::size_t i, auto&& append) {
+        if (asked_[asked[i]] != 0 && goes_first(asked[i])) append(asked[i]);
+      });
+  parallel_for(executor_, refused.size(), [&](std::size_t i) { refused_in_[refused[i]] = round_; });
+  return refused;
+}
+
+/// Does an element still ask to refuse this edge?
+template <int Dim>
+bool Refine<Dim>::is_asked(std::uint32_t number) const {
+  bool any = false;
+  visit_cuts(number, [&](std::size_t place) {
+    for (std::size_t k = 0; k < cuts_[place].split.size(); ++k)
+      any = any || (cuts_[place].split[k] == number + 1 && (cuts_[place].asks >> k & 1U) != 0);
+  });
+  return any;
+}
+
+/// Is this the first edge that the elements around it ask to refuse? What they do with the others
+/// may depend on it.
+template <int Dim>
+bool Refine<Dim>::goes_first(std::uint32_t number) const {
+  bool first = true;
+  visit_cuts(number, [&](std::size_t place) {
+    for (const std::uint32_t split : cuts_[place].split)
+      if (split != 0 && asked_[split - 1] != 0 && is_split(split - 1))
+        first = first && !goes_before(split - 1, number);
+  });
+  return first;
+}
+
+/// Visits the places of the elements around an edge.
+template <int Dim>
+void Refine<Dim>::visit_cuts(std::uint32_t number, auto&& visit) const {
+  visit_shell(mesh_, edges_[number].a, edges_[number].b,
+              [&](ElementId element) { visit(elements_.place_of(element)); });
 }
 
 /// An element that several edges refused in this round cut looks again once.
@@ -212,20 +250,22 @@ bool Refine<Dim>::first_refused_of(const Cuts& cuts, std::uint32_t number) const
   return true;
 }
 
-/// Cuts an element for trial, and refuses the edges by which it may not be cut.
+/// Cuts an element for trial, and asks to refuse the edges by which it may not be cut.
 template <int Dim>
 void Refine<Dim>::look(std::size_t place) {
   const ElementId element = elements_[place];
   Cuts& cuts = cuts_[place];
   const Order order = order_of(cuts);
   const Points points = points_of(element, cuts);
+  cuts.asks = 0;
   if (cut_freely(cuts, order, points)) return;
   Pieces<Dim> pieces;
   cuts.shape[0] = mesh_.shape_of[element];
   for (std::size_t i = 0; i < order.size; ++i) {
     const std::uint32_t number = cuts.split[order.edge[i]] - 1;
-    if (!cut(pieces, cuts.shape, order.edge[i], splits_[number], points))
-      runtime::atomic_mark(asked_[number]);
+    if (cut(pieces, cuts.shape, order.edge[i], splits_[number], points)) continue;
+    cuts.asks |= 1U << order.edge[i];
+    runtime::atomic_mark(asked_[number]);
   }
   cuts.pieces = static_cast<std::uint32_t>(pieces.size());
 }
@@ -233,13 +273,10 @@ void Refine<Dim>::look(std::size_t place) {
 template <int Dim>
 auto Refine<Dim>::order_of(const Cuts& cuts) const -> Order {
   Order order;
-  const auto before = [&](std::uint32_t i, std::uint32_t k) {
-    return edges_[i].length != edges_[k].length ? edges_[i].length > edges_[k].length : i < k;
-  };
   for (std::size_t k = 0; k < cuts.split.size(); ++k) {
     if (cuts.split[k] == 0 || !is_split(cuts.split[k] - 1)) continue;
     std::size_t at = order.size++;
-    for (; at != 0 && before(cuts.split[k] - 1, cuts.split[order.edge[at - 1]] - 1); --at)
+    for (; at != 0 && goes_before(cuts.split[k] - 1, cuts.split[order.edge[at - 1]] - 1); --at)
       order.edge[at] = order.edge[at - 1];
     order.edge[at] = static_cast<std::uint8_t>(k);
   }
@@ -341,6 +378,8 @@ void Refine<Dim>::number() {
   first_element_ = static_cast<ElementId>(mesh_.element_slots());
   report_.applied = runtime::exclusive_scan<std::uint32_t>(executor_, place_of_);
   const std::uint32_t pieces = runtime::exclusive_scan<std::uint32_t>(executor_, first_piece_);
+  if (std::size_t{first_element_} + pieces >= none)
+    throw std::length_error("a mesh of more elements than 32-bit numbers can count");
   mesh_.grow(first_vertex_ + report_.applied, std::size_t{first_element_} + pieces);
 }
 

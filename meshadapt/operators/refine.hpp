@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "ductile/meshadapt/background.hpp"
@@ -31,14 +30,14 @@ class Refine {
   /// Would this edge be split if it were the only long one? Thread safety: any thread.
   bool splits(const LongEdge& edge) const;
 
-  /// Splits all of these edges but those that a rule refuses. No edge comes twice. The result
-  /// depends on their order only where edges of an element are exactly as long. May be called once.
+  /// Splits all of these edges, as if one after the other, the longest first, but those that a rule
+  /// refuses. All are of the mesh, none comes twice. New vertices are numbered in their order.
   /// Rounds of the report are those in which elements looked whether rules refuse; conflicts, who
   /// is cut by what, are the elements' looks. Thread safety: one caller; runs on the executor.
   runtime::RoundsReport run(std::vector<LongEdge> edges);
 
  private:
-  /// What becomes of a long edge. Trivial, as it lives in memory that nobody has touched.
+  /// What becomes of a long edge. Of no use until it is located.
   struct Split {
     Site<Dim> site;  // of the new vertex
     ElementId host;
@@ -58,6 +57,7 @@ class Refine {
     std::array<std::uint32_t, Simplex<Dim>::edges> split;  // [edge], its number plus one, or 0
     std::array<float, Pieces<Dim>::most> shape;            // [piece]
     std::uint32_t pieces;
+    std::uint32_t asks;  // a bit for each edge that the element asks to refuse
   };
   /// The edges of an element that are to be split, the longest first.
   struct Order {
@@ -77,6 +77,9 @@ class Refine {
   // the edges refused others may be cut otherwise, until none refuses any more. ----
   void refuse();
   std::vector<std::uint32_t> take_refused();
+  bool is_asked(std::uint32_t number) const;
+  bool goes_first(std::uint32_t number) const;
+  void visit_cuts(std::uint32_t number, auto&& visit) const;
   bool first_refused_of(const Cuts& cuts, std::uint32_t number) const;
   void look(std::size_t place);
   Order order_of(const Cuts& cuts) const;
@@ -95,6 +98,10 @@ class Refine {
   void write_links(std::uint32_t number, auto&& defer);
 
   bool is_split(std::uint32_t number) const { return refused_in_[number] == 0; }
+  bool goes_before(std::uint32_t one, std::uint32_t other) const {
+    const float length = edges_[one].length, others = edges_[other].length;
+    return length != others ? length > others : one < other;
+  }
   VertexId vertex_of(std::uint32_t number) const { return first_vertex_ + place_of_[number]; }
 
   const runtime::Executor& executor_;
@@ -106,7 +113,7 @@ class Refine {
   std::vector<LongEdge> edges_;
   GrowingArray<Split> splits_;             // [edge]
   std::vector<std::uint32_t> refused_in_;  // [edge], the round, or 0
-  std::vector<std::uint8_t> asked_;        // [edge], somebody refuses it
+  std::vector<std::uint8_t> asked_;        // [edge], an element asked to refuse it, or did once
   std::uint32_t round_ = 0;
   MarkedSet elements_;                   // those that are cut
   GrowingArray<Cuts> cuts_;              // [place in elements_]

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <set>
 #include <utility>
 
@@ -28,7 +29,10 @@ TYPED_TEST_SUITE(RefineIn, Dimensions);
 /// A metric with random axes, sizes and stretch at every vertex of a random mesh.
 template <int Dim>
 Mesh<Dim> wild_mesh(const Executor& executor, Random& random, Neighbours<Dim>& neighbours) {
-  AnyMesh any = test::make_grid(test::unit_grid(Dim, 3));
+  constexpr int n = Dim == 2 ? 12 : 4;
+  test::Grid grid = test::unit_grid(Dim, n);
+  grid.region = test::two_halves(n);
+  AnyMesh any = test::make_grid(grid);
   test::jiggle(any, random, 0.3);
   std::vector<std::string> warnings;
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
@@ -93,6 +97,11 @@ struct Refined {
   std::size_t vertices_before;
   std::vector<LongEdge> edges;
   runtime::RoundsReport report;
+  std::unique_ptr<Background<Dim>> background;
+
+  bool would_split(const LongEdge& edge) {
+    return Refine<Dim>(Executor({.threads = 1}), mesh, *background, Rules{}).splits(edge);
+  }
 
   Refined(std::uint64_t seed, int threads, std::size_t most) {
     const Executor executor({.threads = threads});
@@ -101,12 +110,12 @@ struct Refined {
     mesh = wild_mesh<Dim>(executor, random, neighbours);
     for (VertexId v = 0; v < mesh.vertex_slots(); ++v)
       mesh.host_of[v] = mesh.elements_of.of(v).front();
-    const Background<Dim> background(executor, mesh, std::move(neighbours));
+    background = std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours));
     vertices_before = mesh.vertex_slots();
     const Rules rules;
     edges = long_edges(executor, mesh, rules.long_edge, 0);
     edges.resize(std::min(most, edges.size()));
-    report = Refine<Dim>(executor, mesh, background, rules).run(edges);
+    report = Refine<Dim>(executor, mesh, *background, rules).run(edges);
   }
 };
 
@@ -132,9 +141,10 @@ TYPED_TEST(RefineIn, LeavesASoundMesh) {
 /// Most edges of a wild mesh are split together with others of their elements.
 TYPED_TEST(RefineIn, MakesNoShortEdge) {
   constexpr int Dim = TypeParam::value;
-  std::size_t applied = 0, refused = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  std::size_t applied = 0, refused = 0, rounds = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Refined<Dim> refined(seed, 1, 100000);
+    rounds = std::max(rounds, refined.report.rounds);
     applied += refined.report.applied;
     refused += refined.report.planned - refined.report.applied;
     for (const auto& [a, b] : edges_of(refined.mesh))
@@ -142,6 +152,33 @@ TYPED_TEST(RefineIn, MakesNoShortEdge) {
         EXPECT_GE(refined.mesh.length(a, b), Rules{}.shortest_split * (1 - 1e-12));
   }
   EXPECT_GT(applied, 500U);
+  EXPECT_GT(refused, 50U);
+  EXPECT_GT(rounds, 2U) << "none was refused because others were not";
+}
+
+/// An edge is not left whole because of another that is.
+TYPED_TEST(RefineIn, SplitsWhateverMayBeSplitAlone) {
+  constexpr int Dim = TypeParam::value;
+  std::size_t refused = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Refined<Dim> refined(seed, 2, 100000);
+    const std::set<Edge> left = edges_of(refined.mesh);
+    for (const LongEdge& edge : refined.edges) {
+      if (!left.contains({edge.a, edge.b})) continue;
+      ++refused;
+      const Shell shell = [&] {
+        Shell around;
+        shell_of(refined.mesh, edge.a, edge.b, around);
+        return around;
+      }();
+      const bool cut = std::any_of(shell.begin(), shell.end(), [&](ElementId e) {
+        const auto& corners = refined.mesh.corners_of[e];
+        return std::any_of(corners.begin(), corners.end(),
+                           [&](VertexId v) { return v >= refined.vertices_before; });
+      });
+      if (!cut) EXPECT_FALSE(refined.would_split(edge));
+    }
+  }
   EXPECT_GT(refused, 50U);
 }
 
@@ -156,6 +193,13 @@ TYPED_TEST(RefineIn, DoesNotDependOnThreads) {
       EXPECT_EQ(many.mesh.shape_of, one.mesh.shape_of);
       EXPECT_EQ(many.mesh.site_of, one.mesh.site_of);
       EXPECT_EQ(many.mesh.host_of, one.mesh.host_of);
+      EXPECT_EQ(many.mesh.kind_of, one.mesh.kind_of);
+      EXPECT_EQ(many.mesh.entity_of, one.mesh.entity_of);
+      for (VertexId v = 0; v < one.mesh.vertex_slots(); ++v) {
+        EXPECT_TRUE(std::ranges::equal(many.mesh.elements_of.of(v), one.mesh.elements_of.of(v)));
+        if (Dim == 3)
+          EXPECT_TRUE(std::ranges::equal(many.mesh.links_of.of(v), one.mesh.links_of.of(v)));
+      }
     }
   }
 }
