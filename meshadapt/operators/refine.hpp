@@ -32,8 +32,9 @@ class Refine {
 
   /// Splits all of these edges, as if one after the other, the longest first, but those that a rule
   /// refuses. All are of the mesh, none comes twice. New vertices are numbered in their order.
-  /// Rounds of the report are those in which elements looked whether rules refuse; conflicts, who
-  /// is cut by what, are the elements' looks. Thread safety: one caller; runs on the executor.
+  /// May be called once. Rounds and conflicts of the report are those of refusals.
+  /// Thread safety: one caller; runs on the executor. Throws std::length_error if the mesh would
+  /// get more elements than there are numbers.
   runtime::RoundsReport run(std::vector<LongEdge> edges);
 
  private:
@@ -73,8 +74,8 @@ class Refine {
   bool may_split(const LongEdge& edge, const Shell& shell) const;
   void classify(const LongEdge& edge, const Shell& shell, Split& split) const;
 
-  // ---- 2. Who refuses: an element that would be cut into what the rules do not allow. Without
-  // the edges refused others may be cut otherwise, until none refuses any more. ----
+  // ---- 2. What is refused: elements ask to, that would be cut into what the rules do not allow.
+  // Without the edges refused they are cut otherwise, and look again, until none asks. ----
   void refuse();
   std::vector<std::uint32_t> take_refused();
   bool is_asked(std::uint32_t number) const;
@@ -113,13 +114,12 @@ class Refine {
   std::vector<LongEdge> edges_;
   GrowingArray<Split> splits_;             // [edge]
   std::vector<std::uint32_t> refused_in_;  // [edge], the round, or 0
-  std::vector<std::uint8_t> asked_;        // [edge], an element asked to refuse it, or did once
+  std::vector<std::uint8_t> asked_;        // [edge], an element asks to refuse it, or did once
   std::uint32_t round_ = 0;
-  MarkedSet elements_;                   // those that are cut
-  GrowingArray<Cuts> cuts_;              // [place in elements_]
-  std::vector<std::uint32_t> place_of_;  // [edge], of its vertex among the new ones
-  std::vector<std::uint32_t>
-      first_piece_;  // [place in elements_], of its pieces among the new ones
+  MarkedSet elements_;                      // those that are cut
+  GrowingArray<Cuts> cuts_;                 // [place in elements_]
+  std::vector<std::uint32_t> place_of_;     // [edge], of its vertex among the new ones
+  std::vector<std::uint32_t> first_piece_;  // [place in elements_], among the new pieces
   VertexId first_vertex_ = 0;
   ElementId first_element_ = 0;
 };
