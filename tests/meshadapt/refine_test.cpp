@@ -38,7 +38,7 @@ Mesh<Dim> wild_mesh(const Executor& executor, Random& random, Neighbours<Dim>& n
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
   for (auto& site : mesh.site_of) {
     std::array<double, Dim> sizes;
-    for (double& size : sizes) size = std::pow(10.0, test::uniform(random, -1.5, 0.5));
+    for (double& size : sizes) size = 3.0 / n * std::pow(10.0, test::uniform(random, -1.5, 0.5));
     site = make_site(site.position, test::random_metric<Dim>(random, sizes));
   }
   update_shapes(executor, mesh);
