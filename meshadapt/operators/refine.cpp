@@ -203,7 +203,7 @@ std::vector<std::uint32_t> Refine<Dim>::take_refused() {
       });
   parallel_for(executor_, asked.size(),
                [&](std::size_t i) { asked_[asked[i]] = is_asked(asked[i]); });
-  const auto refused = runtime::parallel_collect<std::uint32_t>(
+  auto refused = runtime::parallel_collect<std::uint32_t>(
       executor_, asked.size(), [&](std::size_t i, auto&& append) {
         if (asked_[asked[i]] != 0 && goes_first(asked[i])) append(asked[i]);
       });
