@@ -147,9 +147,10 @@ TYPED_TEST(RefineIn, MakesNoShortEdge) {
     rounds = std::max(rounds, refined.report.rounds);
     applied += refined.report.applied;
     refused += refined.report.planned - refined.report.applied;
-    for (const auto& [a, b] : edges_of(refined.mesh))
-      if (b >= refined.vertices_before)
-        EXPECT_GE(refined.mesh.length(a, b), Rules{}.shortest_split * (1 - 1e-12));
+    for (const auto& [a, b] : edges_of(refined.mesh)) {
+      if (b < refined.vertices_before) continue;
+      EXPECT_GE(refined.mesh.length(a, b), Rules{}.shortest_split * (1 - 1e-12));
+    }
   }
   EXPECT_GT(applied, 500U);
   EXPECT_GT(refused, 50U);
@@ -176,7 +177,7 @@ TYPED_TEST(RefineIn, SplitsWhateverMayBeSplitAlone) {
         return std::any_of(corners.begin(), corners.end(),
                            [&](VertexId v) { return v >= refined.vertices_before; });
       });
-      if (!cut) EXPECT_FALSE(refined.would_split(edge));
+      EXPECT_FALSE(!cut && refined.would_split(edge));
     }
   }
   EXPECT_GT(refused, 50U);
@@ -197,8 +198,8 @@ TYPED_TEST(RefineIn, DoesNotDependOnThreads) {
       EXPECT_EQ(many.mesh.entity_of, one.mesh.entity_of);
       for (VertexId v = 0; v < one.mesh.vertex_slots(); ++v) {
         EXPECT_TRUE(std::ranges::equal(many.mesh.elements_of.of(v), one.mesh.elements_of.of(v)));
-        if (Dim == 3)
-          EXPECT_TRUE(std::ranges::equal(many.mesh.links_of.of(v), one.mesh.links_of.of(v)));
+        if (Dim == 2) continue;
+        EXPECT_TRUE(std::ranges::equal(many.mesh.links_of.of(v), one.mesh.links_of.of(v)));
       }
     }
   }
