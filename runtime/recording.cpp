@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <stdexcept>
 #include <utility>
 
 namespace ductile::runtime {
@@ -43,12 +44,19 @@ void Recording::note(double cost_ns) {
   if (full) lap();
 }
 
-/// Books the time since the last loop as serial.
+/// Books the time since the last loop as serial, were it none: all recordings of a run have the
+/// same stretches.
 void Recording::flush() {
   const double ns = lap();
-  if (paused_ || ns == 0) return;
+  if (paused_) return;
   note(ns);
   add(Stretch::Kind::serial, costs_.size() - 1);
+}
+
+void Recording::take_least(const Recording& again) {
+  if (sections_ != again.sections_ || stretches_ != again.stretches_)
+    throw std::invalid_argument("Recording::take_least: these are not recordings of the same run");
+  for (std::size_t i = 0; i < costs_.size(); ++i) costs_[i] = std::min(costs_[i], again.costs_[i]);
 }
 
 void Recording::begin_section(std::string name) {

@@ -10,7 +10,7 @@ namespace ductile::bench {
 
 namespace {
 
-constexpr int most_threads = 64;
+constexpr int most_threads = 64, recordings = 5;
 
 ForecastRow row_from(const runtime::Replay& replayed) {
   ForecastRow row{.threads = replayed.threads,
@@ -27,17 +27,26 @@ ForecastRow row_from(const runtime::Replay& replayed) {
   return row;
 }
 
+std::uint64_t record(const Sampler& sampler, runtime::Recording& recording) {
+  recording.pause();
+  const runtime::Executor executor({.threads = most_threads, .recording = &recording});
+  return fingerprint(sampler.adapt_on(executor));
+}
+
 }  // namespace
 
 Forecast forecast(const Sampler& sampler, const std::string& case_name) {
   runtime::Recording recording;
-  recording.pause();
   Forecast result{.case_name = case_name};
-  const runtime::Executor executor({.threads = most_threads, .recording = &recording});
-  result.fingerprint = fingerprint(sampler.adapt_on(executor));
+  result.fingerprint = record(sampler, recording);
+  for (int again = 1; again < recordings; ++again) {
+    runtime::Recording another;
+    record(sampler, another);
+    recording.take_least(another);
+  }
   for (int threads = 1; threads <= most_threads; threads *= 2)
     result.rows.push_back(row_from(
-        replay(recording, {.threads = threads, .launch_ns = 1000 + 30.0 * threads, .block = 32})));
+        replay(recording, {.threads = threads, .launch_ns = 1000 + 30.0 * threads})));
   return result;
 }
 

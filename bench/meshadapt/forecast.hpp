@@ -21,11 +21,12 @@ struct ForecastRow {
 
 struct Forecast {
   std::string case_name;
-  std::uint64_t fingerprint = 0;    ///< of the recorded run's result
+  std::uint64_t fingerprint = 0;    ///< of the recorded runs' result
   std::vector<ForecastRow> rows{};  ///< 1, 2, 4, ..., 64 threads
 };
 
-/// Records a run and replays it, with blocks of 32 items and launches of 1 us + 30 ns a thread.
+/// Records a run several times, takes the least of each cost and replays that, with launches of
+/// 1 us + 30 ns a thread.
 Forecast forecast(const Sampler& sampler, const std::string& case_name);
 
 }  // namespace ductile::bench

@@ -146,6 +146,40 @@ TEST(Recording, LeavesOutTheTimeInWhichTheThreadDoesNotRun) {
   EXPECT_LT(replay(recording, {.threads = 1}).total.work, 0.02);
 }
 
+TEST(Recording, TakesTheLeastOfEachCost) {
+  Recording first, second_time;
+  for (Recording* recording : {&first, &second_time}) recording->begin_section("part");
+  record_items(first, {2 * second, 3 * second, 5 * second});
+  record_items(second_time, {4 * second, second, 5 * second});
+  first.take_least(second_time);
+  EXPECT_NEAR(replay(first, {}).total.work, 2 + 1 + 5, 0.1);
+}
+
+TEST(Recording, TakesTheLeastOfTheSameRunOnly) {
+  Recording all, fewer, elsewhere;
+  record_items(all, {second, second});
+  record_items(fewer, {second});
+  elsewhere.begin_section("elsewhere");
+  record_items(elsewhere, {second, second});
+  EXPECT_THROW(all.take_least(fewer), std::invalid_argument);
+  EXPECT_THROW(all.take_least(elsewhere), std::invalid_argument);
+}
+
+/// Whether it gets the core or not: a run leaves the same stretches every time.
+TEST(Recording, IsTheSameEveryTimeButForCosts) {
+  const auto recorded = [](Recording& recording) {
+    const Executor executor({.threads = 8, .recording = &recording});
+    std::vector<int> values(5000);
+    for (int loop = 0; loop < 20; ++loop)
+      parallel_for(executor, values.size(), [&](std::size_t i) { values[i] += loop; });
+  };
+  Recording once, again;
+  recorded(once);
+  recorded(again);
+  EXPECT_NO_THROW(once.take_least(again));
+  EXPECT_LE(replay(once, {}).total.work, replay(again, {}).total.work);
+}
+
 TEST(Recording, SurvivesAnExceptionInALoop) {
   Recording recording;
   const Executor executor({.threads = 2, .recording = &recording});

@@ -30,6 +30,7 @@ class Recording {
     Kind kind;
     std::size_t first, count;  ///< its costs
     std::size_t block = 1;     ///< of items: how many were handed out at once
+    friend bool operator==(const Stretch&, const Stretch&) = default;
   };
 
   Recording();
@@ -43,6 +44,11 @@ class Recording {
   const std::vector<Stretch>& stretches() const { return stretches_; }
   const std::vector<float>& costs() const { return costs_; }  ///< nanoseconds
   std::uint32_t rounds() const { return rounds_; }
+
+  /// Each cost becomes the lesser of the two, where `again` is of the same run: what has disturbed
+  /// only one of them, an interrupt or a cache that others had filled, does not count. Throws
+  /// std::invalid_argument if the two differ in more than costs, as racing runs may.
+  void take_least(const Recording& again);
 
   // ---- For the runtime and for those who record something else than time ----
 
