@@ -4,6 +4,8 @@
 #include <cstring>
 #include <new>
 
+#include "ductile/runtime/parallel_for.hpp"
+
 // Sanitizers watch what malloc gives, not mappings.
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define DUCTILE_MOVES_PAGES 1
@@ -44,9 +46,20 @@ void GrowingMemory::reserve(std::size_t bytes) {
   bytes_ = wanted;
 }
 
+void GrowingMemory::release(const Executor& executor) {
+  const std::size_t part = whole_pages(std::size_t{1} << 18U), whole = bytes_ / part;
+  // Unmapping what has no pages any more takes no time. If it could not be, this takes it.
+  if (executor.threads() > 1)
+    parallel_for(executor, whole,
+                 [this, part](std::size_t i) { madvise(data_ + i * part, part, MADV_DONTNEED); });
+  *this = GrowingMemory();
+}
+
 #else
 
 GrowingMemory::~GrowingMemory() { std::free(data_); }
+
+void GrowingMemory::release(const Executor&) { *this = GrowingMemory(); }
 
 void GrowingMemory::reserve(std::size_t bytes) {
   if (bytes <= bytes_) return;

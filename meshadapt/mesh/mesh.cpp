@@ -5,6 +5,7 @@
 
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/element_lists.hpp"
 
@@ -47,7 +48,7 @@ template <int Dim>
 void list_elements(const Executor& executor, Mesh<Dim>& mesh,
                    std::span<const std::uint32_t> count_of) {
   auto& lists = mesh.elements_of;
-  lists.reset(count_of.size());
+  lists.reset_for_overwrite(count_of.size());
   const auto make_room = [&](std::size_t, std::size_t begin, std::size_t end) {
     lists.reserve_all(static_cast<VertexId>(begin), static_cast<VertexId>(end), [&](VertexId v) {
       return count_of[v] == 0 ? 0 : count_of[v] + list_slack<Dim>;
@@ -66,7 +67,7 @@ void list_elements(const Executor& executor, Mesh<Dim>& mesh,
 
 template <int Dim>
 void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
-  std::vector<std::uint32_t> count_of(mesh.vertex_slots());
+  auto count_of = runtime::make_vector<std::uint32_t>(executor, mesh.vertex_slots());
   const bool alone = executor.threads() == 1;
   visit_corners(executor, mesh, [&](VertexId v, ElementId) { count_up(count_of[v], alone); });
   list_elements<Dim>(executor, mesh, count_of);
@@ -83,7 +84,7 @@ template <int Dim>
 std::vector<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>& mesh,
                                        std::uint32_t after) {
   constexpr std::size_t stretch = 64;
-  std::vector<std::uint8_t> marked(mesh.vertex_slots());
+  auto marked = runtime::make_vector<std::uint8_t>(executor, mesh.vertex_slots());
   const auto mark = [&](std::size_t, std::size_t begin, std::size_t end) {
     if (!any_above(std::span(mesh.changed_at).subspan(begin, end - begin), after)) return;
     for (std::size_t e = begin; e < end; ++e) {

@@ -6,6 +6,7 @@
 
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -13,6 +14,7 @@ namespace ductile::meshadapt {
 using runtime::Executor;
 using runtime::parallel_collect;
 using runtime::parallel_for;
+using runtime::resize_empty;
 
 namespace {
 
@@ -82,8 +84,8 @@ std::vector<std::uint32_t> numbers_of(const Executor& executor, std::size_t n, H
 
 template <int Dim>
 void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, AnyMesh& any) {
-  any.vertex_reference.resize(mesh.vertex_slots());
-  any.coordinates.resize(mesh.vertex_slots() * Dim);
+  resize_empty(executor, any.vertex_reference, mesh.vertex_slots());
+  resize_empty(executor, any.coordinates, mesh.vertex_slots() * Dim);
   parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
     any.vertex_reference[v] = mesh.reference_of[v];
     std::copy_n(mesh.site_of[v].position.x.begin(), Dim, &any.coordinates[v * Dim]);
@@ -97,8 +99,8 @@ void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, AnyMesh& any)
 template <int Dim>
 void add_elements(const Executor& executor, const Mesh<Dim>& mesh, AnyMesh& any) {
   Cells<Dim + 1>& cells = elements_in<Dim>(any);
-  cells.vertices.resize(mesh.element_slots());
-  cells.reference.resize(mesh.element_slots());
+  resize_empty(executor, cells.vertices, mesh.element_slots());
+  resize_empty(executor, cells.reference, mesh.element_slots());
   parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     cells.vertices[e] = mesh.corners_of[e];
     cells.reference[e] = mesh.regions[mesh.region_of[e]].reference;
@@ -128,7 +130,7 @@ AnyField to_any_field(const Executor& executor, const Mesh<Dim>& mesh) {
   field.dimension = Dim;
   field.vertex_count = mesh.vertex_slots();
   field.types = {AnyField::Type::symmetric};
-  field.values.resize(mesh.vertex_slots() * Metric<Dim>::size);
+  resize_empty(executor, field.values, mesh.vertex_slots() * Metric<Dim>::size);
   parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
     std::copy_n(mesh.site_of[v].metric.m.begin(), Metric<Dim>::size,
                 &field.values[v * Metric<Dim>::size]);
@@ -138,22 +140,20 @@ AnyField to_any_field(const Executor& executor, const Mesh<Dim>& mesh) {
 
 template <int Dim>
 MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
-  mesh.shape_of = {};
-  mesh.changed_at = {};
-  mesh.host_of = {};
-  mesh.entity_of = {};
+  const auto release = [&](auto&... arrays) { (arrays.release(executor), ...); };
+  release(mesh.shape_of, mesh.changed_at, mesh.host_of, mesh.entity_of);
   MeshWithMetric result;
   result.mesh.dimension = Dim;
   add_facets(executor, mesh, result.mesh);
   if constexpr (Dim == 3) add_curves(executor, mesh, result.mesh);
   mesh.elements_of = {};
   mesh.links_of = {};
-  mesh.patches_of = {};
+  release(mesh.patches_of);
   add_elements(executor, mesh, result.mesh);
-  mesh.corners_of = {};
-  mesh.region_of = {};
+  release(mesh.corners_of, mesh.region_of);
   add_vertices(executor, mesh, result.mesh);
   result.metric = to_any_field(executor, mesh);
+  release(mesh.site_of);
   return result;
 }
 

@@ -11,6 +11,7 @@
 
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/cavity.hpp"
 
@@ -44,7 +45,7 @@ std::vector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& exec
                                                    const Mesh<Dim>& mesh,
                                                    const std::vector<std::uint8_t>& marked,
                                                    double limit) {
-  std::vector<std::uint8_t> ends(mesh.vertex_slots());
+  auto ends = runtime::make_vector<std::uint8_t>(executor, mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     const Corners<Dim>& corners = mesh.corners_of[e];
     if (!mesh.alive(static_cast<ElementId>(e))) return;

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -19,7 +20,8 @@ class MarkedSet {
 
   /// Thread safety: one caller; runs on the executor.
   MarkedSet(const runtime::Executor& executor, std::span<const std::uint8_t> marks)
-      : words_((marks.size() + word - 1) / word), place_(words_.size()) {
+      : words_(runtime::make_vector<std::uint64_t>(executor, (marks.size() + word - 1) / word)),
+        place_(runtime::make_vector<std::uint32_t>(executor, words_.size())) {
     runtime::parallel_for(executor, words_.size(), [&](std::size_t w) {
       const auto part = marks.subspan(w * word, std::min(word, marks.size() - w * word));
       std::uint64_t bits = 0;
@@ -27,7 +29,8 @@ class MarkedSet {
       words_[w] = bits;
       place_[w] = static_cast<std::uint32_t>(std::popcount(bits));
     });
-    members_.resize(runtime::exclusive_scan<std::uint32_t>(executor, place_));
+    runtime::resize_empty(executor, members_,
+                          runtime::exclusive_scan<std::uint32_t>(executor, place_));
     runtime::parallel_for(executor, words_.size(), [&](std::size_t w) {
       std::uint32_t at = place_[w];
       for (std::uint64_t left = words_[w]; left != 0; left &= left - 1)

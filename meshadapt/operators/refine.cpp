@@ -9,11 +9,13 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/phase_timer.hpp"
 
 namespace ductile::meshadapt {
 
+using runtime::make_vector;
 using runtime::parallel_for;
 using runtime::Phase;
 using runtime::PhaseTimer;
@@ -80,6 +82,8 @@ runtime::RoundsReport Refine<Dim>::run(std::vector<LongEdge> edges) {
     number();
   }
   grow();
+  splits_.release(executor_);
+  cuts_.release(executor_);
   return report_;
 }
 
@@ -89,9 +93,9 @@ runtime::RoundsReport Refine<Dim>::run(std::vector<LongEdge> edges) {
 template <int Dim>
 void Refine<Dim>::plan() {
   splits_.resize_for_overwrite(edges_.size());
-  refused_in_.resize(edges_.size());
-  asked_.resize(edges_.size());
-  std::vector<std::uint8_t> is_cut(mesh_.element_slots());
+  refused_in_ = make_vector<std::uint32_t>(executor_, edges_.size());
+  asked_ = make_vector<std::uint8_t>(executor_, edges_.size());
+  auto is_cut = make_vector<std::uint8_t>(executor_, mesh_.element_slots());
   const auto around = runtime::parallel_collect<Around>(
       executor_, edges_.size(), [&](std::size_t i, auto&& append) {
         const auto number = static_cast<std::uint32_t>(i);
@@ -368,8 +372,8 @@ double Refine<Dim>::least_shape(double before, double length) const {
 
 template <int Dim>
 void Refine<Dim>::number() {
-  place_of_.resize(edges_.size());
-  first_piece_.resize(elements_.size());
+  place_of_ = make_vector<std::uint32_t>(executor_, edges_.size());
+  first_piece_ = make_vector<std::uint32_t>(executor_, elements_.size());
   parallel_for(executor_, edges_.size(),
                [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); });
   parallel_for(executor_, elements_.size(),

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <new>
@@ -55,6 +56,20 @@ TEST(GrowingArray, GivesItsElementsAwayWhenMoved) {
   c = std::move(b);
   EXPECT_EQ(c.size(), 10U);
   EXPECT_EQ(c[3], 7);
+}
+
+TEST(GrowingArray, IsEmptyAndGrowsAnewAfterItsRelease) {
+  for (const int threads : {1, 3})
+    for (const std::size_t n : {0U, 10U, 1000000U}) {
+      GrowingArray<std::uint64_t> array;
+      array.resize(n);
+      for (std::uint64_t& value : array) value = 7;
+      array.release(Executor({.threads = threads}));
+      EXPECT_EQ(array.size(), 0U);
+      EXPECT_EQ(array.bytes(), 0U);
+      array.resize(n + 5);
+      EXPECT_EQ(std::count(array.begin(), array.end(), 0U), static_cast<std::ptrdiff_t>(n + 5));
+    }
 }
 
 TEST(GrowingArray, StaysAsItIsWhereAskedForTooMuch) {

@@ -26,6 +26,12 @@ class ListPool {
     arena_->clear();
   }
 
+  /// The same, but each list is to be given room by reserve_all() before anything else.
+  void reset_for_overwrite(std::size_t n) {
+    slot_of_.resize_for_overwrite(n);
+    arena_->clear();
+  }
+
   /// Appends empty lists until there are n. Thread safety: one thread.
   void grow(std::size_t n) { slot_of_.resize(n); }
 
@@ -77,14 +83,16 @@ class ListPool {
     slot = {begin, slot.count, capacity};
   }
 
-  /// Gives the empty lists [begin, end) room for capacity_of(index) each, side by side: one request
-  /// to the arena, which threads would else wait for each other to make.
+  /// Makes the lists [begin, end) empty ones with room for capacity_of(index) each, side by side:
+  /// one request to the arena, which threads would else wait for each other to make.
   void reserve_all(std::uint32_t begin, std::uint32_t end, auto&& capacity_of) {
     std::uint32_t total = 0;
     for (std::uint32_t i = begin; i < end; ++i) total += slot_of_[i].capacity = capacity_of(i);
     std::uint32_t place = arena_->allocate(total);
-    for (std::uint32_t i = begin; i < end; ++i)
+    for (std::uint32_t i = begin; i < end; ++i) {
+      slot_of_[i].count = 0;
       slot_of_[i].begin = std::exchange(place, place + slot_of_[i].capacity);
+    }
   }
 
   /// Raw access for the parallel construction: count and storage of one list.

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime {
@@ -30,7 +31,7 @@ struct Finds {
 /// executor.
 template <class Item, class Find>
 std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find) {
-  const std::size_t block_size = std::clamp<std::size_t>(n / 4096, 16, 1024);
+  const std::size_t block_size = std::clamp<std::size_t>(n / 4096, 4, 1024);
   const std::size_t blocks = (n + block_size - 1) / block_size;
   const auto finds_of = std::make_unique_for_overwrite<detail::Finds[]>(blocks);
   PerThread<std::vector<Item>> found(executor);
@@ -46,7 +47,7 @@ std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find
   std::size_t total = 0;
   for (std::size_t b = 0; b < blocks; ++b)
     finds_of[b].place = std::exchange(total, total + finds_of[b].count);
-  std::vector<Item> all(total);
+  auto all = make_vector<Item>(executor, total);
   const auto put = [&](std::size_t b) {
     const detail::Finds& finds = finds_of[b];
     Item* const first = found[finds.thread].data() + finds.begin;

@@ -11,6 +11,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "ductile/runtime/executor.hpp"
+
 namespace ductile::runtime {
 
 namespace detail {
@@ -33,6 +35,9 @@ class GrowingMemory {
 
   /// Makes room for at least so many bytes. Contents stay, but may move.
   void reserve(std::size_t bytes);
+
+  /// Gives all of them back, by all threads of an executor.
+  void release(const Executor& executor);
 
  private:
   void swap(GrowingMemory& other) {
@@ -91,6 +96,13 @@ requires(std::is_trivially_copyable_v<T> &&
     if (n * sizeof(T) > memory_.bytes()) memory_.reserve((n + n / 4) * sizeof(T));
     touched_ = std::max(touched_, size_);
     size_ = n;
+  }
+
+  /// Empties the array and gives its memory back, which the system takes page by page: by all
+  /// threads of an executor, where one thread alone would hold up the others.
+  void release(const Executor& executor) {
+    memory_.release(executor);
+    size_ = touched_ = 0;
   }
 
   /// Bytes of address space held; those never written take no memory.

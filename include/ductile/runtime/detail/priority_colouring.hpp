@@ -92,14 +92,16 @@ class PriorityRun {
   }
 
  private:
+  /// Of few vertices few are handed out at once, so that each of many threads gets some.
   template <class Body>
   void for_each(std::span<const std::uint32_t> vertices, Body body) const {
+    const std::size_t grain = std::clamp<std::size_t>(vertices.size() / 512, 8, 64);
     parallel_for(executor_, vertices.size(),
                  [&](std::size_t i) {
                    prefetch_after(graph_, {vertices.size(), vertices.data()}, i);
                    body(vertices[i]);
                  },
-                 {.grain = 64, .serial_below = 128});
+                 {.grain = grain, .serial_below = 64});
   }
 
   /// Tells who waits for v as often as v will hand on to them: its row may repeat a neighbour more
