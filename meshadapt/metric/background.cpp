@@ -26,6 +26,14 @@ Background<Dim>::Background(const runtime::Executor& executor, const Mesh<Dim>& 
 template <int Dim>
 Background<Dim>::~Background() = default;
 
+template <int Dim>
+void Background<Dim>::release(const runtime::Executor& executor) {
+  corners_of_.release(executor);
+  neighbours_.release(executor);
+  position_of_.release(executor);
+  log_metric_of_.release(executor);
+}
+
 /// The tree is made by the thread that needs it first, on its own: the others are busy.
 template <int Dim>
 ClosestPoint<Dim> Background<Dim>::closest(const Vector<Dim>& point) const {

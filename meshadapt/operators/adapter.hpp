@@ -26,7 +26,10 @@ class Adapter {
 
   const Mesh<Dim>& mesh() const { return mesh_; }
   /// Gives the mesh away, which is the end of this adapter's work.
-  Mesh<Dim> take_mesh() { return std::move(mesh_); }
+  Mesh<Dim> take_mesh() {
+    background_.release(executor_);
+    return std::move(mesh_);
+  }
   AdaptReport& report() { return report_; }
 
  private:
