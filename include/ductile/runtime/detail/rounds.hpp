@@ -75,7 +75,7 @@ class Rounds {
   /// Items handed out at once to be planned or applied: few of a small batch, so that each of many
   /// threads gets some.
   static std::size_t block_of(std::size_t items) {
-    return std::clamp<std::size_t>(items / 512, 8, block);
+    return std::clamp<std::size_t>(items / 1024, 4, block);
   }
 
   /// Cuts a round's work into parts of at most so many items, which run one after the other; 0: it
