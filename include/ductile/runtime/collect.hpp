@@ -31,6 +31,12 @@ struct Finds {
 /// executor.
 template <class Item, class Find>
 std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find) {
+  if (executor.threads() == 1) {  // which finds them in order
+    std::vector<Item> all;
+    const auto append = [&](Item item) { all.push_back(std::move(item)); };
+    parallel_for(executor, n, [&](std::size_t i) { find(i, append); });
+    return all;
+  }
   const std::size_t block_size = std::clamp<std::size_t>(n / 4096, 4, 1024);
   const std::size_t blocks = (n + block_size - 1) / block_size;
   const auto finds_of = std::make_unique_for_overwrite<detail::Finds[]>(blocks);
