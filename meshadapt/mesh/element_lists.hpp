@@ -28,12 +28,22 @@ inline void sort_short(std::span<std::uint32_t> list) {
   }
 }
 
+/// Adds to each of the counts how many elements a vertex has.
+/// Thread safety: one caller; runs on the executor.
+template <int Dim>
+void count_elements(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                    std::span<std::uint32_t> count_of);
+
 /// Makes elements_of from corners_of, where it is known how many elements each vertex has.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 void list_elements(const runtime::Executor& executor, Mesh<Dim>& mesh,
                    std::span<const std::uint32_t> count_of);
 
+extern template void count_elements(const runtime::Executor&, const Mesh<2>&,
+                                    std::span<std::uint32_t>);
+extern template void count_elements(const runtime::Executor&, const Mesh<3>&,
+                                    std::span<std::uint32_t>);
 extern template void list_elements(const runtime::Executor&, Mesh<2>&,
                                    std::span<const std::uint32_t>);
 extern template void list_elements(const runtime::Executor&, Mesh<3>&,

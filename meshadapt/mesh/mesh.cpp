@@ -45,6 +45,13 @@ void visit_corners(const Executor& executor, const Mesh<Dim>& mesh, auto&& visit
 }  // namespace
 
 template <int Dim>
+void count_elements(const Executor& executor, const Mesh<Dim>& mesh,
+                    std::span<std::uint32_t> count_of) {
+  const bool alone = executor.threads() == 1;
+  visit_corners(executor, mesh, [&](VertexId v, ElementId) { count_up(count_of[v], alone); });
+}
+
+template <int Dim>
 void list_elements(const Executor& executor, Mesh<Dim>& mesh,
                    std::span<const std::uint32_t> count_of) {
   auto& lists = mesh.elements_of;
@@ -68,8 +75,7 @@ void list_elements(const Executor& executor, Mesh<Dim>& mesh,
 template <int Dim>
 void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
   auto count_of = runtime::make_vector<std::uint32_t>(executor, mesh.vertex_slots());
-  const bool alone = executor.threads() == 1;
-  visit_corners(executor, mesh, [&](VertexId v, ElementId) { count_up(count_of[v], alone); });
+  count_elements<Dim>(executor, mesh, count_of);
   list_elements<Dim>(executor, mesh, count_of);
 }
 
@@ -116,6 +122,8 @@ void update_shapes(const Executor& executor, Mesh<Dim>& mesh) {
 
 template struct Mesh<2>;
 template struct Mesh<3>;
+template void count_elements(const Executor&, const Mesh<2>&, std::span<std::uint32_t>);
+template void count_elements(const Executor&, const Mesh<3>&, std::span<std::uint32_t>);
 template void list_elements(const Executor&, Mesh<2>&, std::span<const std::uint32_t>);
 template void list_elements(const Executor&, Mesh<3>&, std::span<const std::uint32_t>);
 template void rebuild_elements_of(const Executor&, Mesh<2>&);

@@ -198,9 +198,8 @@ void permute_vertices(const Executor& executor, Mesh<Dim>& mesh, const Ids& orde
 template <int Dim>
 Ids element_counts(const Executor& executor, const Mesh<Dim>& mesh) {
   Ids count_of(mesh.vertex_slots());
-  parallel_for(executor, count_of.size(), [&](std::size_t v) {
-    count_of[v] = static_cast<std::uint32_t>(mesh.elements_of.of(static_cast<VertexId>(v)).size());
-  });
+  parallel_for(executor, count_of.size(), [&](std::size_t v) { count_of[v] = 0; });
+  count_elements<Dim>(executor, mesh, count_of.all());
   return count_of;
 }
 

@@ -246,7 +246,7 @@ std::size_t Adapter<Dim>::iterate() {
   }
   while (share(changes) < 0.02 && next_stage()) changes += refine();
   // In 2D order matters less than the time to restore it, unless much has changed.
-  if (Dim == 3 || share(changes) > 0.05) renumber_mesh();
+  if (!in_order_ && (Dim == 3 || share(changes) > 0.05)) renumber_mesh();
   changes += swap(8, Tuning<Dim>::swap_below);
   smooth(1, 0.3, true);
   return changes;
@@ -319,18 +319,27 @@ std::size_t Adapter<Dim>::coarsen() {
   return changes;
 }
 
+/// Renumbers where much is refined, which makes lists of elements anew, as they are then to be.
 template <int Dim>
 std::size_t Adapter<Dim>::refine() {
   const double limit = options_.rules.long_edge * Tuning<Dim>::stages[stage_];
   if (std::isinf(limit)) return 0;
+  const auto [splits, lists_are_stale] = split_edges_above(limit);
+  if (lists_are_stale) renumber_mesh();
+  tell("refine", splits);
+  return splits;
+}
+
+/// Returns how many edges were split, and whether elements_of is stale by that.
+template <int Dim>
+std::pair<std::size_t, bool> Adapter<Dim>::split_edges_above(double limit) {
   const KernelTimer timer(executor_, "refine", report_.refine.seconds);
   auto work = long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
   Refine<Dim> refinement(executor_, mesh_, background_, rules());
   const RoundsReport rounds = refinement.run(std::move(work));
   add(report_.refine, rounds);
-  tell("refine", rounds.applied);
-  return rounds.applied;
+  return {rounds.applied, refinement.lists_are_stale()};
 }
 
 template <int Dim>
@@ -374,6 +383,7 @@ template <int Dim>
 void Adapter<Dim>::renumber_mesh() {
   const KernelTimer timer(executor_, "renumber", report_.renumber_seconds);
   renumber(executor_, mesh_);
+  in_order_ = true;
 }
 
 /// Counted only after a kernel has made or removed some.
@@ -395,7 +405,10 @@ void Adapter<Dim>::tell(const char* step, std::size_t changes) const {
 template <int Dim>
 void Adapter<Dim>::add(KernelReport& kernel, const RoundsReport& rounds) {
   const bool flips = Dim == 2 && &kernel == &report_.swap;
-  if (rounds.applied != 0 && !flips && &kernel != &report_.smooth) element_count_.reset();
+  if (rounds.applied != 0 && !flips && &kernel != &report_.smooth) {
+    element_count_.reset();
+    in_order_ = false;
+  }
   kernel.considered += rounds.planned;
   kernel.applied += rounds.applied;
   kernel.rounds += rounds.rounds;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
@@ -41,6 +42,7 @@ class Adapter {
   // ---- Kernels: each returns how many changes it made ----
   std::size_t coarsen();
   std::size_t refine();
+  std::pair<std::size_t, bool> split_edges_above(double limit);
   std::size_t swap(int sweeps, double below);
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
 
@@ -70,6 +72,7 @@ class Adapter {
   AdaptReport report_;
   Aim aim_ = Aim::approach;
   std::size_t stage_ = 0;                             // of refinement
+  bool in_order_ = false;                             // renumbered since elements were made or gone
   mutable std::optional<std::size_t> element_count_;  // as far as it is known
   // The epoch up to which each kernel has seen all changes.
   std::uint32_t seen_by_coarsen_ = 0, seen_by_refine_ = 0, seen_by_swap_ = 0, seen_by_smooth_ = 0;

@@ -22,7 +22,7 @@ using runtime::PhaseTimer;
 
 namespace {
 
-/// With more edges to split than this share of the number of elements, lists are made anew.
+/// With more edges to split than this share of the number of elements, lists are left stale.
 constexpr double many = 0.08;
 
 /// Where along a-b its two halves have the same metric length, the size varying geometrically.
@@ -387,15 +387,15 @@ void Refine<Dim>::number() {
   mesh_.grow(first_vertex_ + report_.applied, std::size_t{first_element_} + pieces);
 }
 
-/// Makes what is numbered, and brings the lists of vertices up to date: change by change, or all of
-/// them anew where much has changed.
+/// Makes what is numbered, and brings the lists of vertices up to date change by change, unless
+/// there is so much of it that to make all lists anew takes less.
 template <int Dim>
 void Refine<Dim>::grow() {
-  const bool anew =
+  lists_are_stale_ =
       static_cast<double>(report_.applied) > many * static_cast<double>(first_element_);
   runtime::DeferredUpdate<ListChange> deferred(executor_);
   const auto defer = [&](VertexId owner, const ListChange& change) {
-    if (!anew || change.curve != 0) deferred.defer(owner, 0, change);
+    if (!lists_are_stale_ || change.curve != 0) deferred.defer(owner, 0, change);
   };
   {
     const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
@@ -410,7 +410,6 @@ void Refine<Dim>::grow() {
   const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
   report_.committed = deferred.commit(
       [&](VertexId owner, const ListChange& change) { change_list(mesh_, owner, change); });
-  if (anew) rebuild_elements_of(executor_, mesh_);
 }
 
 template <int Dim>

@@ -32,10 +32,14 @@ class Refine {
 
   /// Splits all of these edges, as if one after the other, the longest first, but those that a rule
   /// refuses. All are of the mesh, none comes twice. New vertices are numbered in their order.
+  /// Where many are split, elements_of is stale afterwards: it is for the caller to make it anew.
   /// May be called once. Rounds and conflicts of the report are those of refusals.
   /// Thread safety: one caller; runs on the executor. Throws std::length_error if the mesh would
   /// get more elements than there are numbers.
   runtime::RoundsReport run(std::vector<LongEdge> edges);
+
+  /// Whether elements_of does not know what run() has made.
+  bool lists_are_stale() const { return lists_are_stale_; }
 
  private:
   /// What becomes of a long edge. Of no use until it is located.
@@ -122,6 +126,7 @@ class Refine {
   std::vector<std::uint32_t> first_piece_;  // [place in elements_], among the new pieces
   VertexId first_vertex_ = 0;
   ElementId first_element_ = 0;
+  bool lists_are_stale_ = false;
 };
 
 }  // namespace ductile::meshadapt

@@ -115,7 +115,9 @@ struct Refined {
     const Rules rules;
     edges = long_edges(executor, mesh, rules.long_edge, 0);
     edges.resize(std::min(most, edges.size()));
-    report = Refine<Dim>(executor, mesh, *background, rules).run(edges);
+    Refine<Dim> refinement(executor, mesh, *background, rules);
+    report = refinement.run(edges);
+    if (refinement.lists_are_stale()) rebuild_elements_of(executor, mesh);
   }
 };
 

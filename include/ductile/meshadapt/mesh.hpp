@@ -146,7 +146,8 @@ template <int Dim>
 void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
 /// Removes what is gone and renumbers what is left along a space-filling curve, so that what is
-/// near in space is near in memory. The result does not depend on the number of threads.
+/// near in space is near in memory. Makes elements_of anew, whatever it was: it may be stale. The
+/// result does not depend on the number of threads.
 template <int Dim>
 void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
