@@ -93,10 +93,16 @@ std::vector<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>
   auto marked = runtime::make_vector<std::uint8_t>(executor, mesh.vertex_slots());
   const auto mark = [&](std::size_t, std::size_t begin, std::size_t end) {
     if (!any_above(std::span(mesh.changed_at).subspan(begin, end - begin), after)) return;
+    // Listed first, without branches, as which have changed cannot be foreseen.
+    std::array<ElementId, stretch> changed;
+    std::size_t count = 0;
     for (std::size_t e = begin; e < end; ++e) {
-      if (mesh.changed_at[e] <= after || !mesh.alive(static_cast<ElementId>(e))) continue;
-      for (const VertexId v : mesh.corners_of[e]) runtime::atomic_set(marked[v]);
+      changed[count] = static_cast<ElementId>(e);
+      count += static_cast<std::size_t>(mesh.changed_at[e] > after);
     }
+    for (std::size_t i = 0; i < count; ++i)
+      if (mesh.alive(changed[i]))
+        for (const VertexId v : mesh.corners_of[changed[i]]) runtime::atomic_set(marked[v]);
   };
   runtime::parallel_for_blocks(executor, mesh.element_slots(), stretch, mark, {});
   return marked;

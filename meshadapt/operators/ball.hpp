@@ -52,11 +52,14 @@ class Ball {
   using Shapes = BallShapes<Dim>;
 
   Ball(const Mesh<Dim>& mesh, VertexId vertex)
-      : origin_(mesh.site_of[vertex].position), size_(mesh.elements_of.of(vertex).size()) {
+      : vertex_(vertex),
+        origin_(mesh.site_of[vertex].position),
+        size_(mesh.elements_of.of(vertex).size()) {
     blocks_.resize((size_ + lane_count - 1) / lane_count, boost::container::default_init);
     for (std::size_t b = 0; b < blocks_.size(); ++b) fill(mesh, vertex, b);
   }
 
+  VertexId vertex() const { return vertex_; }
   std::size_t size() const { return size_; }
 
   /// Worst and sum of all shapes as the mesh has them.
@@ -332,6 +335,7 @@ class Ball {
     }
   }
 
+  VertexId vertex_;
   Vector<Dim> origin_;  // lanes are relative to it: less is lost by rounding
   std::size_t size_;
   Buffer<Block, Dim == 2 ? 1 : 4> blocks_;

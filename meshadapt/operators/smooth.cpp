@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
 
@@ -46,13 +48,16 @@ std::vector<VertexId> Smooth<Dim>::movable_vertices_of_poor(const runtime::Execu
                                                             const Mesh<Dim>& mesh,
                                                             double mean_ratio) {
   const double bound = shape_of_mean_ratio<Dim>(mean_ratio);
-  return runtime::parallel_collect<VertexId>(
-      executor, mesh.vertex_slots(), [&](std::size_t i, auto&& append) {
-        const auto v = static_cast<VertexId>(i);
-        const auto ball = mesh.elements_of.of(v);
-        const auto poor = [&](ElementId e) { return mesh.shape_of[e] < bound; };
-        if (mesh.kind_of[v].freedom != 0 && std::any_of(ball.begin(), ball.end(), poor)) append(v);
-      });
+  std::vector<std::uint8_t> marked(mesh.vertex_slots());
+  runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    if (mesh.shape_of[e] >= bound || !mesh.alive(static_cast<ElementId>(e))) return;
+    for (const VertexId v : mesh.corners_of[e]) runtime::atomic_set(marked[v]);
+  });
+  return runtime::parallel_collect<VertexId>(executor, marked.size(),
+                                             [&](std::size_t v, auto&& append) {
+                                               if (marked[v] != 0 && mesh.kind_of[v].freedom != 0)
+                                                 append(static_cast<VertexId>(v));
+                                             });
 }
 
 template <int Dim>
@@ -64,8 +69,9 @@ auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
   const auto is_good = [&](ElementId e) { return mesh_.shape_of[e] >= good_enough; };
   if (!options_.laplacian && std::all_of(elements.begin(), elements.end(), is_good)) return {};
   const Ball<Dim> ball(mesh_, vertex);
-  Place best{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present(), {}};
-  bool moved = options_.laplacian && relax(vertex, ball, best);
+  std::array<Place, 2> places{Place{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present()}};
+  bool moved = options_.laplacian && relax(vertex, ball, places[0], places[1]);
+  Place& best = places[moved ? 1 : 0];
   if (best.score.worst < good_enough) {
     const double poor = shape_of_mean_ratio<Dim>(options_.mean_below);
     const bool all_poor =
@@ -95,23 +101,24 @@ bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) co
   return true;
 }
 
-/// A place that scores better than a bar, if this is one. It is looked at first as if the metric
-/// were the same there as nearby, as that needs no search; and a place with positive volumes lies
-/// inside the domain.
+/// Whether a place scores better than a bar; sets `result` to it. It is looked at first as if the
+/// metric were the same there as nearby, as that needs no search; and a place with positive volumes
+/// lies inside the domain.
 template <int Dim>
-auto Smooth<Dim>::place(VertexId vertex, const Ball<Dim>& ball, const Vector<Dim>& position,
-                        const Place& near, const Score& bar) const -> std::optional<Place> {
+bool Smooth<Dim>::place(const Ball<Dim>& ball, const Vector<Dim>& position, const Place& near,
+                        const Score& bar, Place& result) const {
   const auto beats_bar = [&](const Score& score) { return score.worst > 0 && score.sum > bar.sum; };
-  if (!beats_bar(ball.score({position, near.site.metric, near.site.density}, bar.worst))) return {};
+  if (!beats_bar(ball.score({position, near.site.metric, near.site.density}, bar.worst)))
+    return false;
   const auto sample = background_.sample(position, near.host);
-  std::optional<Place> result(Place{make_site(position, sample.metric), sample.host, {}, {}});
-  result->score = ball.score(result->site, bar.worst, result->shapes);
+  result.site = make_site(position, sample.metric);
+  result.host = sample.host;
+  result.score = ball.score(result.site, bar.worst, result.shapes);
   const auto is_certain = [&] {
-    return mesh_.kind_of[vertex].freedom == Dim && ball.is_certain(result->score.volume, position);
+    return mesh_.kind_of[ball.vertex()].freedom == Dim &&
+           ball.is_certain(result.score.volume, position);
   };
-  if (!beats_bar(result->score) || (!is_certain() && !keeps_volumes(vertex, position)))
-    result.reset();
-  return result;
+  return beats_bar(result.score) && (is_certain() || keeps_volumes(ball.vertex(), position));
 }
 
 /// The part of a displacement that keeps the vertex on its patch or curve.
@@ -130,17 +137,15 @@ Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) cons
 
 /// Goes towards where the elements want it as far as their shapes get better.
 template <int Dim>
-bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, Place& best) const {
-  const Vector<Dim> step = allowed(vertex, ball.mean_pull(best.site));
-  if (squared_length(best.site.metric, step) < 1e-4) return false;
-  const Score bar{std::min(best.score.worst, shape_of_mean_ratio<Dim>(0.7)),
-                  best.score.sum * (1 + 1e-4)};
+bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, const Place& from,
+                        Place& to) const {
+  const Vector<Dim> step = allowed(vertex, ball.mean_pull(from.site));
+  if (squared_length(from.site.metric, step) < 1e-4) return false;
+  const Score bar{std::min(from.score.worst, shape_of_mean_ratio<Dim>(0.7)),
+                  from.score.sum * (1 + 1e-4)};
   for (const double fraction : {1.0, 0.5, 0.25}) {
-    const Vector<Dim> position = mesh_.site_of[vertex].position + fraction * step;
-    const auto trial = place(vertex, ball, position, best, bar);
-    if (!trial) continue;
-    best = *trial;
-    return true;
+    const Vector<Dim> position = from.site.position + fraction * step;
+    if (place(ball, position, from, bar, to)) return true;
   }
   return false;
 }
@@ -191,6 +196,7 @@ template <int Dim>
 bool Smooth<Dim>::optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const {
   constexpr int climbs = 4, halvings = 5;
   bool moved = false;
+  Place trial;
   double reach = 0.3;  // metric length of the first trial step
   for (int climb = 0; climb < climbs; ++climb) {
     const Vector<Dim> direction = ascent(vertex, ball, aim, best);
@@ -203,9 +209,9 @@ bool Smooth<Dim>::optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Plac
       // What is left of a direction that was nearly normal to its patch is rounding, still normal.
       const Vector<Dim> step = allowed(vertex, (reach / length) * direction);
       const Vector<Dim> position = best.site.position + step;
-      const auto trial = place(vertex, ball, position, best, {bar, 0});
-      if (!trial || (aim == Aim::mean && inverse_shapes(ball, trial->site) > most)) continue;
-      best = *trial;
+      if (!place(ball, position, best, {bar, 0}, trial)) continue;
+      if (aim == Aim::mean && inverse_shapes(ball, trial.site) > most) continue;
+      best = trial;
       better = moved = true;
     }
     if (!better) break;

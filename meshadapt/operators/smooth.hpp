@@ -40,9 +40,10 @@ class Smooth {
   // ---- What it works on ----
   using Item = VertexId;
   using Plan = VertexMove<Dim>;
-  struct Update {};                              // every write is the item's own
-  static constexpr bool keeps_conflicts = true;  // moving changes no adjacency
-  static constexpr bool forgoes_wakes = true;    // who moves a little wakes nobody
+  struct Update {};                                  // every write is the item's own
+  static constexpr bool keeps_conflicts = true;      // moving changes no adjacency
+  static constexpr bool keeps_to_neighbours = true;  // reads and wakes nothing beyond
+  static constexpr bool forgoes_wakes = true;        // who moves a little wakes nobody
 
   Smooth(Mesh<Dim>& mesh, const Background<Dim>& background, const SmoothOptions& options)
       : mesh_(mesh), background_(background), options_(options) {}
@@ -61,6 +62,7 @@ class Smooth {
   void conflicts(VertexId vertex, auto&& visit) const { visit_neighbours(mesh_, vertex, visit); }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
   void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
+  void prefetch_neighbour(VertexId vertex) const { prefetch_site(mesh_, vertex); }
 
   // ---- Apply: move it, renew the shapes around it, wake whom it concerns ----
   void apply(const Plan& plan, runtime::Commit<Smooth>& commit);
@@ -76,13 +78,13 @@ class Smooth {
     Site<Dim> site;
     ElementId host;
     Score score;
-    BallShapes<Dim> shapes;
+    BallShapes<Dim> shapes{};
   };
   bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
-  std::optional<Place> place(VertexId vertex, const Ball<Dim>& ball, const Vector<Dim>& position,
-                             const Place& near, const Score& bar) const;
+  bool place(const Ball<Dim>& ball, const Vector<Dim>& position, const Place& near,
+             const Score& bar, Place& result) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
-  bool relax(VertexId vertex, const Ball<Dim>& ball, Place& best) const;
+  bool relax(VertexId vertex, const Ball<Dim>& ball, const Place& from, Place& to) const;
   bool optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const;
   Vector<Dim> ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim, const Place& at) const;
   static double inverse_shapes(const Ball<Dim>& ball, const Site<Dim>& site);

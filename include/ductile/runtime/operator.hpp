@@ -82,6 +82,20 @@ concept PrefetchingOperator = requires(const Op& op, const typename Op::Item ite
   op.prefetch(item, 2);
 };
 
+/// A coloured operator whose items need not run by classes, but may be planned and applied one by
+/// one in any order, those that do not conflict at the same time. It says so by a member
+/// `keeps_to_neighbours`: conflicts stay, a plan reads nothing that an item writes with which there
+/// is no conflict, and applying defers nothing and wakes only the item and those it conflicts with.
+/// Most then run in tiles, on one thread as long as they lie together. prefetch_neighbour(other) is
+/// called instead of stage 0, for each item that an item conflicts with.
+template <class Op>
+concept TiledOperator = ColouredOperator<Op> && PrefetchingOperator<Op> &&
+    requires(const Op& op, const typename Op::Item item) {
+  Op::keeps_conflicts;
+  Op::keeps_to_neighbours;
+  op.prefetch_neighbour(item);
+};
+
 /// An operator that tells a Recording what an item costs, in nanoseconds, instead of having it
 /// timed: plan_cost(item), apply_cost(plan), or both.
 template <class Op>

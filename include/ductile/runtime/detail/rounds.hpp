@@ -21,6 +21,7 @@
 #include "ductile/runtime/colouring.hpp"
 #include "ductile/runtime/detail/filled_array.hpp"
 #include "ductile/runtime/detail/slots.hpp"
+#include "ductile/runtime/detail/tiles.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -97,12 +98,29 @@ class Rounds {
   std::vector<Item> coloured_round(std::vector<Item> work) requires ColouredOperator<Op> {
     woken_at_.resize(executor_, op_.item_count(), 0);
     turn_of_.resize(executor_, op_.item_count(), absent);
+    if constexpr (TiledOperator<Op> && !Check::on) work = run_tiles(std::move(work));
     for_each_window(work, options_.window, [&](std::span<const Item> part) { run_window(part); });
     const std::vector<Item> woken = take_woken();
     // Who was woken by one window and planned in a later one has been considered again.
     return parallel_collect<Item>(executor_, woken.size(), [&](std::size_t i, auto&& append) {
       if (woken_at_[woken[i]] != 0) append(woken[i]);
     });
+  }
+
+  /// Returns what has to wait for the classes.
+  std::vector<Item> run_tiles(std::vector<Item> work) requires TiledOperator<Op> {
+    using Tiles = detail::Tiles<Op>;
+    if (work.size() < Tiles::few) return work;
+    const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
+    ++window_;
+    if (!std::is_sorted(work.begin(), work.end())) std::sort(work.begin(), work.end());
+    Tiles tiles(executor_, op_, work);
+    tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
+    std::vector<Item> left = select(work, tiles.waits(), waits);
+    report_.batches += tiles.steps();
+    report_.planned += work.size() - left.size();
+    report_.applied += tiles.applied();
+    return left;
   }
 
   void run_window(std::span<const Item> work) {

@@ -1,0 +1,116 @@
+#include "ductile/runtime/detail/tiles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ductile/runtime/run_rounds.hpp"
+#include "rounds_support.hpp"
+
+namespace ductile::runtime {
+namespace {
+
+using test::all_items;
+using test::thread_counts;
+using test::Vertex;
+
+/// Vertices of a grid whose rows are numbered one after the other; each takes on the mean of its
+/// neighbours, so that the order of any two neighbours shows in the last bit.
+class Mean {
+ public:
+  using Item = Vertex;
+  struct Plan {
+    Vertex vertex;
+    double value;
+  };
+  struct Update {};
+  static constexpr bool keeps_conflicts = true;
+  static constexpr bool keeps_to_neighbours = true;
+
+  explicit Mean(Vertex side) : value(std::size_t{side} * side), turns(value.size()), side_(side) {
+    for (std::size_t v = 0; v < value.size(); ++v) value[v] = std::sin(static_cast<double>(v * v));
+  }
+
+  std::optional<Plan> plan(Vertex v) const {
+    double sum = 0;
+    int count = 0;
+    conflicts(v, [&](Vertex other) { sum += value[other], ++count; });
+    return Plan{v, sum / count};
+  }
+  void conflicts(Vertex v, auto&& visit) const {
+    const Vertex column = v % side_, row = v / side_;
+    if (column > 0) visit(v - 1);
+    if (column + 1 < side_) visit(v + 1);
+    if (row > 0) visit(v - side_);
+    if (row + 1 < side_) visit(v + side_);
+  }
+  std::size_t item_count() const { return value.size(); }
+  void prefetch(Vertex, int) const {}
+  void prefetch_neighbour(Vertex) const {}
+  void apply(const Plan& plan, Commit<Mean>& commit) {
+    value[plan.vertex] = plan.value;
+    if (++turns[plan.vertex] == 1)
+      conflicts(plan.vertex, [&](Vertex other) { commit.wake(other); });
+  }
+  void commit(std::uint32_t, const Update&) {}
+
+  std::vector<double> value;  // [vertex]
+  std::vector<int> turns;     // [vertex], so far
+
+ private:
+  Vertex side_;
+};
+
+static_assert(TiledOperator<Mean>);
+
+struct Outcome {
+  Mean mean;
+  RoundsReport report;
+};
+
+Outcome run(Vertex side, int threads, const std::vector<Vertex>& work, int rounds = 1) {
+  Outcome outcome{Mean(side), {}};
+  const Executor executor({.threads = threads});
+  outcome.report = run_rounds(executor, outcome.mean, work, {.most_rounds = rounds});
+  return outcome;
+}
+
+TEST(Tiles, GiveEveryItemOneTurnWhateverTheThreads) {
+  constexpr Vertex side = 150;
+  const auto work = all_items(side * side);
+  const Outcome first = run(side, 1, work);
+  for (const int threads : thread_counts) {
+    const Outcome outcome = run(side, threads, work);
+    EXPECT_EQ(outcome.report.planned, work.size());
+    EXPECT_EQ(outcome.report.applied, work.size());
+    EXPECT_EQ(outcome.mean.turns, std::vector<int>(work.size(), 1)) << threads << " threads";
+    EXPECT_EQ(outcome.mean.value, first.mean.value) << threads << " threads";
+  }
+}
+
+TEST(Tiles, TakeWorkInAnyOrder) {
+  constexpr Vertex side = 90;
+  auto work = all_items(side * side);
+  const Outcome first = run(side, 2, work);
+  std::reverse(work.begin(), work.end());
+  EXPECT_EQ(run(side, 2, work).mean.value, first.mean.value);
+}
+
+TEST(Tiles, WakeNeighboursThatHadTheirTurn) {
+  constexpr Vertex side = 100;
+  const auto work = all_items(side * side);
+  const Outcome first = run(side, 1, work, 2);
+  EXPECT_EQ(first.report.rounds, 2U);
+  // Of two neighbours the one that comes first is woken by the other.
+  EXPECT_GT(first.report.applied, work.size() * 3 / 2);
+  EXPECT_LT(first.report.applied, work.size() * 2);
+  for (const int threads : thread_counts) {
+    const Outcome outcome = run(side, threads, work, 2);
+    EXPECT_EQ(outcome.report.applied, first.report.applied);
+    EXPECT_EQ(outcome.mean.value, first.mean.value) << threads << " threads";
+  }
+}
+
+}  // namespace
+}  // namespace ductile::runtime
