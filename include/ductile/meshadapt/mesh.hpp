@@ -5,6 +5,7 @@
 /// patch it lies on, so every change of a cavity carries its boundary along.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -191,16 +192,24 @@ void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
   }
 }
 
-/// Visits the elements around the edge a-b in order: what two sorted lists have in common. Steps
-/// without branches, as which list is ahead cannot be foreseen.
+/// Visits the elements around the edge a-b in order: those of the shorter of two lists that have
+/// the other vertex, too. Which do cannot be foreseen, so they are listed without branches first.
 template <int Dim>
 void visit_shell(const Mesh<Dim>& mesh, VertexId a, VertexId b, auto&& visit) {
   const auto of_a = mesh.elements_of.of(a), of_b = mesh.elements_of.of(b);
-  for (std::size_t i = 0, j = 0; i < of_a.size() && j < of_b.size();) {
-    const ElementId x = of_a[i], y = of_b[j];
-    if (x == y) visit(x);
-    i += x <= y;
-    j += y <= x;
+  const bool fewer = of_b.size() < of_a.size();
+  const auto ball = fewer ? of_b : of_a;
+  const VertexId other = fewer ? a : b;
+  std::array<ElementId, 64> around;
+  for (std::size_t begin = 0; begin < ball.size(); begin += around.size()) {
+    std::size_t count = 0;
+    for (const ElementId e : ball.subspan(begin, std::min(around.size(), ball.size() - begin))) {
+      bool found = false;
+      for (const VertexId v : mesh.corners_of[e]) found |= v == other;
+      around[count] = e;
+      count += found;
+    }
+    for (std::size_t i = 0; i < count; ++i) visit(around[i]);
   }
 }
 
