@@ -176,8 +176,11 @@ std::size_t Adapter<Dim>::feasible_changes() {
   const Coarsen<Dim> coarsening(mesh_, rules());
   const Refine<Dim> refinement(executor_, mesh_, background_, rules());
   aim_ = Aim::approach;
-  const auto crowded = Coarsen<Dim>::crowded_vertices(executor_, mesh_, rules().short_edge, 0);
-  const auto edges = long_edges(executor_, mesh_, rules().long_edge, 0);
+  ++mesh_.epoch;  // the survey can tell what is there from what will change
+  auto& survey = survey_for(rules().long_edge);
+  const auto crowded =
+      Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey, rules().short_edge, 0);
+  const auto edges = long_edges(executor_, mesh_, survey, rules().long_edge, 0);
   const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
   std::vector<std::size_t> changes(all / step);
   const auto look = [&](std::size_t i) {
@@ -200,8 +203,9 @@ std::size_t Adapter<Dim>::splits_of(const LongEdge& edge) const {
 }
 
 template <int Dim>
-std::size_t Adapter<Dim>::splits_to_come() const {
-  const auto edges = long_edges(executor_, mesh_, options_.rules.long_edge, 0);
+std::size_t Adapter<Dim>::splits_to_come() {
+  const double limit = options_.rules.long_edge;
+  const auto edges = long_edges(executor_, mesh_, survey_for(limit), limit, 0);
   return runtime::parallel_reduce(
       executor_, edges.size(), std::size_t{0}, [&](std::size_t i) { return splits_of(edges[i]); },
       std::plus<>());
@@ -302,13 +306,28 @@ std::uint32_t Adapter<Dim>::end_epoch(std::uint32_t& seen) {
   return std::exchange(seen, mesh_.epoch++);
 }
 
+/// From which length on edges are split now.
+template <int Dim>
+double Adapter<Dim>::long_edge() const {
+  return options_.rules.long_edge * Tuning<Dim>::stages[stage_];
+}
+
+/// The survey of edges, for those longer than this and all that any kernel takes for short.
+template <int Dim>
+EdgeSurvey<Dim>& Adapter<Dim>::survey_for(double longer) {
+  survey_.compare_with({.shorter = eager * options_.rules.short_edge,
+                        .longer = std::isinf(longer) ? options_.rules.long_edge : longer});
+  return survey_;
+}
+
 template <int Dim>
 std::size_t Adapter<Dim>::coarsen() {
   const KernelTimer timer(executor_, "coarsen", report_.coarsen.seconds);
   std::size_t changes = 0;
   for (int sweep = 0; sweep < 8; ++sweep) {
-    auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, rules().short_edge,
-                                               end_epoch(seen_by_coarsen_));
+    const std::uint32_t after = end_epoch(seen_by_coarsen_);
+    auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey_for(long_edge()),
+                                               rules().short_edge, after);
     Coarsen<Dim> op(mesh_, rules());
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
     add(report_.coarsen, rounds);
@@ -322,7 +341,7 @@ std::size_t Adapter<Dim>::coarsen() {
 /// Renumbers where much is refined, which makes lists of elements anew, as they are then to be.
 template <int Dim>
 std::size_t Adapter<Dim>::refine() {
-  const double limit = options_.rules.long_edge * Tuning<Dim>::stages[stage_];
+  const double limit = long_edge();
   if (std::isinf(limit)) return 0;
   const auto [splits, lists_are_stale] = split_edges_above(limit);
   if (lists_are_stale) renumber_mesh();
@@ -334,7 +353,8 @@ std::size_t Adapter<Dim>::refine() {
 template <int Dim>
 std::pair<std::size_t, bool> Adapter<Dim>::split_edges_above(double limit) {
   const KernelTimer timer(executor_, "refine", report_.refine.seconds);
-  auto work = long_edges(executor_, mesh_, limit, end_epoch(seen_by_refine_));
+  const std::uint32_t after = end_epoch(seen_by_refine_);
+  auto work = long_edges(executor_, mesh_, survey_for(limit), limit, after);
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
   Refine<Dim> refinement(executor_, mesh_, background_, rules());
   const RoundsReport rounds = refinement.run(std::move(work));
@@ -375,6 +395,7 @@ std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplaci
                   : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below);
   const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = sweeps});
   add(report_.smooth, rounds);
+  if (rounds.applied != 0) survey_.forget();
   tell("smooth", rounds.applied);
   return rounds.applied;
 }
@@ -384,6 +405,7 @@ void Adapter<Dim>::renumber_mesh() {
   const KernelTimer timer(executor_, "renumber", report_.renumber_seconds);
   renumber(executor_, mesh_);
   in_order_ = true;
+  survey_.forget();
 }
 
 /// Counted only after a kernel has made or removed some.

@@ -57,8 +57,10 @@ class Adapter {
   Rules rules() const;
   bool next_stage();
   std::size_t splits_of(const LongEdge& edge) const;
-  std::size_t splits_to_come() const;
+  std::size_t splits_to_come();
   double share(std::size_t changes) const;
+  double long_edge() const;
+  EdgeSurvey<Dim>& survey_for(double longer);
   std::uint32_t end_epoch(std::uint32_t& seen);
   void renumber_mesh();
   std::size_t element_count() const;
@@ -69,6 +71,7 @@ class Adapter {
   const AdaptOptions& options_;
   Mesh<Dim> mesh_;
   Background<Dim> background_;
+  EdgeSurvey<Dim> survey_;
   AdaptReport report_;
   Aim aim_ = Aim::approach;
   std::size_t stage_ = 0;                             // of refinement

@@ -9,10 +9,10 @@ namespace ductile::meshadapt {
 
 template <int Dim>
 std::vector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& executor,
-                                                     const Mesh<Dim>& mesh, double short_edge,
-                                                     std::uint32_t after) {
+                                                     const Mesh<Dim>& mesh, EdgeSurvey<Dim>& survey,
+                                                     double short_edge, std::uint32_t after) {
   const auto marked = mark_changed(executor, mesh, after);
-  const auto crowded = mark_ends_of_short_edges(executor, mesh, marked, short_edge);
+  const auto crowded = mark_ends_of_short_edges(executor, mesh, survey, marked, short_edge);
   return runtime::parallel_collect<VertexId>(executor, mesh.vertex_slots(),
                                              [&](std::size_t v, auto&& append) {
                                                if (crowded[v] && mesh.kind_of[v].freedom != 0)

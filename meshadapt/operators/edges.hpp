@@ -14,54 +14,37 @@
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/cavity.hpp"
+#include "operators/edge_survey.hpp"
 
 namespace ductile::meshadapt {
 
-/// Bits for those edges of an element that may be shorter than a limit, and for those that may not;
-/// of the others it is certain. Decided without roots or branches: see shorter_than().
-struct MaybeEdges {
-  unsigned shorter = 0, longer = 0;
-};
-template <int Dim>
-MaybeEdges compare_edges(const std::array<const Site<Dim>*, Dim + 1>& corner, double limit) {
-  const double square = limit * limit;
-  MaybeEdges result;
-  for (unsigned k = 0; k < Simplex<Dim>::edges; ++k) {
-    const auto& [i, j] = Simplex<Dim>::edge[k];
-    const Site<Dim>& a = *corner[static_cast<std::size_t>(i)];
-    const Site<Dim>& b = *corner[static_cast<std::size_t>(j)];
-    const auto [at_a, at_b] = end_squares(a, b);
-    result.shorter |= static_cast<unsigned>(at_a * at_b < square * square) << k;
-    result.longer |= static_cast<unsigned>(std::max(at_a, at_b) >= square) << k;
-  }
-  return result;
-}
-
-/// The marked vertices that have an edge shorter than a limit. Elements all of whose marked corners
-/// are known to have one are not looked at.
+/// The marked vertices that have an edge shorter than a limit, which is not above that of the
+/// survey. All corners of elements changed since the survey was last used are marked.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 std::vector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& executor,
-                                                   const Mesh<Dim>& mesh,
+                                                   const Mesh<Dim>& mesh, EdgeSurvey<Dim>& survey,
                                                    const std::vector<std::uint8_t>& marked,
                                                    double limit) {
   auto ends = runtime::make_vector<std::uint8_t>(executor, mesh.vertex_slots());
-  runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
-    const Corners<Dim>& corners = mesh.corners_of[e];
-    if (!mesh.alive(static_cast<ElementId>(e))) return;
-    unsigned wanted = 0;
-    for (const VertexId v : corners)
-      wanted += static_cast<unsigned>(marked[v] > runtime::atomic_is_marked(ends[v]));
-    if (wanted == 0) return;
-    const auto sites = mesh.sites(corners);
-    for (unsigned left = compare_edges<Dim>(sites, limit).shorter; left != 0; left &= left - 1) {
-      const auto& edge = Simplex<Dim>::edge[static_cast<std::size_t>(std::countr_zero(left))];
-      const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
-      if (!shorter_than(*sites[i], *sites[j], limit)) continue;
-      for (const VertexId v : {corners[i], corners[j]})
-        if (marked[v] != 0) runtime::atomic_mark(ends[v]);
-    }
+  survey.renew(executor, mesh, [&](ElementId e) {
+    unsigned any = 0;
+    for (const VertexId v : mesh.corners_of[e]) any |= marked[v];
+    return any != 0;
   });
+  const auto mark = [&](ElementId e, std::size_t k) {
+    const auto [a, b] = ends_of_edge<Dim>(mesh.corners_of[e], k);
+    if (marked[a] <= runtime::atomic_is_marked(ends[a]) &&
+        marked[b] <= runtime::atomic_is_marked(ends[b]))
+      return;
+    if (!shorter_than(mesh.site_of[a], mesh.site_of[b], limit)) return;
+    for (const VertexId v : {a, b})
+      if (marked[v] != 0) runtime::atomic_mark(ends[v]);
+  };
+  const auto look = [&](std::size_t, std::size_t begin, std::size_t) {
+    survey.visit_shorter(mesh, begin, mark);
+  };
+  runtime::parallel_for_blocks(executor, mesh.element_slots(), EdgeSurvey<Dim>::stretch, look, {});
   return ends;
 }
 
@@ -86,34 +69,39 @@ inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t edge,
                        std::uint32_t after) {
   const auto [p, q] = ends_of_edge<3>(mesh.corners_of[element], edge);
   const auto of_p = mesh.elements_of.of(p), of_q = mesh.elements_of.of(q);
-  for (std::size_t i = 0, j = 0;;) {
-    const ElementId x = of_p[i], y = of_q[j];
-    if (x == y && mesh.changed_at[x] > after) return x == element;
-    i += x <= y;
-    j += y <= x;
+  const bool fewer = of_q.size() < of_p.size();
+  const VertexId other = fewer ? p : q;
+  bool any = false;  // no branches: any may have changed, or be on the edge
+  for (const ElementId before : fewer ? of_q : of_p) {
+    if (before == element) break;
+    bool on_edge = false;
+    for (const VertexId v : mesh.corners_of[before]) on_edge |= v == other;
+    any |= on_edge & (mesh.changed_at[before] > after);
   }
+  return !any;
 }
 
-/// The edges no shorter than a limit around which an element changed after an epoch, each once; in
-/// an order that does not depend on threads.
+/// The edges no shorter than a limit, which is not below that of the survey, around which an
+/// element changed after an epoch, each once; in an order that does not depend on threads. The
+/// epoch is not later than when the survey was last used.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 std::vector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                 double limit, std::uint32_t after) {
-  const auto find = [&](std::size_t e, auto&& append) {
-    const auto element = static_cast<ElementId>(e);
-    if (mesh.changed_at[e] <= after || !mesh.alive(element)) return;
-    const Corners<Dim>& corners = mesh.corners_of[e];
-    unsigned left = compare_edges<Dim>(mesh.sites(corners), limit).longer;
-    for (; left != 0; left &= left - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      const auto [p, q] = ends_of_edge<Dim>(corners, k);
-      if (stands_for(mesh, element, k, after) &&
-          !shorter_than(mesh.site_of[p], mesh.site_of[q], limit))
-        append(LongEdge{std::min(p, q), std::max(p, q), static_cast<float>(mesh.length(p, q))});
-    }
+                                 EdgeSurvey<Dim>& survey, double limit, std::uint32_t after) {
+  survey.renew(executor, mesh, [&](ElementId e) { return mesh.changed_at[e] > after; });
+  constexpr std::size_t stretch = EdgeSurvey<Dim>::stretch;
+  const auto find = [&](std::size_t i, auto&& append) {
+    survey.visit_longer(mesh, i * stretch, [&](ElementId e, std::size_t k) {
+      if (mesh.changed_at[e] <= after || !stands_for(mesh, e, k, after)) return;
+      const auto [p, q] = ends_of_edge<Dim>(mesh.corners_of[e], k);
+      const EndSquares squares = end_squares(mesh.site_of[p], mesh.site_of[q]);
+      if (shorter_than(squares, limit)) return;
+      const auto length = static_cast<float>(edge_length(squares));
+      append(LongEdge{std::min(p, q), std::max(p, q), length});
+    });
   };
-  return runtime::parallel_collect<LongEdge>(executor, mesh.element_slots(), find);
+  return runtime::parallel_collect<LongEdge>(executor,
+                                             (mesh.element_slots() + stretch - 1) / stretch, find);
 }
 
 }  // namespace ductile::meshadapt

@@ -54,7 +54,8 @@ TYPED_TEST(EdgesIn, AreFoundOnceNextToAnyChanges) {
     for (std::uint32_t& epoch : mesh.changed_at) epoch = test::chance(random, share) ? 3 : 2;
     std::vector<LongEdge> first;
     for (const int threads : {1, 2, 8}) {
-      const auto found = long_edges(Executor({.threads = threads}), mesh, 0, 2);
+      EdgeSurvey<Dim> survey;
+      const auto found = long_edges(Executor({.threads = threads}), mesh, survey, 0, 2);
       if (threads == 1) first = found;
       EXPECT_EQ(found, first);
       EXPECT_EQ(ends_of(found), edges_changed(mesh, 2));
@@ -92,18 +93,73 @@ TYPED_TEST(EdgesIn, AreLongOrShortAsTheirLengthsSay) {
     }
     for (const int threads : {1, 2, 8}) {
       const Executor executor({.threads = threads});
-      EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, all, limit), ends);
-      EXPECT_EQ(ends_of(long_edges(executor, mesh, limit, 0)), longer);
+      EdgeSurvey<Dim> survey({.shorter = limit, .longer = limit});
+      EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, survey, all, limit), ends);
+      EXPECT_EQ(ends_of(long_edges(executor, mesh, survey, limit, 0)), longer);
       for (const double share : {0.3, 0.01}) {
         std::vector<std::uint8_t> marked(mesh.vertex_slots()), marked_ends(mesh.vertex_slots());
         for (std::size_t v = 0; v < marked.size(); ++v) {
           marked[v] = test::chance(random, share);
           marked_ends[v] = marked[v] & ends[v];
         }
-        EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, marked, limit), marked_ends);
+        EdgeSurvey<Dim> fresh({.shorter = 1.1 * limit, .longer = limit});
+        EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, fresh, marked, limit), marked_ends);
       }
     }
   }
+}
+
+/// Moves a few vertices, as a kernel does that takes notice of what it changes.
+template <int Dim>
+void change(Mesh<Dim>& mesh, test::Random& random) {
+  for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
+    if (!test::chance(random, 0.1)) continue;
+    mesh.site_of[v].position[0] += 0.05;
+    for (const ElementId e : mesh.elements_of.of(v)) mesh.changed_at[e] = mesh.epoch;
+  }
+}
+
+/// What is known from the scans before is as good as what is measured now.
+TYPED_TEST(EdgesIn, AreKnownFromScanToScan) {
+  constexpr int Dim = TypeParam::value;
+  const typename EdgeSurvey<Dim>::Limits limits{.shorter = 0.9, .longer = 1.1};
+  for (const int threads : {1, 2, 8}) {
+    const Executor executor({.threads = threads});
+    auto mesh = jiggled_grid_in_a_metric<Dim>(6);
+    test::Random random(13);
+    EdgeSurvey<Dim> survey(limits);
+    for (int scan = 0; scan < 10; ++scan) {
+      const std::uint32_t after = mesh.epoch - 1;
+      change(mesh, random);
+      ++mesh.epoch;
+      EdgeSurvey<Dim> fresh(limits);
+      if (scan % 3 == 2) {
+        EXPECT_EQ(long_edges(executor, mesh, survey, limits.longer, after),
+                  long_edges(executor, mesh, fresh, limits.longer, after));
+      } else {
+        const auto marked = mark_changed(executor, mesh, after);
+        EXPECT_EQ(mark_ends_of_short_edges(executor, mesh, survey, marked, limits.shorter),
+                  mark_ends_of_short_edges(executor, mesh, fresh, marked, limits.shorter));
+      }
+    }
+  }
+}
+
+/// Vertices that move without notice, and other limits, call for measuring anew.
+TYPED_TEST(EdgesIn, AreMeasuredAnewWhenForgotten) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 1});
+  auto mesh = jiggled_grid_in_a_metric<Dim>(6);
+  ++mesh.epoch;
+  EdgeSurvey<Dim> survey({.shorter = 0, .longer = 1000});
+  EXPECT_TRUE(long_edges(executor, mesh, survey, 1000, 0).empty());
+  survey.compare_with({.shorter = 0, .longer = 1});
+  const auto found = ends_of(long_edges(executor, mesh, survey, 1, 0));
+  EXPECT_FALSE(found.empty());
+  for (auto& site : mesh.site_of) site.position *= 2;
+  EXPECT_EQ(ends_of(long_edges(executor, mesh, survey, 1, 0)), found);
+  survey.forget();
+  EXPECT_GT(long_edges(executor, mesh, survey, 1, 0).size(), found.size());
 }
 
 }  // namespace

@@ -75,8 +75,9 @@ TYPED_TEST(KernelsChecked, CoarsenKeepsItsContract) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 20 : 5);
     const Rules rules;
+    EdgeSurvey<Dim> survey({.shorter = rules.short_edge, .longer = rules.long_edge});
     expect_sound(mesh, Coarsen<Dim>(mesh, rules),
-                 Coarsen<Dim>::crowded_vertices(executor, mesh, rules.short_edge, 0));
+                 Coarsen<Dim>::crowded_vertices(executor, mesh, survey, rules.short_edge, 0));
   }
 }
 

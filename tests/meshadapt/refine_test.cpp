@@ -61,7 +61,8 @@ TYPED_TEST(RefineIn, SplitsOverlongEdgesIntoWorseShapes) {
     const Rules rules;
     const Refine<Dim> hasty(executor, mesh, background, rules);
     const Refine<Dim> patient_one(executor, mesh, background, patient);
-    for (const LongEdge& edge : long_edges(executor, mesh, rules.long_edge, 0)) {
+    EdgeSurvey<Dim> survey({.shorter = 0, .longer = rules.long_edge});
+    for (const LongEdge& edge : long_edges(executor, mesh, survey, rules.long_edge, 0)) {
       const bool splits = hasty.splits(edge);
       const bool patiently_splits = patient_one.splits(edge);
       if (edge.length <= rules.overlong_edge)
@@ -113,7 +114,8 @@ struct Refined {
     background = std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours));
     vertices_before = mesh.vertex_slots();
     const Rules rules;
-    edges = long_edges(executor, mesh, rules.long_edge, 0);
+    EdgeSurvey<Dim> survey({.shorter = 0, .longer = rules.long_edge});
+    edges = long_edges(executor, mesh, survey, rules.long_edge, 0);
     edges.resize(std::min(most, edges.size()));
     Refine<Dim> refinement(executor, mesh, *background, rules);
     report = refinement.run(edges);
