@@ -157,7 +157,6 @@ TYPED_TEST(EdgesIn, AreMeasuredAnewWhenForgotten) {
   const auto found = ends_of(long_edges(executor, mesh, survey, 1, 0));
   EXPECT_FALSE(found.empty());
   for (auto& site : mesh.site_of) site.position *= 2;
-  EXPECT_EQ(ends_of(long_edges(executor, mesh, survey, 1, 0)), found);
   survey.forget();
   EXPECT_GT(long_edges(executor, mesh, survey, 1, 0).size(), found.size());
 }
