@@ -219,24 +219,24 @@ static_assert(CostedOperator<Countdown>);
 TEST(Recording, TakesCostsFromTheOperator) {
   Recording recording;
   const Executor executor({.threads = 32, .recording = &recording});
-  Countdown countdown(20480, 2);
-  std::vector<std::uint32_t> work(20480);
+  Countdown countdown(40960, 2);
+  std::vector<std::uint32_t> work(40960);
   std::iota(work.begin(), work.end(), 0U);
   recording.begin_section("countdown");
   const RoundsReport report = run_rounds(executor, countdown, work, {.window = 0});
   EXPECT_EQ(report.rounds, 2U);
   EXPECT_EQ(report.batches, 2U);
-  EXPECT_EQ(report.woken, 20480U);
+  EXPECT_EQ(report.woken, 40960U);
   const auto phase = [&](int threads, Phase which) {
     const Replay result = replay(recording, {.threads = threads, .launch_ns = 0});
     return result.sections[1].times_of[static_cast<std::size_t>(which)];
   };
-  EXPECT_NEAR(phase(1, Phase::plan).work, 2 * 20480e-6, 1e-6);
-  EXPECT_NEAR(phase(10, Phase::plan).work, 2 * 20480e-6, 1e-6);
-  EXPECT_NEAR(phase(10, Phase::apply).work, 2 * 61440e-6, 1e-6);
+  EXPECT_NEAR(phase(1, Phase::plan).work, 2 * 40960e-6, 1e-6);
+  EXPECT_NEAR(phase(10, Phase::plan).work, 2 * 40960e-6, 1e-6);
+  EXPECT_NEAR(phase(10, Phase::apply).work, 2 * 122880e-6, 1e-6);
   // Small serial parts between the loops are measured, so the bounds are one-sided.
-  EXPECT_GE(phase(10, Phase::apply).elapsed, 2 * 6144e-6 - 1e-6);
-  EXPECT_NEAR(phase(10, Phase::apply).elapsed - phase(10, Phase::apply).serial, 2 * 6144e-6, 1e-6);
+  EXPECT_GE(phase(10, Phase::apply).elapsed, 2 * 12288e-6 - 1e-6);
+  EXPECT_NEAR(phase(10, Phase::apply).elapsed - phase(10, Phase::apply).serial, 2 * 12288e-6, 1e-6);
 }
 
 TEST(Recording, ChangesNoResult) {
