@@ -54,7 +54,8 @@ void Recording::flush() {
 }
 
 void Recording::take_least(const Recording& again) {
-  if (sections_ != again.sections_ || stretches_ != again.stretches_)
+  if (sections_ != again.sections_ || stretches_ != again.stretches_ ||
+      costs_.size() != again.costs_.size())
     throw std::invalid_argument("Recording::take_least: these are not recordings of the same run");
   for (std::size_t i = 0; i < costs_.size(); ++i) costs_[i] = std::min(costs_[i], again.costs_[i]);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/replay.hpp"
@@ -41,12 +42,13 @@ Forecast forecast(const Sampler& sampler, const std::string& case_name) {
   result.fingerprint = record(sampler, recording);
   for (int again = 1; again < recordings; ++again) {
     runtime::Recording another;
-    record(sampler, another);
+    if (record(sampler, another) != result.fingerprint)
+      throw std::runtime_error(case_name + ": two runs gave different meshes");
     recording.take_least(another);
   }
   for (int threads = 1; threads <= most_threads; threads *= 2)
-    result.rows.push_back(row_from(
-        replay(recording, {.threads = threads, .launch_ns = 1000 + 30.0 * threads})));
+    result.rows.push_back(
+        row_from(replay(recording, {.threads = threads, .launch_ns = 1000 + 30.0 * threads})));
   return result;
 }
 

@@ -23,7 +23,8 @@ namespace ductile::meshadapt {
 template <int Dim>
 class EdgeSurvey {
  public:
-  /// Edges not below the one, and not above the other, are certain to be neither.
+  /// Edges not below the one, and not above the other, are certain to be neither. Measured with a
+  /// margin, as compilers may round the same formula in different ways in different places.
   struct Limits {
     double shorter, longer;
     friend bool operator==(const Limits&, const Limits&) = default;
@@ -161,8 +162,9 @@ class EdgeSurvey {
     constexpr auto a = static_cast<std::size_t>(Simplex<Dim>::edge[edge][0]);
     constexpr auto b = static_cast<std::size_t>(Simplex<Dim>::edge[edge][1]);
     constexpr std::uint64_t short_bit = std::uint64_t{1} << edge, long_bit = short_bit << edges;
-    const double shorter = limits_.shorter * limits_.shorter * (limits_.shorter * limits_.shorter);
-    const double longer = limits_.longer * limits_.longer;
+    constexpr double margin = 1e-12;
+    const double below = limits_.shorter * limits_.shorter, above = limits_.longer * limits_.longer;
+    const double shorter = (1 + margin) * (below * below), longer = (1 - margin) * above;
     for (std::size_t l = 0; l < lane_count; ++l) {
       Vector<Dim> along;
       for (std::size_t i = 0; i < Dim; ++i) along.x[i] = position[b][i][l] - position[a][i][l];

@@ -82,11 +82,22 @@ TEST(Tiles, GiveEveryItemOneTurnWhateverTheThreads) {
   const Outcome first = run(side, 1, work);
   for (const int threads : thread_counts) {
     const Outcome outcome = run(side, threads, work);
+    EXPECT_GT(outcome.report.batches, 16U);  // steps of tiles, then classes of those that waited
     EXPECT_EQ(outcome.report.planned, work.size());
     EXPECT_EQ(outcome.report.applied, work.size());
     EXPECT_EQ(outcome.mean.turns, std::vector<int>(work.size(), 1)) << threads << " threads";
     EXPECT_EQ(outcome.mean.value, first.mean.value) << threads << " threads";
   }
+}
+
+TEST(Tiles, LeaveFewItemsOfManyToClasses) {
+  constexpr Vertex side = 700;  // 490,000 vertices, of which 4900 are work
+  std::vector<Vertex> work(4900);
+  for (std::size_t i = 0; i < work.size(); ++i) work[i] = static_cast<Vertex>(100 * i);
+  const Outcome first = run(side, 1, work);
+  EXPECT_LT(first.report.batches, 16U);
+  EXPECT_EQ(first.report.applied, work.size());
+  EXPECT_EQ(run(side, 8, work).mean.value, first.mean.value);
 }
 
 TEST(Tiles, TakeWorkInAnyOrder) {

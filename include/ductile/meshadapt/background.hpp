@@ -39,8 +39,8 @@ class Background {
   /// thread.
   Sample sample(const Vector<Dim>& point, ElementId near) const;
 
-  /// Gives its memory back, by all threads of an executor; there is nothing to sample any more.
-  /// Thread safety: one thread.
+  /// Gives the memory of its elements and vertices back, by all threads of an executor; there is
+  /// nothing to sample any more. Thread safety: one thread.
   void release(const runtime::Executor& executor);
 
   std::size_t element_count() const { return corners_of_.size(); }

@@ -97,7 +97,7 @@ concept TiledOperator = ColouredOperator<Op> && PrefetchingOperator<Op> &&
 };
 
 /// An operator that tells a Recording what an item costs, in nanoseconds, instead of having it
-/// timed: plan_cost(item), apply_cost(plan), or both.
+/// timed: plan_cost(item), apply_cost(plan), or both. Not asked for what runs in tiles.
 template <class Op>
 concept CostedOperator = requires(const Op& op, const typename Op::Item item) {
   { op.plan_cost(item) } -> std::convertible_to<double>;

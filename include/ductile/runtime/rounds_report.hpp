@@ -13,7 +13,7 @@ struct RoundsOptions {
   CommitOrder order = CommitOrder::any;  ///< by_source if an owner's updates do not commute
   /// Colouring: a round goes over its work in windows of at most so many items, one after the
   /// other; 0: all at once. Small windows stay in cache while their classes run; large ones keep
-  /// many threads busy.
+  /// many threads busy. What can run in tiles does so first.
   std::size_t window = 32768;
   /// Reservations: the same, but an item of a window then runs before one of a later window, of
   /// whatever priority. 0: the highest priority of all goes first.
@@ -24,10 +24,11 @@ struct RoundsOptions {
 };
 
 /// What a run did. Seconds are wall-clock; a phase's are those of all its loops and what is
-/// between.
+/// between. In tiles, planning and applying are one phase, and count as planning.
 struct RoundsReport {
   std::size_t rounds = 0;
-  std::size_t batches = 0;    ///< sets of items that ran together: classes, or a round's winners
+  std::size_t batches = 0;    ///< sets of items that ran together: classes, a round's winners, or
+                              ///< the tiles of a step
   std::size_t planned = 0;    ///< calls of plan
   std::size_t applied = 0;    ///< plans carried out
   std::size_t lost = 0;       ///< conflicts: reservations that met a higher priority

@@ -1,9 +1,10 @@
 /// @file
 /// run_rounds: applies an operator to a set of items until none is left. In each round it finds
 /// items that may run together, lets each of them plan, then apply its plan, then commits what was
-/// deferred; phases never overlap. Two strategies find items that may run together: colouring of
-/// their conflict graph, class by class (for when most items act), and reservation of what they
-/// touch by priority (for when few do). Which one an operator uses follows from its members.
+/// deferred; phases never overlap, but in tiles (TiledOperator). Two strategies find items that may
+/// run together: colouring of their conflict graph, class by class (for when most items act), and
+/// reservation of what they touch by priority (for when few do). Which one an operator uses follows
+/// from its members.
 #pragma once
 
 #include <utility>

@@ -28,6 +28,7 @@
 #include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime {
 
@@ -110,10 +111,10 @@ class Rounds {
   /// Returns what has to wait for the classes.
   std::vector<Item> run_tiles(std::vector<Item> work) requires TiledOperator<Op> {
     using Tiles = detail::Tiles<Op>;
-    if (work.size() < Tiles::few) return work;
+    if (Tiles::are_few(work.size(), op_.item_count())) return work;
     const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
     ++window_;
-    if (!std::is_sorted(work.begin(), work.end())) std::sort(work.begin(), work.end());
+    if (!std::is_sorted(work.begin(), work.end())) parallel_sort(executor_, std::span(work));
     Tiles tiles(executor_, op_, work);
     tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
     std::vector<Item> left = select(work, tiles.waits(), waits);

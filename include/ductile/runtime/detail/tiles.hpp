@@ -16,6 +16,7 @@
 
 #include "ductile/runtime/detail/blocked_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
@@ -33,8 +34,8 @@ class Tiles {
   using Item = typename Op::Item;
   static_assert(std::is_empty_v<typename Op::Update>, "tiles defer nothing");
 
-  /// Items below this number are not worth it.
-  static constexpr std::size_t few = 2048;
+  /// Not worth it: so few items, or so small a share of all, as each tile is looked at.
+  static bool are_few(std::size_t work, std::size_t all) { return work < 2048 || work < all / 64; }
 
   /// Of work in ascending order, which outlives this.
   Tiles(const Executor& executor, Op& op, std::span<const Item> work)
@@ -42,19 +43,17 @@ class Tiles {
         op_(op),
         work_(work),
         layout_(tiles_of(op.item_count())),
-        waits_(work.size()),
+        waits_(make_vector<std::uint8_t>(executor, work.size())),
         applied_of_(layout_.row_count(op.item_count()) << layout_.step_bits) {}
 
   /// Plans and applies all items that need not wait, each with a commit of its tile; tells
   /// planning(item) before.
   void run(auto&& new_commit, auto&& planning) {
     for (std::size_t step = 0; step < layout_.step_count(); ++step)
-      parallel_for(executor_, layout_.row_count(op_.item_count()),
-                   [&](std::size_t row) {
-                     Commit<Op> commit = new_commit();
-                     run_tile(layout_.block_of(row, step), commit, planning);
-                   },
-                   {.grain = 1});
+      parallel_for(
+          executor_, layout_.row_count(op_.item_count()),
+          [&](std::size_t row) { run_tile(layout_.block_of(row, step), new_commit, planning); },
+          {.grain = 1});
   }
 
   std::size_t steps() const { return layout_.step_count(); }
@@ -71,13 +70,15 @@ class Tiles {
   /// long as memory takes to answer three times.
   static constexpr std::size_t ahead = 5;
 
-  void run_tile(std::size_t tile, Commit<Op>& commit, auto&& planning) {
+  void run_tile(std::size_t tile, auto&& new_commit, auto&& planning) {
     const std::size_t begin = position_of(tile << layout_.block_bits);
     const std::size_t size = position_of((tile + 1) << layout_.block_bits) - begin;
     const Item* const items = work_.data() + begin;
     std::uint8_t* const waits = waits_.data() + begin;
+    if (size == 0) return;
+    Commit<Op> commit = new_commit();
     std::uint32_t applied = 0;
-    for (std::size_t i = 0; size != 0 && i < size + 3 * ahead; ++i) {
+    for (std::size_t i = 0; i < size + 3 * ahead; ++i) {
       const auto in_stage = [&](std::size_t stage) { return i - stage * ahead; };
       if (in_stage(0) < size) op_.prefetch(items[in_stage(0)], 2);
       if (in_stage(1) < size) op_.prefetch(items[in_stage(1)], 1);
