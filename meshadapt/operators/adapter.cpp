@@ -343,15 +343,14 @@ template <int Dim>
 std::size_t Adapter<Dim>::refine() {
   const double limit = long_edge();
   if (std::isinf(limit)) return 0;
-  const auto [splits, lists_are_stale] = split_edges_above(limit);
-  if (lists_are_stale) renumber_mesh();
-  tell("refine", splits);
-  return splits;
+  const Splits splits = split_edges_above(limit);
+  if (splits.left_lists_stale) renumber_mesh();
+  tell("refine", splits.count);
+  return splits.count;
 }
 
-/// Returns how many edges were split, and whether elements_of is stale by that.
 template <int Dim>
-std::pair<std::size_t, bool> Adapter<Dim>::split_edges_above(double limit) {
+auto Adapter<Dim>::split_edges_above(double limit) -> Splits {
   const KernelTimer timer(executor_, "refine", report_.refine.seconds);
   const std::uint32_t after = end_epoch(seen_by_refine_);
   auto work = long_edges(executor_, mesh_, survey_for(limit), limit, after);

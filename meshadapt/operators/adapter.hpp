@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
@@ -42,7 +41,11 @@ class Adapter {
   // ---- Kernels: each returns how many changes it made ----
   std::size_t coarsen();
   std::size_t refine();
-  std::pair<std::size_t, bool> split_edges_above(double limit);
+  struct Splits {
+    std::size_t count;
+    bool left_lists_stale;
+  };
+  Splits split_edges_above(double limit);
   std::size_t swap(int sweeps, double below);
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
 
