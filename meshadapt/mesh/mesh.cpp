@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "ductile/runtime/atomic_mark.hpp"
