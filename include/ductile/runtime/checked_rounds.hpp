@@ -33,7 +33,7 @@ requires(ColouredOperator<Op> || ReservingOperator<Op>) &&
     run_rounds_checked(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
                        const RoundsOptions& options = {}) {
   const Executor alone({.threads = 1, .deterministic = executor.deterministic()});
-  return Rounds<Op, detail::OperatorCheck<Op>>(alone, op, options).run(std::move(work));
+  return detail::run_all_rounds<Op, detail::OperatorCheck<Op>>(alone, op, std::move(work), options);
 }
 
 }  // namespace ductile::runtime

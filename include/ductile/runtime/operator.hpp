@@ -22,6 +22,10 @@ template <class Op>
 class Commit;
 
 namespace detail {
+template <class Op, class Check>
+class Batches;
+template <class Op, class Check>
+class ColouredRounds;
 template <class Op>
 class OperatorCheck;
 template <class Op>
@@ -158,7 +162,9 @@ class Commit {
 
  private:
   template <class, class>
-  friend class Rounds;
+  friend class detail::Batches;
+  template <class, class>
+  friend class detail::ColouredRounds;
   friend class detail::OperatorCheck<Op>;
   friend class detail::OppositeOrder<Op>;
   Deferrer<Update> deferrer_;

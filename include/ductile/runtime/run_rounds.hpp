@@ -25,7 +25,7 @@ template <class Op>
 requires ColouredOperator<Op> || ReservingOperator<Op> RoundsReport
 run_rounds(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
            const RoundsOptions& options = {}) {
-  return Rounds<Op>(executor, op, options).run(std::move(work));
+  return detail::run_all_rounds(executor, op, std::move(work), options);
 }
 
 }  // namespace ductile::runtime

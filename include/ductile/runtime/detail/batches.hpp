@@ -1,0 +1,270 @@
+/// @file
+/// Batches: sets of items that may run together, planned, applied and committed. Both strategies of
+/// rounds only differ in how they cut a round's work into batches. Plans are kept by position in
+/// the batch, and numbers of new things are handed out by a prefix sum over those positions, so
+/// nothing depends on which thread did what.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/detail/slots.hpp"
+#include "ductile/runtime/operator.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/recording.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/worklist.hpp"
+
+namespace ductile::runtime::detail {
+
+/// Of what takes well under a microsecond an item, so many are handed out at once.
+constexpr std::size_t short_block = 32;
+constexpr LoopOptions by_block{.grain = 1, .serial_below = 3};
+
+/// What the batches of a run share. Check is OperatorCheck, or says by `on` that there is none.
+template <class Op, class Check>
+class Batches {
+ public:
+  using Item = typename Op::Item;
+  using Plan = typename Op::Plan;
+  using Update = typename Op::Update;
+
+  Batches(const Executor& executor, Op& op, const RoundsOptions& options)
+      : executor(executor),
+        op(op),
+        options(options),
+        deferred_(executor, {.order = executor.deterministic() ? options.order : CommitOrder::any}),
+        woken_(executor, {.order = WorkOrder::by_item, .unique = true}) {}
+
+  const Executor& executor;
+  Op& op;
+  const RoundsOptions options;
+  [[no_unique_address]] Check check;
+  RoundsReport report;
+
+  /// Runs a batch: an item is planned if takes(item), which is asked again where rounds are
+  /// checked; new_commit() is what its plan is applied with.
+  void run(std::span<const Item> batch, auto&& takes, auto&& new_commit) {
+    if (batch.empty()) return;
+    ++report.batches;
+    plan_all(batch, takes);
+    if constexpr (Check::on) return apply_checked(batch, takes, new_commit);
+    {
+      const PhaseTimer timer(report.apply_seconds, executor, Phase::apply);
+      apply_plans(new_commit);
+    }
+    const PhaseTimer timer(report.commit_seconds, executor, Phase::commit);
+    report.committed += deferred_.commit(
+        [&](std::uint32_t owner, Update& update) { op.commit(owner, std::move(update)); });
+  }
+
+  /// What plans are applied with, save what the strategy adds.
+  Commit<Op> new_commit(std::uint32_t window) {
+    Commit<Op> commit;
+    commit.deferrer_ = deferred_.deferrer();
+    commit.woken_ = &woken_;
+    commit.window_ = window;
+    if constexpr (Check::on) commit.reconsidered_ = &check.reconsidered;
+    return commit;
+  }
+
+  /// The items woken since the last call, each once, in order.
+  std::vector<Item> take_woken() {
+    const PhaseTimer timer(report.wake_seconds, executor, Phase::wake);
+    woken_.collect();
+    report.woken += woken_.size();
+    if constexpr (Check::on) {
+      const auto items = woken_.items();
+      check.end_round(op, {items.begin(), items.end()});
+    }
+    return woken_.take();
+  }
+
+ private:
+  static constexpr std::size_t kinds = Kinds<Op>::count;
+
+  /// Few of a small batch are handed out at once, so that each of many threads gets some.
+  static std::size_t block_of(std::size_t items) {
+    return std::clamp<std::size_t>(items / 1024, 4, short_block);
+  }
+
+  void plan_all(std::span<const Item> batch, auto&& takes) {
+    size_ = batch.size();
+    block_size_ = block_of(size_);
+    plans_.provide(executor, size_);
+    planned_of_.assign((size_ + block_size_ - 1) / block_size_, 0);
+    const PhaseTimer timer(report.plan_seconds, executor, Phase::plan);
+    for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if constexpr (PrefetchingOperator<Op>) prefetch_after(batch, i);
+        planned_of_[b] += plan(batch[i], takes(batch[i]), plans_[i]);
+      }
+    });
+    const std::size_t planned = std::accumulate(planned_of_.begin(), planned_of_.end(), 0U);
+    report.planned += planned;
+    report.dropped += size_ - planned;
+  }
+
+  void for_each_block(auto&& body) {
+    parallel_for_blocks(executor, size_, block_size_, body, by_block);
+  }
+
+  /// What memory takes to answer is about as long as planning two items.
+  void prefetch_after(std::span<const Item> batch, std::size_t i) const {
+    for (const int stage : {2, 1, 0}) {
+      const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
+      if (ahead < batch.size()) op.prefetch(batch[ahead], stage);
+    }
+  }
+
+  /// Plans an item, unless it left the round; returns whether it is still here.
+  bool plan(const Item& item, bool here, std::optional<Plan>& plan) {
+    if (here) {
+      plan = op.plan(item);
+    } else {
+      plan.reset();
+    }
+    if (executor.recording() != nullptr) [[unlikely]]
+      record_plan(item);
+    return here;
+  }
+
+  void apply_plans(auto&& new_commit) {
+    first_of_.assign(planned_of_.size(), {});
+    applied_of_.assign(planned_of_.size(), 0);
+    if constexpr (kinds > 0) number_new_things();
+    for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
+      Commit<Op> commit = new_commit();
+      commit.next_ = first_of_[b];
+      for (std::size_t i = begin; i < end; ++i) {
+        if (plans_[i]) {
+          commit.source_ = i;
+          op.apply(*plans_[i], commit);
+          ++applied_of_[b];
+        }
+        if (executor.recording() != nullptr) [[unlikely]]
+          record_apply(plans_[i]);
+      }
+    });
+    for (const std::uint32_t applied : applied_of_) report.applied += applied;
+  }
+
+  void apply_checked(std::span<const Item> all, auto&& takes, auto&& new_commit) {
+    std::vector<Item> batch;
+    std::vector<std::optional<Plan>> plans;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (takes(all[i])) batch.push_back(all[i]), plans.push_back(std::move(plans_[i]));
+    std::vector<Commit<Op>> commits(batch.size(), new_commit());
+    for (std::size_t i = 0; i < batch.size(); ++i) commits[i].source_ = i;
+    report.applied += batch.size() - std::count(plans.begin(), plans.end(), std::nullopt);
+    if constexpr (kinds > 0) number_one_by_one(plans, commits);
+    check.run_batch(op, {batch, plans, commits}, deferred_, options.order);
+  }
+
+  /// Sets first_of_ to the first new number of each kind for each block of the batch.
+  void number_new_things() {
+    for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!plans_[i]) continue;
+        const auto demand = op.demand(*plans_[i]);
+        for (std::size_t k = 0; k < kinds; ++k) first_of_[b][k] += demand[k];
+      }
+    });
+    std::array<std::uint32_t, kinds> total{};
+    for (auto& first : first_of_)
+      for (std::size_t k = 0; k < kinds; ++k) total[k] += std::exchange(first[k], total[k]);
+    const std::array<std::uint32_t, kinds> base = op.grow(total);
+    for (auto& first : first_of_)
+      for (std::size_t k = 0; k < kinds; ++k) first[k] += base[k];
+  }
+
+  /// The same for the commits of single items.
+  void number_one_by_one(const std::vector<std::optional<Plan>>& plans,
+                         std::vector<Commit<Op>>& commits) {
+    std::array<std::uint32_t, kinds> total{};
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      commits[i].next_ = total;
+      if (!plans[i]) continue;
+      const auto demand = op.demand(*plans[i]);
+      for (std::size_t k = 0; k < kinds; ++k) total[k] += demand[k];
+    }
+    const std::array<std::uint32_t, kinds> base = op.grow(total);
+    for (Commit<Op>& commit : commits)
+      for (std::size_t k = 0; k < kinds; ++k) commit.next_[k] += base[k];
+  }
+
+  void record_plan(const Item& item) {
+    if constexpr (requires { op.plan_cost(item); }) {
+      executor.recording()->end_item(op.plan_cost(item));
+    } else {
+      executor.recording()->end_item();
+    }
+  }
+
+  void record_apply(const std::optional<Plan>& plan) {
+    if constexpr (requires { op.apply_cost(*plan); }) {
+      executor.recording()->end_item(plan ? op.apply_cost(*plan) : 0.0);
+    } else {
+      executor.recording()->end_item();
+    }
+  }
+
+  DeferredUpdate<Update> deferred_;
+  Worklist<Item> woken_;
+
+  // ---- The batch ----
+  std::size_t size_ = 0, block_size_ = 1;  // its items, and those of a block
+  Slots<Plan> plans_;                      // [position]; there may be old ones beyond its size
+  std::vector<std::uint32_t> planned_of_;  // [block]
+  std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block][kind]
+  std::vector<std::uint32_t> applied_of_;                   // [block]
+};
+
+/// Cuts work into `windows` parts that run one after the other.
+template <class Item>
+void for_each_window(std::span<Item> work, std::size_t windows, auto&& run) {
+  const std::size_t n = work.size();
+  for (std::size_t w = 0; w < windows; ++w) {
+    const std::size_t begin = n * w / windows, end = n * (w + 1) / windows;
+    run(work.subspan(begin, end - begin));
+  }
+}
+
+/// How many windows of at most `largest` items there are to be; 0: work is one part.
+inline std::size_t window_count(std::size_t items, std::size_t largest) {
+  return largest == 0 ? 1 : (items + largest - 1) / largest;
+}
+
+/// Moves the items with an outcome in this set of bits out of the work, in order.
+template <class Item>
+std::vector<Item> select(const Executor& executor, std::span<Item> work,
+                         const std::vector<std::uint8_t>& outcome, std::uint8_t wanted) {
+  std::vector<std::uint32_t> offset((work.size() + short_block - 1) / short_block);
+  parallel_for_blocks(
+      executor, work.size(), short_block,
+      [&](std::size_t b, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) offset[b] += (outcome[i] & wanted) != 0;
+      },
+      by_block);
+  std::vector<Item> selected(exclusive_scan<std::uint32_t>(executor, offset));
+  parallel_for_blocks(
+      executor, work.size(), short_block,
+      [&](std::size_t b, std::size_t begin, std::size_t end) {
+        std::uint32_t at = offset[b];
+        for (std::size_t i = begin; i < end; ++i)
+          if ((outcome[i] & wanted) != 0) selected[at++] = std::move(work[i]);
+      },
+      by_block);
+  return selected;
+}
+
+}  // namespace ductile::runtime::detail

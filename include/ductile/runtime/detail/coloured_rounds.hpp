@@ -1,0 +1,170 @@
+/// @file
+/// ColouredRounds: cuts a round's work into classes of items that do not conflict, by colouring
+/// their conflict graph, for operators of which most items act. What can run in tiles does so
+/// first.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/detail/batches.hpp"
+#include "ductile/runtime/detail/filled_array.hpp"
+#include "ductile/runtime/detail/tiles.hpp"
+#include "ductile/runtime/operator.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/sort.hpp"
+
+namespace ductile::runtime::detail {
+
+/// What colour() does, without the methods and widths of words that conflicts have no use for: a
+/// program compiles what is named here for each of its operators.
+template <class G>
+Colouring colour_conflicts(const Executor& executor, const G& graph) {
+  Colouring colouring;
+  colouring.colour_of.resize(graph.vertex_count(), Colouring::none);
+  const VertexSet all{graph.vertex_count()};
+  const Colours<FourBytes<>> colours(colouring.colour_of);
+  if (all.count >= few_vertices) {
+    using Width = Narrow<>;
+    std::vector<std::uint8_t> bytes(all.count, Colours<Width>::none);
+    if (colour_in<Blocked, Width>(executor, graph, bytes, all)) {
+      colouring.count = widen(executor, bytes, colouring.colour_of);
+      return colouring;
+    }
+    Blocked::run(executor, AnyGraph(graph), all, colours);
+  } else {
+    Serial::run(executor, graph, all, colours);
+  }
+  colouring.count = colour_count(executor, colouring.colour_of);
+  return colouring;
+}
+
+template <class Op, class Check>
+class ColouredRounds {
+ public:
+  using Item = typename Op::Item;
+
+  explicit ColouredRounds(Batches<Op, Check>& batches) : batches_(batches) {}
+
+  /// Goes over the work window by window, so that what one window's classes touch stays in cache.
+  /// Returns the work of the next round.
+  std::vector<Item> run(std::vector<Item> work) {
+    woken_at_.resize(executor_, op_.item_count(), 0);
+    turn_of_.resize(executor_, op_.item_count(), absent);
+    if constexpr (TiledOperator<Op> && !Check::on) work = run_tiles(std::move(work));
+    const std::size_t largest = Check::on ? 0 : batches_.options.window;
+    for_each_window(std::span<const Item>(work), window_count(work.size(), largest),
+                    [&](std::span<const Item> part) { run_window(part); });
+    const std::vector<Item> woken = batches_.take_woken();
+    // Who was woken by one window and planned in a later one has been considered again.
+    return parallel_collect<Item>(executor_, woken.size(), [&](std::size_t i, auto&& append) {
+      if (woken_at_[woken[i]] != 0) append(woken[i]);
+    });
+  }
+
+ private:
+  static constexpr LoopOptions copying{.grain = 512, .serial_below = 2048};
+  static constexpr std::uint32_t absent = 0xffffffffU;
+
+  /// Returns what has to wait for the classes.
+  std::vector<Item> run_tiles(std::vector<Item> work) {
+    if (Tiles<Op>::are_few(work.size(), op_.item_count())) return work;
+    RoundsReport& report = batches_.report;
+    const PhaseTimer timer(report.plan_seconds, executor_, Phase::plan);
+    ++window_;
+    if (!std::is_sorted(work.begin(), work.end())) parallel_sort(executor_, std::span(work));
+    Tiles<Op> tiles(executor_, op_, work);
+    tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
+    std::vector<Item> left = select(executor_, std::span(work), tiles.waits(), 1);
+    report.batches += tiles.steps();
+    report.planned += work.size() - left.size();
+    report.applied += tiles.applied();
+    return left;
+  }
+
+  void run_window(std::span<const Item> work) {
+    ++window_;
+    std::vector<std::size_t> class_begin;
+    {
+      const PhaseTimer timer(batches_.report.conflict_seconds, executor_, Phase::conflict);
+      class_begin = sort_by_class(work);
+    }
+    const std::size_t classes = class_begin.size() - 1;
+    for (turn_ = 0; turn_ < classes; ++turn_) {
+      const std::size_t begin = class_begin[turn_], end = class_begin[turn_ + 1];
+      batches_.run(
+          std::span(by_class_).subspan(begin, end - begin), [&](Item item) { return takes(item); },
+          [&] { return new_commit(); });
+      if constexpr (Check::on) check_waiting(end);
+    }
+    parallel_for(
+        executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; }, copying);
+  }
+
+  /// Sets by_class_ to the work sorted into classes of items that do not conflict, and turn_of_ to
+  /// the items' classes. Returns where each class begins, and the end.
+  std::vector<std::size_t> sort_by_class(std::span<const Item> work) {
+    parallel_for(
+        executor_, work.size(),
+        [&](std::size_t i) { turn_of_[work[i]] = static_cast<std::uint32_t>(i); }, copying);
+    const CallbackGraph graph(work.size(), [&](std::uint32_t i, auto&& visit) {
+      op_.conflicts(work[i], [&](Item other) {
+        if (turn_of_[other] != absent) visit(turn_of_[other]);
+      });
+    });
+    const Colouring colouring = colour_conflicts(executor_, graph);
+    ColourClasses classes = colour_classes(executor_, colouring);
+    by_class_.resize(work.size());
+    const auto place = [&](std::size_t i) {
+      by_class_[i] = work[classes.vertices[i]];
+      turn_of_[work[i]] = colouring.colour_of[i];
+    };
+    parallel_for(executor_, work.size(), place, copying);
+    return std::move(classes.begin);
+  }
+
+  /// Whether an item has its turn now. A colouring is stale where something changed: who was woken
+  /// in this window comes back in the next round.
+  bool takes(Item item) {
+    if constexpr (!requires { Op::keeps_conflicts; })
+      if (woken_at_[item] == window_) return false;
+    woken_at_[item] = 0;
+    return true;
+  }
+
+  Commit<Op> new_commit() {
+    Commit<Op> commit = batches_.new_commit(window_);
+    commit.woken_at_ = woken_at_.data();
+    commit.turn_of_ = turn_of_.data();
+    commit.turn_ = static_cast<std::uint32_t>(turn_);
+    return commit;
+  }
+
+  /// Those that wait for a later turn begin here.
+  void check_waiting(std::size_t begin) {
+    const auto is_waiting = [&](Item item) {
+      return turn_of_[item] > turn_ && turn_of_[item] != absent && woken_at_[item] != window_;
+    };
+    for (std::size_t i = begin; i < by_class_.size(); ++i)
+      if (is_waiting(by_class_[i])) batches_.check.expect_kept(op_, by_class_[i], is_waiting);
+  }
+
+  Batches<Op, Check>& batches_;
+  const Executor& executor_ = batches_.executor;
+  Op& op_ = batches_.op;
+  FilledArray<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
+  FilledArray<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its class,
+                                         // or absent
+  std::vector<Item> by_class_;           // the window's work, class after class
+  std::size_t turn_ = 0;                 // class being executed
+  std::uint32_t window_ = 0;             // the window being run
+};
+
+}  // namespace ductile::runtime::detail
