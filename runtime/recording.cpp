@@ -19,7 +19,7 @@ double Recording::lap() {
   const Clock::time_point now = Clock::now();
   const double ns =
       std::chrono::duration<double, std::nano>(now - std::exchange(last_, now)).count() - clock_ns_;
-  return std::max(0.0, ns > suspicious ? ns - away() : ns);
+  return std::max(0.0, ns > suspicious ? ns - away() : ns) + std::exchange(held_, 0.0);
 }
 
 /// Nanoseconds since the last call in which this thread did not run, because others had its core or
@@ -54,7 +54,7 @@ void Recording::flush() {
 }
 
 void Recording::take_least(const Recording& again) {
-  if (sections_ != again.sections_ || stretches_ != again.stretches_ ||
+  if (sections_ != again.sections_ || stretches_ != again.stretches_ || waits_ != again.waits_ ||
       costs_.size() != again.costs_.size())
     throw std::invalid_argument("Recording::take_least: these are not recordings of the same run");
   for (std::size_t i = 0; i < costs_.size(); ++i) costs_[i] = std::min(costs_[i], again.costs_[i]);
@@ -83,7 +83,8 @@ void Recording::begin_loop() {
   flush();
   loop_first_ = chunk_first_ = costs_.size();
   items_ = given_ = false;
-  block_ = 0;
+  block_ = chunk_ = 0;
+  first_wait_ = waits_.size();
   in_loop_ = true;
   lap();
 }
@@ -111,14 +112,22 @@ void Recording::end_chunk() {
     if (!given_) costs_.back() += static_cast<float>(ns);  // what followed the last item
   }
   chunk_first_ = costs_.size();
+  ++chunk_;
+}
+
+void Recording::wait_for(std::size_t chunk) {
+  waits_.push_back({static_cast<std::uint32_t>(chunk_), static_cast<std::uint32_t>(chunk)});
 }
 
 void Recording::end_loop() {
   in_loop_ = false;
   if (paused_) {
     costs_.resize(loop_first_);
+    waits_.resize(first_wait_);
   } else {
     add(items_ ? Stretch::Kind::items : Stretch::Kind::chunks, loop_first_, items_ ? block_ : 1);
+    stretches_.back().first_wait = first_wait_;
+    stretches_.back().waits = waits_.size() - first_wait_;
   }
   lap();
 }

@@ -18,23 +18,27 @@ std::vector<double> chunks_of(std::span<const float> costs, std::size_t block) {
   return chunks;
 }
 
-/// When the last chunk ends if the thread that is free first takes the next.
-double makespan(const std::vector<double>& chunks, std::size_t threads) {
-  if (chunks.size() <= threads)
-    return chunks.empty() ? 0 : *std::max_element(chunks.begin(), chunks.end());
-  std::vector<double> free_at(chunks.begin(),
-                              chunks.begin() + static_cast<std::ptrdiff_t>(threads));
-  std::make_heap(free_at.begin(), free_at.end(), std::greater<>());
-  for (std::size_t i = threads; i < chunks.size(); ++i) {
+/// When the last chunk ends if the thread that is free first takes the next. Waits are of chunks in
+/// order; a thread that took a chunk is not free while it waits.
+double makespan(const std::vector<double>& chunks, std::span<const Recording::Wait> waits,
+                std::size_t threads) {
+  std::vector<double> ends(chunks.size());
+  std::vector<double> free_at(std::min(chunks.size(), threads));
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
     std::pop_heap(free_at.begin(), free_at.end(), std::greater<>());
-    free_at.back() += chunks[i];
+    double begin = free_at.back();
+    for (; !waits.empty() && waits.front().chunk == i; waits = waits.subspan(1))
+      begin = std::max(begin, ends[waits.front().on]);
+    free_at.back() = ends[i] = begin + chunks[i];
     std::push_heap(free_at.begin(), free_at.end(), std::greater<>());
   }
-  return *std::max_element(free_at.begin(), free_at.end());
+  return chunks.empty() ? 0 : *std::max_element(ends.begin(), ends.end());
 }
 
-ReplayTimes times_of(std::span<const float> costs, const Recording::Stretch& stretch,
+ReplayTimes times_of(const Recording& recording, const Recording::Stretch& stretch,
                      const ReplayOptions& options) {
+  const auto costs = std::span(recording.costs()).subspan(stretch.first, stretch.count);
+  const auto waits = std::span(recording.waits()).subspan(stretch.first_wait, stretch.waits);
   ReplayTimes times;
   const Kind kind = stretch.kind;
   const bool recut = kind == Kind::items && options.block > 0;
@@ -47,8 +51,8 @@ ReplayTimes times_of(std::span<const float> costs, const Recording::Stretch& str
     const double one = chunks.size() > 1 ? options.launch_ns : 0;
     times.work = sum;
     times.elapsed = static_cast<double>(times.launches) * one +
-                    makespan(chunks, static_cast<std::size_t>(options.threads));
-    times.critical = one + makespan(chunks, chunks.size());
+                    makespan(chunks, waits, static_cast<std::size_t>(options.threads));
+    times.critical = one + makespan(chunks, waits, chunks.size());
   }
   for (double* const time : {&times.serial, &times.work, &times.elapsed, &times.critical})
     *time *= 1e-9;
@@ -72,10 +76,8 @@ Replay replay(const Recording& recording, const ReplayOptions& options) {
   result.threads = options.threads;
   for (const std::string& name : recording.sections()) result.sections.push_back({name, {}, {}});
   result.rounds.resize(recording.rounds());
-  const std::span costs(recording.costs());
   for (const Recording::Stretch& stretch : recording.stretches()) {
-    const ReplayTimes times =
-        times_of(costs.subspan(stretch.first, stretch.count), stretch, options);
+    const ReplayTimes times = times_of(recording, stretch, options);
     ReplaySection& section = result.sections[stretch.section];
     result.total += times;
     section.total += times;

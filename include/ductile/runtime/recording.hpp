@@ -28,9 +28,16 @@ class Recording {
     std::uint32_t section, round;  ///< round counts all rounds since the start; 0 outside of rounds
     Phase phase;
     Kind kind;
-    std::size_t first, count;  ///< its costs
-    std::size_t block = 1;     ///< of items: how many were handed out at once
+    std::size_t first, count;               ///< its costs
+    std::size_t block = 1;                  ///< of items: how many were handed out at once
+    std::size_t first_wait = 0, waits = 0;  ///< for what its chunks wait, if they do
     friend bool operator==(const Stretch&, const Stretch&) = default;
+  };
+
+  /// A chunk of a loop that waits for an earlier one of the same loop, by their places in it.
+  struct Wait {
+    std::uint32_t chunk, on;
+    friend bool operator==(const Wait&, const Wait&) = default;
   };
 
   Recording();
@@ -43,6 +50,7 @@ class Recording {
   const std::vector<std::string>& sections() const { return sections_; }  ///< the first is ""
   const std::vector<Stretch>& stretches() const { return stretches_; }
   const std::vector<float>& costs() const { return costs_; }  ///< nanoseconds
+  const std::vector<Wait>& waits() const { return waits_; }   ///< those of a loop by chunk
   std::uint32_t rounds() const { return rounds_; }
 
   /// Each cost becomes the lesser of the two, where `again` is of the same run: what has disturbed
@@ -60,6 +68,16 @@ class Recording {
   void begin_loop();
   void end_chunk();
   void end_loop();
+  /// The running chunk, of which no single items are noted, waits for an earlier one of the loop.
+  void wait_for(std::size_t chunk);
+  /// Runs something, the time of which is nobody's.
+  template <class Run>
+  void aside(Run&& run) {
+    const double before = lap();
+    run();
+    lap();
+    held_ = before;
+  }
   /// The time since the last item or the beginning of the chunk was one item's.
   void end_item();
   /// As end_item(), with a cost that is given instead of measured. All of a loop's or none are.
@@ -78,10 +96,12 @@ class Recording {
   std::vector<std::string> sections_{""};
   std::vector<Stretch> stretches_;
   std::vector<float> costs_;
+  std::vector<Wait> waits_;
   Clock::time_point last_ = Clock::now();
   const Clock::time_point start_ = last_;
   double gone_ = 0;  // nanoseconds since then in which the thread did not run
   double clock_ns_ = 0;
+  double held_ = 0;  // what the next lap is longer by
   std::uint32_t section_ = 0, round_ = 0, rounds_ = 0;
   Phase phase_ = Phase::other;
   bool paused_ = false;
@@ -89,6 +109,8 @@ class Recording {
   std::size_t loop_first_ = 0;   // where the costs of the running loop begin
   std::size_t chunk_first_ = 0;  // and those of the running chunk
   std::size_t block_ = 0;        // items in the loop's first chunk
+  std::size_t chunk_ = 0;        // of the running loop
+  std::size_t first_wait_ = 0;   // where the waits of the running loop begin
   bool given_ = false;           // costs of the running loop are given, not measured
   bool items_ = false;           // and are of single items
 };

@@ -82,7 +82,7 @@ class ColouredRounds {
     if (!std::is_sorted(work.begin(), work.end())) parallel_sort(executor_, std::span(work));
     Tiles<Op> tiles(executor_, op_, work);
     tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
-    std::vector<Item> left = select(executor_, std::span(work), tiles.waits(), 1);
+    std::vector<Item> left = select(executor_, std::span(work), tiles.left(), 1);
     report.batches += tiles.steps();
     report.planned += work.size() - left.size();
     report.applied += tiles.applied();
