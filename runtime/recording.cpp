@@ -83,7 +83,8 @@ void Recording::begin_loop() {
   flush();
   loop_first_ = chunk_first_ = costs_.size();
   items_ = given_ = false;
-  block_ = chunk_ = 0;
+  block_ = 0;
+  cost_of_.clear();
   first_wait_ = waits_.size();
   in_loop_ = true;
   lap();
@@ -103,6 +104,7 @@ void Recording::end_item(double cost_ns) {
 }
 
 void Recording::end_chunk() {
+  if (!cost_of_.empty()) return end_part();
   const double ns = lap();
   if (costs_.size() == chunk_first_) {
     note(ns);
@@ -112,15 +114,32 @@ void Recording::end_chunk() {
     if (!given_) costs_.back() += static_cast<float>(ns);  // what followed the last item
   }
   chunk_first_ = costs_.size();
-  ++chunk_;
 }
 
-void Recording::wait_for(std::size_t chunk) {
-  waits_.push_back({static_cast<std::uint32_t>(chunk_), static_cast<std::uint32_t>(chunk)});
+void Recording::begin_part(std::size_t part) {
+  end_part();
+  if (part >= cost_of_.size()) cost_of_.resize(part + 1);
+  part_ = part;
+  lap();
+}
+
+void Recording::end_part() {
+  const double ns = lap();
+  if (!cost_of_.empty()) cost_of_[part_] += static_cast<float>(ns);
+}
+
+void Recording::part_waits(std::size_t part, std::size_t on) {
+  waits_.push_back({static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(on)});
 }
 
 void Recording::end_loop() {
   in_loop_ = false;
+  if (!cost_of_.empty()) {
+    costs_.resize(loop_first_);
+    costs_.insert(costs_.end(), cost_of_.begin(), cost_of_.end());
+    const auto first_wait = waits_.begin() + static_cast<std::ptrdiff_t>(first_wait_);
+    std::sort(first_wait, waits_.end());
+  }
   if (paused_) {
     costs_.resize(loop_first_);
     waits_.resize(first_wait_);

@@ -18,8 +18,8 @@ std::vector<double> chunks_of(std::span<const float> costs, std::size_t block) {
   return chunks;
 }
 
-/// When the last chunk ends if the thread that is free first takes the next. Waits are of chunks in
-/// order; a thread that took a chunk is not free while it waits.
+/// When the last chunk ends if the thread that is free first takes the next. Waits are in order
+/// of chunks; a thread that took one is not free while that waits.
 double makespan(const std::vector<double>& chunks, std::span<const Recording::Wait> waits,
                 std::size_t threads) {
   std::vector<double> ends(chunks.size());
@@ -27,7 +27,7 @@ double makespan(const std::vector<double>& chunks, std::span<const Recording::Wa
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     std::pop_heap(free_at.begin(), free_at.end(), std::greater<>());
     double begin = free_at.back();
-    for (; !waits.empty() && waits.front().chunk == i; waits = waits.subspan(1))
+    for (; !waits.empty() && waits.front().part == i; waits = waits.subspan(1))
       begin = std::max(begin, ends[waits.front().on]);
     free_at.back() = ends[i] = begin + chunks[i];
     std::push_heap(free_at.begin(), free_at.end(), std::greater<>());

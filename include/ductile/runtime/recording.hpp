@@ -8,6 +8,7 @@
 #pragma once
 
 #include <chrono>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -30,14 +31,14 @@ class Recording {
     Kind kind;
     std::size_t first, count;               ///< its costs
     std::size_t block = 1;                  ///< of items: how many were handed out at once
-    std::size_t first_wait = 0, waits = 0;  ///< for what its chunks wait, if they do
+    std::size_t first_wait = 0, waits = 0;  ///< of its parts, if it has some
     friend bool operator==(const Stretch&, const Stretch&) = default;
   };
 
-  /// A chunk of a loop that waits for an earlier one of the same loop, by their places in it.
+  /// A part of a loop that waits for an earlier one.
   struct Wait {
-    std::uint32_t chunk, on;
-    friend bool operator==(const Wait&, const Wait&) = default;
+    std::uint32_t part, on;
+    friend auto operator<=>(const Wait&, const Wait&) = default;
   };
 
   Recording();
@@ -50,7 +51,7 @@ class Recording {
   const std::vector<std::string>& sections() const { return sections_; }  ///< the first is ""
   const std::vector<Stretch>& stretches() const { return stretches_; }
   const std::vector<float>& costs() const { return costs_; }  ///< nanoseconds
-  const std::vector<Wait>& waits() const { return waits_; }   ///< those of a loop by chunk
+  const std::vector<Wait>& waits() const { return waits_; }   ///< those of a loop by part
   std::uint32_t rounds() const { return rounds_; }
 
   /// Each cost becomes the lesser of the two, where `again` is of the same run: what has disturbed
@@ -68,8 +69,11 @@ class Recording {
   void begin_loop();
   void end_chunk();
   void end_loop();
-  /// The running chunk, of which no single items are noted, waits for an earlier one of the loop.
-  void wait_for(std::size_t chunk);
+  /// For loops whose chunks are not what runs side by side: what follows, up to the next call or
+  /// the end of the chunk, belongs to this part of the loop. Chunks then do not count.
+  void begin_part(std::size_t part);
+  /// A part waits for an earlier one of the loop.
+  void part_waits(std::size_t part, std::size_t on);
   /// Runs something, the time of which is nobody's.
   template <class Run>
   void aside(Run&& run) {
@@ -90,6 +94,7 @@ class Recording {
   double lap();
   double away();
   void flush();
+  void end_part();
   void add(Stretch::Kind kind, std::size_t first, std::size_t block = 1);
   void note(double cost_ns);
 
@@ -109,7 +114,8 @@ class Recording {
   std::size_t loop_first_ = 0;   // where the costs of the running loop begin
   std::size_t chunk_first_ = 0;  // and those of the running chunk
   std::size_t block_ = 0;        // items in the loop's first chunk
-  std::size_t chunk_ = 0;        // of the running loop
+  std::vector<float> cost_of_;   // [part], of the running loop
+  std::size_t part_ = 0;         // running
   std::size_t first_wait_ = 0;   // where the waits of the running loop begin
   bool given_ = false;           // costs of the running loop are given, not measured
   bool items_ = false;           // and are of single items

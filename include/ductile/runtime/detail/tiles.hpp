@@ -1,9 +1,10 @@
 /// @file
 /// Tiles: stretches of items, in each of which one thread plans and applies one after the other
-/// while what they touch is in its cache; nothing is coloured and no plan is kept. Tiles run in
-/// steps (blocks.hpp); those of a step lie apart, so few items have a neighbour in another of them.
-/// If that comes first, they are left for the classes of a coloured round. Steps overlap: a tile
-/// waits for those of earlier steps that it has neighbours in, and for no others.
+/// while what they touch is in its cache; nothing is coloured and no plan is kept. Of neighbours in
+/// different tiles the one whose tile has the lower rank comes first. Threads take tiles as they
+/// lie side by side. One that meets a neighbour of a tile of lower rank that is not done does that
+/// tile first, or waits until the thread that has begun it is done. As ranks fall from each tile to
+/// the one it waits for, nobody waits for himself.
 #pragma once
 
 #include <algorithm>
@@ -12,25 +13,25 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <thread>
 #include <type_traits>
 #include <vector>
 
-#include "ductile/runtime/detail/blocked_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
 
 namespace ductile::runtime::detail {
 
-/// Tiles of 32 to 128 items, one in 16 of which run at the same time.
-inline BlockLayout tiles_of(std::size_t item_count) {
-  const int bits = std::clamp(static_cast<int>(std::bit_width(item_count)) - 10, 5, 7);
-  return {static_cast<unsigned>(bits), 4};
+/// The bits of a number in opposite order.
+constexpr std::uint32_t reverse_bits(std::uint32_t bits) {
+  std::uint32_t reversed = 0;
+  for (int i = 0; i < 32; ++i) reversed |= (bits >> i & 1U) << (31 - i);
+  return reversed;
 }
 
 template <TiledOperator Op>
@@ -47,75 +48,95 @@ class Tiles {
       : executor_(executor),
         op_(op),
         work_(work),
-        layout_(tiles_of(op.item_count())),
-        rows_(layout_.row_count(op.item_count())),
-        left_(make_vector<std::uint8_t>(executor, work.size())),
-        applied_of_(rows_ << layout_.step_bits),
-        done_(applied_of_.size()) {}
+        // 32 to 128 items
+        bits_(std::clamp(static_cast<int>(std::bit_width(op.item_count())) - 11, 5, 7)),
+        rank_of_((op.item_count() >> bits_) + 1),
+        claimed_(rank_of_.size()),
+        applied_of_(rank_of_.size()),
+        begun_(executor) {
+    // Numbers of neighbouring tiles mostly differ in their lowest bits. With these first, few
+    // tiles wait for one that waits itself.
+    parallel_for(
+        executor_, rank_of_.size(),
+        [&](std::size_t tile) { rank_of_[tile] = reverse_bits(static_cast<std::uint32_t>(tile)); },
+        {.serial_below = 4096});
+    if (executor_.recording() != nullptr) number_parts();
+  }
 
-  /// Plans and applies all items but those that are left, each with a commit of its tile; tells
-  /// planning(item) before.
+  /// Plans and applies all items, each with a commit of its tile; tells planning(item) before.
   void run(auto&& new_commit, auto&& planning) {
-    // This schedule begins tiles in order, so those that one waits for have begun.
-    parallel_for(executor_, rows_ << layout_.step_bits,
-                 [&](std::size_t turn) {
-                   const std::size_t tile = layout_.block_of(turn % rows_, turn / rows_);
-                   const FailsUnlessDone guard{*this, tile};
-                   run_tile(tile, new_commit, planning);
-                 },
-                 {.grain = 1, .schedule = Schedule::omp_dynamic});
+    parallel_for(executor_, rank_of_.size(),
+                 [&](std::size_t tile) { run_with_those_before(tile, new_commit, planning); },
+                 {.grain = 1});
   }
 
-  std::size_t steps() const { return layout_.step_count(); }
   std::size_t applied() const {
-    std::size_t sum = 0;
-    for (const std::uint32_t applied : applied_of_) sum += applied;
-    return sum;
+    return std::accumulate(applied_of_.begin(), applied_of_.end(), std::size_t{0});
   }
-  /// [position in the work], 1 if the item is left.
-  const std::vector<std::uint8_t>& left() const { return left_; }
 
  private:
+  /// A tile that a thread has begun, and how far it is.
+  struct Begun {
+    std::size_t tile;
+    std::uint32_t rank;
+    std::span<const Item> items;
+    Commit<Op> commit;
+    std::size_t step = 0;
+  };
+
   /// Steps between asking for something that an item needs and the next stage of it. Three are as
   /// long as memory takes to answer three times.
   static constexpr std::size_t ahead = 5;
+  static constexpr std::uint32_t done = 0xffffffffU;  // no tile's rank
+  static constexpr std::size_t none = ~std::size_t{0};
 
-  /// At the end of a tile that many may wait for. If it ends by an exception, nobody is to wait for
-  /// what will never be done.
-  struct FailsUnlessDone {
-    Tiles& tiles;
-    std::size_t tile;
+  /// If a tile ends by an exception, nobody is to wait for what will never be done.
+  struct FailsIfThrown {
+    std::atomic<bool>& failed;
     int exceptions = std::uncaught_exceptions();
-    ~FailsUnlessDone() {
-      if (std::uncaught_exceptions() > exceptions) tiles.failed_.store(true);
-      std::atomic_ref(tiles.done_[tile]).store(1, std::memory_order_release);
+    ~FailsIfThrown() {
+      if (std::uncaught_exceptions() > exceptions) failed.store(true);
     }
   };
 
-  void run_tile(std::size_t tile, auto&& new_commit, auto&& planning) {
-    const std::size_t begin = position_of(tile << layout_.block_bits);
-    const std::size_t size = position_of((tile + 1) << layout_.block_bits) - begin;
-    const Item* const items = work_.data() + begin;
-    std::uint8_t* const left = left_.data() + begin;
-    if (size == 0) return;
-    if (executor_.recording() != nullptr) record_waits({items, size});
-    Commit<Op> commit = new_commit();
-    std::uint32_t applied = 0;
-    for (std::size_t i = 0; i < size + 3 * ahead; ++i) {
-      const auto in_stage = [&](std::size_t stage) { return i - stage * ahead; };
-      if (in_stage(0) < size) op_.prefetch(items[in_stage(0)], 2);
-      if (in_stage(1) < size) op_.prefetch(items[in_stage(1)], 1);
-      if (in_stage(2) < size) left[in_stage(2)] = is_left(items[in_stage(2)]);
-      if (failed_.load(std::memory_order_relaxed)) [[unlikely]]
-        return;
-      if (in_stage(3) >= size || left[in_stage(3)] != 0) continue;
-      planning(items[in_stage(3)]);
-      const std::optional<typename Op::Plan> plan = op_.plan(items[in_stage(3)]);
-      if (!plan) continue;
-      op_.apply(*plan, commit);
-      ++applied;
+  /// Runs a tile unless somebody has begun it, and whichever have to come before, of which it keeps
+  /// a stack: their ranks fall.
+  void run_with_those_before(std::size_t tile, auto&& new_commit, auto&& planning) {
+    if (!claim(tile)) return;
+    const FailsIfThrown guard{failed_};
+    std::vector<Begun>& begun = begun_.mine();
+    begun.assign(1, begin(tile, new_commit()));
+    while (!begun.empty() && !failed_.load(std::memory_order_relaxed)) {
+      if (Recording* const recording = executor_.recording()) [[unlikely]]
+        recording->begin_part(part_of_[begun.back().tile]);
+      const std::size_t before = advance(begun.back(), planning);
+      if (before == none) {
+        std::atomic_ref(rank_of_[begun.back().tile]).store(done, std::memory_order_release);
+        begun.pop_back();
+      } else if (claim(before)) {
+        begun.push_back(begin(before, new_commit()));
+      } else {
+        await(before);
+      }
     }
-    applied_of_[tile] = applied;
+  }
+
+  bool claim(std::size_t tile) {
+    // Relaxed: what a tile reads is ordered by the ranks of those before it.
+    return std::atomic_ref(claimed_[tile]).exchange(1, std::memory_order_relaxed) == 0;
+  }
+
+  void await(std::size_t tile) {
+    for (int tries = 0; rank_now(tile) != done && !failed_.load(); ++tries)
+      if (tries > 1000) std::this_thread::yield();  // who has begun it may have lost its core
+  }
+
+  Begun begin(std::size_t tile, Commit<Op> commit) {
+    const std::size_t first = position_of(tile << bits_), end = position_of((tile + 1) << bits_);
+    Begun begun{tile, rank_now(tile), work_.subspan(first, end - first), std::move(commit)};
+    if (executor_.recording() != nullptr) [[unlikely]]
+      record_waits(begun);
+    return begun;
   }
 
   /// Where items from this one on begin.
@@ -124,64 +145,88 @@ class Tiles {
     return static_cast<std::size_t>(at - work_.begin());
   }
 
-  /// Whether an earlier neighbour may run at the same time; if not, all neighbours of earlier steps
-  /// have had their turn afterwards. Also asks for what planning reads of the neighbours. Without
-  /// branches, as the answer cannot be foreseen.
-  bool is_left(Item item) {
-    const Apart apart(layout_);
-    const std::uint32_t step = layout_.step_of(item);
-    unsigned left = 0, pending = 0;
+  /// Goes on with a tile until it is done, or another has to come before: returns which, or none.
+  std::size_t advance(Begun& begun, auto&& planning) {
+    const std::span<const Item> items = begun.items;
+    for (; begun.step < items.size() + 3 * ahead; ++begun.step) {
+      const auto in_stage = [&](std::size_t stage) { return begun.step - stage * ahead; };
+      if (in_stage(0) < items.size()) op_.prefetch(items[in_stage(0)], 2);
+      if (in_stage(1) < items.size()) op_.prefetch(items[in_stage(1)], 1);
+      if (in_stage(2) < items.size() && waits(items[in_stage(2)], begun.rank)) [[unlikely]] {
+        const std::size_t before = first_before(items[in_stage(2)], begun.rank);
+        if (before != none) return before;
+      }
+      if (in_stage(3) >= items.size()) continue;
+      planning(items[in_stage(3)]);
+      const std::optional<typename Op::Plan> plan = op_.plan(items[in_stage(3)]);
+      if (!plan) continue;
+      op_.apply(*plan, begun.commit);
+      ++applied_of_[begun.tile];
+    }
+    return none;
+  }
+
+  /// Whether a neighbour's tile has a lower rank than this and is not done. Also asks for what
+  /// planning reads of the neighbours. Without branches, as the answer cannot be foreseen.
+  bool waits(Item item, std::uint32_t rank) {
+    unsigned any = 0;
     op_.conflicts(item, [&](Item other) {
       op_.prefetch_neighbour(other);
-      left |= static_cast<unsigned>(other < item) & static_cast<unsigned>(apart(other, item));
-      pending |= static_cast<unsigned>(layout_.step_of(other) < step) &
-                 static_cast<unsigned>(!is_done(tile_of(other)));
+      any |= static_cast<unsigned>(rank_now(tile_of(other)) < rank);
     });
-    if (pending != 0) [[unlikely]]
-      await_neighbours(item);
-    return left != 0;
+    return any != 0;
   }
 
-  /// Waits until neighbours of earlier steps have had their turn, or a tile has failed.
-  [[gnu::noinline, gnu::cold]] void await_neighbours(Item item) {
-    const std::uint32_t step = layout_.step_of(item);
+  /// One of the tiles that an item which waits is waiting for; none if they are done by now.
+  [[gnu::noinline, gnu::cold]] std::size_t first_before(Item item, std::uint32_t rank) {
+    std::size_t before = none;
     op_.conflicts(item, [&](Item other) {
-      if (layout_.step_of(other) >= step) return;
-      for (int tries = 0; !is_done(tile_of(other)) && !failed_.load(); ++tries)
-        if (tries > 1000) std::this_thread::yield();  // who is to be done may have lost its core
+      if (rank_now(tile_of(other)) < rank) before = tile_of(other);
     });
+    return before;
   }
 
-  std::size_t tile_of(Item item) const { return item >> layout_.block_bits; }
-  bool is_done(std::size_t tile) {
-    return std::atomic_ref(done_[tile]).load(std::memory_order_acquire) != 0;
+  std::size_t tile_of(Item item) const { return item >> bits_; }
+  std::uint32_t rank_now(std::size_t tile) {
+    return std::atomic_ref(rank_of_[tile]).load(std::memory_order_acquire);
   }
 
-  /// Tells the recording which tiles the one with these items waits for.
-  void record_waits(std::span<const Item> items) const {
+  // ---- Recordings: each tile is a part of the loop, and those of lower rank come first ----
+
+  void number_parts() {
+    std::vector<std::size_t> tiles(rank_of_.size());
+    std::iota(tiles.begin(), tiles.end(), std::size_t{0});
+    std::sort(tiles.begin(), tiles.end(),
+              [&](std::size_t a, std::size_t b) { return rank_of_[a] < rank_of_[b]; });
+    part_of_.resize(tiles.size());
+    for (std::size_t i = 0; i < tiles.size(); ++i) part_of_[tiles[i]] = i;
+  }
+
+  void record_waits(const Begun& begun) {
     executor_.recording()->aside([&] {
-      std::vector<std::size_t> turns;
-      const std::uint32_t step = layout_.step_of(items.front());
-      for (const Item item : items)
+      std::vector<std::size_t> before;
+      for (const Item item : begun.items)
         op_.conflicts(item, [&](Item other) {
-          if (layout_.step_of(other) < step)
-            turns.push_back(layout_.step_of(other) * rows_ + layout_.row_of(other));
+          const std::size_t tile = tile_of(other);
+          if (part_of_[tile] < part_of_[begun.tile]) before.push_back(part_of_[tile]);
         });
-      std::sort(turns.begin(), turns.end());
-      turns.erase(std::unique(turns.begin(), turns.end()), turns.end());
-      for (const std::size_t turn : turns) executor_.recording()->wait_for(turn);
+      std::sort(before.begin(), before.end());
+      before.erase(std::unique(before.begin(), before.end()), before.end());
+      for (const std::size_t part : before)
+        executor_.recording()->part_waits(part_of_[begun.tile], part);
     });
   }
 
   const Executor& executor_;
   Op& op_;
   std::span<const Item> work_;
-  BlockLayout layout_;
-  std::size_t rows_;
-  std::vector<std::uint8_t> left_;         // [position in the work]
+  int bits_;                               // items of a tile differ in these lowest bits only
+  std::vector<std::uint32_t> rank_of_;     // [tile], or done
+  std::vector<std::uint8_t> claimed_;      // [tile], by a thread that has begun it
   std::vector<std::uint32_t> applied_of_;  // [tile]
-  std::vector<std::uint8_t> done_;         // [tile]
+  PerThread<std::vector<Begun>> begun_;    // the thread's
   std::atomic<bool> failed_{false};
+  std::vector<std::size_t> part_of_;  // [tile], if there is a recording
 };
 
 }  // namespace ductile::runtime::detail
