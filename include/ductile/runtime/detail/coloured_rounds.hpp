@@ -1,6 +1,7 @@
 /// @file
 /// ColouredRounds: cuts a round's work into classes of items that do not conflict, by colouring
-/// their conflict graph, for operators of which most items act; or runs it in tiles.
+/// their conflict graph, for operators of which most items act. What can run in tiles does so
+/// first.
 #pragma once
 
 #include <algorithm>
@@ -57,7 +58,10 @@ class ColouredRounds {
   std::vector<Item> run(std::vector<Item> work) {
     woken_at_.resize(executor_, op_.item_count(), 0);
     turn_of_.resize(executor_, op_.item_count(), absent);
-    run_all(work);
+    if constexpr (TiledOperator<Op> && !Check::on) work = run_tiles(std::move(work));
+    const std::size_t largest = Check::on ? 0 : batches_.options.window;
+    for_each_window(std::span<const Item>(work), window_count(work.size(), largest),
+                    [&](std::span<const Item> part) { run_window(part); });
     const std::vector<Item> woken = batches_.take_woken();
     // Who was woken by one window and planned in a later one has been considered again.
     return parallel_collect<Item>(executor_, woken.size(), [&](std::size_t i, auto&& append) {
@@ -69,24 +73,20 @@ class ColouredRounds {
   static constexpr LoopOptions copying{.grain = 512, .serial_below = 2048};
   static constexpr std::uint32_t absent = 0xffffffffU;
 
-  void run_all(std::vector<Item>& work) {
-    if constexpr (TiledOperator<Op> && !Check::on)
-      if (!Tiles<Op>::are_few(work.size(), op_.item_count())) return run_tiles(work);
-    const std::size_t largest = Check::on ? 0 : batches_.options.window;
-    for_each_window(std::span<const Item>(work), window_count(work.size(), largest),
-                    [&](std::span<const Item> part) { run_window(part); });
-  }
-
-  void run_tiles(std::vector<Item>& work) {
+  /// Returns what is left for the classes.
+  std::vector<Item> run_tiles(std::vector<Item> work) {
+    if (Tiles<Op>::are_few(work.size(), op_.item_count())) return work;
     RoundsReport& report = batches_.report;
     const PhaseTimer timer(report.plan_seconds, executor_, Phase::plan);
     ++window_;
     if (!std::is_sorted(work.begin(), work.end())) parallel_sort(executor_, std::span(work));
     Tiles<Op> tiles(executor_, op_, work);
     tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
+    std::vector<Item> left = select(executor_, std::span(work), tiles.left(), 1);
     ++report.batches;
-    report.planned += work.size();
+    report.planned += work.size() - left.size();
     report.applied += tiles.applied();
+    return left;
   }
 
   void run_window(std::span<const Item> work) {

@@ -1,10 +1,12 @@
 /// @file
 /// Tiles: stretches of items, in each of which one thread plans and applies one after the other
-/// while what they touch is in its cache; nothing is coloured and no plan is kept. Of neighbours in
-/// different tiles the one whose tile has the lower rank comes first. Threads take tiles as they
-/// lie side by side. One that meets a neighbour of a tile of lower rank that is not done does that
-/// tile first, or waits until the thread that has begun it is done. As ranks fall from each tile to
-/// the one it waits for, nobody waits for himself.
+/// while what they touch is in its cache; nothing is coloured and no plan is kept. Each tile has
+/// one of 16 ranks (steps of blocks.hpp), and of neighbours the one whose tile has the lower rank
+/// comes first. Threads take tiles as they lie side by side. One that meets a neighbour of a tile
+/// of lower rank that is not done does that tile first, or waits until the thread that has begun it
+/// is done. As ranks fall from each tile to the one it waits for, nobody waits for himself. Few
+/// items have an earlier neighbour in another tile of the same rank; they are left for the classes
+/// of a coloured round, lest tiles wait for each other in long chains.
 #pragma once
 
 #include <algorithm>
@@ -20,18 +22,19 @@
 #include <type_traits>
 #include <vector>
 
+#include "ductile/runtime/detail/blocked_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
 
 namespace ductile::runtime::detail {
 
-/// The bits of a number in opposite order.
-constexpr std::uint32_t reverse_bits(std::uint32_t bits) {
-  std::uint32_t reversed = 0;
-  for (int i = 0; i < 32; ++i) reversed |= (bits >> i & 1U) << (31 - i);
-  return reversed;
+/// Tiles of 32 to 128 items.
+inline BlockLayout tiles_of(std::size_t item_count) {
+  const int bits = std::clamp(static_cast<int>(std::bit_width(item_count)) - 10, 5, 7);
+  return {static_cast<unsigned>(bits), 4};
 }
 
 template <TiledOperator Op>
@@ -48,22 +51,21 @@ class Tiles {
       : executor_(executor),
         op_(op),
         work_(work),
-        // 32 to 128 items
-        bits_(std::clamp(static_cast<int>(std::bit_width(op.item_count())) - 11, 5, 7)),
-        rank_of_((op.item_count() >> bits_) + 1),
+        layout_(tiles_of(op.item_count())),
+        rank_of_((op.item_count() >> layout_.block_bits) + 1),
         claimed_(rank_of_.size()),
         applied_of_(rank_of_.size()),
+        left_(make_vector<std::uint8_t>(executor, work.size())),
         begun_(executor) {
-    // Numbers of neighbouring tiles mostly differ in their lowest bits. With these first, few
-    // tiles wait for one that waits itself.
-    parallel_for(
-        executor_, rank_of_.size(),
-        [&](std::size_t tile) { rank_of_[tile] = reverse_bits(static_cast<std::uint32_t>(tile)); },
-        {.serial_below = 4096});
-    if (executor_.recording() != nullptr) number_parts();
+    parallel_for(executor_, rank_of_.size(),
+                 [&](std::size_t tile) { rank_of_[tile] = first_rank_of(tile); },
+                 {.serial_below = 4096});
+    if (Recording* const recording = executor_.recording())
+      recording->aside([&] { number_parts(); });
   }
 
-  /// Plans and applies all items, each with a commit of its tile; tells planning(item) before.
+  /// Plans and applies all items but those that are left, each with a commit of its tile; tells
+  /// planning(item) before.
   void run(auto&& new_commit, auto&& planning) {
     parallel_for(executor_, rank_of_.size(),
                  [&](std::size_t tile) { run_with_those_before(tile, new_commit, planning); },
@@ -73,13 +75,16 @@ class Tiles {
   std::size_t applied() const {
     return std::accumulate(applied_of_.begin(), applied_of_.end(), std::size_t{0});
   }
+  /// [position in the work], 1 if the item is left.
+  const std::vector<std::uint8_t>& left() const { return left_; }
 
  private:
   /// A tile that a thread has begun, and how far it is.
   struct Begun {
     std::size_t tile;
-    std::uint32_t rank;
+    std::uint8_t rank;
     std::span<const Item> items;
+    std::uint8_t* left;  // of its items
     Commit<Op> commit;
     std::size_t step = 0;
   };
@@ -87,7 +92,7 @@ class Tiles {
   /// Steps between asking for something that an item needs and the next stage of it. Three are as
   /// long as memory takes to answer three times.
   static constexpr std::size_t ahead = 5;
-  static constexpr std::uint32_t done = 0xffffffffU;  // no tile's rank
+  static constexpr std::uint8_t done = 0xff;  // no tile's rank
   static constexpr std::size_t none = ~std::size_t{0};
 
   /// If a tile ends by an exception, nobody is to wait for what will never be done.
@@ -132,8 +137,10 @@ class Tiles {
   }
 
   Begun begin(std::size_t tile, Commit<Op> commit) {
-    const std::size_t first = position_of(tile << bits_), end = position_of((tile + 1) << bits_);
-    Begun begun{tile, rank_now(tile), work_.subspan(first, end - first), std::move(commit)};
+    const std::size_t first = position_of(tile << layout_.block_bits);
+    const std::size_t end = position_of((tile + 1) << layout_.block_bits);
+    Begun begun{tile, rank_now(tile), work_.subspan(first, end - first), left_.data() + first,
+                std::move(commit)};
     if (executor_.recording() != nullptr) [[unlikely]]
       record_waits(begun);
     return begun;
@@ -152,11 +159,11 @@ class Tiles {
       const auto in_stage = [&](std::size_t stage) { return begun.step - stage * ahead; };
       if (in_stage(0) < items.size()) op_.prefetch(items[in_stage(0)], 2);
       if (in_stage(1) < items.size()) op_.prefetch(items[in_stage(1)], 1);
-      if (in_stage(2) < items.size() && waits(items[in_stage(2)], begun.rank)) [[unlikely]] {
-        const std::size_t before = first_before(items[in_stage(2)], begun.rank);
+      if (in_stage(2) < items.size()) {
+        const std::size_t before = look(items[in_stage(2)], begun, begun.left[in_stage(2)]);
         if (before != none) return before;
       }
-      if (in_stage(3) >= items.size()) continue;
+      if (in_stage(3) >= items.size() || begun.left[in_stage(3)] != 0) continue;
       planning(items[in_stage(3)]);
       const std::optional<typename Op::Plan> plan = op_.plan(items[in_stage(3)]);
       if (!plan) continue;
@@ -166,19 +173,23 @@ class Tiles {
     return none;
   }
 
-  /// Whether a neighbour's tile has a lower rank than this and is not done. Also asks for what
-  /// planning reads of the neighbours. Without branches, as the answer cannot be foreseen.
-  bool waits(Item item, std::uint32_t rank) {
-    unsigned any = 0;
+  /// Sees whether an item is left. Returns a tile that has to be done before, or none. Also asks
+  /// for what planning reads of the neighbours. Without branches, as the answers cannot be
+  /// foreseen.
+  std::size_t look(Item item, const Begun& begun, std::uint8_t& left) {
+    const Apart apart(layout_);
+    unsigned is_left = 0, waits = 0;
     op_.conflicts(item, [&](Item other) {
       op_.prefetch_neighbour(other);
-      any |= static_cast<unsigned>(rank_now(tile_of(other)) < rank);
+      is_left |= static_cast<unsigned>(other < item) & static_cast<unsigned>(apart(other, item));
+      waits |= static_cast<unsigned>(rank_now(tile_of(other)) < begun.rank);
     });
-    return any != 0;
+    left = is_left != 0;
+    return waits == 0 ? none : first_before(item, begun.rank);
   }
 
-  /// One of the tiles that an item which waits is waiting for; none if they are done by now.
-  [[gnu::noinline, gnu::cold]] std::size_t first_before(Item item, std::uint32_t rank) {
+  /// One of the tiles that an item waits for; none if they are done by now.
+  [[gnu::noinline, gnu::cold]] std::size_t first_before(Item item, std::uint8_t rank) {
     std::size_t before = none;
     op_.conflicts(item, [&](Item other) {
       if (rank_now(tile_of(other)) < rank) before = tile_of(other);
@@ -186,9 +197,16 @@ class Tiles {
     return before;
   }
 
-  std::size_t tile_of(Item item) const { return item >> bits_; }
-  std::uint32_t rank_now(std::size_t tile) {
+  std::size_t tile_of(Item item) const { return item >> layout_.block_bits; }
+  std::uint8_t rank_now(std::size_t tile) {
     return std::atomic_ref(rank_of_[tile]).load(std::memory_order_acquire);
+  }
+
+  /// Tiles next to each other are mostly neighbours. Their ranks are far apart, as all of a row
+  /// would wait in a chain if one came right after the other.
+  std::uint8_t first_rank_of(std::size_t tile) const {
+    const auto item = static_cast<std::uint32_t>(tile << layout_.block_bits);
+    return static_cast<std::uint8_t>(7 * layout_.step_of(item) & (layout_.step_count() - 1));
   }
 
   // ---- Recordings: each tile is a part of the loop, and those of lower rank come first ----
@@ -196,8 +214,8 @@ class Tiles {
   void number_parts() {
     std::vector<std::size_t> tiles(rank_of_.size());
     std::iota(tiles.begin(), tiles.end(), std::size_t{0});
-    std::sort(tiles.begin(), tiles.end(),
-              [&](std::size_t a, std::size_t b) { return rank_of_[a] < rank_of_[b]; });
+    std::stable_sort(tiles.begin(), tiles.end(),
+                     [&](std::size_t a, std::size_t b) { return rank_of_[a] < rank_of_[b]; });
     part_of_.resize(tiles.size());
     for (std::size_t i = 0; i < tiles.size(); ++i) part_of_[tiles[i]] = i;
   }
@@ -208,7 +226,7 @@ class Tiles {
       for (const Item item : begun.items)
         op_.conflicts(item, [&](Item other) {
           const std::size_t tile = tile_of(other);
-          if (part_of_[tile] < part_of_[begun.tile]) before.push_back(part_of_[tile]);
+          if (first_rank_of(tile) < begun.rank) before.push_back(part_of_[tile]);
         });
       std::sort(before.begin(), before.end());
       before.erase(std::unique(before.begin(), before.end()), before.end());
@@ -220,10 +238,11 @@ class Tiles {
   const Executor& executor_;
   Op& op_;
   std::span<const Item> work_;
-  int bits_;                               // items of a tile differ in these lowest bits only
-  std::vector<std::uint32_t> rank_of_;     // [tile], or done
+  BlockLayout layout_;
+  std::vector<std::uint8_t> rank_of_;      // [tile], or done
   std::vector<std::uint8_t> claimed_;      // [tile], by a thread that has begun it
   std::vector<std::uint32_t> applied_of_;  // [tile]
+  std::vector<std::uint8_t> left_;         // [position in the work]
   PerThread<std::vector<Begun>> begun_;    // the thread's
   std::atomic<bool> failed_{false};
   std::vector<std::size_t> part_of_;  // [tile], if there is a recording
