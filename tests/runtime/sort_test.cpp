@@ -54,6 +54,23 @@ TEST(ParallelSort, SortsNumbersThatAreAllThere) {
   }
 }
 
+TEST(ParallelSort, KeepsWordsOfTheSameUpperBitsInOrder) {
+  for (const std::size_t n : {0U, 1U, 5000U, 32768U, 150000U}) {
+    std::vector<std::uint64_t> values(n);
+    for (std::size_t i = 0; i < n; ++i) values[i] = mix64(i % 1000);
+    for (const unsigned low : {0U, 20U, 60U}) {
+      std::vector<std::uint64_t> expected = values;
+      std::stable_sort(expected.begin(), expected.end(),
+                       [low](auto a, auto b) { return a >> low < b >> low; });
+      for (int threads : {1, 2, 3, 8}) {
+        std::vector<std::uint64_t> sorted = values;
+        parallel_sort_above(Executor({.threads = threads}), std::span(sorted), low);
+        EXPECT_EQ(sorted, expected) << n << " values, bit " << low << ", " << threads;
+      }
+    }
+  }
+}
+
 TEST(ParallelSort, SeesWhatIsOutOfOrderBetweenBlocks) {
   for (std::size_t at : {1U, 8191U, 8192U, 8193U, 16384U, 19999U}) {
     std::vector<std::uint32_t> values(20000);

@@ -147,13 +147,20 @@ template <std::movable T>
 void parallel_sort(const Executor& executor, std::span<T> values) {
   if (sort_detail::is_sorted<T>(executor, values)) return;
   if constexpr (std::unsigned_integral<T>) {
-    if (values.size() >= 1024) return sort_detail::radix_sort(executor, values);
+    if (values.size() >= 1024) return sort_detail::radix_sort(executor, values, 0);
     std::sort(values.begin(), values.end());
   } else if constexpr (sort_detail::cheap_to_move<T>) {
     sort_detail::sort_in_place(executor, values);
   } else {
     sort_detail::sort_by_reference(executor, values);
   }
+}
+
+/// Sorts unsigned integers by value >> low; where that is the same they stay in order. Throws
+/// std::bad_alloc; no value is lost then. Thread safety: one thread.
+template <std::unsigned_integral T>
+void parallel_sort_above(const Executor& executor, std::span<T> values, unsigned low) {
+  sort_detail::radix_sort(executor, values, low);
 }
 
 /// Moves the first of each run of equal items (neither is less) of a sorted range to the front, in

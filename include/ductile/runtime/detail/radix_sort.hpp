@@ -19,7 +19,8 @@
 
 namespace ductile::runtime::sort_detail {
 
-constexpr std::size_t radix_block = 16384;
+constexpr std::size_t radix_block = 16384;  // at least
+constexpr std::size_t few = 32768;          // values that one thread sorts sooner than several
 constexpr unsigned digit_bits = 11;
 constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
 using DigitCounts = std::array<std::size_t, digit_count>;
@@ -125,15 +126,19 @@ void scatter_by_digit(const Executor& executor, std::span<const T> from, std::sp
   parallel_for_blocks(executor, from.size(), pass.block, scatter);
 }
 
+/// Stable: sorts by value >> low.
 template <std::unsigned_integral T>
-void radix_sort(const Executor& executor, std::span<T> values) {
+void radix_sort(const Executor& executor, std::span<T> values, unsigned low) {
+  if (values.size() < few && executor.threads() > 1)
+    return radix_sort(Executor({.threads = 1}), values, low);
   const T top = parallel_reduce(
       executor, values.size(), T{0}, [&](std::size_t i) { return values[i]; },
       [](T a, T b) { return std::max(a, b); });
   const auto bits = static_cast<unsigned>(std::bit_width(top));
   const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
-  const std::size_t block = std::max(radix_block, (values.size() + most_blocks - 1) / most_blocks);
-  DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block)};
+  const std::size_t blocks = std::clamp<std::size_t>(values.size() / radix_block, 1, most_blocks);
+  const std::size_t block = values.size() / blocks + 1;
+  DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block), low};
   const auto scratch = std::make_unique_for_overwrite<T[]>(values.size());
   // All memory is taken before the first pass: later, running out of it would lose values.
   std::unique_ptr<Line<T>[]> lines;
@@ -148,7 +153,9 @@ void radix_sort(const Executor& executor, std::span<T> values) {
 }
 
 // Of items of most programs: compiled once.
-extern template void radix_sort(const Executor& executor, std::span<std::uint32_t> values);
-extern template void radix_sort(const Executor& executor, std::span<std::uint64_t> values);
+extern template void radix_sort(const Executor& executor, std::span<std::uint32_t> values,
+                                unsigned low);
+extern template void radix_sort(const Executor& executor, std::span<std::uint64_t> values,
+                                unsigned low);
 
 }  // namespace ductile::runtime::sort_detail
