@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <span>
 
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "mesh/element_lists.hpp"
+#include "mesh/grouping.hpp"
 
 namespace ductile::meshadapt {
 
@@ -31,53 +32,40 @@ void Mesh<Dim>::grow(std::size_t vertices, std::size_t elements) {
   if constexpr (Dim == 3) links_of.grow(vertices);
 }
 
-namespace {
-
-/// Calls visit(vertex, element) for all corners of all elements, on many threads at once.
+/// Cut where the elements, if they are in order, go on with another lowest corner.
 template <int Dim>
-void visit_corners(const Executor& executor, const Mesh<Dim>& mesh, auto&& visit) {
-  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
-    const auto element = static_cast<ElementId>(e);
-    if (!mesh.alive(element)) return;
-    for (const VertexId v : mesh.corners_of[element]) visit(v, element);
-  });
-}
-
-}  // namespace
-
-template <int Dim>
-void count_elements(const Executor& executor, const Mesh<Dim>& mesh,
-                    std::span<std::uint32_t> count_of) {
-  const bool alone = executor.threads() == 1;
-  visit_corners(executor, mesh, [&](VertexId v, ElementId) { count_up(count_of[v], alone); });
-}
-
-template <int Dim>
-void list_elements(const Executor& executor, Mesh<Dim>& mesh,
-                   std::span<const std::uint32_t> count_of) {
-  auto& lists = mesh.elements_of;
-  lists.reset_for_overwrite(count_of.size());
-  const auto make_room = [&](std::size_t, std::size_t begin, std::size_t end) {
-    lists.reserve_all(static_cast<VertexId>(begin), static_cast<VertexId>(end), [&](VertexId v) {
-      return count_of[v] == 0 ? 0 : count_of[v] + list_slack<Dim>;
-    });
-  };
-  runtime::parallel_for_blocks(executor, count_of.size(), list_block, make_room);
-  const bool alone = executor.threads() == 1;
-  visit_corners(executor, mesh, [&](VertexId v, ElementId element) {
-    lists.data(v)[count_up(lists.count_of(v), alone)] = element;
-  });
-  if (alone) return;
-  parallel_for(executor, count_of.size(), [&](std::size_t v) {
-    if (count_of[v] != 0) sort_short({lists.data(static_cast<VertexId>(v)), count_of[v]});
-  });
+static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim>& mesh) {
+  auto bounds = GroupingBounds::even(executor, mesh.element_slots(), mesh.vertex_slots());
+  std::uint32_t greatest = 0;
+  for (std::size_t c = 1; c < bounds.chunk_count(); ++c) {
+    const Corners<Dim>& corners = mesh.corners_of[bounds.items[c]];
+    const VertexId lowest = *std::min_element(corners.begin(), corners.end());
+    if (lowest != none) greatest = std::max(greatest, lowest);
+    bounds.keys[c] = greatest;
+  }
+  return bounds;
 }
 
 template <int Dim>
 void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
-  auto count_of = runtime::make_vector<std::uint32_t>(executor, mesh.vertex_slots());
-  count_elements<Dim>(executor, mesh, count_of);
-  list_elements<Dim>(executor, mesh, count_of);
+  const auto count_of = std::make_unique_for_overwrite<std::uint32_t[]>(mesh.vertex_slots());
+  auto& lists = mesh.elements_of;
+  Grouping grouping(executor, bounds_by_lowest(executor, mesh),
+                    std::span(count_of.get(), mesh.vertex_slots()),
+                    [&mesh](ElementId element, auto&& visit) {
+                      if (!mesh.alive(element)) return;
+                      for (const VertexId v : mesh.corners_of[element]) visit(v);
+                    });
+  lists.reset_for_overwrite(mesh.vertex_slots());
+  const auto make_room = [&](VertexId begin, VertexId end, std::uint32_t) {
+    for (VertexId from = begin; from < end; from += list_block)
+      lists.reserve_all(from, std::min(end, from + list_block), [&](VertexId v) {
+        return count_of[v] == 0 ? 0 : count_of[v] + list_slack<Dim>;
+      });
+  };
+  grouping.visit(make_room, [&](VertexId v, ElementId element) {
+    lists.data(v)[lists.count_of(v)++] = element;
+  });
 }
 
 /// Is any of these numbers larger than a bound? Without branches, so several at once.
@@ -129,10 +117,6 @@ void update_shapes(const Executor& executor, Mesh<Dim>& mesh) {
 
 template struct Mesh<2>;
 template struct Mesh<3>;
-template void count_elements(const Executor&, const Mesh<2>&, std::span<std::uint32_t>);
-template void count_elements(const Executor&, const Mesh<3>&, std::span<std::uint32_t>);
-template void list_elements(const Executor&, Mesh<2>&, std::span<const std::uint32_t>);
-template void list_elements(const Executor&, Mesh<3>&, std::span<const std::uint32_t>);
 template void rebuild_elements_of(const Executor&, Mesh<2>&);
 template void rebuild_elements_of(const Executor&, Mesh<3>&);
 template std::vector<std::uint8_t> mark_changed(const Executor&, const Mesh<2>&, std::uint32_t);

@@ -7,11 +7,14 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <tuple>
+#include <utility>
 
 #include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "mesh/element_lists.hpp"
+#include "mesh/grouping.hpp"
 #include "mesh/hilbert.hpp"
 
 namespace ductile::meshadapt {
@@ -41,11 +44,11 @@ class Unset {
 using Ids = Unset<std::uint32_t>;
 
 template <int Dim>
-Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh, const Ids& count_of) {
+Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh, auto&& is_alive) {
   return runtime::parallel_reduce(
       executor, mesh.vertex_slots(), Box<Dim>::empty(),
       [&](std::size_t v) {
-        if (count_of[v] == 0) return Box<Dim>::empty();
+        if (!is_alive(v)) return Box<Dim>::empty();
         return Box<Dim>{mesh.site_of[v].position, mesh.site_of[v].position};
       },
       [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
@@ -63,9 +66,9 @@ class KeyedWords {
     return fits() ? key << id_bits_ | id : (key << (64 - key_bits_) & ~ids()) | id;
   }
   /// Greater than all others; the greatest id is below the number that all its bits would make.
-  std::uint64_t gone() const {
-    return fits() ? std::uint64_t{1} << (key_bits_ + id_bits_) : ~std::uint64_t{0};
-  }
+  std::uint64_t gone() const { return word(greatest_key(), ids()); }
+  std::uint64_t greatest_key() const { return (std::uint64_t{1} << key_bits_) - 1; }
+  unsigned id_bits() const { return id_bits_; }
   std::uint32_t id(std::uint64_t word) const { return static_cast<std::uint32_t>(word & ids()); }
 
  private:
@@ -84,8 +87,10 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
     words[id] = is_alive(id) ? keyed.word(key_of(id), id) : keyed.gone();
   });
   const std::span all(words.begin(), count);
-  runtime::parallel_sort(executor, all);
-  const auto end = std::lower_bound(all.begin(), all.end(), keyed.gone());
+  runtime::parallel_sort_above(executor, all, keyed.id_bits());  // ids are in order
+  // Those that are gone may lie among living ones of the greatest key.
+  const auto last = std::lower_bound(all.begin(), all.end(), keyed.word(keyed.greatest_key(), 0));
+  const auto end = std::remove(last, all.end(), keyed.gone());
   Ids order(static_cast<std::size_t>(end - all.begin()));
   parallel_for(executor, order.size(), [&](std::size_t i) { order[i] = keyed.id(words[i]); });
   return order;
@@ -93,35 +98,28 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
 
 /// Vertices that have elements, in the order of the curve.
 template <int Dim>
-Ids sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& count_of) {
-  const Box<Dim> box = bounding_box(executor, mesh, count_of);
-  return sorted_ids(
-      executor, mesh.vertex_slots(), hilbert_bits<Dim>,
-      [&](std::size_t v) { return count_of[v] != 0; },
-      [&](std::size_t v) { return hilbert_key(mesh.site_of[v].position, box); });
+Ids sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh, VertexId unlisted) {
+  const auto is_alive = [&mesh, unlisted](std::size_t v) {
+    return v >= unlisted || mesh.vertex_alive(static_cast<VertexId>(v));
+  };
+  const Box<Dim> box = bounding_box(executor, mesh, is_alive);
+  return sorted_ids(executor, mesh.vertex_slots(), hilbert_bits<Dim>, is_alive,
+                    [&](std::size_t v) { return hilbert_key(mesh.site_of[v].position, box); });
 }
 
-/// Living elements by their lowest vertex, those of a vertex in order.
-template <int Dim>
-Ids sorted_elements(const Executor& executor, const Mesh<Dim>& mesh) {
-  const bool alone = executor.threads() == 1;
-  const auto each = [&](auto&& visit) {
-    parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
-      const auto element = static_cast<ElementId>(e);
-      const Corners<Dim>& corners = mesh.corners_of[e];
-      if (mesh.alive(element)) visit(*std::min_element(corners.begin(), corners.end()), element);
-    });
+/// Living elements by their lowest vertex, those of a vertex in order. lowest_of is none for
+/// others.
+Ids sorted_elements(const Executor& executor, const Ids& lowest_of, std::size_t vertex_count) {
+  Ids end_of(vertex_count);  // [vertex], in the order; at first how many elements it has
+  Grouping grouping(executor, GroupingBounds::even(executor, lowest_of.size(), vertex_count),
+                    end_of.all(), [&lowest_of](ElementId element, auto&& visit) {
+                      if (lowest_of[element] != none) visit(lowest_of[element]);
+                    });
+  Ids order(grouping.size());
+  const auto begin_lists = [&](VertexId begin, VertexId end, std::uint32_t before) {
+    for (VertexId v = begin; v < end; ++v) end_of[v] = std::exchange(before, before + end_of[v]);
   };
-  Ids end_of(mesh.vertex_slots());  // [vertex], in the order; at first how many elements it has
-  parallel_for(executor, end_of.size(), [&](std::size_t v) { end_of[v] = 0; });
-  each([&](VertexId v, ElementId) { count_up(end_of[v], alone); });
-  Ids order(runtime::exclusive_scan(executor, end_of.all()));
-  each([&](VertexId v, ElementId element) { order[count_up(end_of[v], alone)] = element; });
-  if (alone) return order;
-  parallel_for(executor, end_of.size(), [&](std::size_t v) {
-    const std::uint32_t begin = v == 0 ? 0 : end_of[v - 1];
-    sort_short(order.all().subspan(begin, end_of[v] - begin));
-  });
+  grouping.visit(begin_lists, [&](VertexId v, ElementId element) { order[end_of[v]++] = element; });
   return order;
 }
 
@@ -137,100 +135,115 @@ Ids places_in(const Executor& executor, const Ids& order, std::size_t count) {
 /// cost less than new ones.
 class Permutation {
  public:
+  /// At most so many bytes are moved at once for each place.
   Permutation(const Executor& executor, const Ids& order, std::size_t largest)
       : executor_(executor),
         order_(order),
         largest_(largest),
         scratch_(std::make_unique_for_overwrite<std::byte[]>(order.size() * largest)) {}
 
-  /// values[i] becomes the old values[order[i]].
-  template <class T>
-  void operator()(GrowingArray<T>& values) {
-    permute<T>([&](std::size_t i) -> T& { return values[i]; });
-    values.resize(order_.size());
+  /// values[i] becomes the old values[order[i]], of several arrays at once.
+  template <class... T>
+  void operator()(GrowingArray<T>&... values) {
+    permute<T...>([&values](std::size_t i) -> T& { return values[i]; }...);
+    (values.resize(order_.size()), ...);
   }
 
-  /// The same, member by member, for which there must be room.
+  /// The same of members, but leaves the array as long as it was.
   template <class T, class... Members>
-  void operator()(GrowingArray<T>& values, Members T::*... members) {
-    (permute<Members>([&](std::size_t i) -> Members& { return values[i].*members; }), ...);
-    values.resize(order_.size());
+  void members(GrowingArray<T>& values, Members T::*... members) {
+    permute<Members...>(
+        [&values, members](std::size_t i) -> Members& { return values[i].*members; }...);
   }
 
  private:
-  template <class T>
-  void permute(auto&& value_at) {
-    assert(sizeof(T) <= largest_);
-    T* const moved = reinterpret_cast<T*>(scratch_.get());
-    parallel_for(executor_, order_.size(),
-                 [&](std::size_t i) { std::construct_at(moved + i, value_at(order_[i])); });
-    parallel_for(executor_, order_.size(), [&](std::size_t i) { value_at(i) = moved[i]; });
+  /// The most strictly aligned come first.
+  template <class... T>
+  void permute(auto&&... value_at) {
+    assert((sizeof(T) + ...) <= largest_);
+    std::byte* end = scratch_.get();
+    const auto take = [&](std::size_t bytes) { return std::exchange(end, end + bytes); };
+    const std::tuple moved{reinterpret_cast<T*>(take(order_.size() * sizeof(T)))...};
+    std::apply(
+        [&](T* const... to) {
+          parallel_for(executor_, order_.size(), [&](std::size_t i) {
+            (std::construct_at(to + i, value_at(order_[i])), ...);
+          });
+          parallel_for(executor_, order_.size(),
+                       [&](std::size_t i) { ((value_at(i) = to[i]), ...); });
+        },
+        moved);
   }
 
   const Executor& executor_;
   const Ids& order_;
-  [[maybe_unused]] std::size_t largest_;  // bytes of a value there is room for
+  [[maybe_unused]] std::size_t largest_;
   std::unique_ptr<std::byte[]> scratch_;
 };
 
 void renumber_links(const Executor& executor, Mesh<3>& mesh, const Ids& vertices,
                     const Ids& new_vertex) {
-  ListPool<CurveLink> moved;
-  moved.reset(vertices.size());
-  parallel_for(executor, vertices.size(), [&](std::size_t i) {
-    for (const CurveLink& link : mesh.links_of.of(vertices[i]))
-      moved.insert(static_cast<VertexId>(i), {new_vertex[link.to], link.curve});
+  struct Moved {
+    VertexId from;
+    CurveLink link;
+  };
+  const auto moved = runtime::parallel_collect<Moved>(
+      executor, vertices.size(), [&](std::size_t i, auto&& append) {
+        for (const CurveLink& link : mesh.links_of.of(vertices[i]))
+          append(Moved{static_cast<VertexId>(i), {new_vertex[link.to], link.curve}});
+      });
+  mesh.links_of.reset(vertices.size());
+  parallel_for(executor, moved.size(), [&](std::size_t first) {
+    const VertexId from = moved[first].from;
+    if (first != 0 && moved[first - 1].from == from) return;
+    for (std::size_t i = first; i < moved.size() && moved[i].from == from; ++i)
+      mesh.links_of.insert(from, moved[i].link);
   });
-  std::swap(mesh.links_of, moved);
 }
 
 template <int Dim>
 void permute_vertices(const Executor& executor, Mesh<Dim>& mesh, const Ids& order) {
   Permutation permute(executor, order, sizeof(Metric<Dim>));
-  permute(mesh.site_of, &Site<Dim>::position, &Site<Dim>::metric, &Site<Dim>::density);
-  permute(mesh.kind_of);
-  permute(mesh.entity_of);
-  permute(mesh.reference_of);
-  permute(mesh.host_of);
+  permute.members(mesh.site_of, &Site<Dim>::metric);
+  permute.members(mesh.site_of, &Site<Dim>::position, &Site<Dim>::density);
+  mesh.site_of.resize(order.size());
+  permute(mesh.entity_of, mesh.reference_of, mesh.host_of, mesh.kind_of);
 }
 
-/// How many elements each vertex has.
+/// Vertices. Returns what they were renumbered to.
 template <int Dim>
-Ids element_counts(const Executor& executor, const Mesh<Dim>& mesh) {
-  Ids count_of(mesh.vertex_slots());
-  parallel_for(executor, count_of.size(), [&](std::size_t v) { count_of[v] = 0; });
-  count_elements<Dim>(executor, mesh, count_of.all());
-  return count_of;
-}
-
-/// Vertices and corners. Returns how many elements each vertex has, in the new order.
-template <int Dim>
-Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh) {
-  const Ids old_count_of = element_counts(executor, mesh);
-  const auto order = sorted_vertices(executor, mesh, old_count_of);
-  Ids count_of(order.size());
-  parallel_for(executor, order.size(),
-               [&](std::size_t v) { count_of[v] = old_count_of[order[v]]; });
-  const Ids new_vertex = places_in(executor, order, mesh.vertex_slots());
-  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
-    if (mesh.alive(static_cast<ElementId>(e)))
-      for (VertexId& v : mesh.corners_of[e]) v = new_vertex[v];
-  });
+Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted) {
+  const auto order = sorted_vertices(executor, mesh, unlisted);
+  Ids new_vertex = places_in(executor, order, mesh.vertex_slots());
   if constexpr (Dim == 3) renumber_links(executor, mesh, order, new_vertex);
   permute_vertices(executor, mesh, order);
-  return count_of;
+  return new_vertex;
 }
 
-/// Neighbours are left alone if there are none.
+/// The corners of living elements. Returns the lowest of each, none for those that are gone.
 template <int Dim>
-void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>* neighbours) {
-  const auto order = sorted_elements(executor, mesh);
+Ids renumber_corners(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex) {
+  Ids lowest_of(mesh.element_slots());
+  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    Corners<Dim>& corners = mesh.corners_of[e];
+    lowest_of[e] = none;
+    if (!mesh.alive(static_cast<ElementId>(e))) return;
+    for (VertexId& v : corners) {
+      v = new_vertex[v];
+      lowest_of[e] = std::min(lowest_of[e], v);
+    }
+  });
+  return lowest_of;
+}
+
+/// Elements and, if there are any, their neighbours.
+template <int Dim>
+void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& order,
+                       Neighbours<Dim>* neighbours) {
   Permutation permute(executor, order, sizeof(Corners<Dim>));
   permute(mesh.corners_of);
   permute(mesh.patches_of);
-  permute(mesh.region_of);
-  permute(mesh.shape_of);
-  permute(mesh.changed_at);
+  permute(mesh.region_of, mesh.shape_of, mesh.changed_at);
   if (neighbours == nullptr) return;
   const Ids new_element = places_in(executor, order, neighbours->size());
   permute(*neighbours);
@@ -240,28 +253,32 @@ void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim
   });
 }
 
-/// Lists of elements are made anew in the memory that they had: there is no room for both.
 template <int Dim>
-void renumber_all(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>* neighbours) {
-  const Ids count_of = renumber_vertices(executor, mesh);
-  renumber_elements(executor, mesh, neighbours);
-  list_elements<Dim>(executor, mesh, count_of.all());
+void renumber_all(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted,
+                  Neighbours<Dim>* neighbours) {
+  const auto sorted = [&] {
+    const Ids new_vertex = renumber_vertices(executor, mesh, unlisted);
+    const Ids lowest_of = renumber_corners(executor, mesh, new_vertex);
+    return sorted_elements(executor, lowest_of, mesh.vertex_slots());
+  };
+  renumber_elements(executor, mesh, sorted(), neighbours);
+  rebuild_elements_of(executor, mesh);
 }
 
 }  // namespace
 
 template <int Dim>
-void renumber(const Executor& executor, Mesh<Dim>& mesh) {
-  renumber_all<Dim>(executor, mesh, nullptr);
+void renumber(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted) {
+  renumber_all<Dim>(executor, mesh, unlisted, nullptr);
 }
 
 template <int Dim>
 void renumber(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>& neighbours) {
-  renumber_all<Dim>(executor, mesh, &neighbours);
+  renumber_all<Dim>(executor, mesh, none, &neighbours);
 }
 
-template void renumber(const Executor&, Mesh<2>&);
-template void renumber(const Executor&, Mesh<3>&);
+template void renumber(const Executor&, Mesh<2>&, VertexId);
+template void renumber(const Executor&, Mesh<3>&, VertexId);
 template void renumber(const Executor&, Mesh<2>&, Neighbours<2>&);
 template void renumber(const Executor&, Mesh<3>&, Neighbours<3>&);
 

@@ -344,7 +344,7 @@ std::size_t Adapter<Dim>::refine() {
   const double limit = long_edge();
   if (std::isinf(limit)) return 0;
   const Splits splits = split_edges_above(limit);
-  if (splits.left_lists_stale) renumber_mesh();
+  if (splits.left_lists_stale) renumber_mesh(splits.first_vertex);
   tell("refine", splits.count);
   return splits.count;
 }
@@ -358,7 +358,7 @@ auto Adapter<Dim>::split_edges_above(double limit) -> Splits {
   Refine<Dim> refinement(executor_, mesh_, background_, rules());
   const RoundsReport rounds = refinement.run(std::move(work));
   add(report_.refine, rounds);
-  return {rounds.applied, refinement.lists_are_stale()};
+  return {rounds.applied, refinement.lists_are_stale(), refinement.first_vertex()};
 }
 
 template <int Dim>
@@ -400,9 +400,9 @@ std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplaci
 }
 
 template <int Dim>
-void Adapter<Dim>::renumber_mesh() {
+void Adapter<Dim>::renumber_mesh(VertexId unlisted) {
   const KernelTimer timer(executor_, "renumber", report_.renumber_seconds);
-  renumber(executor_, mesh_);
+  renumber(executor_, mesh_, unlisted);
   in_order_ = true;
   survey_.forget();
 }

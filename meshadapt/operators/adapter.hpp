@@ -44,6 +44,7 @@ class Adapter {
   struct Splits {
     std::size_t count;
     bool left_lists_stale;
+    VertexId first_vertex;  // of those it made
   };
   Splits split_edges_above(double limit);
   std::size_t swap(int sweeps, double below);
@@ -65,7 +66,7 @@ class Adapter {
   double long_edge() const;
   EdgeSurvey<Dim>& survey_for(double longer);
   std::uint32_t end_epoch(std::uint32_t& seen);
-  void renumber_mesh();
+  void renumber_mesh(VertexId unlisted = none);
   std::size_t element_count() const;
   void tell(const char* step, std::size_t changes) const;
   void add(KernelReport& kernel, const runtime::RoundsReport& rounds);

@@ -41,6 +41,9 @@ class Refine {
   /// Whether elements_of does not know what run() has made.
   bool lists_are_stale() const { return lists_are_stale_; }
 
+  /// From which vertex on lists are empty then.
+  VertexId first_vertex() const { return first_vertex_; }
+
  private:
   /// What becomes of a long edge. Of no use until it is located.
   struct Split {

@@ -123,6 +123,24 @@ struct Refined {
   }
 };
 
+TYPED_TEST(RefineIn, RenumberingNeedsNoListsOfNewVertices) {
+  constexpr int Dim = TypeParam::value;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Executor executor({.threads = 2});
+    Refined<Dim> listed(seed, 2, 100000), unlisted(seed, 2, 100000);
+    if (listed.mesh.vertex_slots() == listed.vertices_before) continue;
+    for (auto v = static_cast<VertexId>(unlisted.vertices_before); v < unlisted.mesh.vertex_slots();
+         ++v)
+      unlisted.mesh.elements_of.clear(v);
+    renumber(executor, listed.mesh);
+    renumber(executor, unlisted.mesh, static_cast<VertexId>(unlisted.vertices_before));
+    EXPECT_EQ(unlisted.mesh.corners_of, listed.mesh.corners_of);
+    EXPECT_EQ(unlisted.mesh.vertex_slots(), listed.mesh.vertex_slots());
+    const auto faults = check_mesh(executor, unlisted.mesh);
+    EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  }
+}
+
 /// With few edges and with many, as lists are brought up to date in another way then.
 TYPED_TEST(RefineIn, LeavesASoundMesh) {
   constexpr int Dim = TypeParam::value;

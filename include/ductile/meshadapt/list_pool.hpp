@@ -41,6 +41,8 @@ class ListPool {
                            : std::span<const T>{arena_->at(slot.begin), slot.count};
   }
 
+  bool empty(std::uint32_t index) const { return slot_of_[index].count == 0; }
+
   /// Starts to bring a list into the cache; the first and the last of its lines.
   void prefetch(std::uint32_t index) const {
     const Slot& slot = slot_of_[index];

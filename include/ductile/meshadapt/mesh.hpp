@@ -102,7 +102,7 @@ struct Mesh {
   std::size_t element_slots() const { return corners_of.size(); }
   std::size_t vertex_slots() const { return site_of.size(); }
   bool alive(ElementId element) const { return corners_of[element][0] != none; }
-  bool vertex_alive(VertexId vertex) const { return !elements_of.of(vertex).empty(); }
+  bool vertex_alive(VertexId vertex) const { return !elements_of.empty(vertex); }
 
   /// Pointers to the sites of an element's corners, as the quality functions want them.
   std::array<const Site<Dim>*, Dim + 1> sites(const Corners<Dim>& corners) const {
@@ -136,7 +136,7 @@ template <int Dim>
 inline constexpr std::uint32_t list_slack = Dim == 2 ? 3 : 10;
 
 /// Vertices whose lists are made together.
-inline constexpr std::size_t list_block = 64;
+inline constexpr std::uint32_t list_block = 64;
 
 /// Rebuilds elements_of from corners_of. Thread safety: one caller; runs on the executor.
 template <int Dim>
@@ -147,10 +147,11 @@ template <int Dim>
 void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
 /// Removes what is gone and renumbers what is left along a space-filling curve, so that what is
-/// near in space is near in memory. Makes elements_of anew, whatever it was: it may be stale. The
-/// result does not depend on the number of threads.
+/// near in space is near in memory. Makes elements_of anew, which may be stale but for which lists
+/// are empty; vertices from `unlisted` on have elements, whatever their lists are. The result does
+/// not depend on the number of threads.
 template <int Dim>
-void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh);
+void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, VertexId unlisted = none);
 
 /// The same, for the neighbours of its elements too. None may be gone.
 template <int Dim>

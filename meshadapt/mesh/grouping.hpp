@@ -1,0 +1,171 @@
+/// @file
+/// Grouping: items by the keys they have, elements by their corners, those of a key in order, on
+/// many threads and without atomics. Items and keys are cut into as many chunks: what an item has
+/// in the chunk of keys of the same number is taken from the item where it is needed. The rest is
+/// noted first, chunk by chunk, so that it is in order, too. That works for any items; where they
+/// are in the order of their keys, little is noted.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::meshadapt {
+
+/// Chunk c has the items and the keys from bound c to bound c + 1. There is one at least.
+struct GroupingBounds {
+  std::vector<std::uint32_t> items, keys;
+
+  std::size_t chunk_count() const { return items.size() - 1; }
+
+  /// Equal parts, as many as threads can use.
+  static GroupingBounds even(const runtime::Executor& executor, std::size_t items,
+                             std::size_t keys) {
+    constexpr std::size_t least = 2048;  // items in a chunk
+    const std::size_t most = 2 * static_cast<std::size_t>(executor.threads());
+    const std::size_t count =
+        executor.threads() == 1 ? 1 : std::clamp<std::size_t>(items / least, 1, most);
+    GroupingBounds bounds;
+    for (std::size_t c = 0; c <= count; ++c) {
+      bounds.items.push_back(static_cast<std::uint32_t>(items * c / count));
+      bounds.keys.push_back(static_cast<std::uint32_t>(keys * c / count));
+    }
+    return bounds;
+  }
+};
+
+/// KeysOf: keys_of(item, visit) calls visit(key) for each key that an item has.
+template <class KeysOf>
+class Grouping {
+ public:
+  /// Counts in `count_of`, [key], which need not be set. Thread safety: one caller; runs on the
+  /// executor.
+  Grouping(const runtime::Executor& executor, GroupingBounds bounds,
+           std::span<std::uint32_t> count_of, KeysOf keys_of)
+      : executor_(executor),
+        bounds_(std::move(bounds)),
+        chunks_(bounds_.chunk_count()),
+        count_of_(count_of),
+        keys_of_(std::move(keys_of)),
+        own_(chunks_),
+        noted_begin_(chunks_ * chunks_ + 1) {
+    for_each_chunk([&](std::size_t c) { count(c); });
+    std::uint32_t total = 0;
+    for (std::uint32_t& begin : noted_begin_) begin = std::exchange(total, total + begin);
+    noted_ = std::make_unique_for_overwrite<Pair[]>(total);
+    if (total != 0) for_each_chunk([&](std::size_t c) { note(c); });
+  }
+
+  /// How many keys all items have.
+  std::uint32_t size() const {
+    std::uint32_t sum = noted_begin_.back();
+    for (const std::uint32_t own : own_) sum += own;
+    return sum;
+  }
+
+  /// Once, for each chunk of keys: calls prepare(begin, end, before), when count_of of the keys
+  /// [begin, end) is how many items have each, and `before` how many have those below; then
+  /// put(key, item) for each of them, the items of a key in order.
+  void visit(auto&& prepare, auto&& put) {
+    std::vector<std::uint32_t> before(chunks_);
+    for (std::size_t c = 0; c + 1 < chunks_; ++c)
+      before[c + 1] = before[c] + own_[c] + noted_begin(c + 1, 0) - noted_begin(c, 0);
+    for_each_chunk([&](std::size_t c) {
+      const std::span all(noted_.get(), noted_begin_.back());
+      const auto noted = [&](std::size_t begin, std::size_t end, auto&& use) {
+        for (const Pair& pair : all.subspan(begin, end - begin)) use(pair.key, pair.item);
+      };
+      const std::size_t begin = noted_begin(c, 0), end = noted_begin(c + 1, 0);
+      const std::size_t middle = noted_begin(c, c);
+      noted(begin, end, [&](std::uint32_t key, std::uint32_t) { ++count_of_[key]; });
+      prepare(bounds_.keys[c], bounds_.keys[c + 1], before[c]);
+      noted(begin, middle, put);
+      each_key(c, [&put, own = range(c)](std::uint32_t key, std::uint32_t item) {
+        if (own.contains(key)) put(key, item);
+      });
+      noted(middle, end, put);
+    });
+  }
+
+ private:
+  struct Pair {
+    std::uint32_t key, item;
+  };
+
+  void for_each_chunk(auto&& body) {
+    runtime::parallel_for(executor_, chunks_, body, {.grain = 1});
+  }
+
+  /// A chunk of keys. By value, so that compilers know that it stays the same.
+  struct Range {
+    std::uint32_t begin, size;
+    bool contains(std::uint32_t key) const { return key - begin < size; }
+  };
+  Range range(std::size_t chunk) const {
+    return {bounds_.keys[chunk], bounds_.keys[chunk + 1] - bounds_.keys[chunk]};
+  }
+  /// The chunk of a key, which most often is the one of the key before.
+  std::size_t chunk_of(std::uint32_t key, std::size_t likely) const {
+    if (range(likely).contains(key)) return likely;
+    const auto after = std::upper_bound(bounds_.keys.begin(), bounds_.keys.end(), key);
+    return static_cast<std::size_t>(after - bounds_.keys.begin()) - 1;
+  }
+  /// Calls visit(key, item) for all keys of a chunk's items.
+  void each_key(std::size_t c, auto&& visit) const {
+    const std::uint32_t end = bounds_.items[c + 1];
+    for (std::uint32_t item = bounds_.items[c]; item < end; ++item)
+      keys_of_(item, [&](std::uint32_t key) { visit(key, item); });
+  }
+
+  /// Where those keys in a chunk are noted that items of another chunk have; at first their number.
+  std::uint32_t& noted_begin(std::size_t keys, std::size_t items) {
+    return noted_begin_[keys * chunks_ + items];
+  }
+
+  void count(std::size_t c) {
+    const auto begin = count_of_.begin();
+    std::fill(begin + bounds_.keys[c], begin + bounds_.keys[c + 1], 0U);
+    std::vector<std::uint32_t> noted(chunks_);
+    std::size_t other = c;
+    each_key(c, [&, own = range(c), count_of = count_of_](std::uint32_t key, std::uint32_t) {
+      if (own.contains(key)) {
+        ++count_of[key];
+      } else {
+        other = chunk_of(key, other);
+        ++noted[other];
+      }
+    });
+    own_[c] = std::accumulate(begin + bounds_.keys[c], begin + bounds_.keys[c + 1], 0U);
+    for (std::size_t keys = 0; keys < chunks_; ++keys) noted_begin(keys, c) = noted[keys];
+  }
+
+  void note(std::size_t c) {
+    std::vector<std::uint32_t> at(chunks_);
+    for (std::size_t keys = 0; keys < chunks_; ++keys) at[keys] = noted_begin(keys, c);
+    std::size_t other = c;
+    each_key(c, [&, own = range(c)](std::uint32_t key, std::uint32_t item) {
+      if (own.contains(key)) return;
+      other = chunk_of(key, other);
+      noted_[at[other]++] = {key, item};
+    });
+  }
+
+  const runtime::Executor& executor_;
+  GroupingBounds bounds_;
+  std::size_t chunks_;
+  std::span<std::uint32_t> count_of_;
+  KeysOf keys_of_;
+  std::vector<std::uint32_t> own_;          // [chunk], keys in it of its own items
+  std::vector<std::uint32_t> noted_begin_;  // [chunk of keys][chunk of items]
+  std::unique_ptr<Pair[]> noted_;
+};
+
+}  // namespace ductile::meshadapt
