@@ -31,6 +31,7 @@ class Unset {
   explicit Unset(std::size_t size)
       : values_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
   std::size_t size() const { return size_; }
+  void shrink(std::size_t size) { size_ = size; }
   T* begin() { return values_.get(); }
   std::span<T> all() { return {values_.get(), size_}; }
   std::span<const T> all() const { return {values_.get(), size_}; }
@@ -107,20 +108,21 @@ Ids sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh, VertexId un
                     [&](std::size_t v) { return hilbert_key(mesh.site_of[v].position, box); });
 }
 
-/// Living elements by their lowest vertex, those of a vertex in order. lowest_of is none for
+/// Puts living elements by their lowest vertex, those of a vertex in order, into an array of room
+/// for all, and shrinks it. lowest_of is none for
 /// others.
-Ids sorted_elements(const Executor& executor, const Ids& lowest_of, std::size_t vertex_count) {
+void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
+                   std::size_t vertex_count) {
   Ids end_of(vertex_count);  // [vertex], in the order; at first how many elements it has
   Grouping grouping(executor, GroupingBounds::even(executor, lowest_of.size(), vertex_count),
                     end_of.all(), [&lowest_of](ElementId element, auto&& visit) {
                       if (lowest_of[element] != none) visit(lowest_of[element]);
                     });
-  Ids order(grouping.size());
+  order.shrink(grouping.size());
   const auto begin_lists = [&](VertexId begin, VertexId end, std::uint32_t before) {
     for (VertexId v = begin; v < end; ++v) end_of[v] = std::exchange(before, before + end_of[v]);
   };
   grouping.visit(begin_lists, [&](VertexId v, ElementId element) { order[end_of[v]++] = element; });
-  return order;
 }
 
 /// For each old id its place in the order, for those that are in it.
@@ -258,8 +260,10 @@ void renumber_all(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted,
                   Neighbours<Dim>* neighbours) {
   const auto sorted = [&] {
     const Ids new_vertex = renumber_vertices(executor, mesh, unlisted);
+    Ids order(mesh.element_slots());  // first, as what is freed behind it is one piece then
     const Ids lowest_of = renumber_corners(executor, mesh, new_vertex);
-    return sorted_elements(executor, lowest_of, mesh.vertex_slots());
+    sort_elements(order, executor, lowest_of, mesh.vertex_slots());
+    return order;
   };
   renumber_elements(executor, mesh, sorted(), neighbours);
   rebuild_elements_of(executor, mesh);
