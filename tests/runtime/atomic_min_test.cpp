@@ -22,6 +22,13 @@ TEST(AtomicMin, SaysWhetherItLowered) {
   EXPECT_EQ(word, 12U);
 }
 
+TEST(AtomicMin, LowersShortWords) {
+  std::uint32_t word = 10;
+  EXPECT_FALSE(atomic_min(word, 10));
+  EXPECT_TRUE(atomic_min(word, 9));
+  EXPECT_EQ(word, 9U);
+}
+
 TEST(AtomicMin, KeepsTheLeastOfWhatManyThreadsOffer) {
   constexpr std::size_t words = 7, offers = 20000;
   std::vector<std::uint64_t> expected(words, ~std::uint64_t{0});

@@ -179,6 +179,37 @@ class TakeTurns {
   std::vector<std::vector<Vertex>> lists;  // [resource]
 };
 
+/// The same with ranks, which differ in each list: those of a higher number go first.
+class TakeRankedTurns {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+  static constexpr Vertex length = 150;
+
+  explicit TakeRankedTurns(std::size_t n) : lists(n / length) {}
+  std::optional<Plan> plan(Vertex v) const { return v; }
+  void footprint(Vertex v, auto&& visit) const { visit(v / length); }
+  std::size_t resource_count() const { return lists.size(); }
+  std::uint8_t priority(Vertex v) const { return static_cast<std::uint8_t>(255 - v % length); }
+  void apply(const Plan& v, Commit<TakeRankedTurns>&) { lists[v / length].push_back(v); }
+  void commit(std::uint32_t, const Update&) {}
+
+  std::vector<std::vector<Vertex>> lists;  // [resource]
+};
+
+/// A window of so many items takes a 64th of all keys of reservations.
+TEST(RunRounds, KeysOfReservationsBeginAnewWhenTheyAreUsedUp) {
+  const std::size_t n = (std::size_t{1} << 18U) / TakeRankedTurns::length * TakeRankedTurns::length;
+  TakeRankedTurns turns(n);
+  const RoundsReport report = run_rounds(Executor({.threads = 2}), turns, all_items(n));
+  EXPECT_EQ(report.rounds, std::size_t{TakeRankedTurns::length});
+  for (std::size_t i = 0; i < turns.lists.size(); ++i) {
+    EXPECT_TRUE(std::is_sorted(turns.lists[i].rbegin(), turns.lists[i].rend())) << i;
+    EXPECT_EQ(turns.lists[i].size(), std::size_t{TakeRankedTurns::length}) << i;
+  }
+}
+
 TEST(RunRounds, FewerAskWhereTooFewWin) {
   constexpr std::size_t n = 50000;
   TakeTurns all_ask(n);

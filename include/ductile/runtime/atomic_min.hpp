@@ -6,7 +6,9 @@
 #pragma once
 
 #include <atomic>
+#include <concepts>
 #include <cstdint>
+#include <type_traits>
 
 namespace ductile::runtime {
 
@@ -26,9 +28,10 @@ inline void atomic_store(std::uint64_t& where, std::uint64_t value) {
 
 /// Lowers the word to `value` if that is less; true if it did. Once true, a later call by another
 /// thread may lower it further.
-inline bool atomic_min(std::uint64_t& where, std::uint64_t value) {
+template <std::unsigned_integral Word>
+bool atomic_min(Word& where, std::type_identity_t<Word> value) {
   const std::atomic_ref word(where);
-  std::uint64_t seen = word.load(std::memory_order_relaxed);
+  Word seen = word.load(std::memory_order_relaxed);
   while (value < seen) {
     if (word.compare_exchange_weak(seen, value, std::memory_order_relaxed)) return true;
   }

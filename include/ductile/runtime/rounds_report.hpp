@@ -16,7 +16,8 @@ struct RoundsOptions {
   /// many threads busy. What can run in tiles does so first.
   std::size_t window = 32768;
   /// Reservations: the same, but an item of a window then runs before one of a later window, of
-  /// whatever priority. 0: the highest priority of all goes first.
+  /// whatever priority. 0: the highest priority of all goes first, or of 2^24 items if there are
+  /// more.
   std::size_t reserving_window = 0;
   /// Reservations: if a smaller share than this of those that asked held all, fewer ask in the next
   /// window and the others wait their turn, which saves them planning in vain. 0: all ask always.

@@ -4,11 +4,13 @@
 /// round.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <iterator>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/atomic_count.hpp"
@@ -33,55 +35,104 @@ class ReservingRounds {
   /// the other stays in cache. Returns the work of the next round.
   std::vector<Item> run(std::vector<Item> work) {
     std::vector<Item> rest;
-    const std::size_t largest = Check::on ? 0 : batches_.options.reserving_window;
+    const std::size_t wanted = Check::on ? 0 : batches_.options.reserving_window;
+    const std::size_t largest = wanted == 0 ? most_items : std::min(wanted, most_items);
     for_each_window(std::span(work), window_count(work.size(), largest),
                     [&](std::span<Item> part) { reserve_and_run(part, rest); });
     std::vector<Item> woken = batches_.take_woken();
-    append(rest, woken);
+    rest.insert(rest.end(), std::make_move_iterator(woken.begin()),
+                std::make_move_iterator(woken.end()));
     return rest;
   }
 
  private:
-  static constexpr std::uint8_t gone = 0, waits = 1, runs = 2, passes = 4;
-  static constexpr std::uint32_t everyone = 0xffffffffU, last_window = 0xffffffU;
+  static constexpr unsigned rank_bits = RankedOperator<Op> ? 8 : 0;
+  static constexpr std::uint64_t all_keys = std::uint64_t{1} << 32U;
+  static constexpr std::size_t most_items = std::size_t{1} << 24U;  // of a window, with their ranks
+  static constexpr std::uint32_t everyone = 0xffffffffU;
 
-  static void append(std::vector<Item>& to, std::vector<Item>& items) {
-    to.insert(to.end(), std::make_move_iterator(items.begin()),
-              std::make_move_iterator(items.end()));
-  }
+  /// What becomes of an item of a window.
+  enum class Outcome : std::uint8_t { gone, runs, lost, passes };
+  /// Of the items of a block, or of those before it.
+  struct Counts {
+    std::size_t run = 0, lost = 0, left = 0;
+  };
 
   /// Runs the items of a window that win, and appends those that have to wait to `rest`.
   void reserve_and_run(std::span<Item> work, std::vector<Item>& rest) {
-    // Where the numbers of windows in keys begin anew, what was reserved is forgotten.
-    if ((++window_ & last_window) == 0) reserved_ = {};
-    std::vector<std::uint8_t> outcome(work.size());
+    std::vector<Item> winners;
     {
       const PhaseTimer timer(batches_.report.conflict_seconds, executor_, Phase::conflict);
-      reserved_.resize(executor_, op_.resource_count(), ~std::uint64_t{0});
-      if (!executor_.deterministic()) ticket_of_.resize(work.size());
-      parallel_for_blocks(
-          executor_, work.size(), short_block,
-          [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-              outcome[i] = asks(i) ? reserve(work[i], i) : passes;
-          },
-          by_block);
-      parallel_for_blocks(
-          executor_, work.size(), short_block,
-          [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-              if (outcome[i] == waits && holds_all(work[i], i)) outcome[i] = runs;
-          },
-          by_block);
+      ++window_;
+      take_keys(work.size());
+      reserve_all(work);
+      winners = take_winners(work, rest);
     }
-    const std::vector<Item> winners = select(executor_, work, outcome, runs);
-    std::vector<Item> losers = select(executor_, work, outcome, waits | passes);
-    const std::size_t lost = losers.size() - (share_ < everyone ? count(outcome, passes) : 0);
-    batches_.report.lost += lost;
-    adapt_share(winners.size(), lost);
     batches_.run(
         winners, [](const Item&) { return true; }, [&] { return batches_.new_commit(window_); });
-    append(rest, losers);
+  }
+
+  /// A later window has lower keys, so that reservations never have to be cleared but where there
+  /// are no keys left.
+  void take_keys(std::size_t items) {
+    tie_bits_ = static_cast<unsigned>(std::bit_width(items - 1));
+    const std::uint64_t wanted = std::uint64_t{1} << (rank_bits + tie_bits_);
+    if (wanted > first_key_) {
+      reserved_ = {};
+      first_key_ = all_keys;
+    }
+    first_key_ -= wanted;
+    reserved_.resize(executor_, op_.resource_count(), ~std::uint32_t{0});
+  }
+
+  void reserve_all(std::span<const Item> work) {
+    key_of_.resize(work.size());
+    outcome_of_.resize(work.size());
+    ticket_ = 0;
+    parallel_for_blocks(
+        executor_, work.size(), short_block,
+        [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i)
+            outcome_of_[i] = asks(i) ? reserve(work[i], i) : Outcome::passes;
+        },
+        by_block);
+  }
+
+  /// Finds out who holds all of its footprint; moves those out of the work, and those that have to
+  /// wait to `rest`, in order.
+  std::vector<Item> take_winners(std::span<Item> work, std::vector<Item>& rest) {
+    std::vector<Counts> counts((work.size() + short_block - 1) / short_block);
+    parallel_for_blocks(
+        executor_, work.size(), short_block,
+        [&](std::size_t b, std::size_t begin, std::size_t end) {
+          Counts found;
+          for (std::size_t i = begin; i < end; ++i) settle(work[i], i, found);
+          counts[b] = found;
+        },
+        by_block);
+    Counts total{.left = rest.size()};
+    for (Counts& count : counts)
+      total = {total.run + std::exchange(count.run, total.run), total.lost + count.lost,
+               total.left + std::exchange(count.left, total.left)};
+    std::vector<Item> winners(total.run);
+    rest.resize(total.left);
+    parallel_for_blocks(
+        executor_, work.size(), short_block,
+        [&](std::size_t b, std::size_t begin, std::size_t end) {
+          Counts at = counts[b];
+          for (std::size_t i = begin; i < end; ++i) {
+            if (outcome_of_[i] == Outcome::runs) winners[at.run++] = std::move(work[i]);
+            if (is_left(outcome_of_[i])) rest[at.left++] = std::move(work[i]);
+          }
+        },
+        by_block);
+    batches_.report.lost += total.lost;
+    adapt_share(total.run, total.lost);
+    return winners;
+  }
+
+  static bool is_left(Outcome outcome) {
+    return outcome == Outcome::lost || outcome == Outcome::passes;
   }
 
   /// Whether the item at this position asks for its footprint in this window.
@@ -101,34 +152,36 @@ class ReservingRounds {
     }
   }
 
-  std::size_t count(const std::vector<std::uint8_t>& outcome, std::uint8_t wanted) const {
-    const auto one_if_wanted = [&](std::size_t i) -> std::size_t { return outcome[i] == wanted; };
-    return parallel_reduce(executor_, outcome.size(), std::size_t{0}, one_if_wanted, std::plus<>());
-  }
-
-  /// A later window always has the lower key, so reservations never have to be cleared.
-  std::uint64_t key_of(const Item& item, std::size_t position) const {
-    std::uint64_t rank = 0;
+  /// The rank of an item decides, then chance or, in racing mode, who came first.
+  std::uint32_t new_key(const Item& item, std::size_t position) {
+    std::uint32_t rank = 0;
     if constexpr (RankedOperator<Op>) rank = op_.priority(item);
     const auto place = static_cast<std::uint32_t>(position);
-    const std::uint32_t tie =
-        executor_.deterministic() ? mix32(place ^ (window_ * 0x9e3779b9U)) : ticket_of_[position];
-    return (std::uint64_t{~window_ & last_window} << 40U) | (rank << 32U) | tie;
+    const std::uint32_t tie = executor_.deterministic()
+                                  ? mix_bits(place ^ (window_ * 0x9e3779b9U), tie_bits_)
+                                  : atomic_count(ticket_);
+    return static_cast<std::uint32_t>(first_key_) + ((rank << tie_bits_) | tie);
   }
 
-  std::uint8_t reserve(const Item& item, std::size_t position) {
-    if (!executor_.deterministic()) ticket_of_[position] = atomic_count(ticket_);
-    const std::uint64_t key = key_of(item, position);
+  Outcome reserve(const Item& item, std::size_t position) {
+    const std::uint32_t key = key_of_[position] = new_key(item, position);
     bool any = false;
     op_.footprint(item, [&](std::uint32_t resource) {
       atomic_min(reserved_[resource], key);
       any = true;
     });
-    return any ? waits : gone;
+    return any ? Outcome::lost : Outcome::gone;  // unless it turns out to hold all
   }
 
-  bool holds_all(const Item& item, std::size_t position) const {
-    const std::uint64_t key = key_of(item, position);
+  void settle(const Item& item, std::size_t position, Counts& counts) {
+    Outcome& outcome = outcome_of_[position];
+    if (outcome == Outcome::lost && holds_all(item, key_of_[position])) outcome = Outcome::runs;
+    counts.run += outcome == Outcome::runs;
+    counts.lost += outcome == Outcome::lost;
+    counts.left += is_left(outcome);
+  }
+
+  bool holds_all(const Item& item, std::uint32_t key) const {
     bool all = true;
     op_.footprint(item, [&](std::uint32_t resource) { all = all && reserved_[resource] == key; });
     return all;
@@ -137,11 +190,16 @@ class ReservingRounds {
   Batches<Op, Check>& batches_;
   const Executor& executor_ = batches_.executor;
   Op& op_ = batches_.op;
-  FilledArray<std::uint64_t> reserved_;   // [resource], the lowest key that asked
-  std::vector<std::uint32_t> ticket_of_;  // [position], racing mode: order of arrival
-  std::uint32_t ticket_ = 0;
-  std::uint32_t share_ = everyone;  // who has a hash up to this asks
-  std::uint32_t window_ = 0;        // the window being run
+  FilledArray<std::uint32_t> reserved_;  // [resource], the lowest key that asked
+  std::uint32_t share_ = everyone;       // who has a hash up to this asks
+
+  // ---- The window being run ----
+  std::uint32_t window_ = 0;
+  std::uint64_t first_key_ = all_keys;  // all below are left for later windows
+  unsigned tie_bits_ = 0;               // of a key, below the rank
+  std::vector<std::uint32_t> key_of_;   // [position]
+  std::vector<Outcome> outcome_of_;     // [position]
+  std::uint32_t ticket_ = 0;            // racing mode: how many have come
 };
 
 }  // namespace ductile::runtime::detail
