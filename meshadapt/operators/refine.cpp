@@ -23,7 +23,7 @@ using runtime::PhaseTimer;
 namespace {
 
 /// With more edges to split than this share of the number of elements, lists are left stale.
-constexpr double many = 0.08;
+constexpr double many = 0.05;
 
 /// Where along a-b its two halves have the same metric length, the size varying geometrically.
 template <int Dim>
@@ -82,7 +82,6 @@ runtime::RoundsReport Refine<Dim>::run(std::vector<LongEdge> edges) {
     number();
   }
   grow();
-  splits_.release(executor_);
   cuts_.release(executor_);
   return report_;
 }
@@ -384,7 +383,7 @@ void Refine<Dim>::number() {
   const std::uint32_t pieces = runtime::exclusive_scan<std::uint32_t>(executor_, first_piece_);
   if (std::size_t{first_element_} + pieces >= none)
     throw std::length_error("a mesh of more elements than 32-bit numbers can count");
-  mesh_.grow(first_vertex_ + report_.applied, std::size_t{first_element_} + pieces);
+  end_of_elements_ = first_element_ + pieces;
 }
 
 /// Makes what is numbered, and brings the lists of vertices up to date change by change, unless
@@ -399,12 +398,16 @@ void Refine<Dim>::grow() {
   };
   {
     const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const std::size_t end_of_vertices = first_vertex_ + report_.applied;
+    mesh_.grow(end_of_vertices, first_element_);
     parallel_for(executor_, edges_.size(), [&](std::size_t i) {
       const auto number = static_cast<std::uint32_t>(i);
       if (!is_split(number)) return;
       write_vertex(number);
       if constexpr (Dim == 3) write_links(number, defer);
     });
+    splits_.release(executor_);  // before elements take their memory
+    mesh_.grow(end_of_vertices, end_of_elements_);
     parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });
   }
   const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
