@@ -133,7 +133,7 @@ struct Mesh {
 
 /// Elements that a vertex's list has room for beyond those it was made with.
 template <int Dim>
-inline constexpr std::uint32_t list_slack = Dim == 2 ? 3 : 10;
+inline constexpr std::uint32_t list_slack = Dim == 2 ? 2 : 10;
 
 /// Vertices whose lists are made together.
 inline constexpr std::uint32_t list_block = 64;
