@@ -109,8 +109,7 @@ Ids sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh, VertexId un
 }
 
 /// Puts living elements by their lowest vertex, those of a vertex in order, into an array of room
-/// for all, and shrinks it. lowest_of is none for
-/// others.
+/// for all, and shrinks it. lowest_of is none for others.
 void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
                    std::size_t vertex_count) {
   Ids end_of(vertex_count);  // [vertex], in the order; at first how many elements it has

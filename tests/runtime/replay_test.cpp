@@ -136,6 +136,44 @@ TEST(Recording, TimesTheChunksOfALoop) {
   EXPECT_EQ(last.count, 100U);
 }
 
+/// Three parts of a loop of one chunk, the first of them in two pieces, all pieces alike.
+void record_parts(Recording& recording, const std::vector<Recording::Wait>& waits) {
+  const auto work = [] {
+    for (volatile int i = 0; i < 2000000;) i = i + 1;
+  };
+  recording.begin_loop();
+  for (const std::size_t part : {0U, 2U, 1U, 0U}) {
+    recording.begin_part(part);
+    work();
+    recording.aside(work);
+  }
+  for (const auto& [part, on] : waits) recording.part_waits(part, on);
+  recording.end_chunk();
+  recording.end_loop();
+}
+
+TEST(Replay, RunsPartsOfALoopSideBySideUnlessTheyWait) {
+  const auto share_of_time = [](const std::vector<Recording::Wait>& waits) {
+    Recording recording;
+    record_parts(recording, waits);
+    EXPECT_EQ(recording.stretches().back().count, 3U);
+    const ReplayTimes times = replay(recording, {.threads = 3, .launch_ns = 0}).total;
+    EXPECT_NEAR(times.critical, times.elapsed, 1e-9);
+    return (times.elapsed - times.serial) / times.work;
+  };
+  EXPECT_LT(share_of_time({}), 0.9);
+  EXPECT_NEAR(share_of_time({{2, 1}, {1, 0}}), 1, 1e-4);
+  EXPECT_LT(share_of_time({{2, 0}, {1, 0}}), 0.95);
+}
+
+TEST(Recording, LeavesOutWhatRunsAside) {
+  Recording recording;
+  const auto begin = std::chrono::steady_clock::now();
+  record_parts(recording, {});
+  const std::chrono::duration<double> all = std::chrono::steady_clock::now() - begin;
+  EXPECT_LT(replay(recording, {.threads = 1}).total.work, 0.75 * all.count());
+}
+
 TEST(Recording, LeavesOutTheTimeInWhichTheThreadDoesNotRun) {
   Recording recording;
   const Executor executor({.threads = 2, .recording = &recording});

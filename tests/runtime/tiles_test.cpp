@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
@@ -33,6 +34,7 @@ class Mean {
   }
 
   std::optional<Plan> plan(Vertex v) const {
+    if (v == throws_at) throw std::runtime_error("plan");
     double sum = 0;
     int count = 0;
     conflicts(v, [&](Vertex other) { sum += value[other], ++count; });
@@ -50,13 +52,15 @@ class Mean {
   void prefetch_neighbour(Vertex) const {}
   void apply(const Plan& plan, Commit<Mean>& commit) {
     value[plan.vertex] = plan.value;
-    if (++turns[plan.vertex] == 1)
+    if (++turns[plan.vertex] == 1 && wakes)
       conflicts(plan.vertex, [&](Vertex other) { commit.wake(other); });
   }
   void commit(std::uint32_t, const Update&) {}
 
   std::vector<double> value;  // [vertex]
   std::vector<int> turns;     // [vertex], so far
+  Vertex throws_at = ~0U;
+  bool wakes = true;
 
  private:
   Vertex side_;
@@ -82,11 +86,45 @@ TEST(Tiles, GiveEveryItemOneTurnWhateverTheThreads) {
   const Outcome first = run(side, 1, work);
   for (const int threads : thread_counts) {
     const Outcome outcome = run(side, threads, work);
-    EXPECT_GT(outcome.report.batches, 16U);  // steps of tiles, then classes of those that waited
+    EXPECT_GT(outcome.report.batches, 1U);  // the tiles, then classes of those that were left
     EXPECT_EQ(outcome.report.planned, work.size());
     EXPECT_EQ(outcome.report.applied, work.size());
     EXPECT_EQ(outcome.mean.turns, std::vector<int>(work.size(), 1)) << threads << " threads";
     EXPECT_EQ(outcome.mean.value, first.mean.value) << threads << " threads";
+  }
+}
+
+/// What tiles of all items are to give, by the definition of their order.
+TEST(Tiles, RunByTheirRanksAndLeaveWhomAnEqualOneComesBefore) {
+  constexpr Vertex side = 150;
+  const auto work = all_items(side * side);
+  Mean expected(side);
+  const detail::BlockLayout layout = detail::tiles_of(work.size());
+  const auto rank = [&](Vertex v) { return 7 * layout.step_of(v) % layout.step_count(); };
+  std::vector<std::uint8_t> left(work.size());
+  const auto is_left = [&](Vertex v) {
+    bool any = false;
+    expected.conflicts(v, [&](Vertex other) {
+      any = any || (other < v && !layout.same_block(other, v) && rank(other) == rank(v));
+    });
+    return any;
+  };
+  std::transform(work.begin(), work.end(), left.begin(), is_left);
+  EXPECT_GT(std::count(left.begin(), left.end(), 1), 0);
+  auto order = work;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Vertex a, Vertex b) { return rank(a) < rank(b); });
+  for (const Vertex v : order)
+    if (left[v] == 0) expected.value[v] = expected.plan(v)->value;
+
+  for (const int threads : thread_counts) {
+    const Executor executor({.threads = threads});
+    Mean mean(side);
+    mean.wakes = false;
+    detail::Tiles<Mean> tiles(executor, mean, work);
+    tiles.run([] { return Commit<Mean>(); }, [](Vertex) {});
+    EXPECT_EQ(tiles.left(), left);
+    EXPECT_EQ(mean.value, expected.value) << threads << " threads";
   }
 }
 
@@ -98,6 +136,17 @@ TEST(Tiles, LeaveFewItemsOfManyToClasses) {
   EXPECT_LT(first.report.batches, 16U);
   EXPECT_EQ(first.report.applied, work.size());
   EXPECT_EQ(run(side, 8, work).mean.value, first.mean.value);
+}
+
+TEST(Tiles, PassOnWhatAnItemThrows) {
+  constexpr Vertex side = 150;
+  for (const int threads : thread_counts)
+    for (const Vertex culprit : {0U, 5000U, side * side - 1}) {
+      Mean mean(side);
+      mean.throws_at = culprit;
+      const Executor executor({.threads = threads});
+      EXPECT_THROW(run_rounds(executor, mean, all_items(side * side)), std::runtime_error);
+    }
 }
 
 TEST(Tiles, TakeWorkInAnyOrder) {

@@ -28,8 +28,8 @@ struct RoundsOptions {
 /// between. In tiles, planning and applying are one phase, and count as planning.
 struct RoundsReport {
   std::size_t rounds = 0;
-  std::size_t batches = 0;    ///< sets of items that ran together: classes, a round's winners, or
-                              ///< the tiles of a step
+  std::size_t batches = 0;    ///< sets of items that ran together: classes, a window's winners,
+                              ///< or all that ran in tiles in a round
   std::size_t planned = 0;    ///< calls of plan
   std::size_t applied = 0;    ///< plans carried out
   std::size_t lost = 0;       ///< conflicts: reservations that met a higher priority

@@ -38,12 +38,12 @@ class Batches {
   using Plan = typename Op::Plan;
   using Update = typename Op::Update;
 
-  Batches(const Executor& executor, Op& op, const RoundsOptions& options)
-      : executor(executor),
-        op(op),
-        options(options),
-        deferred_(executor, {.order = executor.deterministic() ? options.order : CommitOrder::any}),
-        woken_(executor, {.order = WorkOrder::by_item, .unique = true}) {}
+  Batches(const Executor& run_on, Op& applied, const RoundsOptions& wanted)
+      : executor(run_on),
+        op(applied),
+        options(wanted),
+        deferred_(run_on, {.order = run_on.deterministic() ? wanted.order : CommitOrder::any}),
+        woken_(run_on, {.order = WorkOrder::by_item, .unique = true}) {}
 
   const Executor& executor;
   Op& op;

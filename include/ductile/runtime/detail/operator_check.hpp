@@ -1,6 +1,6 @@
 /// @file
 /// OperatorCheck: the rules of an operator's contract, each a function that throws ContractBroken.
-/// Rounds calls them at the beginning and the end of a round and after each class, and leaves
+/// Rounds call them at the beginning and the end of a round and after each class, and leave
 /// applying a batch to it.
 #pragma once
 
