@@ -117,6 +117,7 @@ void Recording::end_chunk() {
 }
 
 void Recording::begin_part(std::size_t part) {
+  if (!in_loop_) return;  // of a loop that is not shared
   end_part();
   if (part >= cost_of_.size()) cost_of_.resize(part + 1);
   part_ = part;
@@ -129,6 +130,9 @@ void Recording::end_part() {
 }
 
 void Recording::part_waits(std::size_t part, std::size_t on) {
+  if (on >= part)
+    throw std::invalid_argument("Recording::part_waits: a part can wait for earlier ones only");
+  if (!in_loop_) return;
   waits_.push_back({static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(on)});
 }
 

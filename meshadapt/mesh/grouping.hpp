@@ -9,9 +9,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -30,7 +32,8 @@ struct GroupingBounds {
   static GroupingBounds even(const runtime::Executor& executor, std::size_t items,
                              std::size_t keys) {
     constexpr std::size_t least = 2048;  // items in a chunk
-    const std::size_t most = 2 * static_cast<std::size_t>(executor.threads());
+    const std::size_t most =
+        std::min<std::size_t>(512, 2 * static_cast<std::size_t>(executor.threads()));
     const std::size_t count =
         executor.threads() == 1 ? 1 : std::clamp<std::size_t>(items / least, 1, most);
     GroupingBounds bounds;
@@ -47,7 +50,8 @@ template <class KeysOf>
 class Grouping {
  public:
   /// Counts in `count_of`, [key], which need not be set. Thread safety: one caller; runs on the
-  /// executor.
+  /// executor. Throws std::bad_alloc, and std::length_error if all items have more keys than 32-bit
+  /// numbers can count.
   Grouping(const runtime::Executor& executor, GroupingBounds bounds,
            std::span<std::uint32_t> count_of, KeysOf keys_of)
       : executor_(executor),
@@ -58,8 +62,11 @@ class Grouping {
         own_(chunks_),
         noted_begin_(chunks_ * chunks_ + 1) {
     for_each_chunk([&](std::size_t c) { count(c); });
-    std::uint32_t total = 0;
-    for (std::uint32_t& begin : noted_begin_) begin = std::exchange(total, total + begin);
+    std::uint64_t total = 0, own = std::accumulate(own_.begin(), own_.end(), std::uint64_t{0});
+    for (std::uint32_t& begin : noted_begin_)
+      begin = static_cast<std::uint32_t>(std::exchange(total, total + begin));
+    if (total + own > std::numeric_limits<std::uint32_t>::max())
+      throw std::length_error("a mesh of more elements than lists of 32-bit numbers can have");
     noted_ = std::make_unique_for_overwrite<Pair[]>(total);
     if (total != 0) for_each_chunk([&](std::size_t c) { note(c); });
   }

@@ -36,13 +36,12 @@ void Mesh<Dim>::grow(std::size_t vertices, std::size_t elements) {
 template <int Dim>
 static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim>& mesh) {
   auto bounds = GroupingBounds::even(executor, mesh.element_slots(), mesh.vertex_slots());
-  std::uint32_t greatest = 0;
   for (std::size_t c = 1; c < bounds.chunk_count(); ++c) {
     const Corners<Dim>& corners = mesh.corners_of[bounds.items[c]];
     const VertexId lowest = *std::min_element(corners.begin(), corners.end());
-    if (lowest != none) greatest = std::max(greatest, lowest);
-    bounds.keys[c] = greatest;
+    bounds.keys[c] = lowest != none ? lowest : bounds.keys[c - 1];
   }
+  std::sort(bounds.keys.begin() + 1, bounds.keys.end() - 1);
   return bounds;
 }
 

@@ -127,7 +127,7 @@ class Refine {
   GrowingArray<Cuts> cuts_;                 // [place in elements_]
   std::vector<std::uint32_t> place_of_;     // [edge], of its vertex among the new ones
   std::vector<std::uint32_t> first_piece_;  // [place in elements_], among the new pieces
-  VertexId first_vertex_ = 0;
+  VertexId first_vertex_ = none;
   ElementId first_element_ = 0, end_of_elements_ = 0;
   bool lists_are_stale_ = false;
 };

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
 
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 
@@ -49,7 +52,7 @@ class Mean {
   }
   std::size_t item_count() const { return value.size(); }
   void prefetch(Vertex, int) const {}
-  void prefetch_neighbour(Vertex) const {}
+  void prefetch_neighbour(Vertex) const { neighbours_fetched.fetch_add(1); }  // in tiles only
   void apply(const Plan& plan, Commit<Mean>& commit) {
     value[plan.vertex] = plan.value;
     if (++turns[plan.vertex] == 1 && wakes)
@@ -57,6 +60,7 @@ class Mean {
   }
   void commit(std::uint32_t, const Update&) {}
 
+  static inline std::atomic<std::size_t> neighbours_fetched{0};
   std::vector<double> value;  // [vertex]
   std::vector<int> turns;     // [vertex], so far
   Vertex throws_at = ~0U;
@@ -85,7 +89,9 @@ TEST(Tiles, GiveEveryItemOneTurnWhateverTheThreads) {
   const auto work = all_items(side * side);
   const Outcome first = run(side, 1, work);
   for (const int threads : thread_counts) {
+    Mean::neighbours_fetched = 0;
     const Outcome outcome = run(side, threads, work);
+    EXPECT_GT(Mean::neighbours_fetched, 0U);
     EXPECT_GT(outcome.report.batches, 1U);  // the tiles, then classes of those that were left
     EXPECT_EQ(outcome.report.planned, work.size());
     EXPECT_EQ(outcome.report.applied, work.size());
@@ -132,10 +138,47 @@ TEST(Tiles, LeaveFewItemsOfManyToClasses) {
   constexpr Vertex side = 700;  // 490,000 vertices, of which 4900 are work
   std::vector<Vertex> work(4900);
   for (std::size_t i = 0; i < work.size(); ++i) work[i] = static_cast<Vertex>(100 * i);
+  Mean::neighbours_fetched = 0;
   const Outcome first = run(side, 1, work);
-  EXPECT_LT(first.report.batches, 16U);
+  EXPECT_EQ(Mean::neighbours_fetched, 0U);
   EXPECT_EQ(first.report.applied, work.size());
   EXPECT_EQ(run(side, 8, work).mean.value, first.mean.value);
+}
+
+TEST(Tiles, ArePartsOfARecordedLoop) {
+  constexpr Vertex side = 150;
+  const auto work = all_items(side * side);
+  const Outcome expected = run(side, 1, work);
+  Recording recording;
+  Mean mean(side);
+  const Executor executor({.threads = 8, .recording = &recording});
+  run_rounds(executor, mean, work, {.most_rounds = 1});
+  EXPECT_EQ(mean.value, expected.mean.value);
+  ASSERT_FALSE(recording.waits().empty());
+  const auto loop = std::find_if(recording.stretches().begin(), recording.stretches().end(),
+                                 [](const auto& stretch) { return stretch.waits != 0; });
+  EXPECT_EQ(loop->waits, recording.waits().size());
+  const detail::BlockLayout layout = detail::tiles_of(work.size());
+  EXPECT_EQ(loop->count, (work.size() >> layout.block_bits) + 1);
+}
+
+TEST(Tiles, LeaveARecordingAloneWhereTheirLoopIsNotShared) {
+  constexpr Vertex side = 150;
+  Recording alone, outer;
+  Mean first(side), second(side);
+  const Executor one({.threads = 1, .recording = &alone});
+  run_rounds(one, first, all_items(side * side), {.most_rounds = 1});
+  EXPECT_TRUE(alone.waits().empty());
+  const Executor executor({.threads = 4, .recording = &outer});
+  const auto in_one = [&](std::size_t i) {
+    if (i != 1) return;
+    const auto work = all_items(side * side);
+    second.wakes = false;
+    detail::Tiles<Mean>(executor, second, work).run([] { return Commit<Mean>(); }, [](Vertex) {});
+  };
+  parallel_for(executor, 3, in_one, {.grain = 1});
+  EXPECT_TRUE(outer.waits().empty());
+  EXPECT_EQ(outer.stretches().back().count, 3U);
 }
 
 TEST(Tiles, PassOnWhatAnItemThrows) {

@@ -16,16 +16,6 @@ namespace ductile::runtime {
 // a thread wrote before is ordered by the barrier at the end of the loop, which every reader of
 // the outcome has passed.
 
-/// The word's value now.
-inline std::uint64_t atomic_load(std::uint64_t& where) {
-  return std::atomic_ref(where).load(std::memory_order_relaxed);
-}
-
-/// Sets the word; overwrites what others reserved.
-inline void atomic_store(std::uint64_t& where, std::uint64_t value) {
-  std::atomic_ref(where).store(value, std::memory_order_relaxed);
-}
-
 /// Lowers the word to `value` if that is less; true if it did. Once true, a later call by another
 /// thread may lower it further.
 template <std::unsigned_integral Word>

@@ -143,7 +143,7 @@ class Commit {
   /// of the round and not yet applied, it leaves and comes back in the next round; in a later
   /// window it is planned there.
   void wake(Item item) {
-    // Relaxed: read after the barrier that ends the phase.
+    // Relaxed: read after the barrier that ends the phase, or, in tiles, ordered by those.
     if constexpr (ColouredOperator<Op>)
       std::atomic_ref(woken_at_[item]).store(window_, std::memory_order_relaxed);
     woken_->append(std::move(item));

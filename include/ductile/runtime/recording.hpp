@@ -61,6 +61,8 @@ class Recording {
 
   // ---- For the runtime and for those who record something else than time ----
 
+  bool in_loop() const { return in_loop_; }
+
   void begin_round() { flush(), round_ = ++rounds_; }
   void end_rounds() { flush(), round_ = 0; }
   /// Says what follows is for; returns what it was before.
@@ -72,7 +74,8 @@ class Recording {
   /// For loops whose chunks are not what runs side by side: what follows, up to the next call or
   /// the end of the chunk, belongs to this part of the loop. Chunks then do not count.
   void begin_part(std::size_t part);
-  /// A part waits for an earlier one of the loop.
+  /// A part waits for an earlier one of the loop. Throws std::invalid_argument if it is not
+  /// earlier.
   void part_waits(std::size_t part, std::size_t on);
   /// Runs something, the time of which is nobody's.
   template <class Run>

@@ -244,27 +244,4 @@ inline std::size_t window_count(std::size_t items, std::size_t largest) {
   return largest == 0 ? 1 : (items + largest - 1) / largest;
 }
 
-/// Moves the items with an outcome in this set of bits out of the work, in order.
-template <class Item>
-std::vector<Item> select(const Executor& executor, std::span<Item> work,
-                         const std::vector<std::uint8_t>& outcome, std::uint8_t wanted) {
-  std::vector<std::uint32_t> offset((work.size() + short_block - 1) / short_block);
-  parallel_for_blocks(
-      executor, work.size(), short_block,
-      [&](std::size_t b, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) offset[b] += (outcome[i] & wanted) != 0;
-      },
-      by_block);
-  std::vector<Item> selected(exclusive_scan<std::uint32_t>(executor, offset));
-  parallel_for_blocks(
-      executor, work.size(), short_block,
-      [&](std::size_t b, std::size_t begin, std::size_t end) {
-        std::uint32_t at = offset[b];
-        for (std::size_t i = begin; i < end; ++i)
-          if ((outcome[i] & wanted) != 0) selected[at++] = std::move(work[i]);
-      },
-      by_block);
-  return selected;
-}
-
 }  // namespace ductile::runtime::detail

@@ -82,7 +82,10 @@ class ColouredRounds {
     if (!std::is_sorted(work.begin(), work.end())) parallel_sort(executor_, std::span(work));
     Tiles<Op> tiles(executor_, op_, work);
     tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
-    std::vector<Item> left = select(executor_, std::span(work), tiles.left(), 1);
+    const std::vector<std::uint8_t>& is_left = tiles.left();
+    auto left = parallel_collect<Item>(executor_, work.size(), [&](std::size_t i, auto&& append) {
+      if (is_left[i] != 0) append(work[i]);
+    });
     ++report.batches;
     report.planned += work.size() - left.size();
     report.applied += tiles.applied();

@@ -155,7 +155,7 @@ class ReservingRounds {
   /// The rank of an item decides, then chance or, in racing mode, who came first.
   std::uint32_t new_key(const Item& item, std::size_t position) {
     std::uint32_t rank = 0;
-    if constexpr (RankedOperator<Op>) rank = op_.priority(item);
+    if constexpr (RankedOperator<Op>) rank = static_cast<std::uint8_t>(op_.priority(item));
     const auto place = static_cast<std::uint32_t>(position);
     const std::uint32_t tie = executor_.deterministic()
                                   ? mix_bits(place ^ (window_ * 0x9e3779b9U), tie_bits_)

@@ -56,12 +56,15 @@ class Tiles {
         claimed_(rank_of_.size()),
         applied_of_(rank_of_.size()),
         left_(make_vector<std::uint8_t>(executor, work.size())),
-        begun_(executor) {
+        begun_(executor),
+        recording_(executor.recording()) {
+    // Loops that run inside another, or on one thread, are not recorded as loops.
+    if (executor.threads() == 1 || (recording_ != nullptr && recording_->in_loop()))
+      recording_ = nullptr;
     parallel_for(executor_, rank_of_.size(),
                  [&](std::size_t tile) { rank_of_[tile] = first_rank_of(tile); },
                  {.serial_below = 4096});
-    if (Recording* const recording = executor_.recording())
-      recording->aside([&] { number_parts(); });
+    if (recording_ != nullptr) recording_->aside([&] { number_parts(); });
   }
 
   /// Plans and applies all items but those that are left, each with a commit of its tile; tells
@@ -110,10 +113,11 @@ class Tiles {
     if (!claim(tile)) return;
     const FailsIfThrown guard{failed_};
     std::vector<Begun>& begun = begun_.mine();
-    begun.assign(1, begin(tile, new_commit()));
+    begun.clear();
+    begun.push_back(begin(tile, new_commit()));
     while (!begun.empty() && !failed_.load(std::memory_order_relaxed)) {
-      if (Recording* const recording = executor_.recording()) [[unlikely]]
-        recording->begin_part(part_of_[begun.back().tile]);
+      if (recording_ != nullptr) [[unlikely]]
+        recording_->begin_part(part_of_[begun.back().tile]);
       const std::size_t before = advance(begun.back(), planning);
       if (before == none) {
         std::atomic_ref(rank_of_[begun.back().tile]).store(done, std::memory_order_release);
@@ -132,16 +136,19 @@ class Tiles {
   }
 
   void await(std::size_t tile) {
-    for (int tries = 0; rank_now(tile) != done && !failed_.load(); ++tries)
-      if (tries > 1000) std::this_thread::yield();  // who has begun it may have lost its core
+    constexpr int spins = 1000;  // then whoever has begun it may have lost its core
+    for (int tries = 0; rank_now(tile) != done && !failed_.load(); tries += tries < spins)
+      if (tries == spins) std::this_thread::yield();
   }
 
   Begun begin(std::size_t tile, Commit<Op> commit) {
+    if (recording_ != nullptr) [[unlikely]]
+      recording_->begin_part(part_of_[tile]);
     const std::size_t first = position_of(tile << layout_.block_bits);
     const std::size_t end = position_of((tile + 1) << layout_.block_bits);
     Begun begun{tile, rank_now(tile), work_.subspan(first, end - first), left_.data() + first,
                 std::move(commit)};
-    if (executor_.recording() != nullptr) [[unlikely]]
+    if (recording_ != nullptr) [[unlikely]]
       record_waits(begun);
     return begun;
   }
@@ -221,7 +228,7 @@ class Tiles {
   }
 
   void record_waits(const Begun& begun) {
-    executor_.recording()->aside([&] {
+    recording_->aside([&] {
       std::vector<std::size_t> before;
       for (const Item item : begun.items)
         op_.conflicts(item, [&](Item other) {
@@ -230,8 +237,7 @@ class Tiles {
         });
       std::sort(before.begin(), before.end());
       before.erase(std::unique(before.begin(), before.end()), before.end());
-      for (const std::size_t part : before)
-        executor_.recording()->part_waits(part_of_[begun.tile], part);
+      for (const std::size_t part : before) recording_->part_waits(part_of_[begun.tile], part);
     });
   }
 
@@ -245,6 +251,7 @@ class Tiles {
   std::vector<std::uint8_t> left_;         // [position in the work]
   PerThread<std::vector<Begun>> begun_;    // the thread's
   std::atomic<bool> failed_{false};
+  Recording* recording_;              // null but where this is what is recorded
   std::vector<std::size_t> part_of_;  // [tile], if there is a recording
 };
 
