@@ -81,6 +81,7 @@ class ColouredRounds {
     ++window_;
     if (!std::is_sorted(work.begin(), work.end())) parallel_sort(executor_, std::span(work));
     Tiles<Op> tiles(executor_, op_, work);
+    // Who wakes an item has a conflict with it, so tiles order what both write here.
     tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
     const std::vector<std::uint8_t>& is_left = tiles.left();
     auto left = parallel_collect<Item>(executor_, work.size(), [&](std::size_t i, auto&& append) {
