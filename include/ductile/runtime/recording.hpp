@@ -61,7 +61,7 @@ class Recording {
 
   // ---- For the runtime and for those who record something else than time ----
 
-  bool in_loop() const { return in_loop_; }
+  bool in_loop() const { return in_loop_; }  ///< which is recorded
 
   void begin_round() { flush(), round_ = ++rounds_; }
   void end_rounds() { flush(), round_ = 0; }
