@@ -88,6 +88,15 @@ runtime::RoundsReport Refine<Dim>::run(std::vector<LongEdge> edges) {
 
 // ---- Where the new vertices go ----
 
+/// Has what is around edges soon after this one brought into the cache.
+template <int Dim>
+[[gnu::always_inline]] inline void Refine<Dim>::prefetch_shells_after(std::size_t number) const {
+  for (const int stage : {1, 0}) {
+    const std::size_t ahead = number + 3 * (static_cast<std::size_t>(stage) + 1);
+    if (ahead < edges_.size()) prefetch_shell(mesh_, edges_[ahead].a, edges_[ahead].b, stage);
+  }
+}
+
 /// Sets what becomes of the edges, and which of them cut which elements.
 template <int Dim>
 void Refine<Dim>::plan() {
@@ -98,6 +107,7 @@ void Refine<Dim>::plan() {
   const auto around = runtime::parallel_collect<Around>(
       executor_, edges_.size(), [&](std::size_t i, auto&& append) {
         const auto number = static_cast<std::uint32_t>(i);
+        prefetch_shells_after(i);
         Shell shell;
         shell_of(mesh_, edges_[i].a, edges_[i].b, shell);
         refused_in_[i] = !locate(edges_[i], shell, splits_[i]);
@@ -181,11 +191,26 @@ void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& spli
 
 // ---- Who refuses ----
 
+/// Has the points of elements soon after the one at this place brought into the cache.
+template <int Dim>
+[[gnu::always_inline]] inline void Refine<Dim>::prefetch_points_after(std::size_t place) const {
+  constexpr std::size_t ahead = 3;
+  if (place + 2 * ahead < elements_.size())
+    __builtin_prefetch(&mesh_.corners_of[elements_[place + 2 * ahead]]);
+  if (place + ahead >= elements_.size()) return;
+  for (const VertexId v : mesh_.corners_of[elements_[place + ahead]]) prefetch_site(mesh_, v);
+  for (const std::uint32_t split : cuts_[place + ahead].split)  // no branches: any may be cut
+    __builtin_prefetch(&splits_[std::max(split, 1U) - 1].site);
+}
+
 /// As if edges were split one after the other, the longest first: one is refused only once it is
 /// known which of those before it are.
 template <int Dim>
 void Refine<Dim>::refuse() {
-  parallel_for(executor_, elements_.size(), [&](std::size_t place) { look(place); });
+  parallel_for(executor_, elements_.size(), [&](std::size_t place) {
+    prefetch_points_after(place);
+    look(place);
+  });
   for (auto refused = take_refused(); !refused.empty(); refused = take_refused())
     parallel_for(executor_, refused.size(), [&](std::size_t i) {
       visit_cuts(refused[i], [&](std::size_t place) {

@@ -77,6 +77,7 @@ class Refine {
 
   // ---- 1. Where the new vertices go, and which elements each edge cuts ----
   void plan();
+  void prefetch_shells_after(std::size_t number) const;
   bool locate(const LongEdge& edge, const Shell& shell, Split& split) const;
   bool may_split(const LongEdge& edge, const Shell& shell) const;
   void classify(const LongEdge& edge, const Shell& shell, Split& split) const;
@@ -89,6 +90,7 @@ class Refine {
   bool goes_first(std::uint32_t number) const;
   void visit_cuts(std::uint32_t number, auto&& visit) const;
   bool first_refused_of(const Cuts& cuts, std::uint32_t number) const;
+  void prefetch_points_after(std::size_t place) const;
   void look(std::size_t place);
   Order order_of(const Cuts& cuts) const;
   Points points_of(ElementId element, const Cuts& cuts) const;

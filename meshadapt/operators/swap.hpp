@@ -56,6 +56,9 @@ class Swap {
       if (found == 3) visit(e);
     }
   }
+  [[gnu::always_inline]] void prefetch(const Item& item, int stage) const {
+    if (stage > 0) prefetch_shell(mesh_, item.a, item.b, stage - 1);
+  }
   std::size_t resource_count() const { return mesh_.element_slots(); }
   std::uint8_t priority(const Item& item) const {
     return static_cast<std::uint8_t>(255 * std::min(1.0F, std::max(0.0F, item.worst)));

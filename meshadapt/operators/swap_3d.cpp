@@ -337,6 +337,11 @@ std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, 
   const auto near_change = mark_changed(executor, mesh, after);
   auto found = runtime::parallel_collect<Swappable>(
       executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
+        if (v + 6 < near_change.size() && near_change[v + 6])
+          mesh.elements_of.prefetch(static_cast<VertexId>(v + 6));
+        if (v + 3 < near_change.size() && near_change[v + 3])
+          for (const ElementId e : mesh.elements_of.of(static_cast<VertexId>(v + 3)))
+            __builtin_prefetch(&mesh.corners_of[e]);
         if (!near_change[v]) return;
         const auto vertex = static_cast<VertexId>(v);
         const auto ball = mesh.elements_of.of(vertex);

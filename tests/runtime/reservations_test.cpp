@@ -210,6 +210,32 @@ TEST(RunRounds, KeysOfReservationsBeginAnewWhenTheyAreUsedUp) {
   }
 }
 
+/// Sees what was prefetched when it is asked for its footprint.
+class AskedForFootprints : public test::AskedAhead {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  explicit AskedForFootprints(std::size_t n) : AskedAhead(n), count_(n) {}
+  void footprint(Vertex v, auto&& visit) const {
+    if (v >= first) EXPECT_TRUE(was_asked(v, 0)) << v;
+    visit(v);
+  }
+  std::size_t resource_count() const { return count_; }
+  std::optional<Plan> plan(Vertex) const { return {}; }
+  void apply(const Plan&, Commit<AskedForFootprints>&) {}
+  void commit(std::uint32_t, const Update&) {}
+
+ private:
+  std::size_t count_;
+};
+
+TEST(RunRounds, WhatFootprintsAreFoundInIsAskedForAhead) {
+  AskedForFootprints op(1000);
+  EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(1000)).planned, 1000U);
+}
+
 TEST(RunRounds, FewerAskWhereTooFewWin) {
   constexpr std::size_t n = 50000;
   TakeTurns all_ask(n);

@@ -2,6 +2,8 @@
 /// What tests of run_rounds share.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,5 +20,24 @@ inline std::vector<Vertex> all_items(std::size_t n) {
   std::iota(items.begin(), items.end(), 0U);
   return items;
 }
+
+/// For operators that prefetch, on one thread: which stages they were asked for, item by item.
+class AskedAhead {
+ public:
+  static constexpr Vertex first = 8;  ///< those before it cannot have been asked for
+
+  explicit AskedAhead(std::size_t n) : stages_(n) {}
+
+  void prefetch(Vertex item, int stage) const {
+    if (item >= first && stage < 2) EXPECT_TRUE(was_asked(item, stage + 1)) << item;
+    stages_[item] |= static_cast<std::uint8_t>(1U << static_cast<unsigned>(stage));
+  }
+  bool was_asked(Vertex item, int stage) const {
+    return (stages_[item] >> static_cast<unsigned>(stage) & 1U) != 0;
+  }
+
+ private:
+  mutable std::vector<std::uint8_t> stages_;  // [item], a bit for each
+};
 
 }  // namespace ductile::runtime::test

@@ -343,6 +343,34 @@ TEST(RunRounds, MovesWhatCanOnlyBeMoved) {
   }
 }
 
+// ---- What an operator prefetches ----
+
+class AskedForConflicts : public test::AskedAhead {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+  static constexpr bool keeps_conflicts = true;
+
+  explicit AskedForConflicts(std::size_t n) : AskedAhead(n), count_(n) {}
+  void conflicts(Vertex v, auto&& visit) const {
+    if (v >= first) EXPECT_TRUE(was_asked(v, 1)) << v;
+    visit((v + 1) % static_cast<Vertex>(count_));
+  }
+  std::size_t item_count() const { return count_; }
+  std::optional<Plan> plan(Vertex) const { return {}; }
+  void apply(const Plan&, Commit<AskedForConflicts>&) {}
+  void commit(std::uint32_t, const Update&) {}
+
+ private:
+  std::size_t count_;
+};
+
+TEST(RunRounds, WhatConflictsAreFoundInIsAskedForAhead) {
+  AskedForConflicts op(1000);
+  EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(1000)).planned, 1000U);
+}
+
 TEST(RunRounds, NoWorkIsNoRound) {
   Append append(10);
   const RoundsReport report = run_rounds(Executor({.threads = 2}), append, {});

@@ -30,6 +30,19 @@ namespace ductile::runtime::detail {
 constexpr std::size_t short_block = 32;
 constexpr LoopOptions by_block{.grain = 1, .serial_below = 3};
 
+/// Has items soon after position i brought into the cache, if the operator can. What memory takes
+/// to answer is about as long as planning two items.
+template <class Op>
+[[gnu::always_inline]] inline void prefetch_items_after(const Op& op,
+                                                        std::span<const typename Op::Item> batch,
+                                                        std::size_t i) {
+  if constexpr (PrefetchingOperator<Op>)
+    for (const int stage : {2, 1, 0}) {
+      const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
+      if (ahead < batch.size()) op.prefetch(batch[ahead], stage);
+    }
+}
+
 /// What the batches of a run share. Check is OperatorCheck, or says by `on` that there is none.
 template <class Op, class Check>
 class Batches {
@@ -105,7 +118,7 @@ class Batches {
     const PhaseTimer timer(report.plan_seconds, executor, Phase::plan);
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if constexpr (PrefetchingOperator<Op>) prefetch_after(batch, i);
+        prefetch_items_after(op, batch, i);
         planned_of_[b] += plan(batch[i], takes(batch[i]), plans_[i]);
       }
     });
@@ -116,14 +129,6 @@ class Batches {
 
   void for_each_block(auto&& body) {
     parallel_for_blocks(executor, size_, block_size_, body, by_block);
-  }
-
-  /// What memory takes to answer is about as long as planning two items.
-  void prefetch_after(std::span<const Item> batch, std::size_t i) const {
-    for (const int stage : {2, 1, 0}) {
-      const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
-      if (ahead < batch.size()) op.prefetch(batch[ahead], stage);
-    }
   }
 
   /// Plans an item, unless it left the round; returns whether it is still here.

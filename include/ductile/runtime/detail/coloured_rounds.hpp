@@ -46,6 +46,37 @@ Colouring colour_conflicts(const Executor& executor, const G& graph) {
   return colouring;
 }
 
+/// Which items of a window conflict, as a graph of their places in its work.
+template <class Op>
+class ConflictGraph {
+ public:
+  static constexpr std::uint32_t absent = 0xffffffffU;
+  static constexpr std::size_t prefetch_distance = 6;
+
+  /// `place_of` is absent for items that are not in the work.
+  ConflictGraph(const Op& op, std::span<const typename Op::Item> work,
+                const std::uint32_t* place_of)
+      : op_(op), work_(work), place_of_(place_of) {}
+
+  std::size_t vertex_count() const { return work_.size(); }
+  void for_each_neighbour(std::uint32_t place, auto&& visit) const {
+    op_.conflicts(work_[place], [&](typename Op::Item other) {
+      if (place_of_[other] != absent) visit(place_of_[other]);
+    });
+  }
+  /// Places are asked for one after the other: what the second stage needs has come by then.
+  [[gnu::always_inline]] void prefetch(std::uint32_t place) const requires PrefetchingOperator<Op> {
+    constexpr std::uint32_t behind = 3;
+    op_.prefetch(work_[place], 2);
+    if (place >= behind) op_.prefetch(work_[place - behind], 1);
+  }
+
+ private:
+  const Op& op_;
+  std::span<const typename Op::Item> work_;
+  const std::uint32_t* place_of_;  // [item]
+};
+
 template <class Op, class Check>
 class ColouredRounds {
  public:
@@ -71,7 +102,7 @@ class ColouredRounds {
 
  private:
   static constexpr LoopOptions copying{.grain = 512, .serial_below = 2048};
-  static constexpr std::uint32_t absent = 0xffffffffU;
+  static constexpr std::uint32_t absent = ConflictGraph<Op>::absent;
 
   /// Returns what is left for the classes.
   std::vector<Item> run_tiles(std::vector<Item> work) {
@@ -118,11 +149,7 @@ class ColouredRounds {
     parallel_for(
         executor_, work.size(),
         [&](std::size_t i) { turn_of_[work[i]] = static_cast<std::uint32_t>(i); }, copying);
-    const CallbackGraph graph(work.size(), [&](std::uint32_t i, auto&& visit) {
-      op_.conflicts(work[i], [&](Item other) {
-        if (turn_of_[other] != absent) visit(turn_of_[other]);
-      });
-    });
+    const ConflictGraph<Op> graph(op_, work, turn_of_.data());
     const Colouring colouring = colour_conflicts(executor_, graph);
     ColourClasses classes = colour_classes(executor_, colouring);
     by_class_.resize(work.size());

@@ -140,20 +140,28 @@ decltype(auto) in_registers(const G& graph) {
 /// Covers the time that memory takes, at some nanoseconds a vertex.
 constexpr std::size_t prefetch_distance = 32;
 
+/// Fewer where a graph says that each takes longer.
+template <Graph G>
+constexpr std::size_t prefetch_distance_of = prefetch_distance;
+template <Graph G>
+requires requires { G::prefetch_distance; }
+constexpr std::size_t prefetch_distance_of<G> = G::prefetch_distance;
+
 /// Asks for the neighbours of the vertex that has its turn some steps after number i.
 /// Inlined always, see CsrGraph.
 template <Graph G>
 [[gnu::always_inline]] inline void prefetch_after(const G& graph, const VertexSet& vertices,
                                                   std::size_t i) {
   if constexpr (PrefetchingGraph<G>)
-    if (i + prefetch_distance < vertices.count) graph.prefetch(vertices[i + prefetch_distance]);
+    if (i + prefetch_distance_of<G> < vertices.count)
+      graph.prefetch(vertices[i + prefetch_distance_of<G>]);
 }
 
 /// The same where vertices have their turn in descending order.
 template <Graph G>
 [[gnu::always_inline]] inline void prefetch_before(const G& graph, std::uint32_t v) {
   if constexpr (PrefetchingGraph<G>)
-    if (v >= prefetch_distance) graph.prefetch(v - std::uint32_t{prefetch_distance});
+    if (v >= prefetch_distance_of<G>) graph.prefetch(v - std::uint32_t{prefetch_distance_of<G>});
 }
 
 /// Calls visit(u) for every neighbour of v, two in each step of the loop where they lie in a row.
