@@ -1,17 +1,22 @@
 /// @file
 /// The check of a mesh as it will be written. Facets, those of elements and those listed, are put
-/// into buckets by their lowest vertex, with a counting sort; equal facets then lie close together.
+/// into buckets by their lowest vertex; equal facets then lie close together.
 #include "ductile/meshadapt/check_mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/grouping.hpp"
 #include "mesh/problems.hpp"
 
 namespace ductile::meshadapt {
@@ -48,7 +53,6 @@ class AnyMeshChecker {
   std::vector<std::string> run() {
     if (check_indices()) {
       check_volumes();
-      fill_buckets();
       check_vertices();
       check_facets();
       if constexpr (Dim == 3) check_edges();
@@ -137,13 +141,15 @@ class AnyMeshChecker {
     Entry entry;
   };
 
-  /// Sorts the corners of a facet; the parity of their order tells its two sides apart.
+  /// Sorts the corners of a facet, without branches, as their order is a matter of chance; its
+  /// parity tells the two sides apart.
   static Keyed keyed(Facet<Dim> f, std::uint32_t owner) {
-    std::uint8_t parity = even;
+    unsigned parity = even;
     const auto order = [&](std::size_t a, std::size_t b) {
-      if (f[a] <= f[b]) return;
-      std::swap(f[a], f[b]);
-      parity ^= 1U;
+      const VertexId first = f[a], second = f[b];
+      parity ^= static_cast<unsigned>(first > second);
+      f[a] = std::min(first, second);
+      f[b] = std::max(first, second);
     };
     order(0, 1);
     if constexpr (Dim == 3) {
@@ -151,40 +157,83 @@ class AnyMeshChecker {
       order(0, 1);
     }
     const std::uint64_t others = Dim == 2 ? f[1] : std::uint64_t{f[1]} << 32U | f[Dim - 1];
-    return {f[0], {others, owner, parity}};
+    return {f[0], {others, owner, static_cast<std::uint8_t>(parity)}};
   }
 
-  /// Calls visit(keyed facet) for the facets of all elements and those listed.
-  template <class Visit>
-  void each_facet(Visit&& visit) const {
-    parallel_for(executor_, elements().size(), [&](std::size_t e) {
-      for (int i = 0; i <= Dim; ++i)
-        visit(keyed(facet_of<Dim>(elements().vertices[e], i), static_cast<std::uint32_t>(e)));
-    });
-    parallel_for(executor_, facets().size(), [&](std::size_t f) {
-      Keyed facet = keyed(facets().vertices[f], static_cast<std::uint32_t>(f));
-      facet.entry.kind = listed;
-      visit(facet);
-    });
+  /// Those of the elements, one after the other, then those listed.
+  std::size_t facet_count() const { return elements().size() * (Dim + 1) + facets().size(); }
+
+  Facet<Dim> corners_of(std::size_t facet) const {
+    const std::size_t element = facet / (Dim + 1);
+    if (element < elements().size())
+      return facet_of<Dim>(elements().vertices[element], static_cast<int>(facet % (Dim + 1)));
+    return facets().vertices[facet - elements().size() * (Dim + 1)];
+  }
+
+  Entry entry_of(std::size_t facet) const {
+    const std::size_t element = facet / (Dim + 1);
+    if (element < elements().size())
+      return keyed(corners_of(facet), static_cast<std::uint32_t>(element)).entry;
+    const std::size_t number = facet - elements().size() * (Dim + 1);
+    Entry entry = keyed(corners_of(facet), static_cast<std::uint32_t>(number)).entry;
+    entry.kind = listed;
+    return entry;
   }
 
   void fill_buckets() {
-    begin_.assign(mesh_.vertex_count() + 1, 0);
-    each_facet([&](const Keyed& facet) { atomic_count(begin_[facet.lowest]); });
-    entries_.resize(runtime::exclusive_scan(executor_, std::span(begin_)));
-    std::vector<std::uint32_t> next(begin_);
-    each_facet(
-        [&](const Keyed& facet) { entries_[atomic_count(next[facet.lowest])] = facet.entry; });
-    faults_.assign(entries_.size(), sound);
-    parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
-      std::sort(entries_.begin() + begin_[v], entries_.begin() + begin_[v + 1]);
-      for (std::uint32_t at = begin_[v], end = at; at != begin_[v + 1]; at = end) {
-        std::array<int, 3> count{};
-        for (; end != begin_[v + 1] && entries_[end].others == entries_[at].others; ++end)
-          ++count[entries_[end].kind];
-        faults_[at] = fault(count);
-      }
-    });
+    const auto lowest_corner = [this](std::uint32_t facet, auto&& visit) {
+      const Facet<Dim> corners = corners_of(facet);
+      visit(*std::min_element(corners.begin(), corners.end()));
+    };
+    end_.resize(mesh_.vertex_count());
+    Grouping grouping(executor_,
+                      GroupingBounds::even(executor_, facet_count(), mesh_.vertex_count()),
+                      std::span(end_), lowest_corner);
+    entries_ = std::make_unique_for_overwrite<Entry[]>(grouping.size());
+    const auto begin_buckets = [&](VertexId begin, VertexId end, std::uint32_t before) {
+      for (VertexId v = begin; v < end; ++v) end_[v] = std::exchange(before, before + end_[v]);
+    };
+    grouping.visit(begin_buckets,
+                   [&](VertexId v, std::uint32_t facet) { entries_[end_[v]++] = entry_of(facet); });
+  }
+
+  std::span<Entry> bucket(std::size_t v) const {
+    const std::uint32_t begin = v == 0 ? 0 : end_[v - 1];
+    return {entries_.get() + begin, end_[v] - begin};
+  }
+
+  /// Are all facets of a bucket sound? Each is compared with each, as so few are faster than to
+  /// sort them; false if they are many.
+  static bool is_sound(std::span<const Entry> bucket) {
+    constexpr std::size_t most = 64;
+    if (bucket.size() > most) return false;
+    std::array<std::uint64_t, most> others, counter;  // the counter of a kind is a byte
+    for (std::size_t i = 0; i < bucket.size(); ++i) {
+      others[i] = bucket[i].others;
+      counter[i] = std::uint64_t{1} << 8U * bucket[i].kind;
+    }
+    bool all = true;
+    for (std::size_t i = 0; i < bucket.size(); ++i) {
+      std::uint64_t counts = 0;
+      for (std::size_t k = 0; k < bucket.size(); ++k)
+        counts += others[k] == others[i] ? counter[k] : 0;
+      const auto count = [counts](Kind kind) {
+        return static_cast<int>(counts >> 8U * kind & 255U);
+      };
+      all &= fault({count(even), count(odd), count(listed)}) == sound;
+    }
+    return all;
+  }
+
+  /// Sorts a bucket and sets its faults.
+  void find_faults(std::size_t v) {
+    const std::span<Entry> all = bucket(v);
+    std::sort(all.begin(), all.end());
+    for (std::size_t at = 0, end = 0; at != all.size(); at = end) {
+      std::array<int, 3> count{};
+      for (; end != all.size() && all[end].others == all[at].others; ++end) ++count[all[end].kind];
+      faults_[static_cast<std::size_t>(&all[at] - entries_.get())] = fault(count);
+    }
   }
 
   static Fault fault(const std::array<int, 3>& count) {
@@ -195,9 +244,18 @@ class AnyMeshChecker {
   }
 
   void check_facets() {
+    fill_buckets();
+    const auto suspects = runtime::parallel_collect<VertexId>(executor_, mesh_.vertex_count(),
+                                                              [&](std::size_t v, auto&& append) {
+                                                                if (!is_sound(bucket(v)))
+                                                                  append(static_cast<VertexId>(v));
+                                                              });
+    if (suspects.empty()) return;
+    faults_.assign(facet_count(), sound);
+    parallel_for(executor_, suspects.size(), [&](std::size_t i) { find_faults(suspects[i]); });
     const auto expect_no = [&](Fault fault, const std::string& before, const char* after) {
       problems_.expect_none(
-          entries_.size(), [&](std::size_t i) { return faults_[i] == fault; },
+          faults_.size(), [&](std::size_t i) { return faults_[i] == fault; },
           [&](std::size_t i) { return before + number(entries_[i].owner) + after; });
     };
     expect_no(crowded, std::string("a facet of ") + element_name,
@@ -259,8 +317,8 @@ class AnyMeshChecker {
   const Executor& executor_;
   const AnyMesh& mesh_;
   Problems problems_;
-  std::vector<std::uint32_t> begin_;  // [vertex], of its bucket in entries_
-  std::vector<Entry> entries_;        // by bucket, sorted
+  std::vector<std::uint32_t> end_;    // [vertex], of its bucket in entries_
+  std::unique_ptr<Entry[]> entries_;  // by bucket, sorted in those with faults
   std::vector<std::uint8_t> faults_;  // [entry], of the group that starts there
 };
 

@@ -1,6 +1,7 @@
 #include "operators/adapter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -169,7 +170,7 @@ double Adapter<Dim>::share_to_change() {
 }
 
 /// About how many collapses and splits finishing would make, from a sample of those that lengths
-/// call for.
+/// call for; looked at part by part, until they are not few.
 template <int Dim>
 std::size_t Adapter<Dim>::feasible_changes() {
   aim_ = Aim::finish;
@@ -182,18 +183,20 @@ std::size_t Adapter<Dim>::feasible_changes() {
       Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey, rules().short_edge, 0);
   const auto edges = long_edges(executor_, mesh_, survey, rules().long_edge, 0);
   const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
-  std::vector<std::size_t> changes(all / step);
-  const auto look = [&](std::size_t i) {
-    const std::size_t k = i * step;
-    if (k < crowded.size()) {
-      changes[i] = coarsening.plan(crowded[k]).has_value();
-    } else {
-      const LongEdge& edge = edges[k - crowded.size()];
-      changes[i] = refinement.splits(edge) ? splits_of(edge) : 0;
-    }
+  const auto changes_at = [&](std::size_t k) -> std::size_t {
+    if (k < crowded.size()) return coarsening.plan(crowded[k]).has_value();
+    const LongEdge& edge = edges[k - crowded.size()];
+    return refinement.splits(edge) ? splits_of(edge) : 0;
   };
-  parallel_for(executor_, changes.size(), look, {.grain = 2});
-  return step * std::accumulate(changes.begin(), changes.end(), std::size_t{0});
+  std::size_t changes = 0;
+  std::array<std::size_t, 256> part;
+  for (std::size_t first = 0; first < all / step && share(changes) < little; first += part.size()) {
+    const std::size_t count = std::min(part.size(), all / step - first);
+    const auto look = [&](std::size_t i) { part[i] = changes_at((first + i) * step); };
+    parallel_for(executor_, count, look, {.grain = 2});
+    changes += step * std::accumulate(part.begin(), part.begin() + count, std::size_t{0});
+  }
+  return changes;
 }
 
 /// About how many times an edge will be split.

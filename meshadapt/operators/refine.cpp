@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -82,7 +83,6 @@ runtime::RoundsReport Refine<Dim>::run(std::vector<LongEdge> edges) {
     number();
   }
   grow();
-  cuts_.release(executor_);
   return report_;
 }
 
@@ -104,7 +104,7 @@ void Refine<Dim>::plan() {
   refused_in_ = make_vector<std::uint32_t>(executor_, edges_.size());
   asked_ = make_vector<std::uint8_t>(executor_, edges_.size());
   auto is_cut = make_vector<std::uint8_t>(executor_, mesh_.element_slots());
-  const auto around = runtime::parallel_collect<Around>(
+  around_ = runtime::parallel_collect<Around>(
       executor_, edges_.size(), [&](std::size_t i, auto&& append) {
         const auto number = static_cast<std::uint32_t>(i);
         prefetch_shells_after(i);
@@ -118,12 +118,17 @@ void Refine<Dim>::plan() {
         }
       });
   elements_ = MarkedSet(executor_, is_cut);
-  cuts_.resize(elements_.size());
-  parallel_for(executor_, around.size(), [&](std::size_t i) {
-    const auto& [element, number] = around[i];
+  cuts_ = std::make_unique_for_overwrite<Cuts[]>(elements_.size());
+  parallel_for(executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); });
+  around_begin_ = make_vector<std::uint32_t>(executor_, edges_.size());
+  parallel_for(executor_, around_.size(), [&](std::size_t i) {
+    const auto [element, number] = around_[i];
     const LongEdge& edge = edges_[number];
-    cuts_[elements_.place_of(element)]
-        .split[edge_of<Dim>(mesh_.corners_of[element], edge.a, edge.b)] = number + 1;
+    const std::uint32_t place = elements_.place_of(element);
+    cuts_[place].split[edge_of<Dim>(mesh_.corners_of[element], edge.a, edge.b)] = number + 1;
+    around_[i].place = place;
+    if (i == 0 || around_[i - 1].number != number)
+      around_begin_[number] = static_cast<std::uint32_t>(i);
   });
 }
 
@@ -218,6 +223,8 @@ void Refine<Dim>::refuse() {
       });
     });
   report_.rounds = round_;
+  around_ = {};
+  around_begin_ = {};
 }
 
 /// Refuses what elements ask to, but where that may still change; returns the edges refused.
@@ -266,8 +273,9 @@ bool Refine<Dim>::goes_first(std::uint32_t number) const {
 /// Visits the places of the elements around an edge.
 template <int Dim>
 void Refine<Dim>::visit_cuts(std::uint32_t number, auto&& visit) const {
-  visit_shell(mesh_, edges_[number].a, edges_[number].b,
-              [&](ElementId element) { visit(elements_.place_of(element)); });
+  for (std::size_t i = around_begin_[number]; i < around_.size() && around_[i].number == number;
+       ++i)
+    visit(around_[i].place);
 }
 
 /// An element that several edges refused in this round cut looks again once.

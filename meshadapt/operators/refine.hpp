@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "ductile/meshadapt/background.hpp"
@@ -57,11 +58,11 @@ class Refine {
   };
   /// An element around a long edge.
   struct Around {
-    ElementId element;
+    std::uint32_t place;   // in elements_; until that is known, which element it is
     std::uint32_t number;  // of the edge
   };
-  /// How an element is cut.
-  struct Cuts {
+  /// How an element is cut; in 3D one line of the cache.
+  struct alignas(Dim == 3 ? 64 : alignof(std::uint32_t)) Cuts {
     std::array<std::uint32_t, Simplex<Dim>::edges> split;  // [edge], its number plus one, or 0
     std::array<float, Pieces<Dim>::most> shape;            // [piece]
     std::uint32_t pieces;
@@ -125,10 +126,12 @@ class Refine {
   std::vector<std::uint32_t> refused_in_;  // [edge], the round, or 0
   std::vector<std::uint8_t> asked_;        // [edge], an element asks to refuse it, or did once
   std::uint32_t round_ = 0;
-  MarkedSet elements_;                      // those that are cut
-  GrowingArray<Cuts> cuts_;                 // [place in elements_]
-  std::vector<std::uint32_t> place_of_;     // [edge], of its vertex among the new ones
-  std::vector<std::uint32_t> first_piece_;  // [place in elements_], among the new pieces
+  MarkedSet elements_;                       // those that are cut
+  std::vector<Around> around_;               // by edge, until it is known which are refused
+  std::vector<std::uint32_t> around_begin_;  // [edge], in around_; of no use if it was not located
+  std::unique_ptr<Cuts[]> cuts_;             // [place in elements_]
+  std::vector<std::uint32_t> place_of_;      // [edge], of its vertex among the new ones
+  std::vector<std::uint32_t> first_piece_;   // [place in elements_], among the new pieces
   VertexId first_vertex_ = none;
   ElementId first_element_ = 0, end_of_elements_ = 0;
   bool lists_are_stale_ = false;

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
@@ -94,6 +98,50 @@ TEST(CheckMesh, FindsWhatIsWrongWithFacetsAndEdges) {
   EXPECT_FINDS(any, "ridge 1 does not exist");
   any.dimension = 4;
   EXPECT_FINDS(any, "the dimension is 4");
+}
+
+/// Triangles around vertex 0, more than are compared one with another.
+AnyMesh fan(std::uint32_t spokes) {
+  AnyMesh any;
+  any.dimension = 2;
+  any.coordinates = {0, 0};
+  for (std::uint32_t i = 0; i < spokes; ++i) {
+    const double angle = 6.283185307179586 * i / spokes;
+    any.coordinates.insert(any.coordinates.end(), {std::cos(angle), std::sin(angle)});
+    any.edges.add({1 + i, 1 + (i + 1) % spokes}, 1);
+    any.triangles.add({0, 1 + i, 1 + (i + 1) % spokes}, 1);
+  }
+  any.vertex_reference.assign(spokes + 1, 0);
+  return any;
+}
+
+TEST(CheckMesh, LooksAtVerticesOfManyFacets) {
+  AnyMesh any = fan(100);
+  EXPECT_EQ(test::joined(check_mesh(executor, any)), "");
+  any.edges.add({0, 51}, 1);
+  EXPECT_EQ(test::joined(check_mesh(executor, any)), "");  // an edge inside may be listed
+  any.edges.add({51, 0}, 1);
+  EXPECT_FINDS(any, "a facet of triangle 51 is listed twice");
+  any = fan(100);
+  any.triangles.vertices.erase(any.triangles.vertices.begin() + 70);
+  any.triangles.reference.pop_back();
+  EXPECT_FINDS(any, "a boundary facet of triangle 70 is not listed (and 1 more like it)");
+  EXPECT_FINDS(any, "edge 71 is no facet of an element");
+}
+
+TEST(CheckMesh, FindsTheSameInAnyOrderOnAnyNumberOfThreads) {
+  AnyMesh any = test::make_grid(test::unit_grid(3, 14));
+  std::mt19937 random(7);
+  std::shuffle(any.tetrahedra.vertices.begin(), any.tetrahedra.vertices.end(), random);
+  for (const int threads : {1, 2, 3, 8})
+    EXPECT_EQ(test::joined(check_mesh(Executor({.threads = threads}), any)), "");
+  any.tetrahedra.vertices[9000] = any.tetrahedra.vertices[1000];
+  any.triangles.vertices[500] = any.triangles.vertices[20];
+  const std::string found = test::joined(check_mesh(Executor({.threads = 1}), any));
+  for (const char* part : {"has two elements on one side", "is not listed", "is listed twice"})
+    EXPECT_NE(found.find(part), std::string::npos) << found;
+  for (const int threads : {2, 3, 8})
+    EXPECT_EQ(test::joined(check_mesh(Executor({.threads = threads}), any)), found);
 }
 
 template <int Dim>
