@@ -64,6 +64,7 @@ class Classifier {
       for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
     sort_sides();
     find_neighbours();
+    part_neighbours();
   }
 
   void run() {
@@ -124,6 +125,20 @@ class Classifier {
     });
   }
 
+  /// Takes those from each other that no patch can have both of, whatever its plane is.
+  void part_neighbours() {
+    runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
+      std::size_t side = 0;
+      each_side<Dim>(facets_[f].corners, [&](Key key) {
+        std::uint32_t& next = across_[f][side++];
+        if (next == none) return;
+        if (!agree(static_cast<std::uint32_t>(f), next) ||
+            folds_back(facets_[f].corners, facets_[next].corners, key))
+          next = none;
+      });
+    });
+  }
+
   bool separates(Key key) const {
     if constexpr (Dim == 3) return listed_.contains(key);
     const VertexKind& kind = mesh_.kind_of[static_cast<VertexId>(key)];
@@ -155,15 +170,12 @@ class Classifier {
     while (!front.empty()) {
       const std::uint32_t f = front.back();
       front.pop_back();
-      std::size_t side = 0;
-      each_side<Dim>(facets_[f].corners, [&](Key key) {
-        const std::uint32_t next = across_[f][side++];
-        if (next == none || facets_[next].patch != 0 || !agree(f, next)) return;
-        if (!in_plane(facets_[next].corners, origin, patch.normal)) return;
-        if (folds_back(facets_[f].corners, facets_[next].corners, key)) return;
+      for (const std::uint32_t next : across_[f]) {
+        if (next == none || facets_[next].patch != 0) continue;
+        if (!in_plane(facets_[next].corners, origin, patch.normal)) continue;
         facets_[next].patch = id;
         front.push_back(next);
-      });
+      }
     }
     mesh_.patches.push_back(patch);
   }

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -20,8 +20,7 @@ class MarkedSet {
 
   /// Thread safety: one caller; runs on the executor.
   MarkedSet(const runtime::Executor& executor, std::span<const std::uint8_t> marks)
-      : words_(runtime::make_vector<std::uint64_t>(executor, (marks.size() + word - 1) / word)),
-        place_(runtime::make_vector<std::uint32_t>(executor, words_.size())) {
+      : words_(executor, (marks.size() + word - 1) / word), place_(executor, words_.size()) {
     runtime::parallel_for(executor, words_.size(), [&](std::size_t w) {
       const auto part = marks.subspan(w * word, std::min(word, marks.size() - w * word));
       std::uint64_t bits = 0;
@@ -29,8 +28,7 @@ class MarkedSet {
       words_[w] = bits;
       place_[w] = static_cast<std::uint32_t>(std::popcount(bits));
     });
-    runtime::resize_empty(executor, members_,
-                          runtime::exclusive_scan<std::uint32_t>(executor, place_));
+    members_.resize(executor, runtime::exclusive_scan<std::uint32_t>(executor, place_), 0);
     runtime::parallel_for(executor, words_.size(), [&](std::size_t w) {
       std::uint32_t at = place_[w];
       for (std::uint64_t left = words_[w]; left != 0; left &= left - 1)
@@ -51,9 +49,9 @@ class MarkedSet {
 
  private:
   static constexpr std::size_t word = 64;
-  std::vector<std::uint64_t> words_;    // a bit for each mark
-  std::vector<std::uint32_t> place_;    // [word], of its first member
-  std::vector<std::uint32_t> members_;  // in order
+  runtime::FilledArray<std::uint64_t> words_;    // a bit for each mark
+  runtime::FilledArray<std::uint32_t> place_;    // [word], of its first member
+  runtime::FilledArray<std::uint32_t> members_;  // in order
 };
 
 }  // namespace ductile::meshadapt

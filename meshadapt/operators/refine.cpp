@@ -9,14 +9,14 @@
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/phase_timer.hpp"
 
 namespace ductile::meshadapt {
 
-using runtime::make_vector;
+using runtime::FilledArray;
 using runtime::parallel_for;
 using runtime::Phase;
 using runtime::PhaseTimer;
@@ -101,9 +101,9 @@ template <int Dim>
 template <int Dim>
 void Refine<Dim>::plan() {
   splits_.resize_for_overwrite(edges_.size());
-  refused_in_ = make_vector<std::uint32_t>(executor_, edges_.size());
-  asked_ = make_vector<std::uint8_t>(executor_, edges_.size());
-  auto is_cut = make_vector<std::uint8_t>(executor_, mesh_.element_slots());
+  refused_in_ = FilledArray<std::uint32_t>(executor_, edges_.size());
+  asked_ = FilledArray<std::uint8_t>(executor_, edges_.size());
+  FilledArray<std::uint8_t> is_cut(executor_, mesh_.element_slots());
   around_ = runtime::parallel_collect<Around>(
       executor_, edges_.size(), [&](std::size_t i, auto&& append) {
         const auto number = static_cast<std::uint32_t>(i);
@@ -120,7 +120,7 @@ void Refine<Dim>::plan() {
   elements_ = MarkedSet(executor_, is_cut);
   cuts_ = std::make_unique_for_overwrite<Cuts[]>(elements_.size());
   parallel_for(executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); });
-  around_begin_ = make_vector<std::uint32_t>(executor_, edges_.size());
+  around_begin_ = FilledArray<std::uint32_t>(executor_, edges_.size());
   parallel_for(executor_, around_.size(), [&](std::size_t i) {
     const auto [element, number] = around_[i];
     const LongEdge& edge = edges_[number];
@@ -404,8 +404,8 @@ double Refine<Dim>::least_shape(double before, double length) const {
 
 template <int Dim>
 void Refine<Dim>::number() {
-  place_of_ = make_vector<std::uint32_t>(executor_, edges_.size());
-  first_piece_ = make_vector<std::uint32_t>(executor_, elements_.size());
+  place_of_ = FilledArray<std::uint32_t>(executor_, edges_.size());
+  first_piece_ = FilledArray<std::uint32_t>(executor_, elements_.size());
   parallel_for(executor_, edges_.size(),
                [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); });
   parallel_for(executor_, elements_.size(),

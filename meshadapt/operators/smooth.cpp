@@ -6,7 +6,7 @@
 
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -49,7 +49,7 @@ std::vector<VertexId> Smooth<Dim>::movable_vertices_of_poor(const runtime::Execu
                                                             const Mesh<Dim>& mesh,
                                                             double mean_ratio) {
   const double bound = shape_of_mean_ratio<Dim>(mean_ratio);
-  auto marked = runtime::make_vector<std::uint8_t>(executor, mesh.vertex_slots());
+  runtime::FilledArray<std::uint8_t> marked(executor, mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     if (mesh.shape_of[e] >= bound || !mesh.alive(static_cast<ElementId>(e))) return;
     for (const VertexId v : mesh.corners_of[e]) runtime::atomic_set(marked[v]);

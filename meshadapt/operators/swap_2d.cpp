@@ -148,7 +148,7 @@ class FlipSearch {
   const Mesh<2>& mesh_;
   std::uint32_t after_;
   float bound_;
-  std::vector<std::uint8_t> marked_;
+  runtime::FilledArray<std::uint8_t> marked_;
 };
 
 }  // namespace

@@ -1,10 +1,12 @@
-#include "ductile/runtime/detail/filled_array.hpp"
+#include "ductile/runtime/filled_array.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 
-namespace ductile::runtime::detail {
+namespace ductile::runtime {
 namespace {
 
 TEST(FilledArray, KeepsWhatItHasAndFillsTheRest) {
@@ -25,5 +27,26 @@ TEST(FilledArray, KeepsWhatItHasAndFillsTheRest) {
   }
 }
 
+TEST(FilledArray, FillsAnewOnceItIsCleared) {
+  const Executor executor({.threads = 3});
+  FilledArray<std::uint8_t> array(executor, 100000, 7);
+  const std::uint8_t* const memory = array.data();
+  array.clear();
+  EXPECT_TRUE(array.empty());
+  array.resize(executor, 90000, 5);
+  EXPECT_EQ(array.data(), memory);
+  EXPECT_EQ(std::count(array.begin(), array.end(), 5), 90000);
+}
+
+TEST(FilledArray, MovesItsElementsAndLeavesNone) {
+  const Executor executor({.threads = 2});
+  FilledArray<int> from(executor, 10, 3), to(executor, 5, 4);
+  to = std::move(from);
+  EXPECT_EQ(std::count(to.begin(), to.end(), 3), 10);
+  const FilledArray<int> last(std::move(to));
+  EXPECT_EQ(last.size(), 10U);
+  for (const auto* array : {&from, &to}) EXPECT_TRUE(array->empty());  // NOLINT: moved from
+}
+
 }  // namespace
-}  // namespace ductile::runtime::detail
+}  // namespace ductile::runtime

@@ -16,6 +16,7 @@
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/growing_array.hpp"
 
 namespace ductile::meshadapt {
@@ -159,8 +160,8 @@ void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim
 
 /// Marks the vertices next to an element that changed after this epoch.
 template <int Dim>
-std::vector<std::uint8_t> mark_changed(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                       std::uint32_t after);
+runtime::FilledArray<std::uint8_t> mark_changed(const runtime::Executor& executor,
+                                                const Mesh<Dim>& mesh, std::uint32_t after);
 
 /// Those vertices, in order.
 template <int Dim>

@@ -14,8 +14,8 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring.hpp"
 #include "ductile/runtime/detail/batches.hpp"
-#include "ductile/runtime/detail/filled_array.hpp"
 #include "ductile/runtime/detail/tiles.hpp"
+#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/phase_timer.hpp"
@@ -114,7 +114,7 @@ class ColouredRounds {
     Tiles<Op> tiles(executor_, op_, work);
     // Who wakes an item has a conflict with it, so tiles order what both write here.
     tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
-    const std::vector<std::uint8_t>& is_left = tiles.left();
+    const FilledArray<std::uint8_t>& is_left = tiles.left();
     auto left = parallel_collect<Item>(executor_, work.size(), [&](std::size_t i, auto&& append) {
       if (is_left[i] != 0) append(work[i]);
     });

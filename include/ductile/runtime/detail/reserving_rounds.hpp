@@ -16,7 +16,7 @@
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/atomic_min.hpp"
 #include "ductile/runtime/detail/batches.hpp"
-#include "ductile/runtime/detail/filled_array.hpp"
+#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"

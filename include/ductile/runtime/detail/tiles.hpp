@@ -24,7 +24,7 @@
 
 #include "ductile/runtime/detail/blocked_colouring.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
@@ -55,7 +55,7 @@ class Tiles {
         rank_of_((op.item_count() >> layout_.block_bits) + 1),
         claimed_(rank_of_.size()),
         applied_of_(rank_of_.size()),
-        left_(make_vector<std::uint8_t>(executor, work.size())),
+        left_(executor, work.size()),
         begun_(executor),
         recording_(executor.recording()) {
     // Loops that run inside another, or on one thread, are not recorded as loops.
@@ -79,7 +79,7 @@ class Tiles {
     return std::accumulate(applied_of_.begin(), applied_of_.end(), std::size_t{0});
   }
   /// [position in the work], 1 if the item is left.
-  const std::vector<std::uint8_t>& left() const { return left_; }
+  const FilledArray<std::uint8_t>& left() const { return left_; }
 
  private:
   /// A tile that a thread has begun, and how far it is.
@@ -248,7 +248,7 @@ class Tiles {
   std::vector<std::uint8_t> rank_of_;      // [tile], or done
   std::vector<std::uint8_t> claimed_;      // [tile], by a thread that has begun it
   std::vector<std::uint32_t> applied_of_;  // [tile]
-  std::vector<std::uint8_t> left_;         // [position in the work]
+  FilledArray<std::uint8_t> left_;         // [position in the work]
   PerThread<std::vector<Begun>> begun_;    // the thread's
   std::atomic<bool> failed_{false};
   Recording* recording_;              // null but where this is what is recorded

@@ -12,15 +12,32 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::runtime::detail {
+namespace ductile::runtime {
 
-/// Thread safety: elements as those of an array; resize() one thread.
+/// Thread safety: elements as those of an array; what changes the size, one thread.
 template <class T>
 requires std::is_trivially_copyable_v<T>
 class FilledArray {
  public:
+  FilledArray() = default;
+  /// n elements that hold `value`. Throws std::bad_alloc.
+  FilledArray(const Executor& executor, std::size_t n, const T& value = {}) {
+    resize(executor, n, value);
+  }
+  FilledArray(FilledArray&& other) noexcept { swap(other); }
+  FilledArray& operator=(FilledArray&& other) noexcept {
+    FilledArray(std::move(other)).swap(*this);
+    return *this;
+  }
+
   std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
   T* data() { return values_.get(); }
+  const T* data() const { return values_.get(); }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size_; }
   T& operator[](std::size_t i) { return values_[i]; }
   const T& operator[](std::size_t i) const { return values_[i]; }
 
@@ -37,8 +54,17 @@ class FilledArray {
     size_ = n;
   }
 
+  /// Forgets all elements and keeps the memory.
+  void clear() { size_ = 0; }
+
  private:
   static constexpr LoopOptions by_pages{.grain = 4096, .serial_below = 16384};
+
+  void swap(FilledArray& other) {
+    std::swap(values_, other.values_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
 
   void move_to(const Executor& executor, std::size_t capacity) {
     auto larger = std::make_unique_for_overwrite<T[]>(capacity);
@@ -56,4 +82,4 @@ class FilledArray {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-}  // namespace ductile::runtime::detail
+}  // namespace ductile::runtime
