@@ -46,6 +46,15 @@ std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> byte
   });
 }
 
+std::uint32_t colour_count(const Executor& executor, std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return 0;
+  return 1 + greatest(executor, bytes.size(), [&](std::size_t begin, std::size_t end) {
+           std::uint8_t most = 0;
+           for (std::size_t i = begin; i < end; ++i) most = std::max(most, bytes[i]);
+           return std::uint32_t{most};
+         });
+}
+
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of) {
   return greatest(executor, colour_of.size(), [&](std::size_t begin, std::size_t end) {
     std::uint32_t most = 0;

@@ -110,12 +110,16 @@ TEST(Colouring, OfTheSquareSeparatesVerticesTwoEdgesApart) {
     }
 }
 
-/// Serial first-fit in the order of the hashed priority.
-std::vector<std::uint32_t> in_order_of_priority(const test::TestGraph& graph) {
+/// All vertices, ascending.
+std::vector<std::uint32_t> vertices_of(const test::TestGraph& graph) {
   std::vector<std::uint32_t> order(graph.vertex_count());
   std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(),
-            [](std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); });
+  return order;
+}
+
+/// First-fit, as plainly as can be.
+std::vector<std::uint32_t> first_fit_in(const std::vector<std::uint32_t>& order,
+                                        const test::TestGraph& graph) {
   std::vector<std::uint32_t> colour_of(order.size(), Colouring::none);
   for (const std::uint32_t v : order) {
     std::vector<bool> taken(order.size() + 1);
@@ -126,6 +130,24 @@ std::vector<std::uint32_t> in_order_of_priority(const test::TestGraph& graph) {
         static_cast<std::uint32_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
   }
   return colour_of;
+}
+
+/// Rows of no, one, few and many neighbours, an even and an odd number.
+TEST(Colouring, SerialIsFirstFitInOrder) {
+  auto graphs = test::test_graphs();
+  graphs.push_back(test::make_graph("no edges", 300, {}));
+  for (const auto& graph : graphs)
+    EXPECT_EQ(colour(Executor({.threads = 1}), graph.view(), ColouringMethod::serial).colour_of,
+              first_fit_in(vertices_of(graph), graph))
+        << graph.name;
+}
+
+/// Serial first-fit in the order of the hashed priority.
+std::vector<std::uint32_t> in_order_of_priority(const test::TestGraph& graph) {
+  std::vector<std::uint32_t> order = vertices_of(graph);
+  std::sort(order.begin(), order.end(),
+            [](std::uint32_t u, std::uint32_t v) { return mix32(u) < mix32(v); });
+  return first_fit_in(order, graph);
 }
 
 TEST(Colouring, ByPriorityIsFirstFitInItsOrder) {

@@ -214,6 +214,23 @@ TEST(DeferredUpdate, LetsTheCommitKeepWhatWasDeferred) {
   for (int i = 0; i < 2000; ++i) EXPECT_EQ(*kept[static_cast<std::size_t>(i)], i);
 }
 
+TEST(DeferredUpdate, TakesOwnersOfAllNumbers) {
+  constexpr std::uint32_t n = 20000, last = ~std::uint32_t{0};
+  const auto owner_of = [](std::uint32_t i) { return i < 100 ? last - i : mix32(i); };
+  for (int threads : {1, 2, 8})
+    for (const CommitOrder order : {CommitOrder::any, CommitOrder::by_source}) {
+      const Executor executor({.threads = threads});
+      DeferredUpdate<std::uint32_t> deferred(executor, {.order = order});
+      parallel_for(executor, n, [&](std::size_t i) {
+        const auto update = static_cast<std::uint32_t>(i);
+        deferred.defer(owner_of(update), i, update);
+      });
+      std::vector<std::uint32_t> owner_found(n);
+      EXPECT_EQ(deferred.commit([&](std::uint32_t o, std::uint32_t u) { owner_found[u] = o; }), n);
+      for (std::uint32_t i = 0; i < n; ++i) ASSERT_EQ(owner_found[i], owner_of(i)) << threads;
+    }
+}
+
 TEST(DeferredUpdate, CountsDropsAndReleases) {
   const Executor executor({.threads = 2});
   DeferredUpdate<int> deferred(executor);

@@ -354,7 +354,7 @@ class AskedForConflicts : public test::AskedAhead {
 
   explicit AskedForConflicts(std::size_t n) : AskedAhead(n), count_(n) {}
   void conflicts(Vertex v, auto&& visit) const {
-    EXPECT_TRUE(v < first || was_asked(v, 1)) << v;
+    EXPECT_TRUE(v < first || v + first > count_ || was_asked(v, 1)) << v;  // not the last
     visit((v + 1) % static_cast<Vertex>(count_));
   }
   std::size_t item_count() const { return count_; }
@@ -367,8 +367,8 @@ class AskedForConflicts : public test::AskedAhead {
 };
 
 TEST(RunRounds, WhatConflictsAreFoundInIsAskedForAhead) {
-  AskedForConflicts op(1000);
-  EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(1000)).planned, 1000U);
+  AskedForConflicts op(100);  // so few are coloured in their order
+  EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(100)).planned, 100U);
 }
 
 TEST(RunRounds, NoWorkIsNoRound) {

@@ -119,6 +119,9 @@ std::uint32_t colour_in_words(const Executor& executor, const G& graph, Colourin
 std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
                     std::span<std::uint32_t> colour_of);
 
+/// One more than the greatest of colours, which all vertices have.
+std::uint32_t colour_count(const Executor& executor, std::span<const std::uint8_t> bytes);
+
 /// One more than the greatest colour.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
 
@@ -131,7 +134,6 @@ template <Graph G>
 Colouring colour(const Executor& executor, const G& graph,
                  ColouringMethod method = ColouringMethod::automatic) {
   const std::size_t n = graph.vertex_count();
-  Colouring colouring{std::vector<std::uint32_t>(n)};
   std::vector<std::uint8_t> bytes(n, detail::Colours<detail::OneByte<>>::none);
   method = detail::choose(executor, method, n);
   const bool fits = detail::with_class_of(method, n, [&]<class Method>(Method) {
@@ -141,9 +143,10 @@ Colouring colour(const Executor& executor, const G& graph,
       return detail::colour_in_bytes<Method>(executor, graph, bytes, {n});
     }
   });
-  colouring.count = fits ? detail::widen(executor, bytes, colouring.colour_of)
-                         : detail::colour_in_words(executor, detail::as_compiled(graph), method,
-                                                   colouring.colour_of);
+  if (fits) return {{bytes.begin(), bytes.end()}, detail::colour_count(executor, bytes)};
+  Colouring colouring{std::vector<std::uint32_t>(n)};
+  colouring.count =
+      detail::colour_in_words(executor, detail::as_compiled(graph), method, colouring.colour_of);
   return colouring;
 }
 

@@ -41,7 +41,11 @@ class DeferredUpdate {
       : executor_(executor), by_source_(options.order == CommitOrder::by_source), lanes_(executor) {
     const auto threads = static_cast<unsigned>(executor.threads());
     const std::uint32_t buckets = std::clamp(std::bit_ceil(8U * threads), 16U, 1024U);
-    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].set_up(buckets, by_source_);
+    // As many owners in a row as have their data in cache; fewer where a window of a mesh, whose
+    // owners are near by, should be in enough buckets for all threads.
+    const unsigned neighbour_bits = threads == 1 ? 16 : 8;
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      lanes_[t].set_up(buckets, neighbour_bits, by_source_);
   }
 
   /// Keeps `update` for `owner`. `source` is who defers it, for instance the item being applied;

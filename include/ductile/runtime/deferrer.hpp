@@ -55,18 +55,16 @@ class Deferrer {
   friend detail::DeferLane<T>;
   using Room = detail::Room;
 
-  static constexpr unsigned neighbour_bits = 8;    // owners in a row that share a bucket
   static constexpr std::size_t write_ahead = 512;  // bytes
 
   // What depends on the order comes last and is short: compilers then make a loop for each order.
   template <class Value>
   void keep(std::uint32_t owner, std::uint64_t source, Value&& update) const {
-    constexpr int shift = static_cast<int>(neighbour_bits) - std::countr_zero(sizeof(Room));
     const std::uint32_t mask = offset_mask_;  // make_room() does not change the order in it
-    const std::size_t offset = (owner >> shift) & mask;
+    const std::size_t offset = (owner >> offset_shift_) & mask;
     Room* room = reinterpret_cast<Room*>(reinterpret_cast<std::byte*>(rooms_) + offset);
     if (room->next == room->end) [[unlikely]]
-      room = lane_->make_room(owner >> neighbour_bits);
+      room = lane_->make_room(owner);
     // Where many lists grow in turn, the processor does not see by itself what comes next in each.
     const auto ahead = reinterpret_cast<std::uintptr_t>(room->next) + write_ahead;
     __builtin_prefetch(reinterpret_cast<const void*>(ahead), 1);
@@ -89,7 +87,8 @@ class Deferrer {
 
   Room* rooms_ = &no_room_;  // of the buckets
   detail::DeferLane<T>* lane_ = nullptr;
-  std::uint32_t offset_mask_ = 0;  // of a bucket's room in rooms_, in bytes; and by_source
+  // A bucket's room in rooms_, in bytes: bits of the owner, shifted. And by_source.
+  std::uint32_t offset_mask_ = 0, offset_shift_ = 0;
 };
 
 namespace detail {
@@ -102,9 +101,12 @@ class DeferLane {
   Buckets<SourcedUpdate<T>> sourced;
   SourceOrder<SourcedUpdate<T>> order;  // scratch of commits
 
-  /// `bucket_count` is a power of two.
-  void set_up(std::uint32_t bucket_count, bool by_source) {
+  /// `bucket_count` is a power of two; 2^neighbour_bits owners in a row, at least 16, share a
+  /// bucket.
+  void set_up(std::uint32_t bucket_count, unsigned neighbour_bits, bool by_source) {
     bucket_count_ = bucket_count;
+    neighbour_bits_ = neighbour_bits;
+    deferrer_.offset_shift_ = neighbour_bits - std::countr_zero(sizeof(Room));
     by_source_ = by_source;
     deferrer_.lane_ = this;
     set_offset_mask(0);
@@ -119,11 +121,11 @@ class DeferLane {
     return deferrer_;
   }
 
-  /// For one more update of the bucket whose number is this one modulo their count. Not inlined, so
-  /// as to keep the caller's loop tight. Throws std::bad_alloc.
-  [[gnu::noinline]] Room* make_room(std::uint32_t number) {
+  /// For one more update of this owner. Not inlined, so as to keep the caller's loop tight.
+  /// Throws std::bad_alloc.
+  [[gnu::noinline]] Room* make_room(std::uint32_t owner) {
     if (deferrer_.rooms_ == &Deferrer<T>::no_room_) provide();
-    number &= bucket_count_ - 1;
+    const std::uint32_t number = (owner >> neighbour_bits_) & (bucket_count_ - 1);
     if (by_source_) {
       sourced.grow(number);
     } else {
@@ -178,6 +180,7 @@ class DeferLane {
 
   Deferrer<T> deferrer_;
   std::uint32_t bucket_count_ = 0;
+  unsigned neighbour_bits_ = 0;
   bool by_source_ = false;
 };
 
