@@ -8,14 +8,16 @@
 
 namespace {
 
-/// Is one thread asked for, which waits for nobody? Words are not checked yet.
+/// Is one thread asked for, which waits for nobody? Words are not checked yet; the last one counts.
 bool is_alone(std::span<const std::string> words) {
+  constexpr std::string_view name = "-threads";
+  bool alone = false;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string_view option = std::string_view(words[i]).substr(words[i].starts_with("--"));
-    if (option == "-threads=1") return true;
-    if (option == "-threads") return i + 1 < words.size() && words[i + 1] == "1";
+    if (option == name) alone = i + 1 < words.size() && words[i + 1] == "1";
+    if (option.starts_with("-threads=")) alone = option.substr(name.size()) == "=1";
   }
-  return false;
+  return alone;
 }
 
 }  // namespace

@@ -64,7 +64,6 @@ class Classifier {
       for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
     sort_sides();
     find_neighbours();
-    part_neighbours();
   }
 
   void run() {
@@ -119,24 +118,16 @@ class Classifier {
     runtime::parallel_for(executor_, sides_.size(), [&](std::size_t i) {
       if (!begins_run(i)) return;
       const auto both = run_at(i);
-      if (both.size() != 2 || separates(both[0].key)) return;
+      if (both.size() != 2 || separates(both[0].key) || !fit(both[0], both[1])) return;
       across_[both[0].facet][both[0].number] = both[1].facet;
       across_[both[1].facet][both[1].number] = both[0].facet;
     });
   }
 
-  /// Takes those from each other that no patch can have both of, whatever its plane is.
-  void part_neighbours() {
-    runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
-      std::size_t side = 0;
-      each_side<Dim>(facets_[f].corners, [&](Key key) {
-        std::uint32_t& next = across_[f][side++];
-        if (next == none) return;
-        if (!agree(static_cast<std::uint32_t>(f), next) ||
-            folds_back(facets_[f].corners, facets_[next].corners, key))
-          next = none;
-      });
-    });
+  /// May one patch have both of two facets with this side, if they are in its plane?
+  bool fit(const Side& f, const Side& g) const {
+    return agree(f.facet, g.facet) &&
+           !folds_back(facets_[f.facet].corners, facets_[g.facet].corners, f.key);
   }
 
   bool separates(Key key) const {

@@ -202,12 +202,13 @@ class AnyMeshChecker {
     return {entries_.get() + begin, end_[v] - begin};
   }
 
-  /// Are all facets of a bucket sound? Each is compared with each, as so few are faster than to
-  /// sort them; false if they are many.
-  static bool is_sound(std::span<const Entry> bucket) {
-    constexpr std::size_t most = 64;
+  /// Are these all sound, and few? Each is compared with each, which takes less time than to sort
+  /// so few.
+  static bool are_few_and_sound(std::span<const Entry> bucket) {
+    constexpr std::size_t most = 128;  // an inner vertex has 72 in the mean, if it is the lowest
+    static_assert(most < 256, "a counter is a byte");
     if (bucket.size() > most) return false;
-    std::array<std::uint64_t, most> others, counter;  // the counter of a kind is a byte
+    std::array<std::uint64_t, most> others, counter;  // a byte for each kind
     for (std::size_t i = 0; i < bucket.size(); ++i) {
       others[i] = bucket[i].others;
       counter[i] = std::uint64_t{1} << 8U * bucket[i].kind;
@@ -247,7 +248,7 @@ class AnyMeshChecker {
     fill_buckets();
     const auto suspects = runtime::parallel_collect<VertexId>(executor_, mesh_.vertex_count(),
                                                               [&](std::size_t v, auto&& append) {
-                                                                if (!is_sound(bucket(v)))
+                                                                if (!are_few_and_sound(bucket(v)))
                                                                   append(static_cast<VertexId>(v));
                                                               });
     if (suspects.empty()) return;
@@ -318,7 +319,7 @@ class AnyMeshChecker {
   const AnyMesh& mesh_;
   Problems problems_;
   std::vector<std::uint32_t> end_;    // [vertex], of its bucket in entries_
-  std::unique_ptr<Entry[]> entries_;  // by bucket, sorted in those with faults
+  std::unique_ptr<Entry[]> entries_;  // by bucket; sorted where they may have faults
   std::vector<std::uint8_t> faults_;  // [entry], of the group that starts there
 };
 

@@ -170,7 +170,7 @@ double Adapter<Dim>::share_to_change() {
 }
 
 /// About how many collapses and splits finishing would make, from a sample of those that lengths
-/// call for; looked at part by part, until they are not few.
+/// call for; looked at part by part, until they are not few: then it is more than that.
 template <int Dim>
 std::size_t Adapter<Dim>::feasible_changes() {
   aim_ = Aim::finish;

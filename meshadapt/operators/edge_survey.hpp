@@ -11,7 +11,6 @@
 #include <span>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/filled_array.hpp"
@@ -64,7 +63,7 @@ class EdgeSurvey {
       list.size = left;
       measure(mesh, list);
     };
-    runtime::parallel_for_blocks(executor, bits_.size(), stretch, measure_wanted, {});
+    runtime::parallel_for_blocks(executor, mesh.element_slots(), stretch, measure_wanted, {});
     seen_ = mesh.epoch - 1;
   }
 
@@ -104,7 +103,7 @@ class EdgeSurvey {
   }
 
   void visit_bits(const Mesh<Dim>& mesh, std::size_t begin, std::size_t shift, auto&& visit) const {
-    const std::size_t end = std::min(bits_.size(), begin + stretch);
+    const std::size_t end = std::min(mesh.element_slots(), begin + stretch);
     const auto mask = static_cast<Bits>(all << shift);
     List list;
     select(

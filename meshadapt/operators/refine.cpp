@@ -91,8 +91,8 @@ runtime::RoundsReport Refine<Dim>::run(std::vector<LongEdge> edges) {
 /// Has what is around edges soon after this one brought into the cache.
 template <int Dim>
 [[gnu::always_inline]] inline void Refine<Dim>::prefetch_shells_after(std::size_t number) const {
-  for (const int stage : {1, 0}) {
-    const std::size_t ahead = number + 3 * (static_cast<std::size_t>(stage) + 1);
+  for (const int stage : {2, 1}) {
+    const std::size_t ahead = number + 3 * static_cast<std::size_t>(stage);
     if (ahead < edges_.size()) prefetch_shell(mesh_, edges_[ahead].a, edges_[ahead].b, stage);
   }
 }

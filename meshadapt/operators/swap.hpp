@@ -57,7 +57,7 @@ class Swap {
     }
   }
   [[gnu::always_inline]] void prefetch(const Item& item, int stage) const {
-    if (stage > 0) prefetch_shell(mesh_, item.a, item.b, stage - 1);
+    prefetch_shell(mesh_, item.a, item.b, stage);
   }
   std::size_t resource_count() const { return mesh_.element_slots(); }
   std::uint8_t priority(const Item& item) const {

@@ -194,16 +194,16 @@ void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
   }
 }
 
-/// The same for what the elements around the edge a-b are found in: 1, the lists of both ends; 0,
-/// the corners of the elements of the shorter one.
+/// The same for what the elements around the edge a-b are found in: 2, the lists of both ends; 1,
+/// the corners of the elements of the shorter one. There is no stage 0.
 template <int Dim>
 [[gnu::always_inline]] inline void prefetch_shell(const Mesh<Dim>& mesh, VertexId a, VertexId b,
                                                   int stage) {
-  if (stage == 1) {
+  if (stage == 2) {
     mesh.elements_of.prefetch(a);
     mesh.elements_of.prefetch(b);
-    return;
   }
+  if (stage != 1) return;
   const auto of_a = mesh.elements_of.of(a), of_b = mesh.elements_of.of(b);
   for (const ElementId e : of_b.size() < of_a.size() ? of_b : of_a)
     __builtin_prefetch(&mesh.corners_of[e]);

@@ -101,7 +101,7 @@ class DeferLane {
   Buckets<SourcedUpdate<T>> sourced;
   SourceOrder<SourcedUpdate<T>> order;  // scratch of commits
 
-  /// `bucket_count` is a power of two; 2^neighbour_bits owners in a row, at least 16, share a
+  /// `bucket_count` is a power of two; 2^neighbour_bits owners in a row, at least 32, share a
   /// bucket.
   void set_up(std::uint32_t bucket_count, unsigned neighbour_bits, bool by_source) {
     bucket_count_ = bucket_count;

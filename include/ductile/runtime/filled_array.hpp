@@ -21,9 +21,7 @@ class FilledArray {
  public:
   FilledArray() = default;
   /// n elements that hold `value`. Throws std::bad_alloc.
-  FilledArray(const Executor& executor, std::size_t n, const T& value = {}) {
-    resize(executor, n, value);
-  }
+  FilledArray(const Executor& executor, std::size_t n, T value = {}) { resize(executor, n, value); }
   FilledArray(FilledArray&& other) noexcept { swap(other); }
   FilledArray& operator=(FilledArray&& other) noexcept {
     FilledArray(std::move(other)).swap(*this);
@@ -42,7 +40,7 @@ class FilledArray {
   const T& operator[](std::size_t i) const { return values_[i]; }
 
   /// Grows to n elements, if there are fewer: what is new holds `value`. Throws std::bad_alloc.
-  void resize(const Executor& executor, std::size_t n, const T& value) {
+  void resize(const Executor& executor, std::size_t n, T value) {
     if (n <= size_) return;
     if (n > capacity_) move_to(executor, std::max(n, capacity_ + capacity_ / 2));
     parallel_for_ranges(

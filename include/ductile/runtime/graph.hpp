@@ -25,7 +25,8 @@ concept Graph = requires(const G& graph, std::uint32_t v) {
 /// A graph that can fetch a vertex's neighbours into the cache ahead of their use: prefetch(v). It
 /// costs no more than a few instructions and changes nothing. Worth having where the rows of many
 /// vertices are read one after the other; the processor alone does not see that coming where
-/// everything else hits the cache. Thread safety: as visiting.
+/// everything else hits the cache. It is asked for the vertex 32 places ahead, or so many as the
+/// graph says by a constant prefetch_distance. Thread safety: as visiting.
 template <class G>
 concept PrefetchingGraph = Graph<G> && requires(const G& graph, std::uint32_t v) {
   graph.prefetch(v);

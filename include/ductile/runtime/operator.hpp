@@ -81,7 +81,8 @@ concept RankedOperator = requires(const Op& op, const typename Op::Item item) {
 /// An operator that can bring what an item's plan will read into the cache ahead of time, which is
 /// also what its conflicts or footprint are found in. prefetch(item, stage) is called with the
 /// stages 2, 1 and 0, with some other items looked at or planned between them, so that a stage can
-/// follow what the one before has brought; for conflicts without stage 0. It only reads.
+/// follow what the one before has brought; for conflicts without stage 0, and now and then without
+/// the stage before. It only reads.
 template <class Op>
 concept PrefetchingOperator = requires(const Op& op, const typename Op::Item item) {
   op.prefetch(item, 2);

@@ -64,7 +64,7 @@ class ConflictGraph {
       if (place_of_[other] != absent) visit(place_of_[other]);
     });
   }
-  /// Places are asked for one after the other: what the second stage needs has come by then.
+  /// Places are mostly asked for one after the other: what the second stage needs has come then.
   [[gnu::always_inline]] void prefetch(std::uint32_t place) const requires PrefetchingOperator<Op> {
     constexpr std::uint32_t behind = 3;
     op_.prefetch(work_[place], 2);

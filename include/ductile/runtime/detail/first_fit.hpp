@@ -142,10 +142,13 @@ constexpr std::size_t prefetch_distance = 32;
 
 /// Fewer where a graph says that each takes longer.
 template <Graph G>
-constexpr std::size_t prefetch_distance_of = prefetch_distance;
-template <Graph G>
-requires requires { G::prefetch_distance; }
-constexpr std::size_t prefetch_distance_of<G> = G::prefetch_distance;
+constexpr std::size_t prefetch_distance_of() {
+  if constexpr (requires { G::prefetch_distance; }) {
+    return G::prefetch_distance;
+  } else {
+    return prefetch_distance;
+  }
+}
 
 /// Asks for the neighbours of the vertex that has its turn some steps after number i.
 /// Inlined always, see CsrGraph.
@@ -153,15 +156,16 @@ template <Graph G>
 [[gnu::always_inline]] inline void prefetch_after(const G& graph, const VertexSet& vertices,
                                                   std::size_t i) {
   if constexpr (PrefetchingGraph<G>)
-    if (i + prefetch_distance_of<G> < vertices.count)
-      graph.prefetch(vertices[i + prefetch_distance_of<G>]);
+    if (i + prefetch_distance_of<G>() < vertices.count)
+      graph.prefetch(vertices[i + prefetch_distance_of<G>()]);
 }
 
 /// The same where vertices have their turn in descending order.
 template <Graph G>
 [[gnu::always_inline]] inline void prefetch_before(const G& graph, std::uint32_t v) {
   if constexpr (PrefetchingGraph<G>)
-    if (v >= prefetch_distance_of<G>) graph.prefetch(v - std::uint32_t{prefetch_distance_of<G>});
+    if (v >= prefetch_distance_of<G>())
+      graph.prefetch(v - std::uint32_t{prefetch_distance_of<G>()});
 }
 
 /// Calls visit(u) for every neighbour of v, two in each step of the loop where they lie in a row.

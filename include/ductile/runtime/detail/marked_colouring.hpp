@@ -115,7 +115,7 @@ class MarkedRun {
     const VertexSet all{colours.vertex_count()};
     const auto number = static_cast<std::uint32_t>(row);
     for (std::uint32_t v = begin; v < end; ++v) {
-      prefetch_after(rows, all, v + prefetch_distance < end ? v : next - (end - v));
+      prefetch_after(rows, all, v + prefetch_distance_of<G>() < end ? v : next - (end - v));
       if (wants_one_look(rows, v)) {
         colour_with_care(v, step);
         continue;

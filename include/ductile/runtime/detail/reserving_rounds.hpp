@@ -93,7 +93,7 @@ class ReservingRounds {
         executor_, work.size(), short_block,
         [&](std::size_t, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
-            prefetch_items_after<Op>(op_, work, i);
+            if (share_ == everyone) prefetch_items_after<Op>(op_, work, i);
             outcome_of_[i] = asks(i) ? reserve(work[i], i) : Outcome::passes;
           }
         },
@@ -109,7 +109,7 @@ class ReservingRounds {
         [&](std::size_t b, std::size_t begin, std::size_t end) {
           Counts found;
           for (std::size_t i = begin; i < end; ++i) {
-            prefetch_items_after<Op>(op_, work, i);
+            if (share_ == everyone) prefetch_items_after<Op>(op_, work, i);
             settle(work[i], i, found);
           }
           counts[b] = found;
