@@ -136,14 +136,9 @@ class AnyMeshChecker {
 
   // ---- Facets ----
 
-  struct Keyed {
-    VertexId lowest;
-    Entry entry;
-  };
-
   /// Sorts the corners of a facet, without branches, as their order is a matter of chance; its
   /// parity tells the two sides apart.
-  static Keyed keyed(Facet<Dim> f, std::uint32_t owner) {
+  static Entry make_entry(Facet<Dim> f, std::uint32_t owner) {
     unsigned parity = even;
     const auto order = [&](std::size_t a, std::size_t b) {
       const VertexId first = f[a], second = f[b];
@@ -157,7 +152,7 @@ class AnyMeshChecker {
       order(0, 1);
     }
     const std::uint64_t others = Dim == 2 ? f[1] : std::uint64_t{f[1]} << 32U | f[Dim - 1];
-    return {f[0], {others, owner, static_cast<std::uint8_t>(parity)}};
+    return {others, owner, static_cast<std::uint8_t>(parity)};
   }
 
   /// Those of the elements, one after the other, then those listed.
@@ -173,9 +168,9 @@ class AnyMeshChecker {
   Entry entry_of(std::size_t facet) const {
     const std::size_t element = facet / (Dim + 1);
     if (element < elements().size())
-      return keyed(corners_of(facet), static_cast<std::uint32_t>(element)).entry;
+      return make_entry(corners_of(facet), static_cast<std::uint32_t>(element));
     const std::size_t number = facet - elements().size() * (Dim + 1);
-    Entry entry = keyed(corners_of(facet), static_cast<std::uint32_t>(number)).entry;
+    Entry entry = make_entry(corners_of(facet), static_cast<std::uint32_t>(number));
     entry.kind = listed;
     return entry;
   }
