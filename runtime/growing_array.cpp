@@ -1,7 +1,9 @@
 #include "ductile/runtime/growing_array.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <new>
 
 #include "ductile/runtime/parallel_for.hpp"
@@ -10,6 +12,7 @@
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define DUCTILE_MOVES_PAGES 1
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
@@ -29,21 +32,58 @@ std::size_t whole_pages(std::size_t bytes) {
   return (bytes + page - 1) / page * page;
 }
 
+/// Addresses cost nothing, unless the user has limited them.
+std::size_t with_room_to_grow(std::size_t bytes) {
+  constexpr std::size_t times = 32, most = std::numeric_limits<std::size_t>::max();
+  rlimit limit{};
+  const bool limited = getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY;
+  return limited || bytes > most / times ? bytes : times * bytes;
+}
+
+/// Addresses that nothing may be read from or written to yet; null if there are none.
+std::byte* map_space(std::size_t bytes) {
+  void* const place =
+      mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return place == MAP_FAILED ? nullptr : static_cast<std::byte*>(place);
+}
+
 }  // namespace
 
 GrowingMemory::~GrowingMemory() {
-  if (data_ != nullptr) munmap(data_, bytes_);
+  if (data_ != nullptr) munmap(data_, space_);
 }
 
 void GrowingMemory::reserve(std::size_t bytes) {
   if (bytes <= bytes_) return;
   const std::size_t wanted = whole_pages(bytes);
-  void* const place = data_ != nullptr ? mremap(data_, bytes_, wanted, MREMAP_MAYMOVE)
-                                       : mmap(nullptr, wanted, PROT_READ | PROT_WRITE,
-                                              MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (place == MAP_FAILED) throw std::bad_alloc();
-  data_ = static_cast<std::byte*>(place);
+  if (wanted > space_) move_to_larger_space(wanted);
+  if (mprotect(data_ + bytes_, wanted - bytes_, PROT_READ | PROT_WRITE) != 0)
+    throw std::bad_alloc();
   bytes_ = wanted;
+}
+
+/// Pages are moved one by one, so they should be seldom.
+void GrowingMemory::move_to_larger_space(std::size_t wanted) {
+  std::size_t space = with_room_to_grow(wanted);
+  std::byte* place = map_space(space);
+  if (place == nullptr) place = map_space(space = wanted);
+  if (place == nullptr) throw std::bad_alloc();
+  if (bytes_ > 0 &&
+      mremap(data_, bytes_, bytes_, MREMAP_MAYMOVE | MREMAP_FIXED, place) == MAP_FAILED) {
+    munmap(place, space);
+    throw std::bad_alloc();
+  }
+  if (space_ > bytes_) munmap(data_ + bytes_, space_ - bytes_);
+  data_ = place;
+  space_ = space;
+}
+
+void GrowingMemory::add_pages(std::size_t bytes, FreshMemory& fresh) {
+  constexpr std::size_t ahead = std::size_t{1} << 15U;  // for those who grow little by little
+  if (bytes <= added_) return;
+  const std::size_t end = std::min(bytes_, whole_pages(bytes + ahead));
+  fresh.add(data_ + added_, end - added_);
+  added_ = end;
 }
 
 void GrowingMemory::release(const Executor& executor) {
@@ -58,6 +98,8 @@ void GrowingMemory::release(const Executor& executor) {
 #else
 
 GrowingMemory::~GrowingMemory() { std::free(data_); }
+
+void GrowingMemory::add_pages(std::size_t, FreshMemory&) {}
 
 void GrowingMemory::release(const Executor&) { *this = GrowingMemory(); }
 

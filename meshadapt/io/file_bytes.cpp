@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -46,7 +47,7 @@ FileBytes read_bytes(const fs::path& path) {
   std::setvbuf(file.get(), nullptr, _IONBF, 0);
   const auto known_size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
   std::size_t capacity = error ? 0 : static_cast<std::size_t>(known_size) + 1;
-  bytes.data = std::make_unique_for_overwrite<char[]>(capacity);
+  bytes.data = runtime::make_unset<char>(runtime::Executor({.threads = 1}), capacity);
   while (!std::feof(file.get())) {
     if (bytes.size == capacity) grow(bytes, capacity);
     bytes.size += std::fread(bytes.data.get() + bytes.size, 1, capacity - bytes.size, file.get());

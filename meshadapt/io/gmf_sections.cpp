@@ -6,7 +6,15 @@
 #include <tuple>
 #include <type_traits>
 
+#include "ductile/runtime/make_vector.hpp"
+
 namespace ductile::meshadapt::gmf {
+
+/// Gives a vector that holds nothing n elements, all of which are about to be read.
+template <class T>
+static void make_room(std::vector<T>& empty, std::size_t n) {
+  runtime::resize_empty(runtime::Executor({.threads = 1}), empty, n);
+}
 
 // ---- Heads ----
 
@@ -102,8 +110,8 @@ void SectionReader<Cursor>::read_vertices(std::uint64_t count) {
   AnyMesh& mesh = *target_.mesh;
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
   places_.push_back(in_.enter_records({dimension, 1}));
-  mesh.coordinates.resize(count * dimension);
-  mesh.vertex_reference.resize(count);
+  make_room(mesh.coordinates, count * dimension);
+  make_room(mesh.vertex_reference, count);
   double* coordinate = mesh.coordinates.data();
   for (std::size_t vertex = 0; vertex < count; ++vertex) {
     in_.record(vertex);
@@ -116,8 +124,8 @@ template <class Cursor>
 template <int Corners>
 void SectionReader<Cursor>::read_cells(std::uint64_t count, Cells<Corners>& cells) {
   places_.push_back(in_.enter_records({0, Corners + 1}));
-  cells.vertices.resize(count);
-  cells.reference.resize(count);
+  make_room(cells.vertices, count);
+  make_room(cells.reference, count);
   for (std::size_t cell = 0; cell < count; ++cell) {
     in_.record(cell);
     for (std::uint32_t& vertex : cells.vertices[cell]) vertex = read_index();
@@ -128,7 +136,7 @@ void SectionReader<Cursor>::read_cells(std::uint64_t count, Cells<Corners>& cell
 template <class Cursor>
 void SectionReader<Cursor>::read_list(std::uint64_t count, std::vector<std::uint32_t>& list) {
   places_.push_back(in_.enter_records({0, 1}));
-  list.resize(count);
+  make_room(list, count);
   for (std::size_t entry = 0; entry < count; ++entry) {
     in_.record(entry);
     list[entry] = read_index();
@@ -154,7 +162,7 @@ void SectionReader<Cursor>::read_field(std::uint64_t count) {
   const std::size_t stride = stride_of(field);
   places_.push_back(in_.enter_records({stride, 0}));
   field.vertex_count = count;
-  field.values.resize(count * stride);
+  make_room(field.values, count * stride);
   double* value = field.values.data();
   for (std::size_t vertex = 0; vertex < count; ++vertex) {
     in_.record(vertex);

@@ -15,6 +15,7 @@
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/grouping.hpp"
 #include "mesh/problems.hpp"
@@ -184,7 +185,7 @@ class AnyMeshChecker {
     Grouping grouping(executor_,
                       GroupingBounds::even(executor_, facet_count(), mesh_.vertex_count()),
                       std::span(end_), lowest_corner);
-    entries_ = std::make_unique_for_overwrite<Entry[]>(grouping.size());
+    entries_ = runtime::make_unset<Entry>(executor_, grouping.size());
     const auto begin_buckets = [&](VertexId begin, VertexId end, std::uint32_t before) {
       for (VertexId v = begin; v < end; ++v) end_[v] = std::exchange(before, before + end_[v]);
     };

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -67,7 +68,7 @@ class Grouping {
       begin = static_cast<std::uint32_t>(std::exchange(total, total + begin));
     if (total + own > std::numeric_limits<std::uint32_t>::max())
       throw std::length_error("a mesh of more elements than lists of 32-bit numbers can have");
-    noted_ = std::make_unique_for_overwrite<Pair[]>(total);
+    noted_ = runtime::make_unset<Pair>(executor_, total);
     if (total != 0) for_each_chunk([&](std::size_t c) { note(c); });
   }
 

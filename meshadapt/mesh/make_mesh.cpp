@@ -8,6 +8,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/classify.hpp"
 #include "mesh/first_bad.hpp"
@@ -88,7 +89,7 @@ class MeshMaker {
   void fill() {
     const auto& cells = elements_in<Dim>(any_);
     mesh_.elements_of.reset(0);
-    mesh_.grow(any_.vertex_count(), cells.size());
+    mesh_.grow(executor_, any_.vertex_count(), cells.size());
     parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
       mesh_.site_of[v].position = position_in<Dim>(any_, v);
       mesh_.reference_of[v] = any_.vertex_reference[v];
@@ -194,7 +195,9 @@ class MeshMaker {
 
   /// Each pair of neighbours is found by the one with the lower number.
   void find_neighbours() {
-    neighbours_.resize(mesh_.element_slots());
+    runtime::FreshMemory fresh;
+    neighbours_.resize_for_overwrite(mesh_.element_slots(), fresh);
+    fresh.touch(executor_);
     parallel_for(executor_, mesh_.element_slots(),
                  [&](std::size_t e) { neighbours_[e].fill(none); });
     parallel_for(executor_, mesh_.element_slots(), [&](std::size_t e) {

@@ -7,6 +7,7 @@
 
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/grouping.hpp"
 
@@ -16,17 +17,14 @@ using runtime::Executor;
 using runtime::parallel_for;
 
 template <int Dim>
-void Mesh<Dim>::grow(std::size_t vertices, std::size_t elements) {
-  corners_of.resize_for_overwrite(elements);
-  patches_of.resize_for_overwrite(elements);
-  region_of.resize_for_overwrite(elements);
-  shape_of.resize_for_overwrite(elements);
-  changed_at.resize_for_overwrite(elements);
-  site_of.resize_for_overwrite(vertices);
-  kind_of.resize_for_overwrite(vertices);
-  entity_of.resize_for_overwrite(vertices);
-  reference_of.resize_for_overwrite(vertices);
-  host_of.resize_for_overwrite(vertices);
+void Mesh<Dim>::grow(const Executor& executor, std::size_t vertices, std::size_t elements) {
+  runtime::FreshMemory fresh;
+  const auto resize = [&](std::size_t n, auto&... arrays) {
+    (arrays.resize_for_overwrite(n, fresh), ...);
+  };
+  resize(elements, corners_of, patches_of, region_of, shape_of, changed_at);
+  resize(vertices, site_of, kind_of, entity_of, reference_of, host_of);
+  fresh.touch(executor);
   elements_of.grow(vertices);
   if constexpr (Dim == 3) links_of.grow(vertices);
 }
@@ -46,7 +44,7 @@ static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim>
 
 template <int Dim>
 void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
-  const auto count_of = std::make_unique_for_overwrite<std::uint32_t[]>(mesh.vertex_slots());
+  const auto count_of = runtime::make_unset<std::uint32_t>(executor, mesh.vertex_slots());
   auto& lists = mesh.elements_of;
   Grouping grouping(executor, bounds_by_lowest(executor, mesh),
                     std::span(count_of.get(), mesh.vertex_slots()),
@@ -54,7 +52,9 @@ void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
                       if (!mesh.alive(element)) return;
                       for (const VertexId v : mesh.corners_of[element]) visit(v);
                     });
-  lists.reset_for_overwrite(mesh.vertex_slots());
+  runtime::FreshMemory fresh;
+  lists.reset_for_overwrite(mesh.vertex_slots(), fresh);
+  fresh.touch(executor);
   const auto make_room = [&](VertexId begin, VertexId end, std::uint32_t) {
     for (VertexId from = begin; from < end; from += list_block)
       lists.reserve_all(from, std::min(end, from + list_block), [&](VertexId v) {

@@ -12,6 +12,7 @@
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "mesh/grouping.hpp"
@@ -28,8 +29,8 @@ namespace {
 template <class T>
 class Unset {
  public:
-  explicit Unset(std::size_t size)
-      : values_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+  Unset(const Executor& executor, std::size_t size)
+      : values_(runtime::make_unset<T>(executor, size)), size_(size) {}
   std::size_t size() const { return size_; }
   void shrink(std::size_t size) { size_ = size; }
   T* begin() { return values_.get(); }
@@ -83,7 +84,7 @@ class KeyedWords {
 Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, auto&& is_alive,
                auto&& key_of) {
   const KeyedWords keyed(count, key_bits);
-  Unset<std::uint64_t> words(count);
+  Unset<std::uint64_t> words(executor, count);
   parallel_for(executor, count, [&](std::size_t id) {
     words[id] = is_alive(id) ? keyed.word(key_of(id), id) : keyed.gone();
   });
@@ -92,7 +93,7 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
   // Those that are gone may lie among living ones of the greatest key.
   const auto last = std::lower_bound(all.begin(), all.end(), keyed.word(keyed.greatest_key(), 0));
   const auto end = std::remove(last, all.end(), keyed.gone());
-  Ids order(static_cast<std::size_t>(end - all.begin()));
+  Ids order(executor, static_cast<std::size_t>(end - all.begin()));
   parallel_for(executor, order.size(), [&](std::size_t i) { order[i] = keyed.id(words[i]); });
   return order;
 }
@@ -112,7 +113,7 @@ Ids sorted_vertices(const Executor& executor, const Mesh<Dim>& mesh, VertexId un
 /// for all, and shrinks it. lowest_of is none for others.
 void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
                    std::size_t vertex_count) {
-  Ids end_of(vertex_count);  // [vertex], in the order; at first how many elements it has
+  Ids end_of(executor, vertex_count);  // [vertex], in the order; at first how many elements it has
   Grouping grouping(executor, GroupingBounds::even(executor, lowest_of.size(), vertex_count),
                     end_of.all(), [&lowest_of](ElementId element, auto&& visit) {
                       if (lowest_of[element] != none) visit(lowest_of[element]);
@@ -126,7 +127,7 @@ void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
 
 /// For each old id its place in the order, for those that are in it.
 Ids places_in(const Executor& executor, const Ids& order, std::size_t count) {
-  Ids place_of(count);
+  Ids place_of(executor, count);
   parallel_for(executor, order.size(),
                [&](std::size_t i) { place_of[order[i]] = static_cast<std::uint32_t>(i); });
   return place_of;
@@ -141,7 +142,7 @@ class Permutation {
       : executor_(executor),
         order_(order),
         largest_(largest),
-        scratch_(std::make_unique_for_overwrite<std::byte[]>(order.size() * largest)) {}
+        scratch_(runtime::make_unset<std::byte>(executor, order.size() * largest)) {}
 
   /// values[i] becomes the old values[order[i]], of several arrays at once.
   template <class... T>
@@ -224,7 +225,7 @@ Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, VertexId unlist
 /// The corners of living elements. Returns the lowest of each, none for those that are gone.
 template <int Dim>
 Ids renumber_corners(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex) {
-  Ids lowest_of(mesh.element_slots());
+  Ids lowest_of(executor, mesh.element_slots());
   parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     Corners<Dim>& corners = mesh.corners_of[e];
     lowest_of[e] = none;
@@ -259,7 +260,8 @@ void renumber_all(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted,
                   Neighbours<Dim>* neighbours) {
   const auto sorted = [&] {
     const Ids new_vertex = renumber_vertices(executor, mesh, unlisted);
-    Ids order(mesh.element_slots());  // first, as what is freed behind it is one piece then
+    Ids order(executor,
+              mesh.element_slots());  // first, as what is freed behind it is one piece then
     const Ids lowest_of = renumber_corners(executor, mesh, new_vertex);
     sort_elements(order, executor, lowest_of, mesh.vertex_slots());
     return order;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/walk.hpp"
@@ -12,11 +13,13 @@ template <int Dim>
 Background<Dim>::Background(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                             Neighbours<Dim> neighbours)
     : neighbours_(std::move(neighbours)) {
-  corners_of_.resize(mesh.element_slots());
+  runtime::FreshMemory fresh;
+  corners_of_.resize_for_overwrite(mesh.element_slots(), fresh);
+  position_of_.resize_for_overwrite(mesh.vertex_slots(), fresh);
+  log_metric_of_.resize_for_overwrite(mesh.vertex_slots(), fresh);
+  fresh.touch(executor);
   runtime::parallel_for(executor, mesh.element_slots(),
                         [&](std::size_t e) { corners_of_[e] = mesh.corners_of[e]; });
-  position_of_.resize(mesh.vertex_slots());
-  log_metric_of_.resize(mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
     position_of_[v] = mesh.site_of[v].position;
     log_metric_of_[v] = logarithm(mesh.site_of[v].metric);

@@ -372,7 +372,7 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below);
     if (work.empty()) break;
-    Swap<Dim> op(mesh_);
+    Swap<Dim> op(executor_, mesh_);
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), by_windows);
     add(report_.swap, rounds);
     changes += rounds.applied;

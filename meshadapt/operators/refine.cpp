@@ -10,6 +10,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/phase_timer.hpp"
@@ -100,7 +101,9 @@ template <int Dim>
 /// Sets what becomes of the edges, and which of them cut which elements.
 template <int Dim>
 void Refine<Dim>::plan() {
-  splits_.resize_for_overwrite(edges_.size());
+  runtime::FreshMemory fresh;
+  splits_.resize_for_overwrite(edges_.size(), fresh);
+  fresh.touch(executor_);
   refused_in_ = FilledArray<std::uint32_t>(executor_, edges_.size());
   asked_ = FilledArray<std::uint8_t>(executor_, edges_.size());
   FilledArray<std::uint8_t> is_cut(executor_, mesh_.element_slots());
@@ -118,7 +121,7 @@ void Refine<Dim>::plan() {
         }
       });
   elements_ = MarkedSet(executor_, is_cut);
-  cuts_ = std::make_unique_for_overwrite<Cuts[]>(elements_.size());
+  cuts_ = runtime::make_unset<Cuts>(executor_, elements_.size());
   parallel_for(executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); });
   around_begin_ = FilledArray<std::uint32_t>(executor_, edges_.size());
   parallel_for(executor_, around_.size(), [&](std::size_t i) {
@@ -432,7 +435,7 @@ void Refine<Dim>::grow() {
   {
     const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
     const std::size_t end_of_vertices = first_vertex_ + report_.applied;
-    mesh_.grow(end_of_vertices, first_element_);
+    mesh_.grow(executor_, end_of_vertices, first_element_);
     parallel_for(executor_, edges_.size(), [&](std::size_t i) {
       const auto number = static_cast<std::uint32_t>(i);
       if (!is_split(number)) return;
@@ -440,7 +443,7 @@ void Refine<Dim>::grow() {
       if constexpr (Dim == 3) write_links(number, defer);
     });
     splits_.release(executor_);  // before elements take their memory
-    mesh_.grow(end_of_vertices, end_of_elements_);
+    mesh_.grow(executor_, end_of_vertices, end_of_elements_);
     parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });
   }
   const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);

@@ -30,7 +30,7 @@ class Swap {
   using Update = ListChange;
   static constexpr bool forgoes_wakes = true;  // the next sweep looks at what has changed
 
-  explicit Swap(Mesh<Dim>& mesh) : mesh_(mesh) {}
+  Swap(const runtime::Executor& executor, Mesh<Dim>& mesh) : executor_(executor), mesh_(mesh) {}
 
   /// Edges and faces of elements changed after an epoch whose swap would be an improvement now,
   /// where the worst mean ratio is below a bound. Only such as are likely to be worth a swap are
@@ -71,7 +71,7 @@ class Swap {
   }
   std::array<std::uint32_t, 1> grow(const std::array<std::uint32_t, 1>& total) {
     const auto elements = static_cast<std::uint32_t>(mesh_.element_slots());
-    mesh_.grow(mesh_.vertex_slots(), elements + total[0]);
+    mesh_.grow(executor_, mesh_.vertex_slots(), elements + total[0]);
     return {elements};
   }
   void apply(const Plan& plan, runtime::Commit<Swap>& commit);
@@ -80,6 +80,7 @@ class Swap {
   void commit(std::uint32_t owner, const Update& update) { change_list(mesh_, owner, update); }
 
  private:
+  const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
 };
 

@@ -85,7 +85,7 @@ TYPED_TEST(KernelsChecked, SwapKeepsItsContract) {
   constexpr int Dim = TypeParam::value;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 80 : 60);
-    expect_sound(mesh, Swap<Dim>(mesh), Swap<Dim>::improvements(executor, mesh, 0, 1.0));
+    expect_sound(mesh, Swap<Dim>(executor, mesh), Swap<Dim>::improvements(executor, mesh, 0, 1.0));
   }
 }
 

@@ -67,7 +67,7 @@ TYPED_TEST(MeshIn, RenumberingDropsWhatIsGoneAndBringsNeighboursTogether) {
   any.vertex_reference.push_back(0);  // belongs to no element
   any.coordinates.resize(any.coordinates.size() + Dim, 0.1);
   Mesh<Dim> mesh = made<Dim>(any, 2);
-  mesh.grow(mesh.vertex_slots() + 5, mesh.element_slots() + 5);
+  mesh.grow(runtime::Executor({.threads = 2}), mesh.vertex_slots() + 5, mesh.element_slots() + 5);
   for (ElementId e = mesh.element_slots() - 5; e < mesh.element_slots(); ++e)
     mesh.corners_of[e].fill(none);
   const Executor executor({.threads = 2});

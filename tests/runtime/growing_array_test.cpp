@@ -44,6 +44,20 @@ TEST(GrowingArray, IsWrittenByAllThreadsAfterItGrew) {
     ASSERT_EQ(array[i], i * (i < 1000 ? 3 : i < 100000 ? 2 : 1));
 }
 
+/// From one page to many times what is held free behind it.
+TEST(GrowingArray, KeepsWhatItHoldsWhereItsPagesAreAskedFor) {
+  const Executor executor({.threads = 3});
+  GrowingArray<std::uint32_t> array;
+  for (std::size_t n = 100; n < 3000000; n += n / 3) {
+    const std::size_t before = array.size();
+    FreshMemory fresh;
+    array.resize_for_overwrite(n, fresh);
+    fresh.touch(executor);
+    for (std::size_t i = before; i < n; ++i) array[i] = static_cast<std::uint32_t>(3 * i);
+    for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(array[i], 3 * i) << n;
+  }
+}
+
 TEST(GrowingArray, GivesItsElementsAwayWhenMoved) {
   GrowingArray<int> a;
   a.resize(10);

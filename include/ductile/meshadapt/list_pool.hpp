@@ -27,8 +27,8 @@ class ListPool {
   }
 
   /// The same, but each list is to be given room by reserve_all() before anything else.
-  void reset_for_overwrite(std::size_t n) {
-    slot_of_.resize_for_overwrite(n);
+  void reset_for_overwrite(std::size_t n, runtime::FreshMemory& fresh) {
+    slot_of_.resize_for_overwrite(n, fresh);
     arena_->clear();
   }
 

@@ -128,8 +128,8 @@ struct Mesh {
   static constexpr std::size_t largest_ball = 512;
 
   /// Makes room for this many vertices and elements; new ones are to be set before anything else
-  /// looks at the mesh. Thread safety: one thread.
-  void grow(std::size_t vertices, std::size_t elements);
+  /// looks at the mesh. Thread safety: one caller; runs on the executor.
+  void grow(const runtime::Executor& executor, std::size_t vertices, std::size_t elements);
 };
 
 /// Elements that a vertex's list has room for beyond those it was made with.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime {
@@ -43,10 +44,13 @@ class FilledArray {
   void resize(const Executor& executor, std::size_t n, T value) {
     if (n <= size_) return;
     if (n > capacity_) move_to(executor, std::max(n, capacity_ + capacity_ / 2));
+    T* const first = values_.get() + size_;
+    const bool fresh = is_fresh(first, (n - size_) * sizeof(T));
     parallel_for_ranges(
         executor, n - size_,
         [&](std::size_t begin, std::size_t end) {
-          std::fill(values_.get() + size_ + begin, values_.get() + size_ + end, value);
+          if (fresh) get_pages(first + begin, (end - begin) * sizeof(T));
+          std::fill(first + begin, first + end, value);
         },
         by_pages);
     size_ = n;
@@ -56,7 +60,8 @@ class FilledArray {
   void clear() { size_ = 0; }
 
  private:
-  static constexpr LoopOptions by_pages{.grain = 4096, .serial_below = 16384};
+  static constexpr std::size_t pages = std::max<std::size_t>(1, 32768 / sizeof(T));
+  static constexpr LoopOptions by_pages{.grain = pages, .serial_below = 2 * pages};
 
   void swap(FilledArray& other) {
     std::swap(values_, other.values_);

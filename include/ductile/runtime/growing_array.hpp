@@ -1,7 +1,8 @@
 /// @file
 /// GrowingArray: an array for graphs that grow while they are worked on. Its memory comes in pages
-/// straight from the system: growing moves page table entries where the system can do that (Linux)
-/// and copies nothing, and what is new is first touched, and so placed near, by whoever writes it.
+/// straight from the system: where that can do so (Linux) growing takes addresses that were held
+/// free behind it, or moves page table entries, and copies nothing, and what is new is first
+/// touched, and so placed near, by whoever writes it.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 
 namespace ductile::runtime {
 
@@ -36,6 +38,9 @@ class GrowingMemory {
   /// Makes room for at least so many bytes. Contents stay, but may move.
   void reserve(std::size_t bytes);
 
+  /// Adds the pages of the first so many bytes, save those added before, and a few more.
+  void add_pages(std::size_t bytes, FreshMemory& fresh);
+
   /// Gives all of them back, by all threads of an executor.
   void release(const Executor& executor);
 
@@ -43,10 +48,15 @@ class GrowingMemory {
   void swap(GrowingMemory& other) {
     std::swap(data_, other.data_);
     std::swap(bytes_, other.bytes_);
+    std::swap(space_, other.space_);
+    std::swap(added_, other.added_);
   }
+  void move_to_larger_space(std::size_t wanted);
 
   std::byte* data_ = nullptr;
-  std::size_t bytes_ = 0;
+  std::size_t bytes_ = 0;  // that may be written
+  std::size_t space_ = 0;  // of addresses held, at least as many
+  std::size_t added_ = 0;  // of which pages have been asked for
 };
 
 }  // namespace detail
@@ -98,6 +108,12 @@ requires(std::is_trivially_copyable_v<T> &&
     size_ = n;
   }
 
+  /// The same; pages for what is new, all of which is about to be written, are added to `fresh`.
+  void resize_for_overwrite(std::size_t n, FreshMemory& fresh) {
+    resize_for_overwrite(n);
+    memory_.add_pages(n * sizeof(T), fresh);
+  }
+
   /// Empties the array and gives its memory back, which the system takes page by page: by all
   /// threads of an executor, where one thread alone would hold up the others.
   void release(const Executor& executor) {
@@ -105,7 +121,7 @@ requires(std::is_trivially_copyable_v<T> &&
     size_ = touched_ = 0;
   }
 
-  /// Bytes of address space held; those never written take no memory.
+  /// Bytes there is room for; those never written take no memory.
   std::size_t bytes() const { return memory_.bytes(); }
 
   friend bool operator==(const GrowingArray& a, const GrowingArray& b) {

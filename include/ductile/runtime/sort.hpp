@@ -22,6 +22,7 @@
 #include "ductile/runtime/detail/radix_sort.hpp"
 #include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime {
@@ -75,7 +76,7 @@ void merge_sort(const Executor& executor, std::span<T> values) {
                         const std::span part = values.subspan(begin, end - begin);
                         std::sort(part.begin(), part.end());
                       });
-  const auto scratch = std::make_unique_for_overwrite<T[]>(values.size());
+  const auto scratch = make_unset<T>(executor, values.size());
   std::span<T> from = values, to(scratch.get(), values.size());
   for (std::size_t width = block_size; width < values.size(); width *= 2) {
     merge_round<T>(executor, from, to, width, block_size);
@@ -119,7 +120,7 @@ void sort_in_place(const Executor& executor, std::span<T> values) {
 /// Moves every value twice.
 template <class T>
 void sort_by_reference(const Executor& executor, std::span<T> values) {
-  const auto references = std::make_unique_for_overwrite<Reference<T>[]>(values.size());
+  const auto references = make_unset<Reference<T>>(executor, values.size());
   const std::span order(references.get(), values.size());
   const LoopOptions copying{.serial_below = 1024};
   parallel_for(

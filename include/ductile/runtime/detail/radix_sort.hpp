@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::sort_detail {
@@ -139,7 +140,7 @@ void radix_sort(const Executor& executor, std::span<T> values, unsigned low) {
   const std::size_t blocks = std::clamp<std::size_t>(values.size() / radix_block, 1, most_blocks);
   const std::size_t block = values.size() / blocks + 1;
   DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block), low};
-  const auto scratch = std::make_unique_for_overwrite<T[]>(values.size());
+  const auto scratch = make_unset<T>(executor, values.size());
   // All memory is taken before the first pass: later, running out of it would lose values.
   std::unique_ptr<Line<T>[]> lines;
   if (values.size_bytes() > 262144)

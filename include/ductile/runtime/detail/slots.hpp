@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
@@ -31,8 +32,13 @@ class Slots {
     release();
     begin_ = std::allocator<std::optional<T>>().allocate(n);
     size_ = n;
-    parallel_for(executor, n, [&](std::size_t i) { std::construct_at(begin_ + i); },
-                 {.grain = 256, .serial_below = 1024});
+    const bool fresh = is_fresh(begin_, n * sizeof(*begin_));
+    parallel_for_ranges(executor, n,
+                        [&](std::size_t begin, std::size_t end) {
+                          if (fresh) get_pages(begin_ + begin, (end - begin) * sizeof(*begin_));
+                          std::uninitialized_value_construct(begin_ + begin, begin_ + end);
+                        },
+                        {.grain = 256, .serial_below = 1024});
   }
 
  private:

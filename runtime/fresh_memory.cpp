@@ -1,0 +1,85 @@
+#include "ductile/runtime/fresh_memory.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "ductile/runtime/parallel_for.hpp"
+
+#ifdef __linux__
+#include <sys/mman.h>
+#include <unistd.h>
+#ifndef MADV_POPULATE_WRITE
+#define MADV_POPULATE_WRITE 23
+#endif
+#endif
+
+namespace ductile::runtime {
+
+#ifdef __linux__
+
+namespace {
+
+std::size_t page_size() {
+  static const auto size = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return size;
+}
+
+std::size_t offset_in_page(const void* memory) {
+  return reinterpret_cast<std::uintptr_t>(memory) % page_size();
+}
+
+}  // namespace
+
+void FreshMemory::add(void* memory, std::size_t bytes) {
+  auto* const begin = static_cast<std::byte*>(memory);
+  if (bytes >= page_size()) parts_.push_back({begin - offset_in_page(begin), bytes / page_size()});
+}
+
+void FreshMemory::touch(const Executor& executor) {
+  constexpr std::size_t least = 8, most = 64;  // pages asked for at once
+  std::size_t all = 0;
+  for (const Pages& part : parts_) all += part.count;
+  const auto threads = static_cast<std::size_t>(executor.threads());
+  const std::size_t block = std::clamp(all / (2 * threads), least, most);
+  std::vector<Pages> blocks;
+  for (auto [begin, count] : std::exchange(parts_, {}))
+    for (; count > 0; begin += blocks.back().count * page_size(), count -= blocks.back().count)
+      blocks.push_back({begin, std::min(block, count)});
+  parallel_for(executor, blocks.size(),
+               [&](std::size_t i) { get_pages(blocks[i].begin, blocks[i].count * page_size()); },
+               {.grain = 1, .serial_below = 3});
+}
+
+bool is_fresh(void* memory, std::size_t bytes) {
+  constexpr std::size_t few = 16;
+  if (bytes < few * page_size()) return false;
+  auto* const last = static_cast<std::byte*>(memory) + bytes - page_size();
+  unsigned char is_resident = 1;
+  return mincore(last - offset_in_page(last), 1, &is_resident) == 0 && (is_resident & 1U) == 0;
+}
+
+void get_pages(void* memory, std::size_t bytes) {
+  auto* const begin = static_cast<std::byte*>(memory);
+  const std::size_t before = offset_in_page(begin);
+  madvise(begin - before, before + bytes, MADV_POPULATE_WRITE);
+}
+
+#else
+
+void FreshMemory::add(void*, std::size_t) {}
+void FreshMemory::touch(const Executor&) {}
+bool is_fresh(void*, std::size_t) { return false; }
+void get_pages(void*, std::size_t) {}
+
+#endif
+
+void touch_pages(const Executor& executor, void* memory, std::size_t bytes) {
+  // What loops there are must not depend on what malloc gives if they are recorded.
+  if (executor.recording() == nullptr && !is_fresh(memory, bytes)) return;
+  FreshMemory fresh;
+  fresh.add(memory, bytes);
+  fresh.touch(executor);
+}
+
+}  // namespace ductile::runtime

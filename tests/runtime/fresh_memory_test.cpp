@@ -1,0 +1,106 @@
+#include "ductile/runtime/fresh_memory.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace ductile::runtime {
+namespace {
+
+/// Memory that the system has given no pages of yet.
+class Mapping {
+ public:
+  explicit Mapping(std::size_t pages) : bytes_(pages * page) {
+    place_ = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    madvise(place_, bytes_, MADV_NOHUGEPAGE);
+  }
+  Mapping(const Mapping&) = delete;
+  Mapping& operator=(const Mapping&) = delete;
+  ~Mapping() { munmap(place_, bytes_); }
+
+  std::uint8_t* at(std::size_t byte) const { return static_cast<std::uint8_t*>(place_) + byte; }
+
+  /// Which of its pages are there, as ones in order.
+  std::vector<std::uint8_t> there() const {
+    std::vector<std::uint8_t> result(bytes_ / page);
+    EXPECT_EQ(mincore(place_, bytes_, result.data()), 0);
+    for (std::uint8_t& one : result) one &= 1U;
+    return result;
+  }
+  std::size_t count() const {
+    const auto all = there();
+    return std::accumulate(all.begin(), all.end(), std::size_t{0});
+  }
+
+  static inline const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+
+ private:
+  std::size_t bytes_;
+  void* place_;
+};
+
+/// Linux can since 5.14.
+bool system_can() {
+  constexpr int populate_write = 23;
+  const Mapping one(1);
+  return madvise(one.at(0), Mapping::page, populate_write) == 0 || errno != EINVAL;
+}
+
+TEST(FreshMemory, GetsThePagesOfAllThatWasAddedAndNoOthers) {
+  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  constexpr std::size_t page_count = 300;
+  for (const int threads : {1, 2, 3, 8}) {
+    const Mapping memory(page_count);
+    FreshMemory fresh;
+    fresh.add(memory.at(10 * Mapping::page), 200 * Mapping::page);
+    fresh.add(memory.at(250 * Mapping::page + 1), 3 * Mapping::page);
+    fresh.add(memory.at(290 * Mapping::page + 7), Mapping::page - 1);  // no whole page
+    fresh.touch(Executor({.threads = threads}));
+    const std::vector<std::uint8_t> there = memory.there();
+    for (std::size_t i = 0; i < page_count; ++i)
+      EXPECT_EQ(there[i] != 0, (i >= 10 && i < 210) || (i >= 250 && i < 253)) << i;
+  }
+}
+
+TEST(FreshMemory, KeepsWhatIsThere) {
+  std::vector<std::uint32_t> values(1000000);
+  std::iota(values.begin(), values.end(), 3U);
+  const auto before = values;
+  FreshMemory fresh;
+  fresh.add(values.data() + 11, (values.size() - 20) * sizeof(values[0]));
+  fresh.touch(Executor({.threads = 3}));
+  fresh.touch(Executor({.threads = 3}));  // of nothing
+  EXPECT_EQ(values, before);
+}
+
+TEST(TouchPages, AsksForManyOfWhichTheLastIsNotThere) {
+  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  const Executor executor({.threads = 2});
+  const std::size_t page = Mapping::page;
+  const Mapping fresh(100), few(100), reused(100);
+  touch_pages(executor, fresh.at(0), 100 * page);
+  EXPECT_EQ(fresh.count(), 100U);
+  touch_pages(executor, few.at(0), 10 * page);
+  EXPECT_EQ(few.count(), 0U);
+  *reused.at(99 * page) = 1;
+  touch_pages(executor, reused.at(0), 100 * page);
+  EXPECT_EQ(reused.count(), 1U);
+}
+
+TEST(MakeUnset, GivesElementsThatHoldWhatIsWritten) {
+  const Executor executor({.threads = 2});
+  for (const std::size_t n : {0U, 1U, 5000U, 3000000U}) {
+    const auto elements = make_unset<std::uint16_t>(executor, n);
+    std::fill_n(elements.get(), n, std::uint16_t{7});
+    EXPECT_EQ(std::count(elements.get(), elements.get() + n, 7), static_cast<std::ptrdiff_t>(n));
+  }
+}
+
+}  // namespace
+}  // namespace ductile::runtime
