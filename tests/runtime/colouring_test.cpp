@@ -132,14 +132,24 @@ std::vector<std::uint32_t> first_fit_in(const std::vector<std::uint32_t>& order,
   return colour_of;
 }
 
-/// Rows of no, one, few and many neighbours, an even and an odd number.
+/// Rows of no, one, few and many neighbours, an even and an odd number; in cliques of ids in a row
+/// each vertex has all colours of the one before and one more, beyond those of each width.
 TEST(Colouring, SerialIsFirstFitInOrder) {
   auto graphs = test::test_graphs();
   graphs.push_back(test::make_graph("no edges", 300, {}));
-  for (const auto& graph : graphs)
-    EXPECT_EQ(colour(Executor({.threads = 1}), graph.view(), ColouringMethod::serial).colour_of,
-              first_fit_in(vertices_of(graph), graph))
+  for (const std::uint32_t clique : {60U, 65U, 130U, 300U})
+    graphs.push_back(test::clique_graph(clique, clique));
+  for (const auto& graph : graphs) {
+    const auto expected = first_fit_in(vertices_of(graph), graph);
+    const Executor executor({.threads = 1});
+    EXPECT_EQ(colour(executor, graph.view(), ColouringMethod::serial).colour_of, expected)
         << graph.name;
+    const auto called_back = callback_graph(
+        graph.view().vertex_count(),
+        [&graph](std::uint32_t v, auto&& visit) { graph.view().for_each_neighbour(v, visit); });
+    EXPECT_EQ(colour(executor, called_back, ColouringMethod::serial).colour_of, expected)
+        << graph.name;
+  }
 }
 
 /// Serial first-fit in the order of the hashed priority.
@@ -163,7 +173,8 @@ TEST(Colouring, ByPriorityIsFirstFitInItsOrder) {
 /// Cliques of sizes that just fit into words of each width, and just do not, on few vertices and on
 /// enough for marks.
 TEST(Colouring, TakesAsManyColoursAsAreNeeded) {
-  for (const std::uint32_t clique : {30U, 31U, 47U, 63U, 64U, 222U, 223U, 239U, 254U, 255U, 1100U})
+  for (const std::uint32_t clique :
+       {30U, 31U, 47U, 61U, 62U, 63U, 64U, 222U, 223U, 239U, 253U, 254U, 255U, 1100U})
     for (const std::uint32_t vertices : {5 * clique, 9900U}) {
       const auto graph = test::make_graph("clique and lone vertices", vertices,
                                           test::clique_edges(vertices / clique, clique));

@@ -14,6 +14,7 @@
 #include "ductile/runtime/detail/blocked_colouring.hpp"
 #include "ductile/runtime/detail/compiled_graphs.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/in_order.hpp"
 #include "ductile/runtime/detail/marked_colouring.hpp"
 #include "ductile/runtime/detail/priority_colouring.hpp"
 #include "ductile/runtime/detail/speculative_colouring.hpp"

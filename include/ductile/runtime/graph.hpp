@@ -39,6 +39,13 @@ concept RowGraph = Graph<G> && requires(const G& graph, std::uint32_t v) {
   { graph.row(v) } -> std::convertible_to<std::span<const std::uint32_t>>;
 };
 
+/// Rows that follow each other without a gap: row(v) is from row_begin(v) to row_begin(v + 1).
+/// Thread safety: as visiting.
+template <class G>
+concept PackedRowGraph = RowGraph<G> && requires(const G& graph, std::uint32_t v) {
+  { graph.row_begin(v) } -> std::same_as<const std::uint32_t*>;
+};
+
 /// Compressed rows: the neighbours of v are neighbour[offset[v]] to neighbour[offset[v + 1] - 1].
 template <std::unsigned_integral Offset = std::uint32_t>
 struct CsrGraph {
@@ -52,8 +59,10 @@ struct CsrGraph {
     for (Offset i = offset[v]; i < end; ++i) visit(neighbour[i]);
   }
   std::span<const std::uint32_t> row(std::uint32_t v) const {
-    return {neighbour.data() + offset[v], neighbour.data() + offset[std::size_t{v} + 1]};
+    return {row_begin(v), neighbour.data() + offset[std::size_t{v} + 1]};
   }
+  /// Of the vertex count, where the last one ends.
+  const std::uint32_t* row_begin(std::size_t v) const { return neighbour.data() + offset[v]; }
   /// Inlined always: GCC leaves out calls of functions that do nothing but prefetch.
   [[gnu::always_inline]] void prefetch(std::uint32_t v) const {
     __builtin_prefetch(neighbour.data() + offset[v]);

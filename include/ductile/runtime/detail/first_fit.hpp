@@ -82,7 +82,7 @@ class Colours {
   Word operator[](std::uint32_t v) const {
     return std::atomic_ref(words_[v]).load(std::memory_order_relaxed);
   }
-  void set(std::uint32_t v, Word colour) const {
+  void set(std::size_t v, Word colour) const {
     std::atomic_ref(words_[v]).store(colour, std::memory_order_relaxed);
   }
 
@@ -119,10 +119,16 @@ struct TakenColours {
       bits |= std::uint64_t{word + (64 - count) < 64} << (word & 63U);
     }
   }
-  /// A neighbour is `waiting`, or has the mark of another than this.
-  bool shows_others(std::uint32_t number) const {
+  /// The bit of the least colour that is not taken; 0 if there is none.
+  std::uint64_t least_free() const {
+    constexpr std::uint64_t colours = (std::uint64_t{1} << count) - 1;
+    return ~bits & (bits + 1) & colours;
+  }
+  /// A neighbour is `waiting`, or has another mark than these. A number that no mark has is that
+  /// of nobody.
+  bool shows_others(std::same_as<std::uint32_t> auto... numbers) const {
     constexpr std::uint64_t all = ~std::uint64_t{0} << count << 1U >> 1U;  // but that of `none`
-    return (bits & (all & ~(std::uint64_t{1} << (61 - number)))) != 0;
+    return (bits & (all & ~((std::uint64_t{1} << (61 - numbers)) | ...))) != 0;
   }
 };
 
@@ -168,24 +174,29 @@ template <Graph G>
       graph.prefetch(v - std::uint32_t{prefetch_distance_of<G>()});
 }
 
-/// Calls visit(u) for every neighbour of v, two in each step of the loop where they lie in a row.
-/// A loop of one a step, of half a dozen instructions, takes one cycle or two a step by where in
-/// memory the compiler happens to place it. The statement of no instruction hides from GCC how far
-/// the loop goes: it would work out by four more what `u` is after it.
+/// Calls visit(u) for all of a row, two in each step of the loop. A loop of one a step, of half a
+/// dozen instructions, takes one cycle or two a step by where in memory the compiler happens to
+/// place it. The statement of no instruction hides from GCC how far the loop goes: it would work
+/// out by four more what `u` is after it.
+template <class Visit>
+[[gnu::always_inline]] inline void visit_in_pairs(const std::uint32_t* u, const std::uint32_t* end,
+                                                  Visit visit) {
+  if (u == end) return;
+  const std::uint32_t* const last = end - 1;
+  for (; u < last; u += 2) {
+    visit(u[0]);
+    visit(u[1]);
+    asm("" : "+r"(u));
+  }
+  if (u == last) visit(*u);
+}
+
+/// Calls visit(u) for every neighbour of v.
 template <Graph G, class Visit>
 [[gnu::always_inline]] inline void visit_in_pairs(const G& graph, std::uint32_t v, Visit visit) {
   if constexpr (RowGraph<G>) {
     const std::span<const std::uint32_t> row = graph.row(v);
-    const std::uint32_t* u = row.data();
-    const std::uint32_t* const end = u + row.size();
-    if (u == end) return;
-    const std::uint32_t* const last = end - 1;
-    for (; u < last; u += 2) {
-      visit(u[0]);
-      visit(u[1]);
-      asm("" : "+r"(u));
-    }
-    if (u == last) visit(*u);
+    visit_in_pairs(row.data(), row.data() + row.size(), visit);
   } else {
     graph.for_each_neighbour(v, visit);
   }
@@ -294,22 +305,5 @@ template <Graph G, class View>
                                                              View colours) {
   return first_fit(graph, v, colours, 0).colour;
 }
-
-/// First-fit in order, on the caller.
-struct Serial {
-  static constexpr std::uint32_t marks = 0;
-  static constexpr bool resumes = true;  ///< goes on after TooManyColours, given longer words
-
-  template <class Width, Graph G>
-  static void run(const Executor&, const G& graph, VertexSet vertices, Colours<Width> colours) {
-    const auto& rows = in_registers(graph);
-    std::size_t i = 0;
-    while (i < vertices.count && colours[vertices[i]] != Colours<Width>::none) ++i;
-    for (; i < vertices.count; ++i) {
-      prefetch_after(rows, vertices, i);
-      colours.set(vertices[i], least_free(rows, vertices[i], colours));
-    }
-  }
-};
 
 }  // namespace ductile::runtime::detail

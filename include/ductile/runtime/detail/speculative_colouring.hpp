@@ -16,6 +16,7 @@
 
 #include "ductile/runtime/detail/first_fit.hpp"
 #include "ductile/runtime/detail/fronts.hpp"
+#include "ductile/runtime/detail/in_order.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -25,8 +26,9 @@ namespace ductile::runtime::detail {
 
 constexpr LoopOptions speculative_loop{.grain = 256, .serial_below = 1024};
 
-/// As many threads know their own windows; more look again at all that were coloured before a
-/// neighbour. The more marks, the sooner a colour is beyond TakenColours.
+/// As many threads have two marks of their own, for their windows and for the newest vertex; more
+/// look again at all that were coloured before a neighbour. The more marks, the sooner a colour is
+/// beyond TakenColours.
 constexpr std::uint32_t speculative_marks = 16;
 
 /// What words of a byte become when short ones do not have enough colours.
@@ -85,42 +87,27 @@ class FirstRound {
     colour_in_order<Long>(window, done);
   }
 
+  /// The vertices of a window but those that are done.
   template <class As>
   void colour_in_order(Window window, std::uint32_t done) {
-    if (window.ascending) {
-      colour_in_order<As, true>(window, done);
-    } else {
-      colour_in_order<As, false>(window, done);
-    }
-  }
-
-  /// Not inlined, so that each loop has the registers it needs.
-  template <class As, bool ascending>
-  [[gnu::noinline]] void colour_in_order(Window window, std::uint32_t done) {
-    const auto& rows = in_registers(graph_);
-    const Colours<As> colours = colours_.template as<As>();
-    const VertexSet all{colours.vertex_count()};
+    (window.ascending ? window.begin : window.end) += window.ascending ? done : -done;
     // Threads that share a mark cannot tell theirs from the other's.
-    const bool alone = executor_.threads() <= static_cast<int>(Width::marks);
-    const std::uint32_t mine = alone ? number() : none_of_them;
-    for (std::uint32_t i = done; i < window.size(); ++i) {
-      const std::uint32_t v = ascending ? window.begin + i : window.end - 1 - i;
-      if constexpr (ascending) {
-        prefetch_after(rows, all, v);
-      } else {
-        prefetch_before(rows, v);
-      }
-      const auto [colour, sees_others] = first_fit(rows, v, colours, mine);
-      colours.set(v, colour);
-      if (sees_others != 0) [[unlikely]]
-        suspect(v);
+    const bool alone = executor_.threads() <= static_cast<int>(speculative_marks);
+    const Painter painter{alone ? number() : Width::marks, number() + speculative_marks};
+    const auto suspect = [this](std::uint32_t v) { this->suspect(v); };
+    const Colours<As> colours = colours_.template as<As>();
+    if (window.ascending) {
+      first_fit_in_order<true>(graph_, colours, window, painter, suspect);
+    } else {
+      first_fit_in_order<false>(graph_, colours, window, painter, suspect);
     }
   }
 
   [[gnu::noinline]] void suspect(std::uint32_t v) { suspects_.append(v); }
 
-  static std::uint32_t number() { return static_cast<std::uint32_t>(this_thread()) % Width::marks; }
-  static constexpr std::uint32_t none_of_them = Width::marks;
+  static std::uint32_t number() {
+    return static_cast<std::uint32_t>(this_thread()) % speculative_marks;
+  }
 
   const Executor& executor_;
   const G& graph_;
@@ -146,7 +133,7 @@ bool clashes(const G& graph, std::uint32_t v, const Colours<Width>& colours, Riv
 
 /// The scheme of Catalyurek et al.: colour, barrier, find the clashes, barrier.
 struct TwoPhase {
-  static constexpr std::uint32_t marks = speculative_marks;
+  static constexpr std::uint32_t marks = 2 * speculative_marks;
   static constexpr bool lengthens = true;  ///< given short words, goes on with long ones
 
   template <class Width, Graph G>
@@ -175,7 +162,7 @@ struct TwoPhase {
 /// The scheme of Rokos et al.: who finds a clash recolours at once and is looked at again in the
 /// next round; a barrier separates rounds, none is within.
 struct DetectAgain {
-  static constexpr std::uint32_t marks = speculative_marks;
+  static constexpr std::uint32_t marks = 2 * speculative_marks;
   static constexpr bool lengthens = true;  ///< given short words, goes on with long ones
 
   template <class Width, Graph G>

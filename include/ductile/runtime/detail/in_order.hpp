@@ -1,0 +1,180 @@
+/// @file
+/// First-fit of vertices one after the other. In most orders each is a neighbour of the one before,
+/// whose colour, just stored, takes long to be read back: on Zen 5 some 15 cycles, more than all
+/// else that a vertex of six neighbours costs. So the newest vertex shows, until the next one's
+/// neighbours have been looked at, a mark where its colour will be, and who sees that mark takes
+/// the colour from a register.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/fronts.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/graph.hpp"
+
+namespace ductile::runtime::detail {
+
+/// The rows of vertices that follow each other, up or down, and asks for those to come.
+template <Graph G, bool ascending>
+class RowsInOrder {
+ public:
+  RowsInOrder(const G& graph, std::uint32_t) : graph_(in_registers(graph)) {}
+
+  /// Whether v, which has its turn, has at least so many neighbours.
+  bool is_long(std::uint32_t v, std::size_t least) const {
+    if constexpr (RowGraph<G>) return graph_.row(v).size() >= least;
+    return false;
+  }
+  void pass(std::uint32_t) {}
+  template <class Visit>
+  [[gnu::always_inline]] void visit(std::uint32_t v, Visit see) {
+    if constexpr (ascending) {
+      prefetch_after(graph_, {graph_.vertex_count()}, v);
+    } else {
+      prefetch_before(graph_, v);
+    }
+    visit_in_pairs(graph_, v, see);
+  }
+
+ private:
+  decltype(in_registers(std::declval<const G&>())) graph_;
+};
+
+/// Where a row begins the one before ends: one address to find for each, not two; and what comes
+/// next in memory are rows to come.
+template <PackedRowGraph G, bool ascending>
+class RowsInOrder<G, ascending> {
+ public:
+  RowsInOrder(const G& graph, std::uint32_t first)
+      : graph_(graph), edge_(graph.row_begin(ascending ? first : std::size_t{first} + 1)) {}
+
+  bool is_long(std::size_t v, std::size_t least) const {
+    const std::uint32_t* const other = other_edge(v);
+    return static_cast<std::size_t>(ascending ? other - edge_ : edge_ - other) >= least;
+  }
+  void pass(std::size_t v) { edge_ = other_edge(v); }
+  template <class Visit>
+  [[gnu::always_inline]] void visit(std::size_t v, Visit see) {
+    const std::uint32_t* const other = other_edge(v);
+    const std::uint32_t* const edge = std::exchange(edge_, other);
+    prefetch(edge);
+    visit_in_pairs(ascending ? edge : other, ascending ? other : edge, see);
+  }
+
+ private:
+  const std::uint32_t* other_edge(std::size_t v) const {
+    return graph_.row_begin(ascending ? v + 1 : v);
+  }
+  /// Of what may lie outside of the array, where it does nothing. 1024 to 4096 bytes ahead take
+  /// the same time.
+  [[gnu::always_inline]] static void prefetch(const std::uint32_t* edge) {
+    const auto place = reinterpret_cast<std::uintptr_t>(edge);
+    const std::uintptr_t ahead = ascending ? place + 1536 : place - 1536;
+    __builtin_prefetch(reinterpret_cast<const void*>(ahead));  // NOLINT(performance-no-int-to-ptr)
+  }
+
+  G graph_;
+  const std::uint32_t* edge_;
+};
+
+/// Who colours: the number of the mark that its vertices show at first, and of the one that the
+/// newest shows. If `number` is that of no mark, all marks count as those of others.
+struct Painter {
+  std::uint32_t number, newest;
+};
+
+/// What the neighbours of v show, as bits of TakenColours.
+template <class Rows, class Width>
+[[gnu::always_inline]] inline std::uint64_t shown_to(std::size_t v, Rows& rows,
+                                                     Colours<Width> colours) {
+  std::uint64_t bits = 0;
+  rows.visit(v, [&](std::uint32_t u) {
+    TakenColours<Colours<Width>> seen{bits};
+    seen.add(colours[u]);
+    bits = seen.bits;
+    asm("" : "+r"(bits));  // one after the other takes a register less
+  });
+  return bits;
+}
+
+/// First-fit of the vertices of a window, in its order. Calls saw_others(v) if v sees one that is
+/// `waiting`, or has a mark of others. Throws TooManyColours: the vertices before then show their
+/// colours, and those to come what they showed. Not inlined, so that the loop has the registers it
+/// needs.
+template <bool ascending, class Width, Graph G, class SawOthers>
+[[gnu::noinline]] void first_fit_in_order(const G& graph, Colours<Width> colours, Window window,
+                                          Painter painter, SawOthers saw_others) {
+  using Word = typename Width::Word;
+  using Seen = TakenColours<Colours<Width>>;
+  RowsInOrder<G, ascending> rows(graph, window[0]);
+  const Word mark = Colours<Width>::mark(painter.newest);
+  std::uint64_t mark_bit = std::uint64_t{1} << (mark & 63U);
+  asm("" : "+r"(mark_bit));  // as long as GCC knows it, it makes a branch of a look at it
+  const std::uint32_t own = painter.number < Width::marks ? painter.newest : painter.number;
+  Word newest = Colours<Width>::none;  // the colour of the newest vertex
+  std::uint64_t newest_bit = 0;        // what that is in TakenColours
+  const auto show_newest = [&](std::size_t v, bool is_first) {
+    if (!is_first) colours.set(ascending ? v - 1 : v + 1, newest);
+  };
+  const auto colour = [&](std::size_t v, bool is_first) __attribute__((always_inline)) {
+    const auto id = static_cast<std::uint32_t>(v);
+    if constexpr (RowGraph<G> && has_many_colours<Colours<Width>>)
+      if (rows.is_long(id, many_neighbours)) [[unlikely]] {
+        rows.pass(v);
+        show_newest(v, is_first);
+        const auto [fit, sees_others] = first_fit_of_many(graph, id, colours, painter.number);
+        colours.set(v, newest = fit);
+        if (sees_others != 0) saw_others(id);
+        return;
+      }
+    Seen seen{shown_to(v, rows, colours)};
+    show_newest(v, is_first);
+    const std::uint64_t all = seen.bits | newest_bit;
+    if (__builtin_expect_with_probability((all & mark_bit) != 0, 1, 0.5)) seen.bits = all;
+    newest_bit = seen.least_free();
+    newest = newest_bit != 0 ? static_cast<Word>(std::countr_zero(newest_bit))
+                             : least_free_of_many(graph, id, colours);
+    colours.set(v, mark);
+    if (seen.shows_others(painter.number, own)) [[unlikely]]
+      saw_others(id);
+  };
+  colour(window[0], true);
+  if constexpr (ascending) {
+    for (std::size_t v = std::size_t{window.begin} + 1; v < window.end; ++v) colour(v, false);
+  } else {
+    for (std::size_t v = window.end - 1; v-- > window.begin;) colour(v, false);
+  }
+  colours.set(window[window.size() - 1], newest);
+}
+
+/// First-fit in order, on the caller.
+struct Serial {
+  static constexpr std::uint32_t marks = 1;
+  static constexpr bool resumes = true;  ///< goes on after TooManyColours, given longer words
+
+  template <class Width, Graph G>
+  static void run(const Executor&, const G& graph, VertexSet vertices, Colours<Width> colours) {
+    std::size_t i = 0;
+    while (i < vertices.count && colours[vertices[i]] != Colours<Width>::none) ++i;
+    if constexpr (Width::marks > 0) {
+      if (vertices.list == nullptr) {
+        const Window rest{static_cast<std::uint32_t>(i),
+                          static_cast<std::uint32_t>(vertices.count)};
+        if (rest.size() > 0)
+          first_fit_in_order<true>(graph, colours, rest, {Width::marks, 0}, [](std::uint32_t) {});
+        return;
+      }
+    }
+    const auto& rows = in_registers(graph);
+    for (; i < vertices.count; ++i) {
+      prefetch_after(rows, vertices, i);
+      colours.set(vertices[i], least_free(rows, vertices[i], colours));
+    }
+  }
+};
+
+}  // namespace ductile::runtime::detail
