@@ -29,9 +29,12 @@ struct GroupingBounds {
 
   std::size_t chunk_count() const { return items.size() - 1; }
 
-  /// Equal parts, as many as threads can use.
+  /// Equal parts, as many as threads can use. Throws std::bad_alloc, and std::length_error if there
+  /// are more items or keys than 32-bit numbers can count.
   static GroupingBounds even(const runtime::Executor& executor, std::size_t items,
                              std::size_t keys) {
+    if (std::max(items, keys) > std::numeric_limits<std::uint32_t>::max())
+      throw std::length_error("more items or keys than 32-bit numbers can count");
     constexpr std::size_t least = 2048;  // items in a chunk
     const std::size_t most =
         std::min<std::size_t>(512, 2 * static_cast<std::size_t>(executor.threads()));

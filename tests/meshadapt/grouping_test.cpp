@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <stdexcept>
+
 #include "support/metrics.hpp"
 
 namespace ductile::meshadapt {
@@ -59,6 +62,14 @@ TEST(Grouping, IsTheSameAsOneItemAfterTheOther) {
           for (const std::uint32_t key : items[item]) expected[key].push_back(item);
         for (const int threads : {1, 2, 3, 8}) EXPECT_EQ(grouped(items, keys, threads), expected);
       }
+}
+
+TEST(Grouping, SaysThatItCannotCountSoMuch) {
+  const runtime::Executor executor({.threads = 2});
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  EXPECT_EQ(GroupingBounds::even(executor, most, most).items.back(), most);
+  EXPECT_THROW(GroupingBounds::even(executor, most + 1, 1), std::length_error);
+  EXPECT_THROW(GroupingBounds::even(executor, 1, most + 1), std::length_error);
 }
 
 }  // namespace
