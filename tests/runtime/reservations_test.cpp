@@ -236,6 +236,43 @@ TEST(RunRounds, WhatFootprintsAreFoundInIsAskedForAhead) {
   EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(1000)).planned, 1000U);
 }
 
+/// Each has a resource of its own.
+class AskedInEachPhase : public test::AskedEachTime {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  explicit AskedInEachPhase(std::size_t n) : AskedEachTime(n), times_(n) {}
+  void footprint(Vertex v, auto&& visit) const {
+    look(v, 0, footprints.at(times_[v]++));
+    visit(v);
+  }
+  std::size_t resource_count() const { return times_.size(); }
+  std::optional<Plan> plan(Vertex v) const {
+    look(v, 0, plans);
+    return v;
+  }
+  void apply(const Plan&, Commit<AskedInEachPhase>&) {}
+  void commit(std::uint32_t, const Update&) {}
+
+  mutable std::array<Looks, 2> footprints;  // to reserve, to see who won
+  mutable Looks plans;
+
+ private:
+  mutable std::vector<std::uint8_t> times_;  // [item], looks at its footprint
+};
+
+TEST(RunRounds, ReservingSettlingAndPlanningAskAheadEach) {
+  constexpr std::size_t n = 1000, first = test::AskedAhead::first;
+  AskedInEachPhase op(n);
+  EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(n)).applied, n);
+  for (const auto& looks : {op.footprints[0], op.footprints[1], op.plans}) {
+    EXPECT_EQ(looks.all, n);
+    EXPECT_GE(looks.asked_for, n - first);
+  }
+}
+
 TEST(RunRounds, FewerAskWhereTooFewWin) {
   constexpr std::size_t n = 50000;
   TakeTurns all_ask(n);

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace ductile::runtime::test {
@@ -34,6 +35,30 @@ class AskedAhead {
   }
   bool was_asked(Vertex item, int stage) const {
     return (stages_[item] >> static_cast<unsigned>(stage) & 1U) != 0;
+  }
+
+ private:
+  mutable std::vector<std::uint8_t> stages_;  // [item], a bit for each
+};
+
+/// The same, but for each time that an item is looked at: what was asked for before its last time
+/// does not count, so that each phase of a round is seen alone.
+class AskedEachTime {
+ public:
+  /// Of the n-th looks of all items.
+  struct Looks {
+    std::size_t all = 0, asked_for = 0;
+  };
+
+  explicit AskedEachTime(std::size_t n) : stages_(n) {}
+
+  void prefetch(Vertex item, int stage) const {
+    stages_[item] |= static_cast<std::uint8_t>(1U << static_cast<unsigned>(stage));
+  }
+  void look(Vertex item, int stage, Looks& looks) const {
+    ++looks.all;
+    looks.asked_for +=
+        std::exchange(stages_[item], std::uint8_t{0}) >> static_cast<unsigned>(stage) & 1U;
   }
 
  private:

@@ -371,6 +371,43 @@ TEST(RunRounds, WhatConflictsAreFoundInIsAskedForAhead) {
   EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(100)).planned, 100U);
 }
 
+/// Items conflict in pairs, so that blocks that are coloured side by side do not.
+class AskedForPairs : public test::AskedEachTime {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+  static constexpr bool keeps_conflicts = true;
+
+  explicit AskedForPairs(std::size_t n) : AskedEachTime(n), count_(n) {}
+  void conflicts(Vertex v, auto&& visit) const {
+    look(v, 1, conflicts_seen);
+    visit(v ^ 1U);
+  }
+  std::size_t item_count() const { return count_; }
+  std::optional<Plan> plan(Vertex v) const {
+    look(v, 0, plans);
+    return v;
+  }
+  void apply(const Plan&, Commit<AskedForPairs>&) {}
+  void commit(std::uint32_t, const Update&) {}
+
+  mutable Looks conflicts_seen, plans;
+
+ private:
+  std::size_t count_;
+};
+
+TEST(RunRounds, ColouringInBlocksAndPlanningAskAhead) {
+  constexpr std::size_t n = 8192;  // coloured in blocks, of which the first items are not asked for
+  AskedForPairs op(n);
+  EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(n), {.window = n}).applied, n);
+  EXPECT_EQ(op.conflicts_seen.all, n);
+  EXPECT_GE(op.conflicts_seen.asked_for, n / 2);
+  EXPECT_EQ(op.plans.all, n);
+  EXPECT_GE(op.plans.asked_for, n - 2 * AskedForConflicts::first);  // two classes
+}
+
 TEST(RunRounds, NoWorkIsNoRound) {
   Append append(10);
   const RoundsReport report = run_rounds(Executor({.threads = 2}), append, {});
