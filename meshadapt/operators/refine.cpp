@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/hash.hpp"
@@ -24,8 +24,8 @@ using runtime::PhaseTimer;
 
 namespace {
 
-/// With more edges to split than this share of the number of elements, lists are left stale.
-constexpr double many = 0.05;
+/// Elements around edges that are noted together.
+constexpr std::size_t together = 32;
 
 /// Where along a-b its two halves have the same metric length, the size varying geometrically.
 template <int Dim>
@@ -94,7 +94,17 @@ template <int Dim>
 [[gnu::always_inline]] inline void Refine<Dim>::prefetch_shells_after(std::size_t number) const {
   for (const int stage : {2, 1}) {
     const std::size_t ahead = number + 3 * static_cast<std::size_t>(stage);
-    if (ahead < edges_.size()) prefetch_shell(mesh_, edges_[ahead].a, edges_[ahead].b, stage);
+    if (ahead >= edges_.size()) continue;
+    const auto [a, b] = std::pair(edges_[ahead].a, edges_[ahead].b);
+    prefetch_shell(mesh_, a, b, stage);
+    if (stage == 2) {
+      __builtin_prefetch(&mesh_.host_of[a]);
+      __builtin_prefetch(&mesh_.host_of[b]);
+    } else {
+      prefetch_site(mesh_, a);
+      prefetch_site(mesh_, b);
+      background_.prefetch(mesh_.host_of[a]);
+    }
   }
 }
 
@@ -120,19 +130,36 @@ void Refine<Dim>::plan() {
           append({element, number});
         }
       });
+  if (around_.size() > std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error("more elements around long edges than 32-bit numbers can count");
   elements_ = MarkedSet(executor_, is_cut);
   cuts_ = runtime::make_unset<Cuts>(executor_, elements_.size());
   parallel_for(executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); });
   around_begin_ = FilledArray<std::uint32_t>(executor_, edges_.size());
-  parallel_for(executor_, around_.size(), [&](std::size_t i) {
-    const auto [element, number] = around_[i];
+  const auto note = [this](std::size_t, std::size_t begin, std::size_t end) {
+    note_splits(begin, end);
+  };
+  runtime::parallel_for_blocks(executor_, around_.size(), together, note, {});
+}
+
+/// Tells elements which of their edges are split, those of a block of around_. Where that is noted
+/// is asked for ahead, block by block, as what is around other blocks may be changing.
+template <int Dim>
+void Refine<Dim>::note_splits(std::size_t begin, std::size_t end) {
+  std::array<ElementId, together> elements;
+  for (std::size_t i = begin; i < end; ++i) {
+    elements[i - begin] = std::exchange(around_[i].place, elements_.place_of(around_[i].place));
+    __builtin_prefetch(&mesh_.corners_of[elements[i - begin]]);
+    __builtin_prefetch(&cuts_[around_[i].place], 1);
+  }
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto [place, number] = around_[i];
     const LongEdge& edge = edges_[number];
-    const std::uint32_t place = elements_.place_of(element);
-    cuts_[place].split[edge_of<Dim>(mesh_.corners_of[element], edge.a, edge.b)] = number + 1;
-    around_[i].place = place;
+    const Corners<Dim>& corners = mesh_.corners_of[elements[i - begin]];
+    cuts_[place].split[edge_of<Dim>(corners, edge.a, edge.b)] = number + 1;
     if (i == 0 || around_[i - 1].number != number)
       around_begin_[number] = static_cast<std::uint32_t>(i);
-  });
+  }
 }
 
 /// False, and little is set, where the edge is refused for what it is or where it lies.
@@ -401,115 +428,6 @@ double Refine<Dim>::least_shape(double before, double length) const {
   if (before < rules_.poor_shape) return before;
   const double excess = std::max(1.0, length / rules_.overlong_edge);
   return std::min(rules_.split_keeps * before, rules_.accepted_shape) / (excess * excess);
-}
-
-// ---- New vertices and elements ----
-
-template <int Dim>
-void Refine<Dim>::number() {
-  place_of_ = FilledArray<std::uint32_t>(executor_, edges_.size());
-  first_piece_ = FilledArray<std::uint32_t>(executor_, elements_.size());
-  parallel_for(executor_, edges_.size(),
-               [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); });
-  parallel_for(executor_, elements_.size(),
-               [&](std::size_t i) { first_piece_[i] = cuts_[i].pieces - 1; });
-  first_vertex_ = static_cast<VertexId>(mesh_.vertex_slots());
-  first_element_ = static_cast<ElementId>(mesh_.element_slots());
-  report_.applied = runtime::exclusive_scan<std::uint32_t>(executor_, place_of_);
-  const std::uint32_t pieces = runtime::exclusive_scan<std::uint32_t>(executor_, first_piece_);
-  if (std::size_t{first_element_} + pieces >= none)
-    throw std::length_error("a mesh of more elements than 32-bit numbers can count");
-  end_of_elements_ = first_element_ + pieces;
-}
-
-/// Makes what is numbered, and brings the lists of vertices up to date change by change, unless
-/// there is so much of it that to make all lists anew takes less.
-template <int Dim>
-void Refine<Dim>::grow() {
-  lists_are_stale_ =
-      static_cast<double>(report_.applied) > many * static_cast<double>(first_element_);
-  runtime::DeferredUpdate<ListChange> deferred(executor_);
-  const auto defer = [&](VertexId owner, const ListChange& change) {
-    if (!lists_are_stale_ || change.curve != 0) deferred.defer(owner, 0, change);
-  };
-  {
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
-    const std::size_t end_of_vertices = first_vertex_ + report_.applied;
-    mesh_.grow(executor_, end_of_vertices, first_element_);
-    parallel_for(executor_, edges_.size(), [&](std::size_t i) {
-      const auto number = static_cast<std::uint32_t>(i);
-      if (!is_split(number)) return;
-      write_vertex(number);
-      if constexpr (Dim == 3) write_links(number, defer);
-    });
-    splits_.release(executor_);  // before elements take their memory
-    mesh_.grow(executor_, end_of_vertices, end_of_elements_);
-    parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });
-  }
-  const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
-  report_.committed = deferred.commit(
-      [&](VertexId owner, const ListChange& change) { change_list(mesh_, owner, change); });
-}
-
-template <int Dim>
-void Refine<Dim>::write_vertex(std::uint32_t number) {
-  const Split& split = splits_[number];
-  const VertexId v = vertex_of(number);
-  mesh_.site_of[v] = split.site;
-  mesh_.kind_of[v] = split.kind;
-  mesh_.entity_of[v] = split.entity;
-  mesh_.reference_of[v] = split.reference;
-  mesh_.host_of[v] = split.host;
-}
-
-/// The parts of a curve that is split: each end is linked to the middle, and no longer to the other
-/// end.
-template <int Dim>
-void Refine<Dim>::write_links(std::uint32_t number, auto&& defer) {
-  const Split& split = splits_[number];
-  if (split.kind.freedom != 1) return;
-  using Kind = ListChange::Kind;
-  const LongEdge& edge = edges_[number];
-  const VertexId middle = vertex_of(number);
-  for (const auto& [end, other] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)}) {
-    defer(end, {Kind::remove_link, other, split.entity});
-    defer(end, {Kind::add_link, middle, split.entity});
-    mesh_.links_of.insert(middle, {end, split.entity});
-  }
-}
-
-/// The first piece keeps the element's number.
-template <int Dim>
-void Refine<Dim>::write_pieces(std::size_t place, auto&& defer) {
-  const ElementId element = elements_[place];
-  const Cuts& cuts = cuts_[place];
-  if (cuts.pieces == 1) return;
-  const Order order = order_of(cuts);
-  Pieces<Dim> pieces;
-  for (std::size_t i = 0; i < order.size; ++i) pieces.cut(order.edge[i]);
-  std::array<VertexId, points_of_cut<Dim>> vertices;
-  for (std::size_t i = 0; i <= Dim; ++i) vertices[i] = mesh_.corners_of[element][i];
-  for (std::size_t i = 0; i < order.size; ++i)
-    vertices[middle_of<Dim>(order.edge[i])] = vertex_of(cuts.split[order.edge[i]] - 1);
-
-  const Corners<Dim> before = mesh_.corners_of[element];
-  const auto patches = mesh_.patches_of[element];
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const Piece<Dim>& piece = pieces[p];
-    const ElementId to =
-        p == 0 ? element : first_element_ + first_piece_[place] + static_cast<std::uint32_t>(p) - 1;
-    for (std::size_t c = 0; c <= Dim; ++c) {
-      const VertexId v = vertices[piece.corners[c]];
-      const std::uint8_t facet = piece.facet_of[c];
-      mesh_.corners_of[to][c] = v;
-      mesh_.patches_of[to][c] = facet == Piece<Dim>::inside ? 0 : patches[facet];
-      if (p != 0 || v != before[c]) defer(v, {ListChange::Kind::add_element, to});
-      if (p == 0 && v != before[c]) defer(before[c], {ListChange::Kind::remove_element, element});
-    }
-    mesh_.region_of[to] = mesh_.region_of[element];
-    mesh_.shape_of[to] = cuts.shape[p];
-    mesh_.changed_at[to] = mesh_.epoch;
-  }
 }
 
 template class Refine<2>;

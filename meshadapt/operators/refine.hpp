@@ -36,7 +36,7 @@ class Refine {
   /// Where many are split, elements_of is stale afterwards: it is for the caller to make it anew.
   /// May be called once. Rounds and conflicts of the report are those of refusals.
   /// Thread safety: one caller; runs on the executor. Throws std::length_error if the mesh would
-  /// get more elements than there are numbers.
+  /// get more elements than there are numbers, or if there are more around the edges.
   runtime::RoundsReport run(std::vector<LongEdge> edges);
 
   /// Whether elements_of does not know what run() has made.
@@ -79,6 +79,7 @@ class Refine {
   // ---- 1. Where the new vertices go, and which elements each edge cuts ----
   void plan();
   void prefetch_shells_after(std::size_t number) const;
+  void note_splits(std::size_t begin, std::size_t end);
   bool locate(const LongEdge& edge, const Shell& shell, Split& split) const;
   bool may_split(const LongEdge& edge, const Shell& shell) const;
   void classify(const LongEdge& edge, const Shell& shell, Split& split) const;
@@ -101,7 +102,8 @@ class Refine {
   bool keeps_distance(const Pieces<Dim>& pieces, std::size_t edge, const Points& points) const;
   double least_shape(double before, double length) const;
 
-  // ---- 3. New vertices and elements take numbers in order; each element is cut on its own ----
+  // ---- 3. New vertices and elements take numbers in order; each element is cut on its own: in
+  // refine_write.cpp ----
   void number();
   void grow();
   void write_vertex(std::uint32_t number);

@@ -1,0 +1,135 @@
+/// @file
+/// Refine's last stage: new vertices and elements take numbers by prefix sums, and each element is
+/// cut on its own. What is written here is decided before, in refine.cpp.
+#include <stdexcept>
+#include <utility>
+
+#include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/phase_timer.hpp"
+#include "operators/refine.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::FilledArray;
+using runtime::parallel_for;
+using runtime::Phase;
+using runtime::PhaseTimer;
+
+/// With more edges to split than this share of the number of elements, lists are left stale.
+constexpr double many = 0.05;
+
+template <int Dim>
+void Refine<Dim>::number() {
+  place_of_ = FilledArray<std::uint32_t>(executor_, edges_.size());
+  first_piece_ = FilledArray<std::uint32_t>(executor_, elements_.size());
+  parallel_for(executor_, edges_.size(),
+               [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); });
+  parallel_for(executor_, elements_.size(),
+               [&](std::size_t i) { first_piece_[i] = cuts_[i].pieces - 1; });
+  first_vertex_ = static_cast<VertexId>(mesh_.vertex_slots());
+  first_element_ = static_cast<ElementId>(mesh_.element_slots());
+  report_.applied = runtime::exclusive_scan<std::uint32_t>(executor_, place_of_);
+  const std::uint32_t pieces = runtime::exclusive_scan<std::uint32_t>(executor_, first_piece_);
+  if (std::size_t{first_element_} + pieces >= none)
+    throw std::length_error("a mesh of more elements than 32-bit numbers can count");
+  end_of_elements_ = first_element_ + pieces;
+}
+
+/// Makes what is numbered, and brings the lists of vertices up to date change by change, unless
+/// there is so much of it that to make all lists anew takes less.
+template <int Dim>
+void Refine<Dim>::grow() {
+  lists_are_stale_ =
+      static_cast<double>(report_.applied) > many * static_cast<double>(first_element_);
+  runtime::DeferredUpdate<ListChange> deferred(executor_);
+  const auto defer = [&](VertexId owner, const ListChange& change) {
+    if (!lists_are_stale_ || change.curve != 0) deferred.defer(owner, 0, change);
+  };
+  {
+    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const std::size_t end_of_vertices = first_vertex_ + report_.applied;
+    mesh_.grow(executor_, end_of_vertices, first_element_);
+    parallel_for(executor_, edges_.size(), [&](std::size_t i) {
+      const auto number = static_cast<std::uint32_t>(i);
+      if (!is_split(number)) return;
+      write_vertex(number);
+      if constexpr (Dim == 3) write_links(number, defer);
+    });
+    splits_.release(executor_);  // before elements take their memory
+    mesh_.grow(executor_, end_of_vertices, end_of_elements_);
+    parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });
+  }
+  const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
+  report_.committed = deferred.commit(
+      [&](VertexId owner, const ListChange& change) { change_list(mesh_, owner, change); });
+}
+
+template <int Dim>
+void Refine<Dim>::write_vertex(std::uint32_t number) {
+  const Split& split = splits_[number];
+  const VertexId v = vertex_of(number);
+  mesh_.site_of[v] = split.site;
+  mesh_.kind_of[v] = split.kind;
+  mesh_.entity_of[v] = split.entity;
+  mesh_.reference_of[v] = split.reference;
+  mesh_.host_of[v] = split.host;
+}
+
+/// The parts of a curve that is split: each end is linked to the middle, and no longer to the other
+/// end.
+template <int Dim>
+void Refine<Dim>::write_links(std::uint32_t number, auto&& defer) {
+  const Split& split = splits_[number];
+  if (split.kind.freedom != 1) return;
+  using Kind = ListChange::Kind;
+  const LongEdge& edge = edges_[number];
+  const VertexId middle = vertex_of(number);
+  for (const auto& [end, other] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)}) {
+    defer(end, {Kind::remove_link, other, split.entity});
+    defer(end, {Kind::add_link, middle, split.entity});
+    mesh_.links_of.insert(middle, {end, split.entity});
+  }
+}
+
+/// The first piece keeps the element's number.
+template <int Dim>
+void Refine<Dim>::write_pieces(std::size_t place, auto&& defer) {
+  const ElementId element = elements_[place];
+  const Cuts& cuts = cuts_[place];
+  if (cuts.pieces == 1) return;
+  const Order order = order_of(cuts);
+  Pieces<Dim> pieces;
+  for (std::size_t i = 0; i < order.size; ++i) pieces.cut(order.edge[i]);
+  std::array<VertexId, points_of_cut<Dim>> vertices;
+  for (std::size_t i = 0; i <= Dim; ++i) vertices[i] = mesh_.corners_of[element][i];
+  for (std::size_t i = 0; i < order.size; ++i)
+    vertices[middle_of<Dim>(order.edge[i])] = vertex_of(cuts.split[order.edge[i]] - 1);
+
+  const Corners<Dim> before = mesh_.corners_of[element];
+  const auto patches = mesh_.patches_of[element];
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const Piece<Dim>& piece = pieces[p];
+    const ElementId to =
+        p == 0 ? element : first_element_ + first_piece_[place] + static_cast<std::uint32_t>(p) - 1;
+    for (std::size_t c = 0; c <= Dim; ++c) {
+      const VertexId v = vertices[piece.corners[c]];
+      const std::uint8_t facet = piece.facet_of[c];
+      mesh_.corners_of[to][c] = v;
+      mesh_.patches_of[to][c] = facet == Piece<Dim>::inside ? 0 : patches[facet];
+      if (p != 0 || v != before[c]) defer(v, {ListChange::Kind::add_element, to});
+      if (p == 0 && v != before[c]) defer(before[c], {ListChange::Kind::remove_element, element});
+    }
+    mesh_.region_of[to] = mesh_.region_of[element];
+    mesh_.shape_of[to] = cuts.shape[p];
+    mesh_.changed_at[to] = mesh_.epoch;
+  }
+}
+
+template void Refine<2>::number();
+template void Refine<3>::number();
+template void Refine<2>::grow();
+template void Refine<3>::grow();
+
+}  // namespace ductile::meshadapt
