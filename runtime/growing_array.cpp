@@ -79,7 +79,7 @@ void GrowingMemory::move_to_larger_space(std::size_t wanted) {
 }
 
 void GrowingMemory::add_pages(std::size_t bytes, FreshMemory& fresh) {
-  constexpr std::size_t ahead = std::size_t{1} << 15U;  // for those who grow little by little
+  constexpr std::size_t ahead = std::size_t{1} << 13U;  // for those who grow little by little
   if (bytes <= added_) return;
   const std::size_t end = std::min(bytes_, whole_pages(bytes + ahead));
   fresh.add(data_ + added_, end - added_);
