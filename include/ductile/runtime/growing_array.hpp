@@ -2,7 +2,7 @@
 /// GrowingArray: an array for graphs that grow while they are worked on. Its memory comes in pages
 /// straight from the system: where that can do so (Linux) growing takes addresses that were held
 /// free behind it, or moves page table entries, and copies nothing, and what is new is first
-/// touched, and so placed near, by whoever writes it.
+/// touched, and so placed near, by whoever writes it, unless a FreshMemory has asked for it before.
 #pragma once
 
 #include <algorithm>
