@@ -88,7 +88,7 @@ class MeshMaker {
 
   void fill() {
     const auto& cells = elements_in<Dim>(any_);
-    mesh_.elements_of.reset(0);
+    mesh_.elements_of.reset(executor_, 0);
     mesh_.grow(executor_, any_.vertex_count(), cells.size());
     parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
       mesh_.site_of[v].position = position_in<Dim>(any_, v);

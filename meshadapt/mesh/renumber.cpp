@@ -194,7 +194,7 @@ void renumber_links(const Executor& executor, Mesh<3>& mesh, const Ids& vertices
         for (const CurveLink& link : mesh.links_of.of(vertices[i]))
           append(Moved{static_cast<VertexId>(i), {new_vertex[link.to], link.curve}});
       });
-  mesh.links_of.reset(vertices.size());
+  mesh.links_of.reset(executor, vertices.size());
   parallel_for(executor, moved.size(), [&](std::size_t first) {
     const VertexId from = moved[first].from;
     if (first != 0 && moved[first - 1].from == from) return;

@@ -8,11 +8,13 @@
 namespace ductile::meshadapt {
 namespace {
 
+const runtime::Executor executor({.threads = 2});
+
 TEST(ListPool, BehavesLikeSortedSets) {
   constexpr std::uint32_t lists = 50;
   ListPool<std::uint32_t> pool;
   std::vector<std::set<std::uint32_t>> expected(lists);
-  pool.reset(lists);
+  pool.reset(executor, lists);
   std::mt19937 random(1);
   for (int step = 0; step < 50000; ++step) {
     const std::uint32_t list = random() % lists, value = random() % 200;
@@ -35,14 +37,21 @@ TEST(ListPool, BehavesLikeSortedSets) {
 
 TEST(ListPool, GrowsAndForgets) {
   ListPool<std::uint32_t> pool;
-  pool.reset(2);
+  pool.reset(executor, 2);
   pool.insert(1, 7);
   pool.grow(4);
   EXPECT_EQ(pool.size(), 4U);
   EXPECT_EQ(pool.of(1).size(), 1U);
   EXPECT_TRUE(pool.of(3).empty());
-  pool.reset(3);
-  for (std::uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(pool.of(i).empty());
+  for (const std::uint32_t lists :
+       {3U, 50000U, 100U}) {  // by one thread, by all, fewer than before
+    pool.reset(executor, lists);
+    ASSERT_EQ(pool.size(), lists);
+    for (std::uint32_t i = 0; i < lists; ++i) {
+      ASSERT_TRUE(pool.of(i).empty()) << i;
+      pool.insert(i, i);
+    }
+  }
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "ductile/runtime/arena.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/growing_array.hpp"
 
 namespace ductile::meshadapt {
@@ -19,14 +21,18 @@ class ListPool {
  public:
   std::size_t size() const { return slot_of_.size(); }
 
-  /// Forgets all lists and makes n empty ones. Thread safety: one thread.
-  void reset(std::size_t n) {
-    slot_of_.resize(0);
-    slot_of_.resize(n);
+  /// Forgets all lists and makes n empty ones. Throws std::bad_alloc.
+  /// Thread safety: one caller; runs on the executor.
+  void reset(const runtime::Executor& executor, std::size_t n) {
+    slot_of_.resize_for_overwrite(n);
+    const auto empty = [](Slot* begin, Slot* end) { std::fill(begin, end, Slot{}); };
+    runtime::write_first(executor, slot_of_.data(), n, empty,
+                         {.grain = 4096, .serial_below = 16384});
     arena_->clear();
   }
 
   /// The same, but each list is to be given room by reserve_all() before anything else.
+  /// Thread safety: one thread.
   void reset_for_overwrite(std::size_t n, runtime::FreshMemory& fresh) {
     slot_of_.resize_for_overwrite(n, fresh);
     arena_->clear();

@@ -44,15 +44,8 @@ class FilledArray {
   void resize(const Executor& executor, std::size_t n, T value) {
     if (n <= size_) return;
     if (n > capacity_) move_to(executor, std::max(n, capacity_ + capacity_ / 2));
-    T* const first = values_.get() + size_;
-    const bool fresh = is_fresh(first, (n - size_) * sizeof(T));
-    parallel_for_ranges(
-        executor, n - size_,
-        [&](std::size_t begin, std::size_t end) {
-          if (fresh) get_pages(first + begin, (end - begin) * sizeof(T));
-          std::fill(first + begin, first + end, value);
-        },
-        by_pages);
+    const auto fill = [value](T* begin, T* end) { std::fill(begin, end, value); };
+    write_first(executor, values_.get() + size_, n - size_, fill, by_pages);
     size_ = n;
   }
 

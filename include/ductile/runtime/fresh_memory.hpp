@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime {
 
@@ -41,6 +42,21 @@ void get_pages(void* memory, std::size_t bytes);
 
 /// Gets the pages of memory if it is fresh. Thread safety: as FreshMemory::touch().
 void touch_pages(const Executor& executor, void* memory, std::size_t bytes);
+
+/// Calls write(begin, end) with parts of the n elements at `first`, each on the thread that gets
+/// its pages before, if the elements are fresh. Thread safety: as FreshMemory::touch().
+template <class T, class Write>
+void write_first(const Executor& executor, T* first, std::size_t n, Write&& write,
+                 const LoopOptions& options) {
+  const bool fresh = is_fresh(first, n * sizeof(T));
+  parallel_for_ranges(
+      executor, n,
+      [&](std::size_t begin, std::size_t end) {
+        if (fresh) get_pages(first + begin, (end - begin) * sizeof(T));
+        write(first + begin, first + end);
+      },
+      options);
+}
 
 /// n elements that may hold anything and are all about to be set. Throws std::bad_alloc.
 /// Thread safety: one caller; runs on the executor.

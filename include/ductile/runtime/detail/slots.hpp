@@ -32,13 +32,10 @@ class Slots {
     release();
     begin_ = std::allocator<std::optional<T>>().allocate(n);
     size_ = n;
-    const bool fresh = is_fresh(begin_, n * sizeof(*begin_));
-    parallel_for_ranges(executor, n,
-                        [&](std::size_t begin, std::size_t end) {
-                          if (fresh) get_pages(begin_ + begin, (end - begin) * sizeof(*begin_));
-                          std::uninitialized_value_construct(begin_ + begin, begin_ + end);
-                        },
-                        {.grain = 256, .serial_below = 1024});
+    const auto make = [](auto* begin, auto* end) {
+      std::uninitialized_value_construct(begin, end);
+    };
+    write_first(executor, begin_, n, make, {.grain = 256, .serial_below = 1024});
   }
 
  private:
