@@ -216,6 +216,53 @@ TEST(Colouring, OfBlocksWithManyClashesIsTheSameAtAnyThreadCount) {
 }
 
 /// In the second graph there are too many colours for short words, and vertices of many neighbours.
+/// What blocks give before any clash is repaired: first-fit by step and id, blind to neighbours in
+/// other blocks of the same step.
+std::vector<std::uint32_t> colours_by_blocks(const test::TestGraph& graph) {
+  const auto rows = graph.view();
+  const auto layout = detail::marked_rows(rows.vertex_count());
+  const auto is_blind = [&](std::uint32_t v, std::uint32_t u) {
+    return layout.step_of(u) == layout.step_of(v) && !layout.same_block(u, v);
+  };
+  std::vector<std::uint32_t> order(rows.vertex_count()), colour_of(order.size(), Colouring::none);
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t u, std::uint32_t v) {
+    return layout.step_of(u) < layout.step_of(v);
+  });
+  for (const std::uint32_t v : order) {
+    std::vector<bool> taken(rows.row(v).size() + 1);
+    for (const std::uint32_t u : rows.row(v))
+      if (!is_blind(v, u) && colour_of[u] < taken.size()) taken[colour_of[u]] = true;
+    const auto free = std::find(taken.begin(), taken.end(), false);
+    colour_of[v] = static_cast<std::uint32_t>(free - taken.begin());
+  }
+  return colour_of;
+}
+
+TEST(Colouring, OfBlocksIsThatOfItsDefinitionButForClashes) {
+  const auto random = test::random_graph(20'000, 60'000, 6);
+  const auto dense = test::random_graph(9'000, 900'000, 7);
+  const auto mesh = test::mesh_graph(150);
+  for (const auto* graph : {&random, &dense, &mesh}) {
+    const std::vector<std::uint32_t> expected = colours_by_blocks(*graph);
+    const auto rows = graph->view();
+    const auto loses = [&](std::uint32_t v) {
+      const auto row = rows.row(v);
+      return std::any_of(row.begin(), row.end(), [&](std::uint32_t u) {
+        return expected[u] == expected[v] && detail::outranks(u, v);
+      });
+    };
+    for (int threads : {1, 2, 3, 8}) {
+      const Colouring colouring =
+          colour(Executor({.threads = threads}), rows, ColouringMethod::blocked);
+      std::size_t others = 0;
+      for (std::uint32_t v = 0; v < expected.size(); ++v)
+        if (colouring.colour_of[v] != expected[v] && !loses(v)) ++others;
+      EXPECT_EQ(others, 0U) << graph->name << ", threads " << threads;
+    }
+  }
+}
+
 TEST(Colouring, OfACallbackIsThatOfItsRows) {
   for (const auto& graph :
        {test::random_graph(5000, 30000, 10), test::rmat_graph(12, 200000, 14)}) {

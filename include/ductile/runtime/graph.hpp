@@ -39,8 +39,9 @@ concept RowGraph = Graph<G> && requires(const G& graph, std::uint32_t v) {
   { graph.row(v) } -> std::convertible_to<std::span<const std::uint32_t>>;
 };
 
-/// Rows that follow each other without a gap: row(v) is from row_begin(v) to row_begin(v + 1).
-/// Thread safety: as visiting.
+/// Rows that follow each other without a gap: row(v) is from row_begin(v) to row_begin(v + 1). If
+/// the graph can, prefetch_row_begins(begin, end) asks for what row_begin() reads of vertices
+/// [begin, end). Thread safety: as visiting.
 template <class G>
 concept PackedRowGraph = RowGraph<G> && requires(const G& graph, std::uint32_t v) {
   { graph.row_begin(v) } -> std::same_as<const std::uint32_t*>;
@@ -63,9 +64,13 @@ struct CsrGraph {
   }
   /// Of the vertex count, where the last one ends.
   const std::uint32_t* row_begin(std::size_t v) const { return neighbour.data() + offset[v]; }
-  /// Inlined always: GCC leaves out calls of functions that do nothing but prefetch.
+  // Inlined always: GCC leaves out calls of functions that do nothing but prefetch.
   [[gnu::always_inline]] void prefetch(std::uint32_t v) const {
     __builtin_prefetch(neighbour.data() + offset[v]);
+  }
+  [[gnu::always_inline]] void prefetch_row_begins(std::size_t begin, std::size_t end) const {
+    constexpr std::size_t line = 64 / sizeof(Offset);
+    for (std::size_t v = begin; v < end; v += line) __builtin_prefetch(offset.data() + v);
   }
 };
 

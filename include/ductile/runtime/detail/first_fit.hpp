@@ -124,12 +124,13 @@ struct TakenColours {
     constexpr std::uint64_t colours = (std::uint64_t{1} << count) - 1;
     return ~bits & (bits + 1) & colours;
   }
-  /// A neighbour is `waiting`, or has another mark than these. A number that no mark has is that
-  /// of nobody.
-  bool shows_others(std::same_as<std::uint32_t> auto... numbers) const {
+  /// The bits of `waiting`, and of all marks but these. A number that no mark has is that of
+  /// nobody.
+  static std::uint64_t others(std::same_as<std::uint32_t> auto... numbers) {
     constexpr std::uint64_t all = ~std::uint64_t{0} << count << 1U >> 1U;  // but that of `none`
-    return (bits & (all & ~((std::uint64_t{1} << (61 - numbers)) | ...))) != 0;
+    return all & ~((std::uint64_t{1} << (61 - numbers)) | ...);
   }
+  bool shows_others(std::uint32_t number) const { return (bits & others(number)) != 0; }
 };
 
 /// What a loop over many vertices reads the graph through: a copy of a small view, which the

@@ -7,8 +7,10 @@
 #pragma once
 
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "ductile/runtime/detail/first_fit.hpp"
@@ -18,11 +20,24 @@
 
 namespace ductile::runtime::detail {
 
-/// The rows of vertices that follow each other, up or down, and asks for those to come.
-template <Graph G, bool ascending>
+/// Who colours: the number of the mark that its vertices show at first, and of the one that the
+/// newest shows. If `number` is that of no mark, all marks count as those of others. After the
+/// window come the vertices that follow it.
+struct Painter {
+  std::uint32_t number, newest;
+};
+
+/// One that goes up, and is likely to go on elsewhere, at `next`.
+struct LeavingPainter : Painter {
+  std::uint32_t next;
+};
+
+/// The rows of a window's vertices, up or down, and asks for those to come.
+template <Graph G, bool ascending, bool leaves>
 class RowsInOrder {
  public:
-  RowsInOrder(const G& graph, std::uint32_t) : graph_(in_registers(graph)) {}
+  RowsInOrder(const G& graph, Window window, std::uint32_t next)
+      : graph_(in_registers(graph)), end_(window.end), jump_(next - window.end) {}
 
   /// Whether v, which has its turn, has at least so many neighbours.
   bool is_long(std::uint32_t v, std::size_t least) const {
@@ -33,7 +48,8 @@ class RowsInOrder {
   template <class Visit>
   [[gnu::always_inline]] void visit(std::uint32_t v, Visit see) {
     if constexpr (ascending) {
-      prefetch_after(graph_, {graph_.vertex_count()}, v);
+      const bool jumps = leaves && v + prefetch_distance_of<G>() >= end_;
+      prefetch_after(graph_, {graph_.vertex_count()}, jumps ? v + jump_ : v);
     } else {
       prefetch_before(graph_, v);
     }
@@ -42,15 +58,19 @@ class RowsInOrder {
 
  private:
   decltype(in_registers(std::declval<const G&>())) graph_;
+  std::uint32_t end_, jump_;
 };
 
 /// Where a row begins the one before ends: one address to find for each, not two; and what comes
-/// next in memory are rows to come.
-template <PackedRowGraph G, bool ascending>
-class RowsInOrder<G, ascending> {
+/// next in memory are rows to come. Who leaves asks in each step for a place as far from `next` as
+/// it is from the window's first vertex.
+template <PackedRowGraph G, bool ascending, bool leaves>
+class RowsInOrder<G, ascending, leaves> {
  public:
-  RowsInOrder(const G& graph, std::uint32_t first)
-      : graph_(graph), edge_(graph.row_begin(ascending ? first : std::size_t{first} + 1)) {}
+  RowsInOrder(const G& graph, Window window, std::uint32_t next)
+      : graph_(graph),
+        edge_(graph.row_begin(ascending ? window.begin : window.end)),
+        jump_(leaves ? address_of(graph.row_begin(next)) - address_of(edge_) : 0) {}
 
   bool is_long(std::size_t v, std::size_t least) const {
     const std::uint32_t* const other = other_edge(v);
@@ -71,23 +91,48 @@ class RowsInOrder<G, ascending> {
   }
   /// Of what may lie outside of the array, where it does nothing; a pointer may not go there, so
   /// the address is computed as an integer. 1024 to 4096 bytes ahead take the same time.
-  [[gnu::always_inline]] static void prefetch(const std::uint32_t* edge) {
-    const auto place = reinterpret_cast<std::uintptr_t>(edge);
-    const std::uintptr_t ahead = ascending ? place + 1536 : place - 1536;
+  [[gnu::always_inline]] void prefetch(const std::uint32_t* edge) const {
+    constexpr std::uintptr_t near = 1536;
+    const std::uintptr_t ahead = leaves ? jump_ : ascending ? near : -near;
     // Nothing is optimised away by this cast, as the check fears: it is only prefetched.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
-    __builtin_prefetch(reinterpret_cast<const void*>(ahead));
+    __builtin_prefetch(reinterpret_cast<const void*>(address_of(edge) + ahead));
+  }
+  static std::uintptr_t address_of(const std::uint32_t* edge) {
+    return reinterpret_cast<std::uintptr_t>(edge);
   }
 
   G graph_;
   const std::uint32_t* edge_;
+  std::uintptr_t jump_;
 };
 
-/// Who colours: the number of the mark that its vertices show at first, and of the one that the
-/// newest shows. If `number` is that of no mark, all marks count as those of others.
-struct Painter {
-  std::uint32_t number, newest;
-};
+template <bool ascending, Graph G, std::derived_from<Painter> P>
+auto rows_in_order(const G& graph, Window window, P painter) {
+  if constexpr (requires { painter.next; }) {
+    return RowsInOrder<G, ascending, true>(graph, window, painter.next);
+  } else {
+    return RowsInOrder<G, ascending, false>(graph, window, window.end);
+  }
+}
+
+/// What is called for who sees others colours it, and returns what it shows from then on.
+template <class SawOthers>
+constexpr bool colours_itself = !std::is_void_v<std::invoke_result_t<SawOthers, std::uint32_t>>;
+
+/// The same as first_fit_in_order for a vertex of many neighbours; returns what it shows.
+template <RowGraph G, class Width, class SawOthers>
+std::uint8_t colour_of_many(const G& graph, std::uint32_t v, Colours<Width> colours,
+                            std::uint32_t number, SawOthers saw_others) {
+  if constexpr (colours_itself<SawOthers>) {
+    return saw_others(v);
+  } else {
+    const auto [fit, sees_others] = first_fit_of_many(graph, v, colours, number);
+    colours.set(v, fit);
+    if (sees_others != 0) saw_others(v);
+    return fit;
+  }
+}
 
 /// What the neighbours of v show, as bits of TakenColours.
 template <class Rows, class Width>
@@ -104,19 +149,25 @@ template <class Rows, class Width>
 }
 
 /// First-fit of the vertices of a window, in its order. Calls saw_others(v) if v sees one that is
-/// `waiting`, or has a mark of others. Throws TooManyColours: the vertices before then show their
-/// colours, and those to come what they showed. Not inlined, so that the loop has the registers it
-/// needs.
-template <bool ascending, class Width, Graph G, class SawOthers>
-[[gnu::noinline]] void first_fit_in_order(const G& graph, Colours<Width> colours, Window window,
-                                          Painter painter, SawOthers saw_others) {
+/// `waiting`, or has a mark of others; where that colours v itself, it is called for who has many
+/// neighbours, too, before they are looked at. Throws TooManyColours: the vertices before then show
+/// their colours, and those to come what they showed. Not inlined, so that the loop has the
+/// registers it needs; aligned, as on Zen 4 first-fit takes up to a third more time where the end
+/// of the loop happens to lie across two lines of the cache.
+template <bool ascending, class Width, Graph G, std::derived_from<Painter> P, class SawOthers>
+[[gnu::noinline, gnu::aligned(64)]] void first_fit_in_order(const G& graph, Colours<Width> colours,
+                                                            Window window, P painter,
+                                                            SawOthers saw_others) {
   using Word = typename Width::Word;
   using Seen = TakenColours<Colours<Width>>;
-  RowsInOrder<G, ascending> rows(graph, window[0]);
+  auto rows = rows_in_order<ascending>(graph, window, painter);
   const Word mark = Colours<Width>::mark(painter.newest);
   std::uint64_t mark_bit = std::uint64_t{1} << (mark & 63U);
   asm("" : "+r"(mark_bit));  // as long as GCC knows it, it makes a branch of a look at it
   const std::uint32_t own = painter.number < Width::marks ? painter.newest : painter.number;
+  std::uint64_t others = Seen::others(painter.number, own);
+  asm("" : "+r"(others));  // else GCC puts it together anew for each vertex
+
   Word newest = Colours<Width>::none;  // the colour of the newest vertex
   std::uint64_t newest_bit = 0;        // what that is in TakenColours
   const auto show_newest = [&](std::size_t v, bool is_first) {
@@ -128,21 +179,26 @@ template <bool ascending, class Width, Graph G, class SawOthers>
       if (rows.is_long(id, many_neighbours)) [[unlikely]] {
         rows.pass(v);
         show_newest(v, is_first);
-        const auto [fit, sees_others] = first_fit_of_many(graph, id, colours, painter.number);
-        colours.set(v, newest = fit);
-        if (sees_others != 0) saw_others(id);
+        newest = colour_of_many(graph, id, colours, painter.number, saw_others);
         return;
       }
     Seen seen{shown_to(v, rows, colours)};
     show_newest(v, is_first);
+    const bool sees_others = (seen.bits & others) != 0;
+    if constexpr (colours_itself<SawOthers>)
+      if (sees_others) [[unlikely]] {
+        newest = saw_others(id);
+        return;
+      }
     const std::uint64_t all = seen.bits | newest_bit;
     if (__builtin_expect_with_probability((all & mark_bit) != 0, 1, 0.5)) seen.bits = all;
     newest_bit = seen.least_free();
     newest = newest_bit != 0 ? static_cast<Word>(std::countr_zero(newest_bit))
                              : least_free_of_many(graph, id, colours);
     colours.set(v, mark);
-    if (seen.shows_others(painter.number, own)) [[unlikely]]
-      saw_others(id);
+    if constexpr (!colours_itself<SawOthers>)
+      if (sees_others) [[unlikely]]
+        saw_others(id);
   };
   colour(window[0], true);
   if constexpr (ascending) {
@@ -167,7 +223,8 @@ struct Serial {
         const Window rest{static_cast<std::uint32_t>(i),
                           static_cast<std::uint32_t>(vertices.count)};
         if (rest.size() > 0)
-          first_fit_in_order<true>(graph, colours, rest, {Width::marks, 0}, [](std::uint32_t) {});
+          first_fit_in_order<true>(graph, colours, rest, Painter{Width::marks, 0},
+                                   [](std::uint32_t) {});
         return;
       }
     }

@@ -18,6 +18,8 @@
 
 #include "ductile/runtime/detail/blocks.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/detail/fronts.hpp"
+#include "ductile/runtime/detail/in_order.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -25,6 +27,10 @@
 namespace ductile::runtime::detail {
 
 constexpr unsigned marked_row_bits = 5;  ///< of the greatest row's number; each has a mark
+/// That of the newest vertices of all rows, see in_order.hpp. Who sees it sees its own row's: of
+/// two neighbours that are coloured at the same time, the first to look sees the mark of the
+/// other's row, and goes from that of its own to `waiting`, which the other sees.
+constexpr std::uint32_t newest_mark = 1U << marked_row_bits;
 
 /// 17 to 32 rows, fewer of few vertices, as short blocks clash more. More steps make fewer clashes,
 /// but each costs a launch.
@@ -38,6 +44,7 @@ inline BlockLayout marked_rows(std::size_t vertex_count) {
 
 struct alignas(128) MarkedRow {
   std::vector<std::uint32_t> hiding;  ///< vertices of its last block, `waiting` for others to see
+  std::size_t next = 0;               ///< whose block its thread is likely to colour after its own
 };
 
 /// Colours all vertices of the graph.
@@ -47,7 +54,7 @@ class MarkedRun {
   using Word = typename Width::Word;
   static constexpr Word most = Width::most;
   static constexpr std::uint32_t marks = Width::marks;
-  static_assert(marks == 1U << marked_row_bits);
+  static_assert(marks == newest_mark + 1);
 
   MarkedRun(const Executor& executor, const G& graph, Colours<Width> colours)
       : executor_(executor),
@@ -56,24 +63,26 @@ class MarkedRun {
         layout_(marked_rows(colours.vertex_count())),
         rows_(layout_.row_count(colours.vertex_count())),
         hidden_(std::make_unique_for_overwrite<Word[]>(2 * rows_.size() * layout_.block_size())),
-        blind_(executor) {}
+        blind_(executor) {
+    const auto threads = static_cast<std::size_t>(executor.threads());
+    for (std::size_t t = 0, begin = 0; t < threads; ++t) {  // parts as a loop begins with
+      const std::size_t end = rows_.size() * (t + 1) / threads;
+      for (std::size_t row = begin; row < end; ++row)
+        rows_[row].next = row + 1 < end ? row + 1 : begin;
+      begin = end;
+    }
+  }
 
   void run() {
     const auto for_each_row = [&](auto body) {
-      parallel_for_ranges(executor_, rows_.size(),
-                          [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t row = begin; row < end; ++row)
-                              body(row, row + 1 < end);
-                          },
-                          {.grain = 1});
+      parallel_for(executor_, rows_.size(), body, {.grain = 1});
     };
-    for_each_row([&](std::size_t row, bool) { mark(row, 0); });
+    for_each_row([&](std::size_t row) { mark({row, 0}); });
     for (std::uint32_t step = 0; step < layout_.step_count(); ++step)
-      for_each_row([&](std::size_t row, bool goes_on) {
+      for_each_row([&](std::size_t row) {
         show_hidden(row, step - 1);
-        // The thread that has this block is likely to have the one after it.
-        colour_block(row, step, goes_on ? range(row + 1, step).first : range(row, step + 1).first);
-        mark(row, step + 1);
+        colour_block({row, step});
+        mark({row, step + 1});
       });
     for (std::size_t row = 0; row < rows_.size(); ++row) show_hidden(row, layout_.step_count() - 1);
     repair(executor_, as_compiled(graph_), blind_, colours_.words());
@@ -93,12 +102,17 @@ class MarkedRun {
   using Seen = std::conditional_t<has_many_colours<Width>, ShownBytes<Width>,
                                   TakenColours<SeenFrom<MarkedRun>>>;
 
-  void mark(std::size_t row, std::uint32_t step) {
-    if (step == layout_.step_count()) return;
-    const auto [begin, end] = range(row, step);
-    const Word word = Colours<Width>::mark(static_cast<std::uint32_t>(row));
+  /// Of a row, when its block is coloured.
+  struct Turn {
+    std::size_t row;
+    std::uint32_t step;
+  };
+
+  void mark(const Turn& turn) {
+    const Window block = block_of(turn);
+    const Word word = Colours<Width>::mark(static_cast<std::uint32_t>(turn.row));
     const Colours<Width> colours = colours_;
-    for (std::uint32_t v = begin; v < end; ++v) colours.set(v, word);
+    for (std::uint32_t v = block.begin; v < block.end; ++v) colours.set(v, word);
   }
 
   void show_hidden(std::size_t row, std::uint32_t step) {
@@ -106,42 +120,30 @@ class MarkedRun {
     rows_[row].hiding.clear();
   }
 
-  /// `next` is the vertex that comes after the block.
-  void colour_block(std::size_t row, std::uint32_t step, std::uint32_t next) {
-    const auto [begin, end] = range(row, step);
-    // Copies, which the compiler keeps in registers across the calls in the loop.
-    const auto& rows = in_registers(graph_);
-    const Colours<Width> colours = colours_;
-    const VertexSet all{colours.vertex_count()};
-    const auto number = static_cast<std::uint32_t>(row);
-    for (std::uint32_t v = begin; v < end; ++v) {
-      prefetch_after(rows, all, v + prefetch_distance_of<G>() < end ? v : next - (end - v));
-      if (wants_one_look(rows, v)) {
-        colour_with_care(v, step);
-        continue;
-      }
-      TakenColours<Colours<Width>> seen;
-      visit_in_pairs(rows, v, [&](std::uint32_t u) { seen.add(colours[u]); });
-      if (seen.shows_others(number)) [[unlikely]] {
-        colour_with_care(v, step);
-      } else {
-        colours.set(v, least_free(rows, v, colours, seen));
-      }
+  void colour_block(const Turn& turn) {
+    const Window block = block_of(turn);
+    if (block.size() == 0) return;
+    const Turn next = after(turn);
+    if constexpr (requires { graph_.prefetch_row_begins(0, 0); }) {
+      const Window later = block_of(after(next));
+      graph_.prefetch_row_begins(later.begin, later.end);
     }
+    const auto number = static_cast<std::uint32_t>(turn.row);
+    const LeavingPainter painter{{number, newest_mark}, block_of(next).begin};
+    first_fit_in_order<true>(graph_, colours_, block, painter,
+                             [&](std::uint32_t v) { return colour_with_care(v, turn.step); });
   }
 
-  /// Whether v has so many neighbours that a look without care would likely have to be repeated.
-  static bool wants_one_look(const auto& rows, std::uint32_t v) {
-    if constexpr (RowGraph<G> && has_many_colours<Width>) {
-      return rows.row(v).size() >= many_neighbours;
-    } else {
-      return false;
-    }
+  /// The turn that the same thread is likely to take after this one.
+  Turn after(const Turn& turn) const {
+    const std::size_t row = rows_[turn.row].next;
+    return {row, row > turn.row ? turn.step : turn.step + 1};
   }
 
-  /// Colours v, of whose neighbours some may be coloured at the same time, or have a hidden colour.
+  /// Colours v, of whose neighbours some may be coloured at the same time, or have a hidden colour;
+  /// returns what v shows then.
   /// Not inlined, so as to keep the caller's loop tight.
-  [[gnu::noinline]] void colour_with_care(std::uint32_t v, std::uint32_t step) {
+  [[gnu::noinline]] Word colour_with_care(std::uint32_t v, std::uint32_t step) {
     const auto& rows = in_registers(graph_);
     const Colours<Width> colours = colours_;
     Seen seen;
@@ -157,7 +159,9 @@ class MarkedRun {
       hidden(v, step) = colour;
       rows_[layout_.row_of(v)].hiding.push_back(v);
     }
-    colours_.set(v, hides ? Colours<Width>::waiting : colour);
+    const Word shown = hides ? Colours<Width>::waiting : colour;
+    colours.set(v, shown);
+    return shown;
   }
 
   /// What v, which has its turn in this step, sees of u, which shows no colour. Sets `hides` if
@@ -184,11 +188,12 @@ class MarkedRun {
     return hidden_[(row << layout_.block_bits) + (v & (layout_.block_size() - 1))];
   }
 
-  /// The vertices of the row's block that has its turn; after the last step, none.
-  std::pair<std::uint32_t, std::uint32_t> range(std::size_t row, std::uint32_t step) const {
+  /// The vertices of the block that has its turn; after the last step, none.
+  Window block_of(const Turn& turn) const {
     const std::size_t n = colours_.vertex_count(), size = layout_.block_size();
+    const bool is_over = turn.step >= layout_.step_count();
     const std::size_t begin =
-        step == layout_.step_count() ? n : std::min(layout_.block_of(row, step) * size, n);
+        is_over ? n : std::min(layout_.block_of(turn.row, turn.step) * size, n);
     return {static_cast<std::uint32_t>(begin),
             static_cast<std::uint32_t>(std::min(begin + size, n))};
   }
@@ -203,7 +208,7 @@ class MarkedRun {
 };
 
 struct MarkedBlocks {
-  static constexpr std::uint32_t marks = 1U << marked_row_bits;
+  static constexpr std::uint32_t marks = newest_mark + 1;
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
