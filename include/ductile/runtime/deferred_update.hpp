@@ -43,7 +43,7 @@ class DeferredUpdate {
     const std::uint32_t buckets = std::clamp(std::bit_ceil(8U * threads), 16U, 1024U);
     // As many owners in a row as have their data in cache; fewer where a window of a mesh, whose
     // owners are near by, should be in enough buckets for all threads.
-    const unsigned neighbour_bits = threads == 1 ? 16 : 8;
+    const unsigned neighbour_bits = threads == 1 ? 16 : threads < 8 ? 8 : 7;
     for (std::size_t t = 0; t < lanes_.size(); ++t)
       lanes_[t].set_up(buckets, neighbour_bits, by_source_);
   }

@@ -1,6 +1,7 @@
 /// @file
 /// Buckets: many append-only lists that one thread fills, each in chunks that double in length, so
-/// that elements never move and memory is kept from one filling to the next.
+/// that elements never move and memory is kept from one filling to the next. All chunks lie in a
+/// few blocks, which take little time to give back.
 /// An append looks up two pointers only: where the list's next element goes, and where its chunk
 /// ends. Those of all lists lie side by side, apart from what else there is to know of a list.
 /// Thread safety: one thread at a time; where it says so, one thread at a time for each list.
@@ -10,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <memory_resource>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -47,10 +49,11 @@ class Buckets {
   /// Starts a list's next chunk. Throws std::bad_alloc and changes nothing then.
   void grow(std::uint32_t number) {
     List& list = lists_[number];
-    if (list.used == list.chunks.size()) add_chunk(list);
-    if (list.used == 0) touched_.push_back(number);  // cannot throw: provide() reserved
-    const auto& [begin, end] = list.chunks[list.used++];
-    rooms_[number] = {begin, end};
+    Chunk*& next = list.last == nullptr ? list.first : list.last->next;
+    if (next == nullptr) next = new_chunk(list.last);
+    if (list.last == nullptr) touched_.push_back(number);  // cannot throw: provide() reserved
+    list.last = next;
+    rooms_[number] = {next->begin, next->end};
   }
 
   /// Numbers of the lists that may have elements, in no order.
@@ -69,12 +72,11 @@ class Buckets {
   /// Thread safety: one thread at a time for each list.
   template <class Visit>
   void for_each_chunk(std::uint32_t number, Visit&& visit) const {
-    if (lists_.empty()) return;
+    if (lists_.empty() || lists_[number].last == nullptr) return;
     const List& list = lists_[number];
-    for (std::size_t c = 0; c < list.used; ++c) {
-      const auto& [begin, end] = list.chunks[c];
-      visit(begin, c + 1 == list.used ? static_cast<T*>(rooms_[number].next) : end);
-    }
+    for (Chunk* chunk = list.first; chunk != list.last; chunk = chunk->next)
+      visit(chunk->begin, chunk->end);
+    visit(list.last->begin, static_cast<T*>(rooms_[number].next));
   }
 
   /// Removes a list's elements and keeps its memory; the list stays among those touched.
@@ -83,7 +85,7 @@ class Buckets {
     if (lists_.empty()) return;
     if constexpr (!std::is_trivially_destructible_v<T>)
       for_each_chunk(number, [](T* begin, T* end) { std::destroy(begin, end); });
-    lists_[number].used = 0;
+    lists_[number].last = nullptr;
     rooms_[number] = {};
   }
 
@@ -96,45 +98,39 @@ class Buckets {
   /// Removes all elements and lists and gives the memory back.
   void release() {
     clear();
-    for (const List& list : lists_)
-      for (const auto& [begin, end] : list.chunks)
-        std::allocator<T>().deallocate(begin, static_cast<std::size_t>(end - begin));
     std::vector<Room>().swap(rooms_);
     std::vector<List>().swap(lists_);
     std::vector<std::uint32_t>().swap(touched_);
+    memory_.release();
   }
 
  private:
   struct Chunk {
     T *begin, *end;
+    Chunk* next;
   };
   struct List {
-    std::vector<Chunk> chunks;
-    std::size_t used = 0;  // chunks with elements, or about to get some
+    Chunk* first = nullptr;
+    Chunk* last = nullptr;  // with elements, or about to get some; chunks after it are kept
   };
 
   static constexpr std::size_t first_capacity = std::max<std::size_t>(1, 512 / sizeof(T));
   static constexpr std::size_t last_capacity = std::max<std::size_t>(1, 65536 / sizeof(T));
 
-  static void add_chunk(List& list) {
-    std::vector<Chunk>& chunks = list.chunks;
-    std::size_t capacity = first_capacity;
-    if (!chunks.empty())
-      capacity = 2 * static_cast<std::size_t>(chunks.back().end - chunks.back().begin);
-    capacity = std::min(capacity, last_capacity);
-    chunks.emplace_back();
-    try {
-      T* const begin = std::allocator<T>().allocate(capacity);
-      chunks.back() = {begin, begin + capacity};
-    } catch (...) {
-      chunks.pop_back();
-      throw;
-    }
+  Chunk* new_chunk(const Chunk* before) {
+    const std::size_t capacity =
+        before == nullptr
+            ? first_capacity
+            : std::min(2 * static_cast<std::size_t>(before->end - before->begin), last_capacity);
+    std::pmr::polymorphic_allocator<> allocator(&memory_);
+    T* const begin = allocator.allocate_object<T>(capacity);
+    return allocator.new_object<Chunk>(Chunk{begin, begin + capacity, nullptr});
   }
 
   std::vector<Room> rooms_;  // [list]
   std::vector<List> lists_;
   std::vector<std::uint32_t> touched_;
+  std::pmr::monotonic_buffer_resource memory_;  // of the chunks
 };
 
 }  // namespace ductile::runtime::detail
