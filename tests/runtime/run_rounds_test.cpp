@@ -371,6 +371,47 @@ TEST(RunRounds, WhatConflictsAreFoundInIsAskedForAhead) {
   EXPECT_EQ(run_rounds(Executor({.threads = 1}), op, all_items(100)).planned, 100U);
 }
 
+/// The first class wakes all others of a ring, which so leave the round.
+class WakesNeighbours {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  explicit WakesNeighbours(std::size_t n) : count_(n), planned_(n) {}
+  void conflicts(Vertex v, auto&& visit) const {
+    visit(after(v));
+    visit((v + static_cast<Vertex>(count_) - 1) % static_cast<Vertex>(count_));
+  }
+  std::size_t item_count() const { return count_; }
+  void prefetch(Vertex, int stage) const { asked_ += stage == 0; }
+  std::optional<Plan> plan(Vertex v) const {
+    if (std::exchange(planned_[v], true)) return {};
+    return v;
+  }
+  void apply(const Plan& v, Commit<WakesNeighbours>& commit) {
+    conflicts(v, [&](Vertex other) { commit.wake(other); });
+  }
+  void commit(std::uint32_t, const Update&) {}
+  std::size_t asked() const { return asked_; }
+
+ private:
+  Vertex after(Vertex v) const { return (v + 1) % static_cast<Vertex>(count_); }
+
+  std::size_t count_;
+  mutable std::vector<std::uint8_t> planned_;  // [item]
+  mutable std::size_t asked_ = 0;
+};
+
+TEST(RunRounds, WhoLeftTheRoundIsNotAskedFor) {
+  WakesNeighbours op(1000);
+  const RoundsReport report = run_rounds(Executor({.threads = 1}), op, all_items(1000));
+  EXPECT_EQ(report.applied, 1000U);
+  EXPECT_GT(report.dropped, 100U);
+  EXPECT_GT(op.asked(), report.planned / 2);
+  EXPECT_LE(op.asked(), report.planned);
+}
+
 /// Items conflict in pairs, so that blocks that are coloured side by side do not.
 class AskedForPairs : public test::AskedEachTime {
  public:

@@ -30,16 +30,18 @@ namespace ductile::runtime::detail {
 constexpr std::size_t short_block = 32;
 constexpr LoopOptions by_block{.grain = 1, .serial_below = 3};
 
-/// Has items soon after position i brought into the cache, if the operator can. What memory takes
-/// to answer is about as long as planning two items.
+constexpr auto all_are_here = [](const auto&) { return true; };
+
+/// Has items soon after position i for which is_here(item) brought into the cache, if the operator
+/// can. What memory takes to answer is about as long as planning two items.
 template <class Op>
 [[gnu::always_inline]] inline void prefetch_items_after(const Op& op,
                                                         std::span<const typename Op::Item> batch,
-                                                        std::size_t i) {
+                                                        std::size_t i, auto&& is_here) {
   if constexpr (PrefetchingOperator<Op>)
     for (const int stage : {2, 1, 0}) {
       const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
-      if (ahead < batch.size()) op.prefetch(batch[ahead], stage);
+      if (ahead < batch.size() && is_here(batch[ahead])) op.prefetch(batch[ahead], stage);
     }
 }
 
@@ -64,13 +66,13 @@ class Batches {
   [[no_unique_address]] Check check;
   RoundsReport report;
 
-  /// Runs a batch: an item is planned if takes(item), which is asked again where rounds are
-  /// checked; new_commit() is what its plan is applied with.
-  void run(std::span<const Item> batch, auto&& takes, auto&& new_commit) {
+  /// Runs a batch: tells planning(item) of those items for which is_here(item), and plans them;
+  /// new_commit() is what a plan is applied with.
+  void run(std::span<const Item> batch, auto&& is_here, auto&& planning, auto&& new_commit) {
     if (batch.empty()) return;
     ++report.batches;
-    plan_all(batch, takes);
-    if constexpr (Check::on) return apply_checked(batch, takes, new_commit);
+    plan_all(batch, is_here, planning);
+    if constexpr (Check::on) return apply_checked(batch, is_here, new_commit);
     {
       const PhaseTimer timer(report.apply_seconds, executor, Phase::apply);
       apply_plans(new_commit);
@@ -110,16 +112,21 @@ class Batches {
     return std::clamp<std::size_t>(items / 1024, 4, short_block);
   }
 
-  void plan_all(std::span<const Item> batch, auto&& takes) {
+  void plan_all(std::span<const Item> batch, auto&& is_here, auto&& planning) {
     size_ = batch.size();
     block_size_ = block_of(size_);
     plans_.provide(executor, size_);
     planned_of_.assign((size_ + block_size_ - 1) / block_size_, 0);
+    first_of_.assign(planned_of_.size(), {});
     const PhaseTimer timer(report.plan_seconds, executor, Phase::plan);
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        prefetch_items_after(op, batch, i);
-        planned_of_[b] += plan(batch[i], takes(batch[i]), plans_[i]);
+        prefetch_items_after(op, batch, i, is_here);
+        const bool here = is_here(batch[i]);
+        planned_of_[b] += here;
+        if (here) planning(batch[i]);
+        plan(batch[i], here, plans_[i]);
+        if constexpr (kinds > 0) add_demand(plans_[i], first_of_[b]);
       }
     });
     const std::size_t planned = std::accumulate(planned_of_.begin(), planned_of_.end(), 0U);
@@ -131,8 +138,8 @@ class Batches {
     parallel_for_blocks(executor, size_, block_size_, body, by_block);
   }
 
-  /// Plans an item, unless it left the round; returns whether it is still here.
-  bool plan(const Item& item, bool here, std::optional<Plan>& plan) {
+  /// Plans an item, unless it left the round.
+  void plan(const Item& item, bool here, std::optional<Plan>& plan) {
     if (here) {
       plan = op.plan(item);
     } else {
@@ -140,11 +147,9 @@ class Batches {
     }
     if (executor.recording() != nullptr) [[unlikely]]
       record_plan(item);
-    return here;
   }
 
   void apply_plans(auto&& new_commit) {
-    first_of_.assign(planned_of_.size(), {});
     applied_of_.assign(planned_of_.size(), 0);
     if constexpr (kinds > 0) number_new_things();
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
@@ -163,11 +168,11 @@ class Batches {
     for (const std::uint32_t applied : applied_of_) report.applied += applied;
   }
 
-  void apply_checked(std::span<const Item> all, auto&& takes, auto&& new_commit) {
+  void apply_checked(std::span<const Item> all, auto&& is_here, auto&& new_commit) {
     std::vector<Item> batch;
     std::vector<std::optional<Plan>> plans;
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (takes(all[i])) batch.push_back(all[i]), plans.push_back(std::move(plans_[i]));
+      if (is_here(all[i])) batch.push_back(all[i]), plans.push_back(std::move(plans_[i]));
     std::vector<Commit<Op>> commits(batch.size(), new_commit());
     for (std::size_t i = 0; i < batch.size(); ++i) commits[i].source_ = i;
     report.applied += batch.size() - std::count(plans.begin(), plans.end(), std::nullopt);
@@ -175,15 +180,14 @@ class Batches {
     check.run_batch(op, {batch, plans, commits}, deferred_, options.order);
   }
 
-  /// Sets first_of_ to the first new number of each kind for each block of the batch.
+  void add_demand(const std::optional<Plan>& plan, std::array<std::uint32_t, kinds>& sum) const {
+    if (!plan) return;
+    const auto demand = op.demand(*plan);
+    for (std::size_t k = 0; k < kinds; ++k) sum[k] += demand[k];
+  }
+
+  /// Turns what each block of the batch asks for of each kind into its first new number.
   void number_new_things() {
-    for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!plans_[i]) continue;
-        const auto demand = op.demand(*plans_[i]);
-        for (std::size_t k = 0; k < kinds; ++k) first_of_[b][k] += demand[k];
-      }
-    });
     std::array<std::uint32_t, kinds> total{};
     for (auto& first : first_of_)
       for (std::size_t k = 0; k < kinds; ++k) total[k] += std::exchange(first[k], total[k]);
@@ -198,9 +202,7 @@ class Batches {
     std::array<std::uint32_t, kinds> total{};
     for (std::size_t i = 0; i < plans.size(); ++i) {
       commits[i].next_ = total;
-      if (!plans[i]) continue;
-      const auto demand = op.demand(*plans[i]);
-      for (std::size_t k = 0; k < kinds; ++k) total[k] += demand[k];
+      add_demand(plans[i], total);
     }
     const std::array<std::uint32_t, kinds> base = op.grow(total);
     for (Commit<Op>& commit : commits)
@@ -230,7 +232,7 @@ class Batches {
   std::size_t size_ = 0, block_size_ = 1;  // its items, and those of a block
   Slots<Plan> plans_;                      // [position]; there may be old ones beyond its size
   std::vector<std::uint32_t> planned_of_;  // [block]
-  std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block][kind]
+  std::vector<std::array<std::uint32_t, kinds>> first_of_;  // [block][kind], demanded, then first
   std::vector<std::uint32_t> applied_of_;                   // [block]
 };
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -135,7 +136,8 @@ class ColouredRounds {
     for (turn_ = 0; turn_ < classes; ++turn_) {
       const std::size_t begin = class_begin[turn_], end = class_begin[turn_ + 1];
       batches_.run(
-          std::span(by_class_).subspan(begin, end - begin), [&](Item item) { return takes(item); },
+          std::span(by_class_).subspan(begin, end - begin),
+          [&](Item item) { return is_here(item); }, [&](Item item) { note_planned(item); },
           [&] { return new_commit(); });
       if constexpr (Check::on) check_waiting(end);
     }
@@ -161,13 +163,15 @@ class ColouredRounds {
     return std::move(classes.begin);
   }
 
-  /// Whether an item has its turn now. A colouring is stale where something changed: who was woken
-  /// in this window comes back in the next round.
-  bool takes(Item item) {
-    if constexpr (!requires { Op::keeps_conflicts; })
-      if (woken_at_[item] == window_) return false;
-    woken_at_[item] = 0;
-    return true;
+  /// Whether an item is still in the round. A colouring is stale where something changed: who was
+  /// woken in this window comes back in the next round. Also asked ahead of an item that another
+  /// thread plans meanwhile: what it reads is either of two that say the same.
+  bool is_here(Item item) {
+    if constexpr (requires { Op::keeps_conflicts; }) return true;
+    return std::atomic_ref(woken_at_[item]).load(std::memory_order_relaxed) != window_;
+  }
+  void note_planned(Item item) {
+    std::atomic_ref(woken_at_[item]).store(0, std::memory_order_relaxed);
   }
 
   Commit<Op> new_commit() {

@@ -69,7 +69,7 @@ class ReservingRounds {
       winners = take_winners(work, rest);
     }
     batches_.run(
-        winners, [](const Item&) { return true; }, [&] { return batches_.new_commit(window_); });
+        winners, all_are_here, [](const Item&) {}, [&] { return batches_.new_commit(window_); });
   }
 
   /// A later window has lower keys, so that reservations never have to be cleared but where there
@@ -93,7 +93,7 @@ class ReservingRounds {
         executor_, work.size(), short_block,
         [&](std::size_t, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
-            if (share_ == everyone) prefetch_items_after<Op>(op_, work, i);
+            if (share_ == everyone) prefetch_items_after<Op>(op_, work, i, all_are_here);
             outcome_of_[i] = asks(i) ? reserve(work[i], i) : Outcome::passes;
           }
         },
@@ -109,7 +109,7 @@ class ReservingRounds {
         [&](std::size_t b, std::size_t begin, std::size_t end) {
           Counts found;
           for (std::size_t i = begin; i < end; ++i) {
-            if (share_ == everyone) prefetch_items_after<Op>(op_, work, i);
+            if (share_ == everyone) prefetch_items_after<Op>(op_, work, i, all_are_here);
             settle(work[i], i, found);
           }
           counts[b] = found;
