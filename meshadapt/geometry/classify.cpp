@@ -7,6 +7,9 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 
@@ -85,7 +88,7 @@ class Classifier {
   };
 
   void sort_sides() {
-    sides_.resize(Dim * facets_.size());
+    runtime::resize_empty(executor_, sides_, Dim * facets_.size());
     runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
       std::uint8_t number = 0;
       each_side<Dim>(facets_[f].corners, [&](Key key) {
@@ -114,7 +117,7 @@ class Classifier {
   void find_neighbours() {
     std::array<std::uint32_t, Dim> nobody;
     nobody.fill(none);
-    across_.assign(facets_.size(), nobody);
+    across_.resize(executor_, facets_.size(), nobody);
     runtime::parallel_for(executor_, sides_.size(), [&](std::size_t i) {
       if (!begins_run(i)) return;
       const auto both = run_at(i);
@@ -141,7 +144,7 @@ class Classifier {
   void find_patches() {
     mesh_.patches.assign(1, {});
     using Seed = std::pair<double, std::uint32_t>;
-    std::vector<Seed> order(facets_.size());
+    auto order = runtime::make_vector<Seed>(executor_, facets_.size());
     runtime::parallel_for(executor_, order.size(), [&](std::size_t f) {
       order[f] = {-norm(normal_of<Dim>(mesh_, facets_[f].corners)), static_cast<std::uint32_t>(f)};
     });
@@ -212,11 +215,12 @@ class Classifier {
   }
 
   void store_patches() {
-    for (const TaggedFacet<Dim>& f : facets_) {
+    runtime::parallel_for(executor_, facets_.size(), [&](std::size_t i) {
+      const TaggedFacet<Dim>& f = facets_[i];
       mesh_.patches_of[f.element][static_cast<std::size_t>(f.facet)] = f.patch;
       if (f.other != none)
         mesh_.patches_of[f.other][static_cast<std::size_t>(f.other_facet)] = f.patch;
-    }
+    });
   }
 
   // ---- Curves: edges where patches meet or that the file lists, chained where straight ----
@@ -241,13 +245,13 @@ class Classifier {
 
   void find_curves() {
     mesh_.curves.assign(1, {});
-    std::vector<Key> keys;
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
-      if (!begins_run(i)) continue;
-      const auto both = run_at(i);
-      if (both.size() != 2 || facets_[both[0].facet].patch != facets_[both[1].facet].patch)
-        keys.push_back(both[0].key);
-    }
+    auto keys =
+        runtime::parallel_collect<Key>(executor_, sides_.size(), [&](std::size_t i, auto&& append) {
+          if (!begins_run(i)) return;
+          const auto both = run_at(i);
+          if (both.size() != 2 || facets_[both[0].facet].patch != facets_[both[1].facet].patch)
+            append(both[0].key);
+        });
     for (const auto& [key, edge] : listed_) keys.push_back(key);
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
@@ -329,7 +333,7 @@ class Classifier {
 
   /// The corners of all facets, each with its facet's patch, sorted.
   std::vector<std::uint64_t> corners_with_patches() const {
-    std::vector<std::uint64_t> corners(Dim * facets_.size());
+    auto corners = runtime::make_vector<std::uint64_t>(executor_, Dim * facets_.size());
     runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
       for (std::size_t i = 0; i < Dim; ++i)
         corners[Dim * f + i] = std::uint64_t{facets_[f].corners[i]} << 32U | facets_[f].patch;
@@ -380,9 +384,10 @@ class Classifier {
   Mesh<Dim>& mesh_;
   std::vector<TaggedFacet<Dim>> facets_;
   double tolerance_;
-  std::vector<Side> sides_;                             // sorted
-  std::vector<std::array<std::uint32_t, Dim>> across_;  // [facet][side], the other facet or none
-  std::unordered_map<Key, ListedEdge> listed_;          // 3D
+  std::vector<Side> sides_;  // sorted
+  using Others = std::array<std::uint32_t, Dim>;
+  runtime::FilledArray<Others> across_;         // [facet][side], the other facet or none
+  std::unordered_map<Key, ListedEdge> listed_;  // 3D
   std::vector<CurveEdge> curve_edges_;
   std::unordered_map<VertexId, std::vector<std::uint32_t>> edges_at_;
 };

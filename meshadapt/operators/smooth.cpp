@@ -69,6 +69,7 @@ auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
   const double good_enough = shape_of_mean_ratio<Dim>(options_.optimise_below);
   const auto is_good = [&](ElementId e) { return mesh_.shape_of[e] >= good_enough; };
   if (!options_.laplacian && std::all_of(elements.begin(), elements.end(), is_good)) return {};
+  background_.prefetch_corners(mesh_.host_of[vertex]);
   const Ball<Dim> ball(mesh_, vertex);
   std::array<Place, 2> places{Place{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present()}};
   bool moved = options_.laplacian && relax(vertex, ball, places[0], places[1]);

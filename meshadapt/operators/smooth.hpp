@@ -61,7 +61,10 @@ class Smooth {
   // ---- Conflict rule: a vertex stands still while its neighbours move ----
   void conflicts(VertexId vertex, auto&& visit) const { visit_neighbours(mesh_, vertex, visit); }
   std::size_t item_count() const { return mesh_.vertex_slots(); }
-  void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
+  void prefetch(VertexId vertex, int stage) const {
+    prefetch_ball(mesh_, vertex, stage);
+    if (stage == 1) background_.prefetch(mesh_.host_of[vertex]);
+  }
   void prefetch_neighbour(VertexId vertex) const { prefetch_site(mesh_, vertex); }
 
   // ---- Apply: move it, renew the shapes around it, wake whom it concerns ----

@@ -293,8 +293,11 @@ class EdgeSearch {
   if (vertex + 2 * step < wanted.size() && wanted[vertex + 2 * step] != 0)
     mesh.elements_of.prefetch(static_cast<VertexId>(vertex + 2 * step));
   if (vertex + step < wanted.size() && wanted[vertex + step] != 0)
-    for (const ElementId e : mesh.elements_of.of(static_cast<VertexId>(vertex + step)))
+    for (const ElementId e : mesh.elements_of.of(static_cast<VertexId>(vertex + step))) {
       __builtin_prefetch(&mesh.corners_of[e]);
+      __builtin_prefetch(&mesh.shape_of[e]);
+      __builtin_prefetch(&mesh.changed_at[e]);
+    }
 }
 
 /// The facet whose opposite corner is the lowest over it: the largest, by Heron's formula in

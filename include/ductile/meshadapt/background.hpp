@@ -45,6 +45,14 @@ class Background {
     __builtin_prefetch(&neighbours_[near]);
   }
 
+  /// The same for the corners of that element, if it is there already.
+  [[gnu::always_inline]] void prefetch_corners(ElementId near) const {
+    for (const VertexId v : corners_of_[near]) {
+      __builtin_prefetch(&position_of_[v]);
+      __builtin_prefetch(&log_metric_of_[v]);
+    }
+  }
+
   /// Gives the memory of its elements and vertices back, by all threads of an executor; there is
   /// nothing to sample any more. Thread safety: one thread.
   void release(const runtime::Executor& executor);
