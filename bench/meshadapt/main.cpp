@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "child.hpp"
+#include "copies.hpp"
 #include "forecast.hpp"
 #include "peer.hpp"
 #include "plan.hpp"
@@ -33,6 +34,17 @@ void say(const Sample& sample) {
   std::fflush(stdout);
 }
 
+/// As many copies as there are threads at most.
+void measure_copies(Results& results, const Plan& plan, const AdaptCase& made,
+                    const Sampler& sampler) {
+  if (plan.most_threads == 1) return;
+  const auto work = [&] { return sampler.first_call_alone(); };
+  const double speed = speed_of_copies(work, plan.most_threads);
+  results.copies.push_back({made.name, plan.most_threads, speed});
+  std::printf("%-16s %3d copies get %.2f times as much done as one\n", made.name.c_str(),
+              plan.most_threads, speed);
+}
+
 /// All settings in turn, again and again, so that whatever else the machine does meets all alike.
 void measure_case(Results& results, const Plan& plan, const AdaptCase& made) {
   Sampler sampler(made);
@@ -43,7 +55,9 @@ void measure_case(Results& results, const Plan& plan, const AdaptCase& made) {
       results.samples.push_back(sampler.take(settings, i));
       say(results.samples.back());
     }
-  if (!plan.replays || is_large(made.name)) return;
+  if (is_large(made.name)) return;
+  measure_copies(results, plan, made, sampler);
+  if (!plan.replays) return;
   results.forecasts.push_back(forecast(sampler, made.name));
   std::printf("%-16s recorded and replayed\n", made.name.c_str());
 }
@@ -101,6 +115,8 @@ int run(const Plan& plan) {
   write_page(results, plan.folder);
   const std::vector<Summary> summaries = summarise(results.samples);
   std::printf("\n%s", time_table(summaries).text().c_str());
+  if (!results.copies.empty())
+    std::printf("\n%s", copies_table(summaries, results.copies).text().c_str());
   if (!results.pairs.empty()) std::printf("\n%s", ratio_table(results.pairs).text().c_str());
   std::printf("\n%s\n", fs::absolute(plan.folder / "report.html").c_str());
   if (!results.sound()) std::fprintf(stderr, "adapt_bench: results are not sound, see the page\n");

@@ -123,13 +123,25 @@ void show_times(Page& page, const std::vector<Summary>& summaries, const fs::pat
   page.heading("Time against threads");
   page.paragraph(
       "Medians. Efficiency is against the fewest threads. Cores: how far apart the threads' cores "
-      "were before and after, by a cache line that goes to and fro (one core: under 75 ns, where a "
-      "speed-up of 2 cannot be had; near: under 250 ns; far). Samples during which that changed "
-      "are left out.");
+      "were before and after, by a cache line that goes to and fro (one core: under 75 ns, mostly "
+      "two hyperthreads, which share it; near: under 250 ns; far). Samples during which that "
+      "changed are left out.");
   page.table(time_table(summaries));
   for (const std::string& name : case_names(summaries))
     show(page, folder, "threads_" + name + ".svg",
          name + ": seconds and parallel efficiency of each kernel against threads");
+}
+
+void show_copies(Page& page, const std::vector<Summary>& summaries,
+                 const std::vector<CopiesRow>& copies) {
+  const Table table = copies_table(summaries, copies);
+  if (table.size() == 0) return;
+  page.heading("What the machine gives");
+  page.paragraph(
+      "How many times as much as one alone so many copies of the program get done in the same "
+      "time, each on one thread, with nothing in common but the machine; and how many times as "
+      "fast one program is on so many threads. Of several calls the copies make the first one.");
+  page.table(table);
 }
 
 void show_meshes(Page& page, const std::vector<Summary>& summaries) {
@@ -202,6 +214,18 @@ Table time_table(std::span<const Summary> summaries) {
                1e-6 * static_cast<double>(s.median.elements) / s.median.wall_seconds,
                efficiency(*alone, s), s.placement,
                std::to_string(s.used) + " of " + std::to_string(s.taken)});
+  }
+  return table;
+}
+
+Table copies_table(std::span<const Summary> summaries, std::span<const CopiesRow> copies) {
+  Table table({"case", "copies", "get done", "threads are as fast", "of that %"});
+  for (const CopiesRow& row : copies) {
+    const Summary* alone = find(summaries, row.case_name, {1, true});
+    const Summary* many = find(summaries, row.case_name, {row.copies, true});
+    if (alone == nullptr || many == nullptr) continue;
+    const double speed = row.copies * efficiency(*alone, *many);
+    table.add({row.case_name, row.copies, row.speed, speed, 100 * speed / row.speed});
   }
   return table;
 }
@@ -326,6 +350,8 @@ void write_tables(const Results& results, const fs::path& folder) {
     write_measured(summaries, name, folder);
     write_phases(summaries, name, folder);
   }
+  if (!results.copies.empty())
+    copies_table(summaries, results.copies).write_csv(folder / "copies.csv");
   for (const Forecast& forecast : results.forecasts) write_replayed(forecast, folder);
   if (!results.forecasts.empty())
     forecast_table(results.forecasts).write_csv(folder / "forecasts.csv");
@@ -345,6 +371,7 @@ void write_page(const Results& results, const fs::path& folder) {
                        "ones; see the table of meshes.");
   for (const std::string& note : results.notes) page.paragraph(note);
   show_times(page, summaries, folder);
+  show_copies(page, summaries, results.copies);
   show_meshes(page, summaries);
   const Table determinism = determinism_table(summaries);
   if (determinism.size() > 0) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "copies.hpp"
 #include "forecast.hpp"
 #include "peer.hpp"
 #include "sample.hpp"
@@ -17,6 +18,7 @@ namespace ductile::bench {
 
 struct Results {
   std::vector<Sample> samples;
+  std::vector<CopiesRow> copies;
   std::vector<Forecast> forecasts;
   std::vector<Pair> pairs;
   std::vector<std::string> notes;  ///< what was not measured, and why
@@ -26,8 +28,8 @@ struct Results {
   bool sound() const;
 };
 
-/// Writes samples.csv, pairs.csv, forecasts.csv and the tables for plots into the folder. Throws
-/// Error.
+/// Writes samples.csv, copies.csv, pairs.csv, forecasts.csv and the tables for plots into the
+/// folder. Throws Error.
 void write_tables(const Results& results, const std::filesystem::path& folder);
 
 /// Writes report.html, with those plots that are there.
@@ -37,6 +39,8 @@ void write_page(const Results& results, const std::filesystem::path& folder);
 
 /// Seconds, speed, parallel efficiency, by case, threads and mode.
 Table time_table(std::span<const Summary> summaries);
+/// How many times as fast threads of one program are, beside what as many programs get done.
+Table copies_table(std::span<const Summary> summaries, std::span<const CopiesRow> copies);
 /// Elements, quality, memory, and whether bytes were the same.
 Table mesh_table(std::span<const Summary> summaries);
 /// Seconds of each part, deterministic.

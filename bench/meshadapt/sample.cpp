@@ -100,6 +100,10 @@ AdaptedMesh Sampler::adapt_on(const Executor& executor) const {
   return result;
 }
 
+double Sampler::first_call_alone() const {
+  return adapt(Executor({.threads = 1}), case_.start, start_metric_).report.total_seconds;
+}
+
 /// The metric of the next call is evaluated while no clock runs.
 Sample Sampler::timed(const Executor& executor, AdaptedMesh& result) const {
   Sample sample;

@@ -65,6 +65,9 @@ class Sampler {
   /// Times all calls of adapt() on an executor of its own.
   Sample take(const RunSettings& settings, int repetition);
 
+  /// Seconds of the first call on one thread; starts no threads.
+  double first_call_alone() const;
+
   /// The same calls on any executor, not judged.
   meshadapt::AdaptedMesh adapt_on(const runtime::Executor& executor) const;
 
