@@ -7,8 +7,25 @@
 
 namespace ductile::runtime {
 
+namespace {
+
+double nanoseconds(std::chrono::steady_clock::duration time) {
+  return std::chrono::duration<double, std::nano>(time).count();
+}
+
+/// Nanoseconds this thread has run so far; those in which others had its core, or in which it was
+/// stopped, are not among them, if the system can tell.
+double ran() {
+  std::timespec time{};
+  if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time) != 0)
+    return nanoseconds(std::chrono::steady_clock::now().time_since_epoch());
+  return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace
+
 Recording::Recording() {
-  away();
+  begin_lap();
   double least = 1e9;
   for (int i = 0; i < 100; ++i) least = std::min(least, lap());
   clock_ns_ = least;
@@ -17,20 +34,22 @@ Recording::Recording() {
 double Recording::lap() {
   constexpr double suspicious = 2e5;  // shorter than the system takes the core away for
   const Clock::time_point now = Clock::now();
-  const double ns =
-      std::chrono::duration<double, std::nano>(now - std::exchange(last_, now)).count() - clock_ns_;
-  return std::max(0.0, ns > suspicious ? ns - away() : ns) + std::exchange(held_, 0.0);
+  double ns = nanoseconds(now - std::exchange(last_, now)) - clock_ns_;
+  if (ns > suspicious) {
+    const double gone = nanoseconds(now - start_) - ran();
+    ns -= std::max(0.0, gone - std::exchange(gone_, gone));
+  }
+  return std::max(0.0, ns) + std::exchange(held_, 0.0);
 }
 
-/// Nanoseconds since the last call in which this thread did not run, because others had its core or
-/// because it was stopped. Reading its time takes longer than reading the clock.
-double Recording::away() {
-  std::timespec time{};
-  if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time) != 0) return 0;
-  const double ran = 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
-  const double wall = std::chrono::duration<double, std::nano>(Clock::now() - start_).count();
-  const double gone = wall - ran;
-  return std::max(0.0, gone - std::exchange(gone_, gone));
+/// Reading the thread's time takes longer than reading the clock: laps of single items begin
+/// without. Where the core is taken away between the two readings, that lies before the lap, as in
+/// lap() it lies behind.
+void Recording::begin_lap() {
+  const double before = ran();
+  last_ = Clock::now();
+  gone_ = nanoseconds(last_ - start_) - before;
+  held_ = 0;
 }
 
 void Recording::add(Stretch::Kind kind, std::size_t first, std::size_t block) {
@@ -41,7 +60,7 @@ void Recording::add(Stretch::Kind kind, std::size_t first, std::size_t block) {
 void Recording::note(double cost_ns) {
   const bool full = costs_.size() == costs_.capacity();
   costs_.push_back(static_cast<float>(cost_ns));
-  if (full) lap();
+  if (full) begin_lap();
 }
 
 /// Books the time since the last loop as serial, were it none: all recordings of a run have the
@@ -66,7 +85,7 @@ void Recording::begin_section(std::string name) {
   const auto known = std::find(sections_.begin(), sections_.end(), name);
   section_ = static_cast<std::uint32_t>(known - sections_.begin());
   if (known == sections_.end()) sections_.push_back(std::move(name));
-  lap();
+  begin_lap();
 }
 
 void Recording::pause() {
@@ -87,7 +106,7 @@ void Recording::begin_loop() {
   cost_of_.clear();
   first_wait_ = waits_.size();
   in_loop_ = true;
-  lap();
+  begin_lap();
 }
 
 void Recording::end_item() {
@@ -100,7 +119,7 @@ void Recording::end_item(double cost_ns) {
   given_ = true;
   if (in_loop_) return;
   add(Stretch::Kind::serial, costs_.size() - 1);  // of a loop too short to share
-  lap();
+  begin_lap();
 }
 
 void Recording::end_chunk() {
@@ -114,6 +133,7 @@ void Recording::end_chunk() {
     if (!given_) costs_.back() += static_cast<float>(ns);  // what followed the last item
   }
   chunk_first_ = costs_.size();
+  begin_lap();
 }
 
 void Recording::begin_part(std::size_t part) {
@@ -121,7 +141,7 @@ void Recording::begin_part(std::size_t part) {
   end_part();
   if (part >= cost_of_.size()) cost_of_.resize(part + 1);
   part_ = part;
-  lap();
+  begin_lap();
 }
 
 void Recording::end_part() {
@@ -152,7 +172,7 @@ void Recording::end_loop() {
     stretches_.back().first_wait = first_wait_;
     stretches_.back().waits = waits_.size() - first_wait_;
   }
-  lap();
+  begin_lap();
 }
 
 }  // namespace ductile::runtime

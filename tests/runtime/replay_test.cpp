@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <numeric>
 #include <optional>
 #include <thread>
@@ -186,6 +187,20 @@ TEST(Recording, LeavesOutWhatRunsAside) {
 TEST(Recording, KnowsOnlyWaitsForEarlierParts) {
   Recording recording;
   EXPECT_THROW(recording.part_waits(3, 3), std::invalid_argument);
+}
+
+TEST(Recording, TakesNoCostForTimeInWhichTheThreadDidNotRunBefore) {
+  Recording recording;
+  recording.begin_loop();
+  for (int chunk = 0; chunk < 20; ++chunk) {
+    std::this_thread::sleep_for(std::chrono::microseconds(80));
+    recording.end_chunk();
+  }
+  const auto begin = std::clock();
+  while (std::clock() - begin < CLOCKS_PER_SEC / 1000) continue;
+  recording.end_chunk();
+  recording.end_loop();
+  EXPECT_GT(recording.costs().back(), 0.8e6);
 }
 
 TEST(Recording, LeavesOutTheTimeInWhichTheThreadDoesNotRun) {

@@ -93,9 +93,10 @@ class Recording {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Nanoseconds since the last call, without what the clock itself takes.
+  /// Nanoseconds that the thread has run since the last call of lap() or begin_lap(), without what
+  /// the clock itself takes.
   double lap();
-  double away();
+  void begin_lap();
   void flush();
   void end_part();
   void add(Stretch::Kind kind, std::size_t first, std::size_t block = 1);
@@ -107,7 +108,7 @@ class Recording {
   std::vector<Wait> waits_;
   Clock::time_point last_ = Clock::now();
   const Clock::time_point start_ = last_;
-  double gone_ = 0;  // nanoseconds since then in which the thread did not run
+  double gone_ = 0;  // of the nanoseconds since then, those in which the thread did not run
   double clock_ns_ = 0;
   double held_ = 0;  // what the next lap is longer by
   std::uint32_t section_ = 0, round_ = 0, rounds_ = 0;
