@@ -2,32 +2,27 @@
 /// Tiles: stretches of items, in each of which one thread plans and applies one after the other
 /// while what they touch is in its cache; nothing is coloured and no plan is kept. Each tile has
 /// one of 16 ranks (steps of blocks.hpp), and of neighbours the one whose tile has the lower rank
-/// comes first. Threads take tiles as they lie side by side. One that meets a neighbour of a tile
-/// of lower rank that is not done does that tile first, or waits until the thread that has begun it
-/// is done. As ranks fall from each tile to the one it waits for, nobody waits for himself. Few
-/// items have an earlier neighbour in another tile of the same rank; they are left for the classes
-/// of a coloured round, lest tiles wait for each other in long chains.
+/// comes first, see ranked_blocks.hpp. Few items have an earlier neighbour in another tile of the
+/// same rank; they are left for the classes of a coloured round, lest tiles wait for each other in
+/// long chains.
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <numeric>
 #include <optional>
 #include <span>
-#include <thread>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/detail/blocked_colouring.hpp"
+#include "ductile/runtime/detail/ranked_blocks.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/operator.hpp"
-#include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/recording.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -48,31 +43,23 @@ class Tiles {
 
   /// Of work in ascending order, which outlives this.
   Tiles(const Executor& executor, Op& op, std::span<const Item> work)
-      : executor_(executor),
-        op_(op),
+      : op_(op),
         work_(work),
         layout_(tiles_of(op.item_count())),
-        rank_of_((op.item_count() >> layout_.block_bits) + 1),
-        claimed_(rank_of_.size()),
-        applied_of_(rank_of_.size()),
-        left_(executor, work.size()),
-        begun_(executor),
-        recording_(executor.recording()) {
-    // Loops that run inside another, or on one thread, are not recorded as loops.
-    if (executor.threads() == 1 || (recording_ != nullptr && recording_->in_loop()))
-      recording_ = nullptr;
-    parallel_for(executor_, rank_of_.size(),
-                 [&](std::size_t tile) { rank_of_[tile] = first_rank_of(tile); },
-                 {.serial_below = 4096});
-    if (recording_ != nullptr) recording_->aside([&] { number_parts(); });
-  }
+        tiles_(executor, tile_of(op.item_count()) + 1,
+               [&](std::size_t tile) { return rank_of(tile); }),
+        applied_of_(tile_of(op.item_count()) + 1),
+        left_(executor, work.size()) {}
 
   /// Plans and applies all items but those that are left, each with a commit of its tile; tells
   /// planning(item) before.
   void run(auto&& new_commit, auto&& planning) {
-    parallel_for(executor_, rank_of_.size(),
-                 [&](std::size_t tile) { run_with_those_before(tile, new_commit, planning); },
-                 {.grain = 1});
+    tiles_.run([&](std::size_t tile) { return begin(tile, new_commit()); },
+               [&](Begun& begun) { return advance(begun, planning); },
+               [&](std::size_t tile, auto&& visit) {
+                 for (const Item item : items_of(tile))
+                   op_.conflicts(item, [&](Item other) { visit(tile_of(other)); });
+               });
   }
 
   std::size_t applied() const {
@@ -91,66 +78,22 @@ class Tiles {
     Commit<Op> commit;
     std::size_t step = 0;
   };
+  using Ranked = RankedBlocks<Begun>;
 
   /// Steps between asking for something that an item needs and the next stage of it. Three are as
   /// long as memory takes to answer three times.
   static constexpr std::size_t ahead = 5;
-  static constexpr std::uint8_t done = 0xff;  // no tile's rank
-  static constexpr std::size_t none = ~std::size_t{0};
-
-  /// If a tile ends by an exception, nobody is to wait for what will never be done.
-  struct FailsIfThrown {
-    std::atomic<bool>& failed;
-    int exceptions = std::uncaught_exceptions();
-    ~FailsIfThrown() {
-      if (std::uncaught_exceptions() > exceptions) failed.store(true);
-    }
-  };
-
-  /// Runs a tile unless somebody has begun it, and whichever have to come before, of which it keeps
-  /// a stack: their ranks fall.
-  void run_with_those_before(std::size_t tile, auto&& new_commit, auto&& planning) {
-    if (!claim(tile)) return;
-    const FailsIfThrown guard{failed_};
-    std::vector<Begun>& begun = begun_.mine();
-    begun.clear();
-    begun.push_back(begin(tile, new_commit()));
-    while (!begun.empty() && !failed_.load(std::memory_order_relaxed)) {
-      if (recording_ != nullptr) [[unlikely]]
-        recording_->begin_part(part_of_[begun.back().tile]);
-      const std::size_t before = advance(begun.back(), planning);
-      if (before == none) {
-        std::atomic_ref(rank_of_[begun.back().tile]).store(done, std::memory_order_release);
-        begun.pop_back();
-      } else if (claim(before)) {
-        begun.push_back(begin(before, new_commit()));
-      } else {
-        await(before);
-      }
-    }
-  }
-
-  bool claim(std::size_t tile) {
-    // Relaxed: what a tile reads is ordered by the ranks of those before it.
-    return std::atomic_ref(claimed_[tile]).exchange(1, std::memory_order_relaxed) == 0;
-  }
-
-  void await(std::size_t tile) {
-    constexpr int spins = 1000;  // then whoever has begun it may have lost its core
-    for (int tries = 0; rank_now(tile) != done && !failed_.load(); tries += tries < spins)
-      if (tries == spins) std::this_thread::yield();
-  }
+  static constexpr std::size_t none = Ranked::none;
 
   Begun begin(std::size_t tile, Commit<Op> commit) {
-    if (recording_ != nullptr) [[unlikely]]
-      recording_->begin_part(part_of_[tile]);
+    const std::span<const Item> items = items_of(tile);
+    return {tile, rank_of(tile), items, left_.data() + (items.data() - work_.data()),
+            std::move(commit)};
+  }
+
+  std::span<const Item> items_of(std::size_t tile) const {
     const std::size_t first = position_of(tile << layout_.block_bits);
-    const std::size_t end = position_of((tile + 1) << layout_.block_bits);
-    Begun begun{tile, rank_now(tile), work_.subspan(first, end - first), left_.data() + first,
-                std::move(commit)};
-    if (recording_ != nullptr) [[unlikely]]
-      record_waits(begun);
-    return begun;
+    return work_.subspan(first, position_of((tile + 1) << layout_.block_bits) - first);
   }
 
   /// Where items from this one on begin.
@@ -189,7 +132,7 @@ class Tiles {
     op_.conflicts(item, [&](Item other) {
       op_.prefetch_neighbour(other);
       is_left |= static_cast<unsigned>(other < item) & static_cast<unsigned>(apart(other, item));
-      waits |= static_cast<unsigned>(rank_now(tile_of(other)) < begun.rank);
+      waits |= static_cast<unsigned>(tiles_.comes_before(tile_of(other), begun.rank));
     });
     left = is_left != 0;
     return waits == 0 ? none : first_before(item, begun.rank);
@@ -199,60 +142,26 @@ class Tiles {
   [[gnu::noinline, gnu::cold]] std::size_t first_before(Item item, std::uint8_t rank) {
     std::size_t before = none;
     op_.conflicts(item, [&](Item other) {
-      if (rank_now(tile_of(other)) < rank) before = tile_of(other);
+      if (tiles_.comes_before(tile_of(other), rank)) before = tile_of(other);
     });
     return before;
   }
 
   std::size_t tile_of(Item item) const { return item >> layout_.block_bits; }
-  std::uint8_t rank_now(std::size_t tile) {
-    return std::atomic_ref(rank_of_[tile]).load(std::memory_order_acquire);
-  }
 
   /// Tiles next to each other are mostly neighbours. Their ranks are far apart, as all of a row
   /// would wait in a chain if one came right after the other.
-  std::uint8_t first_rank_of(std::size_t tile) const {
+  std::uint8_t rank_of(std::size_t tile) const {
     const auto item = static_cast<std::uint32_t>(tile << layout_.block_bits);
     return static_cast<std::uint8_t>(7 * layout_.step_of(item) & (layout_.step_count() - 1));
   }
 
-  // ---- Recordings: each tile is a part of the loop, and those of lower rank come first ----
-
-  void number_parts() {
-    std::vector<std::size_t> tiles(rank_of_.size());
-    std::iota(tiles.begin(), tiles.end(), std::size_t{0});
-    std::stable_sort(tiles.begin(), tiles.end(),
-                     [&](std::size_t a, std::size_t b) { return rank_of_[a] < rank_of_[b]; });
-    part_of_.resize(tiles.size());
-    for (std::size_t i = 0; i < tiles.size(); ++i) part_of_[tiles[i]] = i;
-  }
-
-  void record_waits(const Begun& begun) {
-    recording_->aside([&] {
-      std::vector<std::size_t> before;
-      for (const Item item : begun.items)
-        op_.conflicts(item, [&](Item other) {
-          const std::size_t tile = tile_of(other);
-          if (first_rank_of(tile) < begun.rank) before.push_back(part_of_[tile]);
-        });
-      std::sort(before.begin(), before.end());
-      before.erase(std::unique(before.begin(), before.end()), before.end());
-      for (const std::size_t part : before) recording_->part_waits(part_of_[begun.tile], part);
-    });
-  }
-
-  const Executor& executor_;
   Op& op_;
   std::span<const Item> work_;
   BlockLayout layout_;
-  std::vector<std::uint8_t> rank_of_;      // [tile], or done
-  std::vector<std::uint8_t> claimed_;      // [tile], by a thread that has begun it
+  Ranked tiles_;
   std::vector<std::uint32_t> applied_of_;  // [tile]
   FilledArray<std::uint8_t> left_;         // [position in the work]
-  PerThread<std::vector<Begun>> begun_;    // the thread's
-  std::atomic<bool> failed_{false};
-  Recording* recording_;              // null but where this is what is recorded
-  std::vector<std::size_t> part_of_;  // [tile], if there is a recording
 };
 
 }  // namespace ductile::runtime::detail
