@@ -1,0 +1,109 @@
+#include "ductile/runtime/detail/ranked_blocks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/recording.hpp"
+
+namespace ductile::runtime::detail {
+namespace {
+
+/// Blocks that meet others of any rank, as chance has it.
+struct Meetings {
+  std::vector<std::vector<std::size_t>> met;  // [block]
+  std::vector<std::uint32_t> rank_of;         // [block]
+
+  Meetings(std::size_t blocks, std::uint32_t ranks, std::uint32_t seed)
+      : met(blocks), rank_of(blocks) {
+    for (std::uint32_t b = 0; b < blocks; ++b) {
+      rank_of[b] = mix32(seed + b) % ranks;
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const std::size_t other = mix32(seed ^ (7 * b + i)) % blocks;
+        met[b].push_back(other);
+        met[other].push_back(b);
+      }
+    }
+  }
+};
+
+struct Begun {
+  std::size_t block, next = 0;  // of those that it meets
+};
+
+/// Runs all blocks; done(block) is called when its turn has come.
+void run(const Executor& executor, const Meetings& meetings, auto&& done) {
+  RankedBlocks<Begun> blocks(executor, meetings.met.size(),
+                             [&](std::size_t block) { return meetings.rank_of[block]; });
+  blocks.run([](std::size_t block) { return Begun{block}; },
+             [&](Begun& begun) {
+               const auto& met = meetings.met[begun.block];
+               const auto rank = static_cast<std::uint8_t>(meetings.rank_of[begun.block]);
+               for (; begun.next < met.size(); ++begun.next)
+                 if (meetings.rank_of[met[begun.next]] < rank &&
+                     blocks.comes_before(met[begun.next], rank))
+                   return met[begun.next];
+               done(begun.block);
+               return RankedBlocks<Begun>::none;
+             },
+             [&](std::size_t block, auto&& visit) {
+               for (const std::size_t other : meetings.met[block]) visit(other);
+             });
+}
+
+TEST(RankedBlocks, RunOnceAndAfterThoseOfLowerRankThatTheyMeet) {
+  for (const int threads : {1, 2, 3, 4, 8})
+    for (std::uint32_t seed = 0; seed < 20; ++seed) {
+      const Meetings meetings(50 + 40 * seed, 1 + 10 * seed, seed);
+      std::vector<std::uint32_t> turn_of(meetings.met.size());
+      std::atomic<std::uint32_t> turns = 0;
+      std::atomic<int> repeated = 0;
+      run(Executor({.threads = threads}), meetings, [&](std::size_t block) {
+        repeated += turn_of[block] != 0;
+        turn_of[block] = ++turns;
+      });
+      EXPECT_EQ(turns, turn_of.size());
+      EXPECT_EQ(repeated, 0);
+      for (std::size_t b = 0; b < turn_of.size(); ++b)
+        for (const std::size_t other : meetings.met[b]) {
+          const bool before = meetings.rank_of[other] < meetings.rank_of[b];
+          EXPECT_TRUE(!before || turn_of[other] < turn_of[b])
+              << threads << " threads, seed " << seed;
+        }
+    }
+}
+
+TEST(RankedBlocks, PassOnWhatABlockThrows) {
+  const Meetings meetings(300, 20, 1);
+  for (const int threads : {1, 2, 4})
+    EXPECT_THROW(run(Executor({.threads = threads}), meetings,
+                     [](std::size_t block) {
+                       if (block == 77) throw std::runtime_error("no");
+                     }),
+                 std::runtime_error);
+}
+
+TEST(RankedBlocks, ArePartsOfARecordedLoopThatWaitForThoseTheyMeet) {
+  const Meetings meetings(100, 8, 5);
+  Recording recording;
+  std::size_t done = 0;
+  run(Executor({.threads = 4, .recording = &recording}), meetings, [&](std::size_t) { ++done; });
+  EXPECT_EQ(done, 100U);
+  const auto& loop = recording.stretches().back();
+  ASSERT_EQ(loop.count, 100U);
+  std::set<std::pair<std::size_t, std::size_t>> waits;
+  for (std::size_t b = 0; b < 100; ++b)
+    for (const std::size_t other : meetings.met[b])
+      if (meetings.rank_of[other] < meetings.rank_of[b]) waits.emplace(b, other);
+  EXPECT_EQ(loop.waits, waits.size());
+}
+
+}  // namespace
+}  // namespace ductile::runtime::detail
