@@ -1,7 +1,7 @@
 /// @file
 /// Tiles: stretches of items, in each of which one thread plans and applies one after the other
 /// while what they touch is in its cache; nothing is coloured and no plan is kept. Each tile has
-/// one of 16 ranks (steps of blocks.hpp), and of neighbours the one whose tile has the lower rank
+/// one of 32 ranks (steps of blocks.hpp), and of neighbours the one whose tile has the lower rank
 /// comes first, see ranked_blocks.hpp. Few items have an earlier neighbour in another tile of the
 /// same rank; they are left for the classes of a coloured round, lest tiles wait for each other in
 /// long chains.
@@ -26,10 +26,10 @@
 
 namespace ductile::runtime::detail {
 
-/// Tiles of 32 to 128 items.
+/// Tiles of 16 to 64 items: longer ones wait for each other in longer chains.
 inline BlockLayout tiles_of(std::size_t item_count) {
-  const int bits = std::clamp(static_cast<int>(std::bit_width(item_count)) - 10, 5, 7);
-  return {static_cast<unsigned>(bits), 4};
+  const int bits = std::clamp(static_cast<int>(std::bit_width(item_count)) - 12, 4, 6);
+  return {static_cast<unsigned>(bits), 5};
 }
 
 template <TiledOperator Op>
