@@ -109,7 +109,7 @@ class Batches {
 
   /// Few of a small batch are handed out at once, so that each of many threads gets some.
   static std::size_t block_of(std::size_t items) {
-    return std::clamp<std::size_t>(items / 1024, 4, short_block);
+    return std::clamp<std::size_t>(items / 1024, 2, short_block);
   }
 
   void plan_all(std::span<const Item> batch, auto&& is_here, auto&& planning) {

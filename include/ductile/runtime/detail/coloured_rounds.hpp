@@ -111,7 +111,7 @@ class ColouredRounds {
     RoundsReport& report = batches_.report;
     const PhaseTimer timer(report.plan_seconds, executor_, Phase::plan);
     ++window_;
-    if (!std::is_sorted(work.begin(), work.end())) parallel_sort(executor_, std::span(work));
+    parallel_sort(executor_, std::span(work));  // which mostly is in order
     Tiles<Op> tiles(executor_, op_, work);
     // Who wakes an item has a conflict with it, so tiles order what both write here.
     tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
