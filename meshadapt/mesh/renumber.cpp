@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <tuple>
@@ -80,6 +81,17 @@ class KeyedWords {
   unsigned id_bits_, key_bits_;
 };
 
+/// Moves the words that are not `gone` to the front, in order, and returns their end. Mostly there
+/// are none.
+std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> words,
+                           std::uint64_t gone) {
+  const std::size_t living = runtime::parallel_reduce(
+      executor, words.size(), std::size_t{0},
+      [&](std::size_t i) { return std::size_t{words[i] != gone}; }, std::plus<>());
+  if (living > 0) std::remove(words.begin(), words.end(), gone);
+  return words.data() + living;
+}
+
 /// The ids below `count` that are alive, by key_of(id); is_alive(id) says whether one is.
 Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, auto&& is_alive,
                auto&& key_of) {
@@ -92,8 +104,8 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
   runtime::parallel_sort_above(executor, all, keyed.id_bits());  // ids are in order
   // Those that are gone may lie among living ones of the greatest key.
   const auto last = std::lower_bound(all.begin(), all.end(), keyed.word(keyed.greatest_key(), 0));
-  const auto end = std::remove(last, all.end(), keyed.gone());
-  Ids order(executor, static_cast<std::size_t>(end - all.begin()));
+  const auto end = remove_gone(executor, std::span(last, all.end()), keyed.gone());
+  Ids order(executor, static_cast<std::size_t>(end - words.begin()));
   parallel_for(executor, order.size(), [&](std::size_t i) { order[i] = keyed.id(words[i]); });
   return order;
 }

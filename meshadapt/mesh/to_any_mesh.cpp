@@ -146,14 +146,12 @@ MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
   result.mesh.dimension = Dim;
   add_facets(executor, mesh, result.mesh);
   if constexpr (Dim == 3) add_curves(executor, mesh, result.mesh);
-  mesh.elements_of = {};
-  mesh.links_of = {};
-  release(mesh.patches_of);
+  release(mesh.elements_of, mesh.links_of, mesh.patches_of);
   add_elements(executor, mesh, result.mesh);
   release(mesh.corners_of, mesh.region_of);
   add_vertices(executor, mesh, result.mesh);
   result.metric = to_any_field(executor, mesh);
-  release(mesh.site_of);
+  release(mesh.site_of, mesh.kind_of, mesh.reference_of);
   return result;
 }
 

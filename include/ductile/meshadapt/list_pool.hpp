@@ -38,6 +38,13 @@ class ListPool {
     arena_->clear();
   }
 
+  /// Forgets all lists and gives their memory back. Thread safety: one caller; runs on the
+  /// executor.
+  void release(const runtime::Executor& executor) {
+    slot_of_.release(executor);
+    arena_->release(executor);
+  }
+
   /// Appends empty lists until there are n. Thread safety: one thread.
   void grow(std::size_t n) { slot_of_.resize(n); }
 

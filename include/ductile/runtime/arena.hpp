@@ -17,6 +17,9 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
 namespace ductile::runtime {
 
 template <class T, unsigned SegmentBits = 18>
@@ -73,6 +76,13 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
   void release() {
     clear();
     for (std::uint64_t slot = 0; slot < slot_count; ++slot) free_segment(slot);
+  }
+
+  /// The same by all threads of an executor: the system takes memory page by page, which on one
+  /// thread would hold up the others. Thread safety: one caller.
+  void release(const Executor& executor) {
+    clear();
+    parallel_for(executor, slot_count, [&](std::size_t slot) { free_segment(slot); }, {.grain = 1});
   }
 
   /// Exchanges contents. Thread safety: one thread.
