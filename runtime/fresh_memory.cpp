@@ -25,6 +25,8 @@ std::size_t page_size() {
   return size;
 }
 
+bool are_few_pages(std::size_t bytes) { return bytes < 16 * page_size(); }
+
 std::size_t offset_in_page(const void* memory) {
   return reinterpret_cast<std::uintptr_t>(memory) % page_size();
 }
@@ -52,8 +54,7 @@ void FreshMemory::touch(const Executor& executor) {
 }
 
 bool is_fresh(void* memory, std::size_t bytes) {
-  constexpr std::size_t few = 16;
-  if (bytes < few * page_size()) return false;
+  if (are_few_pages(bytes)) return false;
   auto* const last = static_cast<std::byte*>(memory) + bytes - page_size();
   unsigned char is_resident = 1;
   return mincore(last - offset_in_page(last), 1, &is_resident) == 0 && (is_resident & 1U) == 0;
@@ -65,21 +66,22 @@ void get_pages(void* memory, std::size_t bytes) {
   madvise(begin - before, before + bytes, MADV_POPULATE_WRITE);
 }
 
+void touch_pages(const Executor& executor, void* memory, std::size_t bytes) {
+  // What loops there are must not depend on what malloc gives if they are recorded.
+  if (executor.recording() == nullptr ? !is_fresh(memory, bytes) : are_few_pages(bytes)) return;
+  FreshMemory fresh;
+  fresh.add(memory, bytes);
+  fresh.touch(executor);
+}
+
 #else
 
 void FreshMemory::add(void*, std::size_t) {}
 void FreshMemory::touch(const Executor&) {}
 bool is_fresh(void*, std::size_t) { return false; }
 void get_pages(void*, std::size_t) {}
+void touch_pages(const Executor&, void*, std::size_t) {}
 
 #endif
-
-void touch_pages(const Executor& executor, void* memory, std::size_t bytes) {
-  // What loops there are must not depend on what malloc gives if they are recorded.
-  if (executor.recording() == nullptr && !is_fresh(memory, bytes)) return;
-  FreshMemory fresh;
-  fresh.add(memory, bytes);
-  fresh.touch(executor);
-}
 
 }  // namespace ductile::runtime

@@ -37,7 +37,7 @@ std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find
     parallel_for(executor, n, [&](std::size_t i) { find(i, append); });
     return all;
   }
-  const std::size_t block_size = std::clamp<std::size_t>(n / 4096, 4, 1024);
+  const std::size_t block_size = std::clamp<std::size_t>(n / 2048, 4, 1024);
   const std::size_t blocks = (n + block_size - 1) / block_size;
   const auto finds_of = std::make_unique_for_overwrite<detail::Finds[]>(blocks);
   PerThread<std::vector<Item>> found(executor);
