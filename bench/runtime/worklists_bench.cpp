@@ -31,7 +31,9 @@ struct Case {
   std::uint32_t count, one_in;
 
   bool finds(std::size_t i) const {
-    return runtime::mix32(static_cast<std::uint32_t>(i)) % one_in == 0;
+    std::uint32_t divisor = one_in;
+    asm("" : "+r"(divisor));  // in a register: see docs/benchmarks.md on divisions
+    return runtime::mix32(static_cast<std::uint32_t>(i)) % divisor == 0;
   }
   static std::uint32_t item(std::size_t i) { return static_cast<std::uint32_t>(i) ^ 1U; }
 };
