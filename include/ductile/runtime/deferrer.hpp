@@ -61,25 +61,37 @@ class Deferrer {
   template <class Value>
   void keep(std::uint32_t owner, std::uint64_t source, Value&& update) const {
     const std::uint32_t mask = offset_mask_;  // make_room() does not change the order in it
-    const std::size_t offset = (owner >> offset_shift_) & mask;
-    Room* room = reinterpret_cast<Room*>(reinterpret_cast<std::byte*>(rooms_) + offset);
-    if (room->next == room->end) [[unlikely]]
-      room = lane_->make_room(owner);
+    std::size_t offset = (owner >> offset_shift_) & mask;
+    void* next = room_at(another(offset)).next;
+    if (next == room_at(another(offset)).end) [[unlikely]] {
+      lane_->make_room(owner);
+      offset = (owner >> offset_shift_) & offset_mask_;
+      next = room_at(offset).next;
+    }
     // Where many lists grow in turn, the processor does not see by itself what comes next in each.
-    const auto ahead = reinterpret_cast<std::uintptr_t>(room->next) + write_ahead;
+    const auto ahead = reinterpret_cast<std::uintptr_t>(next) + write_ahead;
     __builtin_prefetch(reinterpret_cast<const void*>(ahead), 1);
     if ((mask & by_source) != 0) {
-      append<detail::SourcedUpdate<T>>(*room, source, owner, std::forward<Value>(update));
+      next = append<detail::SourcedUpdate<T>>(next, source, owner, std::forward<Value>(update));
     } else {
-      append<detail::PlainUpdate<T>>(*room, owner, std::forward<Value>(update));
+      next = append<detail::PlainUpdate<T>>(next, owner, std::forward<Value>(update));
     }
+    room_at(another(offset)).next = next;
+  }
+
+  Room& room_at(std::size_t offset) const {
+    return *reinterpret_cast<Room*>(reinterpret_cast<std::byte*>(rooms_) + offset);
+  }
+  /// The same, which compilers do not see. Else they add it to rooms_ once, by an instruction, for
+  /// all accesses; each of them can do that by itself, as part of what it does.
+  static std::size_t another(std::size_t offset) {
+    asm("" : "+r"(offset));
+    return offset;
   }
 
   template <class Entry, class... Arguments>
-  static void append(Room& room, Arguments&&... arguments) {
-    auto* const place = static_cast<Entry*>(room.next);
-    ::new (room.next) Entry{std::forward<Arguments>(arguments)...};
-    room.next = place + 1;
+  static Entry* append(void* next, Arguments&&... arguments) {
+    return ::new (next) Entry{std::forward<Arguments>(arguments)...} + 1;
   }
 
   static constexpr std::uint32_t by_source = 1U << 31U;  // beyond all offsets
@@ -123,7 +135,7 @@ class DeferLane {
 
   /// For one more update of this owner. Not inlined, so as to keep the caller's loop tight.
   /// Throws std::bad_alloc.
-  [[gnu::noinline]] Room* make_room(std::uint32_t owner) {
+  [[gnu::noinline]] void make_room(std::uint32_t owner) {
     if (deferrer_.rooms_ == &Deferrer<T>::no_room_) provide();
     const std::uint32_t number = (owner >> neighbour_bits_) & (bucket_count_ - 1);
     if (by_source_) {
@@ -131,7 +143,6 @@ class DeferLane {
     } else {
       plain.grow(number);
     }
-    return deferrer_.rooms_ + number;
   }
 
   std::size_t size() const { return plain.size() + sourced.size(); }
