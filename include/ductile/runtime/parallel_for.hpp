@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -135,13 +136,17 @@ T exclusive_scan(const Executor& executor, std::span<T> values) {
   return offset[blocks];
 }
 
-/// One T per thread, each on its own cache lines. `mine()` is the calling thread's.
+/// One T per thread, each on its own cache lines. `mine()` is the calling thread's, found by loads
+/// alone: where a loop asks for it in each iteration, arithmetic would have to wait its turn.
 template <class T>
 class PerThread {
  public:
   explicit PerThread(const Executor& executor)
-      : slots_(static_cast<std::size_t>(executor.threads())) {}
-  T& mine() { return slots_[static_cast<std::size_t>(this_thread())].value; }
+      : slots_(static_cast<std::size_t>(executor.threads())),
+        value_of_(std::make_unique_for_overwrite<T*[]>(slots_.size())) {
+    for (std::size_t t = 0; t < slots_.size(); ++t) value_of_[t] = &slots_[t].value;
+  }
+  T& mine() { return *value_of_[static_cast<std::size_t>(this_thread())]; }
   std::size_t size() const { return slots_.size(); }
   T& operator[](std::size_t thread) { return slots_[thread].value; }
   const T& operator[](std::size_t thread) const { return slots_[thread].value; }
@@ -151,6 +156,7 @@ class PerThread {
     T value{};
   };
   std::vector<Slot> slots_;
+  std::unique_ptr<T*[]> value_of_;  // [thread]
 };
 
 }  // namespace ductile::runtime
