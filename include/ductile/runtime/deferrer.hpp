@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "ductile/runtime/detail/bit_field.hpp"
 #include "ductile/runtime/detail/buckets.hpp"
 #include "ductile/runtime/detail/source_order.hpp"
 
@@ -53,40 +54,36 @@ class Deferrer {
 
  private:
   friend detail::DeferLane<T>;
-  using Room = detail::Room;
 
   static constexpr std::size_t write_ahead = 512;  // bytes
 
   // What depends on the order comes last and is short: compilers then make a loop for each order.
   template <class Value>
   void keep(std::uint32_t owner, std::uint64_t source, Value&& update) const {
-    const std::uint32_t mask = offset_mask_;  // make_room() does not change the order in it
-    std::size_t offset = (owner >> offset_shift_) & mask;
-    void* next = room_at(another(offset)).next;
-    if (next == room_at(another(offset)).end) [[unlikely]] {
+    const bool by_source = by_source_;  // make_room() does not change it
+    std::size_t bucket = bucket_bits_.of(owner);
+    void* next = rooms_.next[another(bucket)];
+    if (next == rooms_.ends[another(bucket)]) [[unlikely]] {
       lane_->make_room(owner);
-      offset = (owner >> offset_shift_) & offset_mask_;
-      next = room_at(offset).next;
+      bucket = bucket_bits_.of(owner);
+      next = rooms_.next[bucket];
     }
     // Where many lists grow in turn, the processor does not see by itself what comes next in each.
     const auto ahead = reinterpret_cast<std::uintptr_t>(next) + write_ahead;
     __builtin_prefetch(reinterpret_cast<const void*>(ahead), 1);
-    if ((mask & by_source) != 0) {
+    if (by_source) {
       next = append<detail::SourcedUpdate<T>>(next, source, owner, std::forward<Value>(update));
     } else {
       next = append<detail::PlainUpdate<T>>(next, owner, std::forward<Value>(update));
     }
-    room_at(another(offset)).next = next;
+    rooms_.next[another(bucket)] = next;
   }
 
-  Room& room_at(std::size_t offset) const {
-    return *reinterpret_cast<Room*>(reinterpret_cast<std::byte*>(rooms_) + offset);
-  }
-  /// The same, which compilers do not see. Else they add it to rooms_ once, by an instruction, for
-  /// all accesses; each of them can do that by itself, as part of what it does.
-  static std::size_t another(std::size_t offset) {
-    asm("" : "+r"(offset));
-    return offset;
+  /// The same number, which compilers do not see. Else they compute an address from it once, by an
+  /// instruction, for all accesses; each of them can do that by itself, as part of what it does.
+  static std::size_t another(std::size_t bucket) {
+    asm("" : "+r"(bucket));
+    return bucket;
   }
 
   template <class Entry, class... Arguments>
@@ -94,13 +91,12 @@ class Deferrer {
     return ::new (next) Entry{std::forward<Arguments>(arguments)...} + 1;
   }
 
-  static constexpr std::uint32_t by_source = 1U << 31U;  // beyond all offsets
-  static inline Room no_room_;                           // full
+  static inline void* nowhere_ = nullptr;  // where a list is full
 
-  Room* rooms_ = &no_room_;  // of the buckets
+  detail::Rooms rooms_{&nowhere_, &nowhere_};  // of the buckets
   detail::DeferLane<T>* lane_ = nullptr;
-  // A bucket's room in rooms_, in bytes: bits of the owner, shifted. And by_source.
-  std::uint32_t offset_mask_ = 0, offset_shift_ = 0;
+  detail::BitField bucket_bits_;  // of an owner, its bucket's number
+  bool by_source_ = false;
 };
 
 namespace detail {
@@ -113,15 +109,13 @@ class DeferLane {
   Buckets<SourcedUpdate<T>> sourced;
   SourceOrder<SourcedUpdate<T>> order;  // scratch of commits
 
-  /// `bucket_count` is a power of two; 2^neighbour_bits owners in a row, at least 32, share a
-  /// bucket.
+  /// `bucket_count` is a power of two; 2^neighbour_bits owners in a row, at least two, share
+  /// a bucket.
   void set_up(std::uint32_t bucket_count, unsigned neighbour_bits, bool by_source) {
     bucket_count_ = bucket_count;
-    neighbour_bits_ = neighbour_bits;
-    deferrer_.offset_shift_ = neighbour_bits - std::countr_zero(sizeof(Room));
-    by_source_ = by_source;
+    bucket_bits_ = {neighbour_bits, static_cast<unsigned>(std::countr_zero(bucket_count))};
+    deferrer_.by_source_ = by_source;
     deferrer_.lane_ = this;
-    set_offset_mask(0);
   }
 
   /// For one update: has no buckets before the first.
@@ -129,16 +123,16 @@ class DeferLane {
 
   /// For many. Throws std::bad_alloc.
   const Deferrer<T>& ready_deferrer() {
-    if (deferrer_.rooms_ == &Deferrer<T>::no_room_) provide();
+    if (!has_buckets()) provide();
     return deferrer_;
   }
 
   /// For one more update of this owner. Not inlined, so as to keep the caller's loop tight.
   /// Throws std::bad_alloc.
   [[gnu::noinline]] void make_room(std::uint32_t owner) {
-    if (deferrer_.rooms_ == &Deferrer<T>::no_room_) provide();
-    const std::uint32_t number = (owner >> neighbour_bits_) & (bucket_count_ - 1);
-    if (by_source_) {
+    if (!has_buckets()) provide();
+    const auto number = static_cast<std::uint32_t>(bucket_bits_.of(owner));
+    if (deferrer_.by_source_) {
       sourced.grow(number);
     } else {
       plain.grow(number);
@@ -149,7 +143,7 @@ class DeferLane {
 
   /// Of the buckets that may have updates.
   std::span<const std::uint32_t> touched() const {
-    return by_source_ ? sourced.touched() : plain.touched();
+    return deferrer_.by_source_ ? sourced.touched() : plain.touched();
   }
 
   /// Drops a bucket's updates. Thread safety: one thread at a time for each bucket.
@@ -169,30 +163,27 @@ class DeferLane {
     plain.release();
     sourced.release();
     order = {};
-    deferrer_.rooms_ = &Deferrer<T>::no_room_;
-    set_offset_mask(0);
+    deferrer_.rooms_ = Deferrer<T>().rooms_;
+    deferrer_.bucket_bits_ = {};
   }
 
  private:
+  bool has_buckets() const { return deferrer_.rooms_.next != &Deferrer<T>::nowhere_; }
+
   void provide() {
-    if (by_source_) {
+    if (deferrer_.by_source_) {
       sourced.provide(bucket_count_);
       deferrer_.rooms_ = sourced.rooms();
     } else {
       plain.provide(bucket_count_);
       deferrer_.rooms_ = plain.rooms();
     }
-    set_offset_mask((bucket_count_ - 1) * static_cast<std::uint32_t>(sizeof(Room)));
-  }
-
-  void set_offset_mask(std::uint32_t mask) {
-    deferrer_.offset_mask_ = mask | (by_source_ ? Deferrer<T>::by_source : 0);
+    deferrer_.bucket_bits_ = bucket_bits_;
   }
 
   Deferrer<T> deferrer_;
+  BitField bucket_bits_;  // the deferrer's when there are buckets
   std::uint32_t bucket_count_ = 0;
-  unsigned neighbour_bits_ = 0;
-  bool by_source_ = false;
 };
 
 }  // namespace detail

@@ -18,10 +18,11 @@
 
 namespace ductile::runtime::detail {
 
-/// Where the next element of a list goes and where its chunk ends; equal if it wants a chunk first.
-struct Room {
-  void* next = nullptr;
-  void* end = nullptr;
+/// Where the next element of each list goes and where its chunk ends; equal if it wants a chunk
+/// first. Two arrays, not one of pairs, so that a list's number is all there is to compute.
+struct Rooms {
+  void** next;        // [list]
+  void* const* ends;  // [list]
 };
 
 /// Leaves one of each number, in ascending order.
@@ -40,11 +41,11 @@ class Buckets {
   void provide(std::size_t count) {
     touched_.reserve(count);
     lists_.resize(count);
-    rooms_.resize(count);
+    rooms_.resize(2 * count);
   }
 
-  /// Those of the lists. Whoever puts an element at `next` moves that on.
-  Room* rooms() { return rooms_.data(); }
+  /// Those of the lists. Whoever puts an element at a `next` moves that on.
+  Rooms rooms() { return {rooms_.data(), rooms_.data() + lists_.size()}; }
 
   /// Starts a list's next chunk. Throws std::bad_alloc and changes nothing then.
   void grow(std::uint32_t number) {
@@ -53,7 +54,7 @@ class Buckets {
     if (next == nullptr) next = new_chunk(list.last);
     if (list.last == nullptr) touched_.push_back(number);  // cannot throw: provide() reserved
     list.last = next;
-    rooms_[number] = {next->begin, next->end};
+    set_room(number, next->begin, next->end);
   }
 
   /// Numbers of the lists that may have elements, in no order.
@@ -76,7 +77,7 @@ class Buckets {
     const List& list = lists_[number];
     for (Chunk* chunk = list.first; chunk != list.last; chunk = chunk->next)
       visit(chunk->begin, chunk->end);
-    visit(list.last->begin, static_cast<T*>(rooms_[number].next));
+    visit(list.last->begin, static_cast<T*>(rooms_[number]));
   }
 
   /// Removes a list's elements and keeps its memory; the list stays among those touched.
@@ -86,7 +87,7 @@ class Buckets {
     if constexpr (!std::is_trivially_destructible_v<T>)
       for_each_chunk(number, [](T* begin, T* end) { std::destroy(begin, end); });
     lists_[number].last = nullptr;
-    rooms_[number] = {};
+    set_room(number, nullptr, nullptr);
   }
 
   /// Removes all elements and keeps the memory.
@@ -98,7 +99,7 @@ class Buckets {
   /// Removes all elements and lists and gives the memory back.
   void release() {
     clear();
-    std::vector<Room>().swap(rooms_);
+    std::vector<void*>().swap(rooms_);
     std::vector<List>().swap(lists_);
     std::vector<std::uint32_t>().swap(touched_);
     memory_.release();
@@ -117,6 +118,11 @@ class Buckets {
   static constexpr std::size_t first_capacity = std::max<std::size_t>(1, 512 / sizeof(T));
   static constexpr std::size_t last_capacity = std::max<std::size_t>(1, 65536 / sizeof(T));
 
+  void set_room(std::uint32_t number, T* next, T* end) {
+    rooms_[number] = next;
+    rooms_[lists_.size() + number] = end;
+  }
+
   Chunk* new_chunk(const Chunk* before) {
     const std::size_t capacity =
         before == nullptr
@@ -127,7 +133,7 @@ class Buckets {
     return allocator.new_object<Chunk>(Chunk{begin, begin + capacity, nullptr});
   }
 
-  std::vector<Room> rooms_;  // [list]
+  std::vector<void*> rooms_;  // of Rooms, `next` of all lists, then their ends
   std::vector<List> lists_;
   std::vector<std::uint32_t> touched_;
   std::pmr::monotonic_buffer_resource memory_;  // of the chunks
