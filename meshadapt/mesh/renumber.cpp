@@ -88,8 +88,8 @@ std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> wo
   const std::size_t living = runtime::parallel_reduce(
       executor, words.size(), std::size_t{0},
       [&](std::size_t i) { return std::size_t{words[i] != gone}; }, std::plus<>());
-  if (living > 0) std::remove(words.begin(), words.end(), gone);
-  return words.data() + living;
+  if (living == 0) return words.data();
+  return std::to_address(std::remove(words.begin(), words.end(), gone));
 }
 
 /// The ids below `count` that are alive, by key_of(id); is_alive(id) says whether one is.
