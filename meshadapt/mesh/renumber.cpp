@@ -81,8 +81,8 @@ class KeyedWords {
   unsigned id_bits_, key_bits_;
 };
 
-/// Moves the words that are not `gone` to the front, in order, and returns their end. Mostly there
-/// are none.
+/// Moves the words that are not `gone` to the front, in order, and returns their end. Mostly all
+/// are gone.
 std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> words,
                            std::uint64_t gone) {
   const std::size_t living = runtime::parallel_reduce(
