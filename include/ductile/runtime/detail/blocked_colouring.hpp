@@ -1,11 +1,10 @@
 /// @file
 /// A parallel colouring that does not depend on threads or timing, of many short blocks side by
 /// side (blocks.hpp): few steps, so that it suits small graphs and many threads. A block sees the
-/// colours of earlier steps and its own: it is not coloured before those of earlier steps that it
-/// meets (ranked_blocks.hpp). The ids of two neighbours tell whether they are of one step. Blocks
-/// of a step are far apart, so where ids follow the graph there are hardly any such pairs, and else
-/// they are few because a step is a small part of all. Repair is by hashed priority, see
-/// blocks.hpp.
+/// colours of earlier steps and its own; the ids of two neighbours tell whether they are coloured
+/// at the same time. Blocks of a step are far apart, so where ids follow the graph there are hardly
+/// any such pairs, and else they are few because a step is a small part of all. Repair is by hashed
+/// priority, see blocks.hpp.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +16,6 @@
 
 #include "ductile/runtime/detail/blocks.hpp"
 #include "ductile/runtime/detail/first_fit.hpp"
-#include "ductile/runtime/detail/ranked_blocks.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -25,7 +23,7 @@
 namespace ductile::runtime::detail {
 
 /// About 256 blocks side by side, slowly more of them from a million vertices up; fewer of few
-/// vertices, as short blocks clash more. More steps make fewer clashes, and longer waits.
+/// vertices, as short blocks clash more. More steps make fewer clashes, each costs a launch.
 inline BlockLayout many_rows(std::size_t vertex_count) {
   const int bits = std::bit_width(vertex_count);
   const int step_bits = std::clamp(bits - 13, 3, 5);
@@ -34,7 +32,7 @@ inline BlockLayout many_rows(std::size_t vertex_count) {
   return {static_cast<unsigned>(block_bits), static_cast<unsigned>(step_bits)};
 }
 
-/// In different blocks of one step, which do not see each other. A block's step is the
+/// In different blocks of one step, which are coloured at the same time. A block's step is the
 /// exclusive-or of two groups of bits of its ids, so that of two ids decides. Without a branch for
 /// each condition: which one fails is hard to predict in a random order.
 class Apart {
@@ -71,90 +69,40 @@ class BlockedRun {
 
   void run() {
     const std::size_t rows = layout_.row_count(colours_.vertex_count());
-    Ranked blocks(executor_, rows << layout_.step_bits,
-                  [&](std::size_t block) { return step_of_block(block); });
-    blocks.run([&](std::size_t block) { return begin(block); },
-               [&](Begun& begun) { return colour(begun); },
-               [&](std::size_t block, auto&& visit) { visit_met(block, visit); });
+    for (std::size_t step = 0; step < layout_.step_count(); ++step)
+      parallel_for(executor_, rows,
+                   [&](std::size_t row) { colour_block(layout_.block_of(row, step)); },
+                   {.grain = 1});
     repair(executor_, as_compiled(graph_), blind_, colours_.words());
   }
 
-  /// The colour of u as v sees it: none if both are of one step.
+  /// The colour of u as v sees it: none if it is coloured at the same time.
   Word colour_seen(std::uint32_t u, std::uint32_t v) const {
     return Apart(layout_)(u, v) && is_given(u) ? Colours<Width>::none : colours_[u];
   }
 
  private:
-  /// A block that a thread has begun: positions in vertices_ of those that are not coloured yet.
-  struct Begun {
-    std::size_t next, end;
-    std::uint32_t step;
-  };
-  using Ranked = RankedBlocks<Begun>;
-
-  std::uint32_t step_of_block(std::size_t block) const {
-    return layout_.step_of(static_cast<std::uint32_t>(block << layout_.block_bits));
-  }
-
-  Begun begin(std::size_t block) const {
+  void colour_block(std::size_t block) {
     const auto [begin, end] = vertices_in(block);
-    return {begin, end, step_of_block(block)};
-  }
-
-  /// Colours a block until it is done, or another has to come before: returns which, or none.
-  std::size_t colour(Begun& begun) {
     // Copies, which the compiler keeps in registers across the calls in the loop.
     const auto& rows = in_registers(graph_);
-    const BlockLayout layout = layout_;
-    const Apart apart(layout);
+    const Apart apart(layout_);
     const Colours<Width> colours = colours_;
     const VertexSet vertices = vertices_;
-    const std::uint32_t step = begun.step;
-    for (; begun.next < begun.end; ++begun.next) {
-      prefetch_after(rows, vertices, begun.next);
-      const std::uint32_t v = vertices[begun.next];
+    for (std::size_t i = begin; i < end; ++i) {
+      prefetch_after(rows, vertices, i);
+      const std::uint32_t v = vertices[i];
       TakenColours<SeenFrom<BlockedRun>> seen;
-      unsigned waits = 0;
       rows.for_each_neighbour(v, [&](std::uint32_t u) {
         if (apart(u, v)) [[unlikely]]
           if (note_if_blind(u, v)) return;
-        const Word colour = colours[u];
-        seen.add(colour);
-        waits |= static_cast<unsigned>(colour == Colours<Width>::none) &
-                 static_cast<unsigned>(layout.step_of(u) < step);
+        seen.add(colours[u]);
       });
-      if (waits != 0) [[unlikely]]
-        if (const std::size_t before = look_again(v, seen); before != Ranked::none) return before;
       colours.set(v, least_free(rows, v, SeenFrom(*this, v), seen));
     }
-    return Ranked::none;
   }
 
-  /// Sets what v sees of its neighbours, of which some of earlier steps had no colour; returns the
-  /// block of one that is going to have one, or none.
-  [[gnu::noinline, gnu::cold]] std::size_t look_again(std::uint32_t v,
-                                                      TakenColours<SeenFrom<BlockedRun>>& seen) {
-    seen = {};
-    std::size_t before = Ranked::none;
-    graph_.for_each_neighbour(v, [&](std::uint32_t u) {
-      const Word colour = colour_seen(u, v);
-      seen.add(colour);
-      if (colour == Colours<Width>::none && layout_.step_of(u) < layout_.step_of(v) && is_given(u))
-        before = u >> layout_.block_bits;
-    });
-    return before;
-  }
-
-  /// The blocks that the vertices of this one have neighbours in, some of them again and again.
-  void visit_met(std::size_t block, auto&& visit) const {
-    const auto [begin, end] = vertices_in(block);
-    for (std::size_t i = begin; i < end; ++i)
-      graph_.for_each_neighbour(vertices_[i], [&](std::uint32_t u) {
-        if (is_given(u)) visit(std::size_t{u} >> layout_.block_bits);
-      });
-  }
-
-  /// Whether u and v, which are apart, both get their colours now, and not only v.
+  /// Whether u and v, which are apart, get their colours at the same time, and not only v.
   /// Not inlined, so as to keep the caller's loop tight.
   [[gnu::noinline, gnu::cold]] bool note_if_blind(std::uint32_t u, std::uint32_t v) {
     if (!is_given(u)) return false;
