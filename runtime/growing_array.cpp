@@ -87,11 +87,14 @@ void GrowingMemory::add_pages(std::size_t bytes, FreshMemory& fresh) {
 }
 
 void GrowingMemory::release(const Executor& executor) {
-  const std::size_t part = whole_pages(std::size_t{1} << 18U), whole = bytes_ / part;
+  const auto threads = static_cast<std::size_t>(executor.threads());
+  // Large parts, as each interrupts all threads once.
+  const std::size_t part = whole_pages(std::max(bytes_ / threads, std::size_t{1} << 18U));
+  const auto give_back = [this](std::size_t, std::size_t begin, std::size_t end) {
+    madvise(data_ + begin, end - begin, MADV_DONTNEED);
+  };
   // Unmapping what has no pages any more takes no time. If it could not be, this takes it.
-  if (executor.threads() > 1)
-    parallel_for(executor, whole,
-                 [this, part](std::size_t i) { madvise(data_ + i * part, part, MADV_DONTNEED); });
+  if (threads > 1) parallel_for_blocks(executor, bytes_, part, give_back);
   *this = GrowingMemory();
 }
 

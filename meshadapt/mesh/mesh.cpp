@@ -24,9 +24,9 @@ void Mesh<Dim>::grow(const Executor& executor, std::size_t vertices, std::size_t
   };
   resize(elements, corners_of, patches_of, region_of, shape_of, changed_at);
   resize(vertices, site_of, kind_of, entity_of, reference_of, host_of);
+  elements_of.grow(vertices, fresh);
+  if constexpr (Dim == 3) links_of.grow(vertices, fresh);
   fresh.touch(executor);
-  elements_of.grow(vertices);
-  if constexpr (Dim == 3) links_of.grow(vertices);
 }
 
 /// Cut where the elements, if they are in order, go on with another lowest corner.

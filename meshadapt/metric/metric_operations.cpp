@@ -322,6 +322,7 @@ template <int Dim>
 void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds) {
   expect_bounds(bounds);
+  if (bounds.smallest == 0 && bounds.largest == 0 && bounds.anisotropy == 0) return;
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     PrincipalAxes<Dim> axes = principal_axes(metric_of[v]);
     const auto within = bounded(axes.value, bounds);

@@ -6,6 +6,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
 #include "operators/adapter.hpp"
@@ -19,7 +20,7 @@ template <int Dim>
 std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const AnyField& field,
                                     const Mesh<Dim>& mesh, const AdaptOptions& options,
                                     std::vector<std::string>& warnings) {
-  std::vector<Metric<Dim>> metric_of(field.vertex_count);
+  auto metric_of = runtime::make_vector<Metric<Dim>>(executor, field.vertex_count);
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric_of[v].m.begin());
   });

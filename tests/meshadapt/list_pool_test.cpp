@@ -39,7 +39,9 @@ TEST(ListPool, GrowsAndForgets) {
   ListPool<std::uint32_t> pool;
   pool.reset(executor, 2);
   pool.insert(1, 7);
-  pool.grow(4);
+  runtime::FreshMemory fresh;
+  pool.grow(4, fresh);
+  fresh.touch(executor);
   EXPECT_EQ(pool.size(), 4U);
   EXPECT_EQ(pool.of(1).size(), 1U);
   EXPECT_TRUE(pool.of(3).empty());

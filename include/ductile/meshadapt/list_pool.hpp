@@ -45,8 +45,9 @@ class ListPool {
     arena_->release(executor);
   }
 
-  /// Appends empty lists until there are n. Thread safety: one thread.
-  void grow(std::size_t n) { slot_of_.resize(n); }
+  /// Appends empty lists until there are n. Pages for them are added to `fresh`.
+  /// Thread safety: one thread.
+  void grow(std::size_t n, runtime::FreshMemory& fresh) { slot_of_.resize(n, fresh); }
 
   [[gnu::always_inline]] std::span<const T> of(std::uint32_t index) const {
     const Slot& slot = slot_of_[index];

@@ -100,7 +100,15 @@ requires(std::is_trivially_copyable_v<T> &&
                 std::byte{0});
   }
 
-  /// The same, but what is new may hold anything.
+  /// The same; pages for what is new are added to `fresh`: for elements that are read before most
+  /// are written. A page that is first read is there twice, and every thread is interrupted where
+  /// one then writes it.
+  void resize(std::size_t n, FreshMemory& fresh) {
+    resize(n);
+    memory_.add_pages(n * sizeof(T), fresh);
+  }
+
+  /// As resize(n), but what is new may hold anything.
   void resize_for_overwrite(std::size_t n) {
     if (n > std::numeric_limits<std::size_t>::max() / 2 / sizeof(T)) throw std::bad_alloc();
     if (n * sizeof(T) > memory_.bytes()) memory_.reserve((n + n / 4) * sizeof(T));
