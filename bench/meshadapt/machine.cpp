@@ -140,11 +140,14 @@ double processor_seconds() {
 
 std::string machine_line() {
   const std::string name = value_in("/proc/cpuinfo", "model name");
-  const char* waiting = std::getenv("OMP_WAIT_POLICY");
+  const auto setting = [](const char* variable) {
+    const char* const value = std::getenv(variable);
+    return std::string("; ") + variable + " " + (value == nullptr ? "not set" : value);
+  };
   return (name.empty() ? "unknown processor" : name) + "; " +
          std::to_string(usable_units().size()) +
-         " processing units to use; compiler " DUCTILE_COMPILER "; OMP_WAIT_POLICY " +
-         (waiting == nullptr ? "not set" : waiting);
+         " processing units to use; compiler " DUCTILE_COMPILER + setting("OMP_WAIT_POLICY") +
+         setting("GOMP_SPINCOUNT");
 }
 
 }  // namespace ductile::bench

@@ -14,6 +14,7 @@
 #include "plan.hpp"
 #include "results.hpp"
 #include "sample.hpp"
+#include "system.hpp"
 
 namespace {
 
@@ -146,7 +147,10 @@ int main(int word_count, char** word) {
       print_help();
       return 0;
     }
-    return run(plan_from(arguments));
+    const Plan plan = plan_from(arguments);
+    ductile::cli::wait_briefly(word);  // as the program does
+    ductile::cli::reuse_memory();
+    return run(plan);
   } catch (const ductile::cli::UsageError& error) {
     std::fprintf(stderr, "adapt_bench: %s\n", error.what());
     return 2;
