@@ -23,9 +23,22 @@
 
 namespace ductile::runtime::detail {
 
+void GrowingMemory::reserve_from_malloc(std::size_t bytes) {
+  auto* const place = static_cast<std::byte*>(std::realloc(data_, bytes));
+  if (place == nullptr) throw std::bad_alloc();
+  std::memset(place + bytes_, 0, bytes - bytes_);
+  data_ = place;
+  bytes_ = bytes;
+}
+
 #ifdef DUCTILE_MOVES_PAGES
 
 namespace {
+
+/// What malloc may give. Unmapping pages interrupts all threads, which for a few takes longer than
+/// all that is done to them: up to 2 ms on a virtual machine whose host lets that wait until the
+/// threads that spin there happen to call it.
+constexpr std::size_t small = std::size_t{1} << 19U;
 
 std::size_t whole_pages(std::size_t bytes) {
   static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
@@ -50,11 +63,24 @@ std::byte* map_space(std::size_t bytes) {
 }  // namespace
 
 GrowingMemory::~GrowingMemory() {
-  if (data_ != nullptr) munmap(data_, space_);
+  if (is_mapped()) {
+    munmap(data_, space_);
+  } else {
+    std::free(data_);
+  }
 }
 
 void GrowingMemory::reserve(std::size_t bytes) {
   if (bytes <= bytes_) return;
+  if (is_mapped()) return reserve_pages(bytes);
+  if (bytes <= small) return reserve_from_malloc(bytes);
+  GrowingMemory mapped;
+  mapped.reserve_pages(bytes);
+  std::copy_n(data_, bytes_, mapped.data_);
+  swap(mapped);
+}
+
+void GrowingMemory::reserve_pages(std::size_t bytes) {
   const std::size_t wanted = whole_pages(bytes);
   if (wanted > space_) move_to_larger_space(wanted);
   if (mprotect(data_ + bytes_, wanted - bytes_, PROT_READ | PROT_WRITE) != 0)
@@ -80,21 +106,22 @@ void GrowingMemory::move_to_larger_space(std::size_t wanted) {
 
 void GrowingMemory::add_pages(std::size_t bytes, FreshMemory& fresh) {
   constexpr std::size_t ahead = std::size_t{1} << 13U;  // for those who grow little by little
-  if (bytes <= added_) return;
+  if (bytes <= added_ || !is_mapped()) return;
   const std::size_t end = std::min(bytes_, whole_pages(bytes + ahead));
   fresh.add(data_ + added_, end - added_);
   added_ = end;
 }
 
 void GrowingMemory::release(const Executor& executor) {
+  constexpr std::size_t least = std::size_t{1} << 20U;
   const auto threads = static_cast<std::size_t>(executor.threads());
-  // Large parts, as each interrupts all threads once.
-  const std::size_t part = whole_pages(std::max(bytes_ / threads, std::size_t{1} << 18U));
+  // In large parts, as each interrupts all threads.
+  const std::size_t part = whole_pages(std::max(bytes_ / threads, least));
   const auto give_back = [this](std::size_t, std::size_t begin, std::size_t end) {
     madvise(data_ + begin, end - begin, MADV_DONTNEED);
   };
   // Unmapping what has no pages any more takes no time. If it could not be, this takes it.
-  if (threads > 1) parallel_for_blocks(executor, bytes_, part, give_back);
+  if (bytes_ > part) parallel_for_blocks(executor, bytes_, part, give_back);
   *this = GrowingMemory();
 }
 
@@ -107,12 +134,7 @@ void GrowingMemory::add_pages(std::size_t, FreshMemory&) {}
 void GrowingMemory::release(const Executor&) { *this = GrowingMemory(); }
 
 void GrowingMemory::reserve(std::size_t bytes) {
-  if (bytes <= bytes_) return;
-  auto* const place = static_cast<std::byte*>(std::realloc(data_, bytes));
-  if (place == nullptr) throw std::bad_alloc();
-  std::memset(place + bytes_, 0, bytes - bytes_);
-  data_ = place;
-  bytes_ = bytes;
+  if (bytes > bytes_) reserve_from_malloc(bytes);
 }
 
 #endif

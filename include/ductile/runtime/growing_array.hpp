@@ -1,8 +1,9 @@
 /// @file
-/// GrowingArray: an array for graphs that grow while they are worked on. Its memory comes in pages
-/// straight from the system: where that can do so (Linux) growing takes addresses that were held
-/// free behind it, or moves page table entries, and copies nothing, and what is new is first
-/// touched, and so placed near, by whoever writes it, unless a FreshMemory has asked for it before.
+/// GrowingArray: an array for graphs that grow while they are worked on. Unless it is small its
+/// memory comes in pages straight from the system: where that can do so (Linux) growing takes
+/// addresses that were held free behind it, or moves page table entries, and copies nothing, and
+/// what is new is first touched, and so placed near, by whoever writes it, unless a FreshMemory has
+/// asked for it before.
 #pragma once
 
 #include <algorithm>
@@ -51,11 +52,14 @@ class GrowingMemory {
     std::swap(space_, other.space_);
     std::swap(added_, other.added_);
   }
+  bool is_mapped() const { return space_ != 0; }
+  void reserve_from_malloc(std::size_t bytes);
+  void reserve_pages(std::size_t bytes);
   void move_to_larger_space(std::size_t wanted);
 
   std::byte* data_ = nullptr;
   std::size_t bytes_ = 0;  // that may be written
-  std::size_t space_ = 0;  // of addresses held, at least as many
+  std::size_t space_ = 0;  // of addresses held, at least as many; none where malloc gave it
   std::size_t added_ = 0;  // of which pages have been asked for
 };
 
