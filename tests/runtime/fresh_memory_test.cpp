@@ -10,6 +10,8 @@
 #include <numeric>
 #include <vector>
 
+#include "ductile/runtime/growing_array.hpp"
+
 namespace ductile::runtime {
 namespace {
 
@@ -66,6 +68,18 @@ TEST(FreshMemory, GetsThePagesOfAllThatWasAddedAndNoOthers) {
     for (std::size_t i = 0; i < page_count; ++i)
       EXPECT_EQ(there[i] != 0, (i >= 10 && i < 210) || (i >= 250 && i < 253)) << i;
   }
+}
+
+TEST(FreshMemory, GetsThePagesOfZerosBeforeTheyAreRead) {
+  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  GrowingArray<std::uint64_t> without, with;
+  without.resize(1000000);
+  FreshMemory fresh;
+  with.resize(1000000, fresh);
+  fresh.touch(Executor({.threads = 2}));
+  if (is_fresh(without.data(), without.bytes()))  // not if malloc gave it, as for sanitizers
+    EXPECT_FALSE(is_fresh(with.data(), with.size() * sizeof(std::uint64_t)));
+  EXPECT_EQ(std::count(with.begin(), with.end(), 0U), 1000000);
 }
 
 TEST(FreshMemory, KeepsWhatIsThere) {
