@@ -25,7 +25,10 @@ std::size_t page_size() {
   return size;
 }
 
-bool are_few_pages(std::size_t bytes) { return bytes < 16 * page_size(); }
+constexpr std::size_t most_at_once = 64;  // pages
+
+/// Of which to ask whether they are there takes longer than it gains: mostly they are.
+bool are_few_pages(std::size_t bytes) { return bytes < 256 * page_size(); }
 
 std::size_t offset_in_page(const void* memory) {
   return reinterpret_cast<std::uintptr_t>(memory) % page_size();
@@ -39,11 +42,11 @@ void FreshMemory::add(void* memory, std::size_t bytes) {
 }
 
 void FreshMemory::touch(const Executor& executor) {
-  constexpr std::size_t least = 8, most = 64;  // pages asked for at once
+  constexpr std::size_t least = 8;
   std::size_t all = 0;
   for (const Pages& part : parts_) all += part.count;
   const auto threads = static_cast<std::size_t>(executor.threads());
-  const std::size_t block = std::clamp(all / (2 * threads), least, most);
+  const std::size_t block = std::clamp(all / (2 * threads), least, most_at_once);
   std::vector<Pages> blocks;
   for (auto [begin, count] : std::exchange(parts_, {}))
     for (; count > 0; begin += blocks.back().count * page_size(), count -= blocks.back().count)
@@ -67,11 +70,15 @@ void get_pages(void* memory, std::size_t bytes) {
 }
 
 void touch_pages(const Executor& executor, void* memory, std::size_t bytes) {
+  if (are_few_pages(bytes)) return;
+  const bool fresh = is_fresh(memory, bytes);
   // What loops there are must not depend on what malloc gives if they are recorded.
-  if (executor.recording() == nullptr ? !is_fresh(memory, bytes) : are_few_pages(bytes)) return;
-  FreshMemory fresh;
-  fresh.add(memory, bytes);
-  fresh.touch(executor);
+  if (!fresh && executor.recording() == nullptr) return;
+  auto* const first = static_cast<std::byte*>(memory);
+  const auto get = [=](std::size_t, std::size_t begin, std::size_t end) {
+    if (fresh) get_pages(first + begin, end - begin);
+  };
+  parallel_for_blocks(executor, bytes, most_at_once * page_size(), get);
 }
 
 #else

@@ -97,13 +97,13 @@ TEST(TouchPages, AsksForManyOfWhichTheLastIsNotThere) {
   if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
   const Executor executor({.threads = 2});
   const std::size_t page = Mapping::page;
-  const Mapping fresh(100), few(100), reused(100);
-  touch_pages(executor, fresh.at(0), 100 * page);
-  EXPECT_EQ(fresh.count(), 100U);
+  const Mapping fresh(1000), few(1000), reused(1000);
+  touch_pages(executor, fresh.at(0), 1000 * page);
+  EXPECT_EQ(fresh.count(), 1000U);
   touch_pages(executor, few.at(0), 10 * page);
   EXPECT_EQ(few.count(), 0U);
-  *reused.at(99 * page) = 1;
-  touch_pages(executor, reused.at(0), 100 * page);
+  *reused.at(999 * page) = 1;
+  touch_pages(executor, reused.at(0), 1000 * page);
   EXPECT_EQ(reused.count(), 1U);
 }
 
