@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <concepts>
 #include <cstddef>
@@ -40,12 +41,12 @@ class DeferredUpdate {
   explicit DeferredUpdate(const Executor& executor, DeferredUpdateOptions options = {})
       : executor_(executor), by_source_(options.order == CommitOrder::by_source), lanes_(executor) {
     const auto threads = static_cast<unsigned>(executor.threads());
-    const std::uint32_t buckets = std::clamp(std::bit_ceil(8U * threads), 16U, 1024U);
+    is_touched_.resize(std::clamp(std::bit_ceil(8U * threads), 16U, 1024U));
     // As many owners in a row as have their data in cache; fewer where a window of a mesh, whose
     // owners are near by, should be in enough buckets for all threads.
     const unsigned neighbour_bits = threads == 1 ? 16 : threads < 8 ? 8 : 7;
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].set_up(buckets, neighbour_bits, by_source_);
+      lanes_[t].set_up(is_touched_, neighbour_bits, by_source_);
   }
 
   /// Keeps `update` for `owner`. `source` is who defers it, for instance the item being applied;
@@ -71,43 +72,45 @@ class DeferredUpdate {
   /// dropped. Thread safety: one thread, no loop running.
   template <class F>
   std::size_t commit(F&& f) {
-    const std::size_t updates = size();
-    if (updates == 0) return 0;
     find_touched();
+    if (touched_.empty()) return 0;
+    std::atomic<std::size_t> updates = 0;
     const auto commit_one = [&](std::size_t b) {
-      if (by_source_) {
-        commit_by_source(touched_[b], f);
-      } else {
-        commit_in_any_order(touched_[b], f);
-      }
-      empty_bucket(touched_[b]);
+      const std::uint32_t number = touched_[b];
+      updates.fetch_add(by_source_ ? commit_by_source(number, f) : commit_in_any_order(number, f),
+                        std::memory_order_relaxed);
+      clear(number);
     };
-    const ClearedAtEnd cleared{*this};
+    const ClearedAtEnd cleared{*this};  // if f throws
     parallel_for(executor_, touched_.size(), commit_one,
-                 {.grain = 1, .serial_below = updates < small ? touched_.size() + 1 : 0});
+                 {.grain = 1, .serial_below = are_few() ? touched_.size() + 1 : 0});
     return updates;
   }
 
   /// Updates waiting. Thread safety: one thread, no loop running.
   std::size_t size() const {
     std::size_t sum = 0;
-    for (std::size_t t = 0; t < lanes_.size(); ++t) sum += lanes_[t].size();
+    for (std::uint32_t b = 0; b < is_touched_.size(); ++b)
+      if (is_touched_[b] != 0) sum += size(b);
     return sum;
   }
 
   /// Drops all updates and keeps the memory. Thread safety: one thread, no loop running.
   void clear() {
-    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].clear();
+    for (std::uint32_t b = 0; b < is_touched_.size(); ++b)
+      if (is_touched_[b] != 0) clear(b);
   }
 
   /// Drops all updates and gives all buffers back. Thread safety: one thread, no loop running.
   void release() {
+    clear();
     for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].release();
     std::vector<std::uint32_t>().swap(touched_);
   }
 
  private:
   using Lane = detail::DeferLane<T>;
+  using Lists = typename Lane::Lists;
   using Plain = detail::PlainUpdate<T>;
   using Sourced = detail::SourcedUpdate<T>;
   struct ClearedAtEnd {
@@ -115,48 +118,72 @@ class DeferredUpdate {
     ~ClearedAtEnd() { self.clear(); }
   };
 
-  static constexpr std::size_t small = 256;  // updates not worth waking a team for
-
+  /// The functions for one bucket of all lanes return how many updates it has. Thread safety: one
+  /// thread at a time for each bucket.
   template <class F>
-  void commit_in_any_order(std::uint32_t number, F& f) {
+  std::size_t commit_in_any_order(std::uint32_t number, F& f) {
+    std::size_t updates = 0;
     const auto commit_chunk = [&](Plain* begin, Plain* end) {
       for (Plain* entry = begin; entry != end; ++entry) f(entry->owner, entry->update);
+      updates += static_cast<std::size_t>(end - begin);
     };
-    for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].plain.for_each_chunk(number, commit_chunk);
+    for_each_lists([&](const Lists& lists) { lists.plain.for_each_chunk(number, commit_chunk); });
+    return updates;
   }
 
   /// Ordering a bucket by source alone is enough: it puts each of its owners' updates in order.
   template <class F>
-  void commit_by_source(std::uint32_t number, F& f) {
-    detail::SourceOrder<Sourced>& order = lanes_.mine().order;
+  std::size_t commit_by_source(std::uint32_t number, F& f) {
+    detail::SourceOrder<Sourced>& order = lanes_.mine().order();
     order.clear();
-    const auto add_chunk = [&](Sourced* begin, Sourced* end) { order.add(begin, end); };
-    for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].sourced.for_each_chunk(number, add_chunk);
+    std::size_t updates = 0;
+    const auto add_chunk = [&](Sourced* begin, Sourced* end) {
+      order.add(begin, end);
+      updates += static_cast<std::size_t>(end - begin);
+    };
+    for_each_lists([&](const Lists& lists) { lists.sourced.for_each_chunk(number, add_chunk); });
     order.for_each([&](Sourced& entry) { f(entry.owner, entry.update); });
+    return updates;
   }
 
-  /// Sets touched_ to the buckets with updates of any thread, each once.
+  std::size_t size(std::uint32_t number) const {
+    std::size_t sum = 0;
+    for_each_lists([&](const Lists& lists) { sum += lists.size(number); });
+    return sum;
+  }
+
+  void clear(std::uint32_t number) {
+    for_each_lists([&](Lists& lists) { lists.clear(number); });
+    is_touched_[number] = 0;
+  }
+
+  /// Of the threads that have deferred something.
+  void for_each_lists(auto&& visit) const {
+    for (std::size_t t = 0; t < lanes_.size(); ++t)
+      if (auto* const lists = lanes_[t].lists()) visit(*lists);
+  }
+
+  /// Sets touched_ to the buckets with updates of any thread.
   void find_touched() {
     touched_.clear();
-    std::size_t contributors = 0;
-    for (std::size_t t = 0; t < lanes_.size(); ++t) {
-      const auto numbers = lanes_[t].touched();
-      touched_.insert(touched_.end(), numbers.begin(), numbers.end());
-      contributors += !numbers.empty();
-    }
-    if (contributors > 1) detail::sort_and_make_unique(touched_);
+    for (std::uint32_t b = 0; b < is_touched_.size(); ++b)
+      if (is_touched_[b] != 0) touched_.push_back(b);
   }
 
-  void empty_bucket(std::uint32_t number) {
-    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].clear(number);
+  /// Whether it is not worth waking a team for what was touched.
+  bool are_few() const {
+    constexpr std::size_t few_updates = 256, quickly_counted = 512;  // buckets of single threads
+    if (touched_.size() * lanes_.size() > quickly_counted) return false;
+    std::size_t updates = 0;
+    for (const std::uint32_t number : touched_) updates += size(number);
+    return updates < few_updates;
   }
 
   Executor executor_;
   bool by_source_;
   PerThread<Lane> lanes_;
-  std::vector<std::uint32_t> touched_;  // scratch of commit(): buckets with updates
+  std::vector<std::uint8_t> is_touched_;  // [bucket], whether any thread may have updates there
+  std::vector<std::uint32_t> touched_;    // scratch of commit(): such buckets
 };
 
 }  // namespace ductile::runtime

@@ -8,10 +8,12 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <new>
 #include <span>
 #include <utility>
 
+#include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/detail/bit_field.hpp"
 #include "ductile/runtime/detail/buckets.hpp"
 #include "ductile/runtime/detail/source_order.hpp"
@@ -101,19 +103,30 @@ class Deferrer {
 
 namespace detail {
 
-/// What one thread deferred: plain or sourced updates, not both.
+/// What one thread deferred: plain or sourced updates, not both. The lists are made by the thread
+/// when it has its first update, near itself: most threads never have one where batches are small.
 template <class T>
 class DeferLane {
  public:
-  Buckets<PlainUpdate<T>> plain;
-  Buckets<SourcedUpdate<T>> sourced;
-  SourceOrder<SourcedUpdate<T>> order;  // scratch of commits
+  struct Lists {
+    Buckets<PlainUpdate<T>> plain;
+    Buckets<SourcedUpdate<T>> sourced;
 
-  /// `bucket_count` is a power of two; 2^neighbour_bits owners in a row, at least two, share
-  /// a bucket.
-  void set_up(std::uint32_t bucket_count, unsigned neighbour_bits, bool by_source) {
-    bucket_count_ = bucket_count;
-    bucket_bits_ = {neighbour_bits, static_cast<unsigned>(std::countr_zero(bucket_count))};
+    /// Of one bucket. Thread safety: one thread at a time for each bucket.
+    std::size_t size(std::uint32_t number) const {
+      return plain.size(number) + sourced.size(number);
+    }
+    void clear(std::uint32_t number) {
+      plain.clear(number);
+      sourced.clear(number);
+    }
+  };
+
+  /// `is_touched` has a flag for each bucket, as many as a power of two, which is set where the
+  /// lane may have updates; 2^neighbour_bits owners in a row, at least two, share a bucket.
+  void set_up(std::span<std::uint8_t> is_touched, unsigned neighbour_bits, bool by_source) {
+    is_touched_ = is_touched;
+    bucket_bits_ = {neighbour_bits, static_cast<unsigned>(std::countr_zero(is_touched.size()))};
     deferrer_.by_source_ = by_source;
     deferrer_.lane_ = this;
   }
@@ -123,67 +136,59 @@ class DeferLane {
 
   /// For many. Throws std::bad_alloc.
   const Deferrer<T>& ready_deferrer() {
-    if (!has_buckets()) provide();
+    if (lists_ == nullptr) provide();
     return deferrer_;
   }
 
   /// For one more update of this owner. Not inlined, so as to keep the caller's loop tight.
   /// Throws std::bad_alloc.
   [[gnu::noinline]] void make_room(std::uint32_t owner) {
-    if (!has_buckets()) provide();
+    if (lists_ == nullptr) provide();
     const auto number = static_cast<std::uint32_t>(bucket_bits_.of(owner));
     if (deferrer_.by_source_) {
-      sourced.grow(number);
+      lists_->sourced.grow(number);
     } else {
-      plain.grow(number);
+      lists_->plain.grow(number);
     }
+    atomic_mark(is_touched_[number]);
   }
 
-  std::size_t size() const { return plain.size() + sourced.size(); }
+  /// Null if the thread has not deferred anything yet.
+  Lists* lists() const { return lists_.get(); }
 
-  /// Of the buckets that may have updates.
-  std::span<const std::uint32_t> touched() const {
-    return deferrer_.by_source_ ? sourced.touched() : plain.touched();
-  }
-
-  /// Drops a bucket's updates. Thread safety: one thread at a time for each bucket.
-  void clear(std::uint32_t number) {
-    plain.clear(number);
-    sourced.clear(number);
-  }
-
-  /// Drops all updates and keeps the memory.
-  void clear() {
-    plain.clear();
-    sourced.clear();
+  /// Scratch of commits. Throws std::bad_alloc.
+  SourceOrder<SourcedUpdate<T>>& order() {
+    if (order_ == nullptr) order_ = std::make_unique<SourceOrder<SourcedUpdate<T>>>();
+    return *order_;
   }
 
   /// Drops all updates and gives the memory back.
   void release() {
-    plain.release();
-    sourced.release();
-    order = {};
+    lists_.reset();
+    order_.reset();
     deferrer_.rooms_ = Deferrer<T>().rooms_;
     deferrer_.bucket_bits_ = {};
   }
 
  private:
-  bool has_buckets() const { return deferrer_.rooms_.next != &Deferrer<T>::nowhere_; }
-
   void provide() {
+    auto lists = std::make_unique<Lists>();
     if (deferrer_.by_source_) {
-      sourced.provide(bucket_count_);
-      deferrer_.rooms_ = sourced.rooms();
+      lists->sourced.provide(is_touched_.size());
+      deferrer_.rooms_ = lists->sourced.rooms();
     } else {
-      plain.provide(bucket_count_);
-      deferrer_.rooms_ = plain.rooms();
+      lists->plain.provide(is_touched_.size());
+      deferrer_.rooms_ = lists->plain.rooms();
     }
     deferrer_.bucket_bits_ = bucket_bits_;
+    lists_ = std::move(lists);
   }
 
   Deferrer<T> deferrer_;
-  BitField bucket_bits_;  // the deferrer's when there are buckets
-  std::uint32_t bucket_count_ = 0;
+  BitField bucket_bits_;                // the deferrer's when there are lists
+  std::span<std::uint8_t> is_touched_;  // [bucket], shared by all lanes
+  std::unique_ptr<Lists> lists_;
+  std::unique_ptr<SourceOrder<SourcedUpdate<T>>> order_;
 };
 
 }  // namespace detail

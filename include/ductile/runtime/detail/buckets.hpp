@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <memory>
 #include <memory_resource>
-#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -25,9 +24,6 @@ struct Rooms {
   void* const* ends;  // [list]
 };
 
-/// Leaves one of each number, in ascending order.
-void sort_and_make_unique(std::vector<std::uint32_t>& numbers);
-
 template <class T>
 class Buckets {
  public:
@@ -39,7 +35,6 @@ class Buckets {
   /// Makes `count` empty lists. Precondition: there are none. Throws std::bad_alloc; there may be
   /// none then, or all.
   void provide(std::size_t count) {
-    touched_.reserve(count);
     lists_.resize(count);
     rooms_.resize(2 * count);
   }
@@ -52,21 +47,8 @@ class Buckets {
     List& list = lists_[number];
     Chunk*& next = list.last == nullptr ? list.first : list.last->next;
     if (next == nullptr) next = new_chunk(list.last);
-    if (list.last == nullptr) touched_.push_back(number);  // cannot throw: provide() reserved
     list.last = next;
     set_room(number, next->begin, next->end);
-  }
-
-  /// Numbers of the lists that may have elements, in no order.
-  std::span<const std::uint32_t> touched() const { return touched_; }
-
-  std::size_t size() const {
-    std::size_t sum = 0;
-    const auto add = [&](const T* begin, const T* end) {
-      sum += static_cast<std::size_t>(end - begin);
-    };
-    for (const std::uint32_t number : touched_) for_each_chunk(number, add);
-    return sum;
   }
 
   /// Calls visit(begin, end) for each chunk of a list, in the order of its elements.
@@ -80,7 +62,14 @@ class Buckets {
     visit(list.last->begin, static_cast<T*>(rooms_[number]));
   }
 
-  /// Removes a list's elements and keeps its memory; the list stays among those touched.
+  /// How many elements a list has. Thread safety: one thread at a time for each list.
+  std::size_t size(std::uint32_t number) const {
+    std::size_t sum = 0;
+    for_each_chunk(number, [&](const T* begin, const T* end) { sum += end - begin; });
+    return sum;
+  }
+
+  /// Removes a list's elements and keeps its memory.
   /// Thread safety: one thread at a time for each list.
   void clear(std::uint32_t number) {
     if (lists_.empty()) return;
@@ -90,18 +79,12 @@ class Buckets {
     set_room(number, nullptr, nullptr);
   }
 
-  /// Removes all elements and keeps the memory.
-  void clear() {
-    for (const std::uint32_t number : touched_) clear(number);
-    touched_.clear();
-  }
-
   /// Removes all elements and lists and gives the memory back.
   void release() {
-    clear();
+    if constexpr (!std::is_trivially_destructible_v<T>)
+      for (std::uint32_t number = 0; number < lists_.size(); ++number) clear(number);
     std::vector<void*>().swap(rooms_);
     std::vector<List>().swap(lists_);
-    std::vector<std::uint32_t>().swap(touched_);
     memory_.release();
   }
 
@@ -135,7 +118,6 @@ class Buckets {
 
   std::vector<void*> rooms_;  // of Rooms, `next` of all lists, then their ends
   std::vector<List> lists_;
-  std::vector<std::uint32_t> touched_;
   std::pmr::monotonic_buffer_resource memory_;  // of the chunks
 };
 
