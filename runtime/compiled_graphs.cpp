@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "ductile/runtime/any_graph.hpp"
+#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring.hpp"
-#include "ductile/runtime/worklist.hpp"
+#include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime {
 
@@ -26,15 +27,23 @@ std::vector<std::uint32_t> losers(const Executor& executor, const BlindPairs& bl
   for (std::size_t t = 0; t < blind.size(); ++t)
     for (std::span left(blind[t]); !left.empty(); left = left.subspan(parts.back().size()))
       parts.push_back(left.first(std::min<std::size_t>(left.size(), 256)));
-  Worklist<std::uint32_t> lost(executor, {.unique = true});
-  parallel_for(executor, parts.size(),
-               [&](std::size_t p) {
-                 for (const auto& [u, v] : parts[p])
-                   if (colour_of[u] == colour_of[v]) lost.append(outranks(u, v) ? v : u);
-               },
-               {.grain = 1, .serial_below = 4});
-  lost.collect();
-  return lost.take();
+  auto lost =
+      parallel_collect<std::uint32_t>(executor, parts.size(), [&](std::size_t p, auto&& append) {
+        for (const auto& [u, v] : parts[p])
+          if (colour_of[u] == colour_of[v]) append(outranks(u, v) ? v : u);
+      });
+  parallel_sort(executor, std::span(lost));
+  lost.resize(parallel_unique(executor, std::span(lost)));
+  return lost;
+}
+
+/// What colour_by_priority() does, one after the other.
+template <class Width, CompiledGraph G>
+void colour_few_by_priority(const G& graph, std::vector<std::uint32_t> few,
+                            Colours<Width> colours) {
+  for (const std::uint32_t v : few) colours.set(v, Colours<Width>::waiting);
+  std::sort(few.begin(), few.end(), outranks);
+  for (const std::uint32_t v : few) colours.set(v, least_free(graph, v, colours));
 }
 
 }  // namespace
@@ -42,8 +51,10 @@ std::vector<std::uint32_t> losers(const Executor& executor, const BlindPairs& bl
 template <std::unsigned_integral Word, CompiledGraph G>
 void repair(const Executor& executor, const G& graph, const BlindPairs& blind,
             std::span<Word> colour_of) {
-  const std::vector<std::uint32_t> lost = losers<Word>(executor, blind, colour_of);
+  constexpr std::size_t few = 64;
+  std::vector<std::uint32_t> lost = losers<Word>(executor, blind, colour_of);
   const Colours<Words<Word, 0>> colours(colour_of);
+  if (lost.size() <= few) return colour_few_by_priority(graph, std::move(lost), colours);
   colour_by_priority(executor, graph, lost, colours, outranks);
 }
 
