@@ -38,7 +38,7 @@ namespace {
 /// What malloc may give. Unmapping pages interrupts all threads, which for a few takes longer than
 /// all that is done to them: up to 2 ms on a virtual machine whose host lets that wait until the
 /// threads that spin there happen to call it.
-constexpr std::size_t small = std::size_t{1} << 19U;
+constexpr std::size_t small = std::size_t{1} << 17U;
 
 std::size_t whole_pages(std::size_t bytes) {
   static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
@@ -73,9 +73,10 @@ GrowingMemory::~GrowingMemory() {
 void GrowingMemory::reserve(std::size_t bytes) {
   if (bytes <= bytes_) return;
   if (is_mapped()) return reserve_pages(bytes);
-  if (bytes <= small) return reserve_from_malloc(bytes);
+  if (bytes <= small) return reserve_from_malloc(std::clamp(2 * bytes_, bytes, small));
   GrowingMemory mapped;
   mapped.reserve_pages(bytes);
+  get_pages(mapped.data_, bytes_);  // at once, as but one thread writes them
   std::copy_n(data_, bytes_, mapped.data_);
   swap(mapped);
 }
