@@ -70,6 +70,7 @@ void Recording::flush() {
   if (paused_) return;
   note(ns);
   add(Stretch::Kind::serial, costs_.size() - 1);
+  begin_lap();
 }
 
 void Recording::take_least(const Recording& again) {
