@@ -85,11 +85,12 @@ class KeyedWords {
 /// are gone.
 std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> words,
                            std::uint64_t gone) {
-  const std::size_t living = runtime::parallel_reduce(
-      executor, words.size(), std::size_t{0},
-      [&](std::size_t i) { return std::size_t{words[i] != gone}; }, std::plus<>());
-  if (living == 0) return words.data();
-  return std::to_address(std::remove(words.begin(), words.end(), gone));
+  const auto living = runtime::parallel_collect<std::uint64_t>(executor, words.size(),
+                                                               [&](std::size_t i, auto&& append) {
+                                                                 if (words[i] != gone)
+                                                                   append(words[i]);
+                                                               });
+  return std::to_address(std::copy(living.begin(), living.end(), words.begin()));
 }
 
 /// The ids below `count` that are alive, by key_of(id); is_alive(id) says whether one is.

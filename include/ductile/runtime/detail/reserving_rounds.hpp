@@ -78,7 +78,7 @@ class ReservingRounds {
     tie_bits_ = static_cast<unsigned>(std::bit_width(items - 1));
     const std::uint64_t wanted = std::uint64_t{1} << (rank_bits + tie_bits_);
     if (wanted > first_key_) {
-      reserved_ = {};
+      reserved_.clear();
       first_key_ = all_keys;
     }
     first_key_ -= wanted;
