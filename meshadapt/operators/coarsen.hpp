@@ -37,6 +37,7 @@ class Coarsen {
   using Item = VertexId;
   using Plan = EdgeCollapse;
   using Update = ListChange;
+  static constexpr bool plans_on_its_own = true;  // reads and writes nothing but its own elements
   static constexpr bool forgoes_wakes = true;  // the next sweep finds who is not worth it at once
 
   Coarsen(Mesh<Dim>& mesh, const Rules& rules);

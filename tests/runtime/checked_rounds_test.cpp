@@ -359,6 +359,57 @@ class Log {
   bool defers_;
 };
 
+/// A signal that vertices pass on, each to the next, at once or by a deferred write: who does not
+/// have it yet plans nothing.
+template <class Trait>
+class Relay : public Trait {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  Relay(std::size_t n, bool defers) : has_it(n), passed_on(n), defers_(defers) { has_it[0] = 1; }
+  std::optional<Plan> plan(Vertex v) const {
+    return has_it[v] && !passed_on[v] ? std::optional<Plan>(v) : std::nullopt;
+  }
+  void conflicts(Vertex, auto&&) const {}
+  std::size_t item_count() const { return has_it.size(); }
+  void apply(const Plan& v, Commit<Relay>& commit) {
+    passed_on[v] = 1;
+    if (v + 1 == has_it.size()) return;
+    if (defers_) {
+      commit.defer(v + 1, {});
+    } else {
+      has_it[v + 1] = 1;
+    }
+    commit.wake(v + 1);
+  }
+  void commit(std::uint32_t owner, const Update&) { has_it[owner] = 1; }
+
+  std::vector<std::uint8_t> has_it, passed_on;  // [vertex]
+
+ private:
+  bool defers_;
+};
+struct PlannedFirst {};
+struct OnItsOwn {
+  static constexpr bool plans_on_its_own = true;
+};
+
+TEST(RunRoundsChecked, CatchesAPlanThatIsNotOnItsOwn) {
+  const auto expect_right = [](auto relay) {
+    run_rounds_checked(Executor({.threads = 1}), relay, all_items(5));
+    EXPECT_EQ(relay.passed_on, std::vector<std::uint8_t>(5, 1));
+  };
+  expect_right(Relay<PlannedFirst>(5, true));
+  expect_right(Relay<PlannedFirst>(5, false));
+  expect_right(Relay<OnItsOwn>(5, true));
+  const std::string message =
+      caught(ContractRule::touches_announced, Relay<OnItsOwn>(5, false), all_items(5));
+  EXPECT_NE(message.find("item 1, round 1: its plan changed when item 0"), std::string::npos)
+      << message;
+}
+
 TEST(RunRoundsChecked, CatchesWhatDependsOnTheOrder) {
   const std::string message = caught(ContractRule::order_free, Log(20, false), all_items(20));
   EXPECT_NE(message.find("opposite order"), std::string::npos) << message;

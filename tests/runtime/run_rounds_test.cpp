@@ -86,7 +86,8 @@ TEST(RunRounds, FindsAMaximalIndependentSetInArrivalOrder) {
 /// Vertices on lines of ten. A vertex bypasses its successor if that is not the end of its line, so
 /// that in the end every line is its first and its last vertex. Applying joins vertices that were
 /// not neighbours: a colouring is stale at once, and whoever is woken must leave the round.
-class Bypass {
+template <class Trait>
+class BypassWith : public Trait {
  public:
   using Item = Vertex;
   struct Plan {
@@ -97,7 +98,7 @@ class Bypass {
   };
   static constexpr Vertex length = 10, nobody = 0xffffffffU;
 
-  explicit Bypass(std::size_t n) : next(n), previous(n), gone(n) {
+  explicit BypassWith(std::size_t n) : next(n), previous(n), gone(n) {
     for (Vertex v = 0; v < n; ++v) {
       next[v] = v % length == length - 1 ? nobody : v + 1;
       previous[v] = v % length == 0 ? nobody : v - 1;
@@ -120,7 +121,7 @@ class Bypass {
     }
   }
   std::size_t item_count() const { return next.size(); }
-  void apply(const Plan& plan, Commit<Bypass>& commit) {
+  void apply(const Plan& plan, Commit<BypassWith>& commit) {
     if (gone[plan.keeper] || next[plan.keeper] != plan.gone || next[plan.gone] != plan.next)
       stale = true;
     next[plan.keeper] = plan.next;
@@ -138,7 +139,15 @@ class Bypass {
   bool stale = false;                  // a plan was applied to what it was not made for
 };
 
-void expect_all_bypassed(const Bypass& lines) {
+struct PlannedFirst {};
+struct OnItsOwn {
+  static constexpr bool plans_on_its_own = true;
+};
+using Bypass = BypassWith<PlannedFirst>;
+using ImmediateBypass = BypassWith<OnItsOwn>;
+static_assert(!ImmediateOperator<Bypass> && ImmediateOperator<ImmediateBypass>);
+
+void expect_all_bypassed(const auto& lines) {
   EXPECT_FALSE(lines.stale);
   for (Vertex v = 0; v < lines.next.size(); v += Bypass::length) {
     const Vertex end = v + Bypass::length - 1;
@@ -158,6 +167,28 @@ TEST(RunRounds, WhoIsWokenLeavesTheRound) {
     if (rounds == 0) rounds = report.rounds, applied = report.planned;
     EXPECT_EQ(report.rounds, rounds) << threads << " threads";
     EXPECT_EQ(report.planned, applied) << threads << " threads";
+  }
+}
+
+TEST(RunRounds, ItMakesNoDifferenceWhetherItemsAreAppliedAtOnce) {
+  for (const std::size_t window : {1, 37, 2000, 0}) {
+    SCOPED_TRACE(window);
+    const RoundsOptions options{.window = window};
+    Bypass planned_first(20000);
+    const RoundsReport expected =
+        run_rounds(Executor({.threads = 2}), planned_first, all_items(20000), options);
+    for (const int threads : thread_counts) {
+      ImmediateBypass lines(20000);
+      const RoundsReport report =
+          run_rounds(Executor({.threads = threads}), lines, all_items(20000), options);
+      expect_all_bypassed(lines);
+      EXPECT_EQ(lines.previous, planned_first.previous);
+      EXPECT_EQ(report.rounds, expected.rounds);
+      EXPECT_EQ(report.planned, expected.planned);
+      EXPECT_EQ(report.dropped, expected.dropped);
+      EXPECT_EQ(report.applied, expected.applied);
+      EXPECT_EQ(report.committed, expected.committed);
+    }
   }
 }
 

@@ -88,6 +88,16 @@ concept PrefetchingOperator = requires(const Op& op, const typename Op::Item ite
   op.prefetch(item, 2);
 };
 
+/// A coloured operator of which an item may be planned while others that do not conflict with it
+/// are applied: its plan reads nothing that they write. It says so by a member `plans_on_its_own`,
+/// or `keeps_to_neighbours`, see below, and asks for no new numbers. Each item is then applied
+/// right after it was planned, while what it touches is in the cache.
+template <class Op>
+concept ImmediateOperator =
+    ColouredOperator<Op> && !GrowingOperator<Op> &&
+    (
+        requires { Op::plans_on_its_own; } || requires { Op::keeps_to_neighbours; });
+
 /// A coloured operator whose items need not run by classes, but may be planned and applied one by
 /// one in any order, those that do not conflict at the same time. It says so by a member
 /// `keeps_to_neighbours`: conflicts stay, a plan reads nothing that an item writes with which there
@@ -103,7 +113,8 @@ concept TiledOperator = ColouredOperator<Op> && PrefetchingOperator<Op> &&
 };
 
 /// An operator that tells a Recording what an item costs, in nanoseconds, instead of having it
-/// timed: plan_cost(item), apply_cost(plan), or both. Not asked for what runs in tiles.
+/// timed: plan_cost(item), apply_cost(plan), or both. Not asked for what runs in tiles, or is
+/// applied as soon as it is planned.
 template <class Op>
 concept CostedOperator = requires(const Op& op, const typename Op::Item item) {
   { op.plan_cost(item) } -> std::convertible_to<double>;

@@ -45,6 +45,16 @@ template <class Op>
     }
 }
 
+/// The same for the first items of a batch from `begin` on, ahead of which nobody was.
+template <class Op>
+void prefetch_first_items(const Op& op, std::span<const typename Op::Item> batch,
+                          std::size_t begin) {
+  if constexpr (PrefetchingOperator<Op>)
+    for (const int stage : {2, 1, 0})
+      for (std::size_t i = begin; i < std::min(batch.size(), begin + 2 * (stage + 1)); ++i)
+        op.prefetch(batch[i], stage);
+}
+
 /// What the batches of a run share. Check is OperatorCheck, or says by `on` that there is none.
 template <class Op, class Check>
 class Batches {
@@ -71,9 +81,11 @@ class Batches {
   void run(std::span<const Item> batch, auto&& is_here, auto&& planning, auto&& new_commit) {
     if (batch.empty()) return;
     ++report.batches;
-    plan_all(batch, is_here, planning);
-    if constexpr (Check::on) return apply_checked(batch, is_here, new_commit);
-    {
+    if constexpr (ImmediateOperator<Op> && !Check::on) {
+      plan_and_apply(batch, is_here, planning, new_commit);
+    } else {
+      plan_all(batch, is_here, planning);
+      if constexpr (Check::on) return apply_checked(batch, is_here, new_commit);
       const PhaseTimer timer(report.apply_seconds, executor, Phase::apply);
       apply_plans(new_commit);
     }
@@ -112,11 +124,55 @@ class Batches {
     return std::clamp<std::size_t>(items / 1024, 2, short_block);
   }
 
+  void cut_into_blocks(std::size_t items, std::size_t block_size) {
+    size_ = items;
+    block_size_ = block_size;
+    planned_of_.assign((items + block_size_ - 1) / block_size_, 0);
+    applied_of_.assign(planned_of_.size(), 0);
+  }
+
+  /// Asks ahead for items of the same block only, as others change what belongs to theirs.
+  void plan_and_apply(std::span<const Item> batch, auto&& is_here, auto&& planning,
+                      auto&& new_commit) {
+    const auto threads = static_cast<std::size_t>(executor.threads());
+    const std::size_t shared = std::clamp<std::size_t>(batch.size() / (16 * threads), 2, 256);
+    cut_into_blocks(batch.size(), threads == 1 ? batch.size() : shared);
+    const PhaseTimer timer(report.plan_seconds, executor, Phase::plan);
+    for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
+      const std::span<const Item> block_and_before = batch.first(end);
+      prefetch_first_items(op, block_and_before, begin);
+      Commit<Op> commit = new_commit();
+      for (std::size_t i = begin; i < end; ++i) {
+        prefetch_items_after(op, block_and_before, i, is_here);
+        if (is_here(batch[i])) {
+          ++planned_of_[b];
+          planning(batch[i]);
+          if (const std::optional<Plan> plan = op.plan(batch[i])) {
+            ++applied_of_[b];
+            commit.source_ = i;
+            op.apply(*plan, commit);
+          }
+        }
+        if (executor.recording() != nullptr) [[unlikely]]
+          executor.recording()->end_item();
+      }
+    });
+    count_planned();
+    count_applied();
+  }
+
+  void count_planned() {
+    const std::size_t planned = std::accumulate(planned_of_.begin(), planned_of_.end(), 0U);
+    report.planned += planned;
+    report.dropped += size_ - planned;
+  }
+  void count_applied() {
+    report.applied += std::accumulate(applied_of_.begin(), applied_of_.end(), 0U);
+  }
+
   void plan_all(std::span<const Item> batch, auto&& is_here, auto&& planning) {
-    size_ = batch.size();
-    block_size_ = block_of(size_);
+    cut_into_blocks(batch.size(), block_of(batch.size()));
     plans_.provide(executor, size_);
-    planned_of_.assign((size_ + block_size_ - 1) / block_size_, 0);
     first_of_.assign(planned_of_.size(), {});
     const PhaseTimer timer(report.plan_seconds, executor, Phase::plan);
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
@@ -129,9 +185,7 @@ class Batches {
         if constexpr (kinds > 0) add_demand(plans_[i], first_of_[b]);
       }
     });
-    const std::size_t planned = std::accumulate(planned_of_.begin(), planned_of_.end(), 0U);
-    report.planned += planned;
-    report.dropped += size_ - planned;
+    count_planned();
   }
 
   void for_each_block(auto&& body) {
@@ -150,7 +204,6 @@ class Batches {
   }
 
   void apply_plans(auto&& new_commit) {
-    applied_of_.assign(planned_of_.size(), 0);
     if constexpr (kinds > 0) number_new_things();
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
       Commit<Op> commit = new_commit();
@@ -165,7 +218,7 @@ class Batches {
           record_apply(plans_[i]);
       }
     });
-    for (const std::uint32_t applied : applied_of_) report.applied += applied;
+    count_applied();
   }
 
   void apply_checked(std::span<const Item> all, auto&& is_here, auto&& new_commit) {

@@ -76,10 +76,12 @@ class OperatorCheck {
       if (!plans[i]) continue;
       if (batch.size() > exact) expect_same_plan(op, batch[i], i, plans[i], "others");
       apply(op, batch[i], i, *plans[i], commits[i]);
+      if constexpr (ImmediateOperator<Op>)
+        if (batch.size() <= exact) expect_planned_on_their_own(op, run, i);
       commit_all(op, deferred);
       if (batch.size() > exact) continue;
       for (std::size_t k = i + 1; k < batch.size(); ++k)
-        expect_same_plan(op, batch[k], k, plans[k], "item " + item_name(batch[i], i));
+        if (plans[k]) expect_same_plan(op, batch[k], k, plans[k], "item " + item_name(batch[i], i));
     }
     if (!opposite.agrees(op))
       refuse(ContractRule::order_free, batch.front(), 0,
@@ -166,11 +168,19 @@ class OperatorCheck {
 
   void expect_same_plan(const Op& op, const Item& item, std::size_t i,
                         const std::optional<Plan>& plan, const std::string& others) const {
-    if (plan && (is_void<Op>(op, item) || !same_plan<Op>(op.plan(item), plan)))
+    if (is_void<Op>(op, item) || !same_plan<Op>(op.plan(item), plan))
       refuse(ContractRule::touches_announced, item, i,
-             "its plan changed when " + others + " of its batch was applied and committed: one " +
+             "its plan changed when " + others + " of its batch was applied: one " +
                  "touches what its " + (ColouredOperator<Op> ? "conflicts()" : "footprint()") +
                  " did not announce");
+  }
+
+  /// Those that would be planned while an item of the batch is applied, before its updates are
+  /// committed. Whoever has no plan must not get one either.
+  void expect_planned_on_their_own(const Op& op, const Batch& run, std::size_t applied) const {
+    const std::string others = "item " + item_name(run.items[applied], applied);
+    for (std::size_t k = applied + 1; k < run.items.size(); ++k)
+      expect_same_plan(op, run.items[k], k, run.plans[k], others);
   }
 
   void apply(Op& op, const Item& item, std::size_t i, const Plan& plan, Commit<Op>& commit) const {
