@@ -22,7 +22,8 @@ class IndependentSet {
   using Item = Vertex;
   using Plan = Vertex;
   struct Update {};
-  static constexpr bool keeps_conflicts = true;  // the graph stays as it is
+  static constexpr bool keeps_conflicts = true;   // the graph stays as it is
+  static constexpr bool plans_on_its_own = true;  // a plan reads what neighbours write, no more
 
   explicit IndependentSet(runtime::CsrGraph<> graph)
       : member(graph.vertex_count()), graph_(graph) {}
