@@ -47,12 +47,14 @@ template <class Op>
 
 /// The same for the first items of a batch from `begin` on, ahead of which nobody was.
 template <class Op>
-void prefetch_first_items(const Op& op, std::span<const typename Op::Item> batch,
-                          std::size_t begin) {
+void prefetch_first_items(const Op& op, std::span<const typename Op::Item> batch, std::size_t begin,
+                          auto&& is_here) {
   if constexpr (PrefetchingOperator<Op>)
-    for (const int stage : {2, 1, 0})
-      for (std::size_t i = begin; i < std::min(batch.size(), begin + 2 * (stage + 1)); ++i)
-        op.prefetch(batch[i], stage);
+    for (const int stage : {2, 1, 0}) {
+      const std::size_t end = begin + 2 * (static_cast<std::size_t>(stage) + 1);
+      for (std::size_t i = begin; i < std::min(batch.size(), end); ++i)
+        if (is_here(batch[i])) op.prefetch(batch[i], stage);
+    }
 }
 
 /// What the batches of a run share. Check is OperatorCheck, or says by `on` that there is none.
@@ -131,7 +133,8 @@ class Batches {
     applied_of_.assign(planned_of_.size(), 0);
   }
 
-  /// Asks ahead for items of the same block only, as others change what belongs to theirs.
+  /// Asks ahead only for items of the same block that are in the round: others change meanwhile
+  /// what belongs to theirs, and to those that have left it.
   void plan_and_apply(std::span<const Item> batch, auto&& is_here, auto&& planning,
                       auto&& new_commit) {
     const auto threads = static_cast<std::size_t>(executor.threads());
@@ -140,7 +143,7 @@ class Batches {
     const PhaseTimer timer(report.plan_seconds, executor, Phase::plan);
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
       const std::span<const Item> block_and_before = batch.first(end);
-      prefetch_first_items(op, block_and_before, begin);
+      prefetch_first_items(op, block_and_before, begin, is_here);
       Commit<Op> commit = new_commit();
       for (std::size_t i = begin; i < end; ++i) {
         prefetch_items_after(op, block_and_before, i, is_here);
