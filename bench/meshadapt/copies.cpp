@@ -32,7 +32,12 @@ Copy start(const std::function<double()>& work) {
   if (pipe(ends.data()) != 0) refuse("a pipe from a copy of the benchmark");
   const auto [from, to] = ends;
   const pid_t process = fork();
-  if (process < 0) refuse("a copy of the benchmark");
+  if (process < 0) {
+    const int error = errno;
+    close(from), close(to);
+    errno = error;
+    refuse("a copy of the benchmark");
+  }
   if (process == 0) {
     double seconds = 0;
     try {
@@ -49,7 +54,10 @@ Copy start(const std::function<double()>& work) {
 /// The seconds that it tells, 0 if it fails.
 double finish(const Copy& copy) {
   double seconds = 0;
-  const bool told = read(copy.from, &seconds, sizeof seconds) == sizeof seconds;
+  ssize_t bytes = 0;
+  do bytes = read(copy.from, &seconds, sizeof seconds);
+  while (bytes < 0 && errno == EINTR);
+  const bool told = bytes == sizeof seconds;
   close(copy.from);
   waitpid(copy.process, nullptr, 0);
   return told ? seconds : 0;
@@ -63,8 +71,11 @@ double rate(const std::function<double()>& work, int copies) {
   bool failed = false;
   for (const Copy& copy : running) {
     const double seconds = finish(copy);
-    failed = failed || seconds <= 0;
-    sum += 1 / seconds;
+    if (seconds > 0) {
+      sum += 1 / seconds;
+    } else {
+      failed = true;
+    }
   }
   if (failed) throw std::runtime_error("a copy of the benchmark failed");
   return sum;

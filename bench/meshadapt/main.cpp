@@ -2,6 +2,7 @@
 /// The whole adaptation, measured: time by kernel and phase on 1, 2, ... threads, what determinism
 /// costs, quality and memory; a replay on up to 64 threads; and Mmg on the same files, if it is
 /// there. Leaves a page, plots, and every sample in a folder.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -9,6 +10,7 @@
 
 #include "child.hpp"
 #include "copies.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "forecast.hpp"
 #include "peer.hpp"
 #include "plan.hpp"
@@ -35,15 +37,20 @@ void say(const Sample& sample) {
   std::fflush(stdout);
 }
 
-/// As many copies as there are threads at most.
+/// As many copies as the most threads that have a core each: more say nothing, and each has memory
+/// of its own.
 void measure_copies(Results& results, const Plan& plan, const AdaptCase& made,
                     const Sampler& sampler) {
-  if (plan.most_threads == 1) return;
+  int copies = 1;
+  for (const RunSettings& settings : settings_for(plan, made.name))
+    if (settings.threads <= ductile::runtime::available_cores())
+      copies = std::max(copies, settings.threads);
+  if (copies == 1) return;
   const auto work = [&] { return sampler.first_call_alone(); };
-  const double speed = speed_of_copies(work, plan.most_threads);
-  results.copies.push_back({made.name, plan.most_threads, speed});
-  std::printf("%-16s %3d copies get %.2f times as much done as one\n", made.name.c_str(),
-              plan.most_threads, speed);
+  const double speed = speed_of_copies(work, copies);
+  results.copies.push_back({made.name, copies, speed});
+  std::printf("%-16s %3d copies get %.2f times as much done as one\n", made.name.c_str(), copies,
+              speed);
 }
 
 /// All settings in turn, again and again, so that whatever else the machine does meets all alike.

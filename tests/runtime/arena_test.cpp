@@ -55,6 +55,23 @@ TEST(Arena, ReportsAndReturnsItsMemory) {
   EXPECT_EQ(arena.bytes(), empty);
 }
 
+TEST(Arena, ReturnsItsMemoryByAllThreadsAndServesAgain) {
+  for (const int threads : {1, 2, 8}) {
+    const Executor executor({.threads = threads});
+    SmallArena arena;
+    const std::size_t empty = arena.bytes();
+    arena.release(executor);
+    EXPECT_EQ(arena.bytes(), empty);
+    for (int turn = 0; turn < 2; ++turn) {
+      EXPECT_TRUE(arrays_keep_their_contents(arena, threads)) << threads;
+      EXPECT_GT(arena.bytes(), empty);
+      arena.release(executor);
+      EXPECT_EQ(arena.bytes(), empty);
+      EXPECT_EQ(arena.used(), 0U);
+    }
+  }
+}
+
 TEST(Arena, StopsAtTheEndOfItsIndices) {
   Arena<std::uint8_t, 28> arena;
   EXPECT_THROW(

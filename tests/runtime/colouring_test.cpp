@@ -215,7 +215,6 @@ TEST(Colouring, OfBlocksWithManyClashesIsTheSameAtAnyThreadCount) {
   }
 }
 
-/// In the second graph there are too many colours for short words, and vertices of many neighbours.
 /// What blocks give before any clash is repaired: first-fit by step and id, blind to neighbours in
 /// other blocks of the same step.
 std::vector<std::uint32_t> colours_by_blocks(const test::TestGraph& graph) {
@@ -263,6 +262,7 @@ TEST(Colouring, OfBlocksIsThatOfItsDefinitionButForClashes) {
   }
 }
 
+/// In the second graph there are too many colours for short words, and vertices of many neighbours.
 TEST(Colouring, OfACallbackIsThatOfItsRows) {
   for (const auto& graph :
        {test::random_graph(5000, 30000, 10), test::rmat_graph(12, 200000, 14)}) {

@@ -47,9 +47,7 @@ void run(const Executor& executor, const Meetings& meetings, auto&& done) {
                const auto& met = meetings.met[begun.block];
                const auto rank = static_cast<std::uint8_t>(meetings.rank_of[begun.block]);
                for (; begun.next < met.size(); ++begun.next)
-                 if (meetings.rank_of[met[begun.next]] < rank &&
-                     blocks.comes_before(met[begun.next], rank))
-                   return met[begun.next];
+                 if (blocks.comes_before(met[begun.next], rank)) return met[begun.next];
                done(begun.block);
                return RankedBlocks<Begun>::none;
              },

@@ -45,7 +45,8 @@ class Background {
     __builtin_prefetch(&neighbours_[near]);
   }
 
-  /// The same for the corners of that element, if it is there already.
+  /// The same for the corners of that element, which must be one of the background's. Reads its
+  /// numbers: waits unless prefetch() has brought them. Thread safety: any thread.
   [[gnu::always_inline]] void prefetch_corners(ElementId near) const {
     for (const VertexId v : corners_of_[near]) {
       __builtin_prefetch(&position_of_[v]);

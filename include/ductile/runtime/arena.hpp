@@ -82,7 +82,9 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
   /// thread would hold up the others. Thread safety: one caller.
   void release(const Executor& executor) {
     clear();
-    parallel_for(executor, slot_count, [&](std::size_t slot) { free_segment(slot); }, {.grain = 1});
+    std::size_t end = slot_count;  // of those in use: else one thread would take them all as a part
+    while (end > 0 && table_[end - 1].load(std::memory_order_relaxed) == nullptr) --end;
+    parallel_for(executor, end, [&](std::size_t slot) { free_segment(slot); }, {.grain = 1});
   }
 
   /// Exchanges contents. Thread safety: one thread.

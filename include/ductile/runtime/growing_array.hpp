@@ -104,9 +104,9 @@ requires(std::is_trivially_copyable_v<T> &&
                 std::byte{0});
   }
 
-  /// The same; pages for what is new are added to `fresh`: for elements that are read before most
-  /// are written. A page that is first read is there twice, and every thread is interrupted where
-  /// one then writes it.
+  /// The same, but that there may be n elements if it throws; pages for what is new are added to
+  /// `fresh`: for elements that are read before most are written. A page that is first read is
+  /// there twice, and every thread is interrupted where one then writes it.
   void resize(std::size_t n, FreshMemory& fresh) {
     resize(n);
     memory_.add_pages(n * sizeof(T), fresh);
@@ -133,7 +133,7 @@ requires(std::is_trivially_copyable_v<T> &&
     size_ = touched_ = 0;
   }
 
-  /// Bytes there is room for; those never written take no memory.
+  /// Bytes there is room for; those never written take no memory, unless the array is small.
   std::size_t bytes() const { return memory_.bytes(); }
 
   friend bool operator==(const GrowingArray& a, const GrowingArray& b) {

@@ -58,7 +58,7 @@ concept ColouredOperator = Operator<Op> && std::same_as<typename Op::Item, std::
 };
 
 /// footprint(item, visit) visits the numbers, below resource_count(), of all that the item's plan
-/// reads and its application writes or invalidates; it visits nothing if the item is void.
+/// depends on and its application writes or invalidates; it visits nothing if the item is void.
 template <class Op>
 concept ReservingOperator = Operator<Op> && requires(const Op& op, const typename Op::Item item) {
   op.footprint(item, [](std::uint32_t) {});
@@ -67,6 +67,7 @@ concept ReservingOperator = Operator<Op> && requires(const Op& op, const typenam
 
 /// An operator that makes numbered things (vertices, elements): demand(plan) says how many of each
 /// kind, grow(totals) makes room for a round's and returns the first new number of each kind.
+/// demand() only reads; it is asked while others plan, any number of times.
 template <class Op>
 concept GrowingOperator = requires(Op& op, const Op& reader, const typename Op::Plan plan) {
   op.grow(reader.demand(plan));

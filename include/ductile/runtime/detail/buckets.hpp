@@ -35,8 +35,8 @@ class Buckets {
   /// Makes `count` empty lists. Precondition: there are none. Throws std::bad_alloc; there may be
   /// none then, or all.
   void provide(std::size_t count) {
-    lists_.resize(count);
     rooms_.resize(2 * count);
+    lists_.resize(count);  // last: where there are lists, there are their rooms
   }
 
   /// Those of the lists. Whoever puts an element at a `next` moves that on.
