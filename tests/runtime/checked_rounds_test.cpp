@@ -368,16 +368,25 @@ class Relay : public Trait {
   using Plan = Vertex;
   struct Update {};
 
-  Relay(std::size_t n, bool defers) : has_it(n), passed_on(n), defers_(defers) { has_it[0] = 1; }
+  struct Manner {
+    bool defers = false, announces = false;
+  };
+
+  Relay(std::size_t n, const Manner& manner) : has_it(n), passed_on(n), manner_(manner) {
+    has_it[0] = 1;
+  }
   std::optional<Plan> plan(Vertex v) const {
     return has_it[v] && !passed_on[v] ? std::optional<Plan>(v) : std::nullopt;
   }
-  void conflicts(Vertex, auto&&) const {}
+  void conflicts(Vertex v, auto&& visit) const {
+    if (manner_.announces && v > 0) visit(v - 1);
+    if (manner_.announces && v + 1 < has_it.size()) visit(v + 1);
+  }
   std::size_t item_count() const { return has_it.size(); }
   void apply(const Plan& v, Commit<Relay>& commit) {
     passed_on[v] = 1;
     if (v + 1 == has_it.size()) return;
-    if (defers_) {
+    if (manner_.defers) {
       commit.defer(v + 1, {});
     } else {
       has_it[v + 1] = 1;
@@ -389,7 +398,7 @@ class Relay : public Trait {
   std::vector<std::uint8_t> has_it, passed_on;  // [vertex]
 
  private:
-  bool defers_;
+  Manner manner_;
 };
 struct PlannedFirst {};
 struct OnItsOwn {
@@ -401,13 +410,15 @@ TEST(RunRoundsChecked, CatchesAPlanThatIsNotOnItsOwn) {
     run_rounds_checked(Executor({.threads = 1}), relay, all_items(5));
     EXPECT_EQ(relay.passed_on, std::vector<std::uint8_t>(5, 1));
   };
-  expect_right(Relay<PlannedFirst>(5, true));
-  expect_right(Relay<PlannedFirst>(5, false));
-  expect_right(Relay<OnItsOwn>(5, true));
-  const std::string message =
-      caught(ContractRule::touches_announced, Relay<OnItsOwn>(5, false), all_items(5));
-  EXPECT_NE(message.find("item 1, round 1: its plan changed when item 0"), std::string::npos)
-      << message;
+  for (const bool defers : {false, true}) {
+    expect_right(Relay<PlannedFirst>(5, {defers, false}));
+    expect_right(Relay<PlannedFirst>(5, {defers, true}));
+    expect_right(Relay<OnItsOwn>(5, {defers, true}));
+    const std::string message =
+        caught(ContractRule::touches_announced, Relay<OnItsOwn>(5, {defers, false}), all_items(5));
+    const std::string what = defers ? "it was woken by item 0" : "its plan changed when item 0";
+    EXPECT_NE(message.find("item 1, round 1: " + what), std::string::npos) << message;
+  }
 }
 
 TEST(RunRoundsChecked, CatchesWhatDependsOnTheOrder) {

@@ -90,9 +90,10 @@ concept PrefetchingOperator = requires(const Op& op, const typename Op::Item ite
 };
 
 /// A coloured operator of which an item may be planned while others that do not conflict with it
-/// are applied: its plan reads nothing that they write. It says so by a member `plans_on_its_own`,
-/// or `keeps_to_neighbours`, see below, and asks for no new numbers. Each item is then applied
-/// right after it was planned, while what it touches is in the cache.
+/// are applied: its plan reads nothing that they write, and applying wakes only the item and those
+/// it conflicts with. It says so by a member `plans_on_its_own`, or `keeps_to_neighbours`, see
+/// below, and asks for no new numbers. Each item is then applied right after it was planned, while
+/// what it touches is in the cache.
 template <class Op>
 concept ImmediateOperator =
     ColouredOperator<Op> && !GrowingOperator<Op> &&

@@ -77,7 +77,7 @@ class OperatorCheck {
       if (batch.size() > exact) expect_same_plan(op, batch[i], i, plans[i], "others");
       apply(op, batch[i], i, *plans[i], commits[i]);
       if constexpr (ImmediateOperator<Op>)
-        if (batch.size() <= exact) expect_planned_on_their_own(op, run, i);
+        if (batch.size() <= exact) expect_on_their_own(op, run, i);
       commit_all(op, deferred);
       if (batch.size() > exact) continue;
       for (std::size_t k = i + 1; k < batch.size(); ++k)
@@ -175,12 +175,17 @@ class OperatorCheck {
                  " did not announce");
   }
 
-  /// Those that would be planned while an item of the batch is applied, before its updates are
-  /// committed. Whoever has no plan must not get one either.
-  void expect_planned_on_their_own(const Op& op, const Batch& run, std::size_t applied) const {
-    const std::string others = "item " + item_name(run.items[applied], applied);
-    for (std::size_t k = applied + 1; k < run.items.size(); ++k)
-      expect_same_plan(op, run.items[k], k, run.plans[k], others);
+  /// Those that may be planned while an item of the batch is applied, before its updates are
+  /// committed. Whoever has no plan must not get one either, and nobody leaves the round.
+  void expect_on_their_own(const Op& op, const Batch& run, std::size_t applied) const {
+    const std::string other = "item " + item_name(run.items[applied], applied);
+    const Commit<Op>& commit = run.commits[applied];
+    for (std::size_t k = applied + 1; k < run.items.size(); ++k) {
+      expect_same_plan(op, run.items[k], k, run.plans[k], other);
+      if (commit.woken_at_[run.items[k]] == commit.window_)
+        refuse(ContractRule::touches_announced, run.items[k], k,
+               "it was woken by " + other + ", which its conflicts() did not announce");
+    }
   }
 
   void apply(Op& op, const Item& item, std::size_t i, const Plan& plan, Commit<Op>& commit) const {
