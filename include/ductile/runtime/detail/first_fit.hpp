@@ -16,6 +16,7 @@
 #include <cstring>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
@@ -203,24 +204,36 @@ template <Graph G, class Visit>
   }
 }
 
-/// The least free colour, above those of TakenColours: a thousand are looked at in each pass over
-/// the neighbours.
+/// The least free colour of however many. Looks at each neighbour anew for all colours together:
+/// others may change theirs meanwhile, and who counts a neighbour's old colour and its new one may
+/// take a colour beyond the degree.
 template <Graph G, class View>
 [[gnu::noinline]] typename View::Word least_free_of_many(const G& graph, std::uint32_t v,
                                                          View colours) {
-  constexpr std::uint32_t words = 16, range = 64 * words;
-  for (std::uint64_t base = TakenColours<View>::count; base <= View::most; base += range) {
-    std::array<std::uint64_t, words> taken{};
+  constexpr std::size_t words = 16;
+  std::array<std::uint64_t, words> taken{};
+  std::size_t neighbours = 0;
+  graph.for_each_neighbour(v, [&](std::uint32_t u) {
+    const std::size_t colour = colours[u];
+    if (colour < 64 * words) taken[colour / 64] |= std::uint64_t{1} << (colour % 64);
+    ++neighbours;
+  });
+  const auto word =
+      std::find_if(taken.begin(), taken.end(), [](std::uint64_t bits) { return ~bits != 0; });
+  std::size_t free = 64 * static_cast<std::size_t>(word - taken.begin());
+  if (word != taken.end()) {
+    free += static_cast<std::size_t>(std::countr_one(*word));
+  } else {
+    std::vector<bool> is_taken(neighbours + 1);
     graph.for_each_neighbour(v, [&](std::uint32_t u) {
-      const std::uint64_t colour = std::uint64_t{colours[u]} - base;
-      if (colour < range) taken[colour / 64] |= std::uint64_t{1} << (colour % 64);
+      const std::size_t colour = colours[u];
+      if (colour <= neighbours) is_taken[colour] = true;
     });
-    for (std::uint64_t word = 0; word < words; ++word) {
-      const auto free = base + 64 * word + static_cast<unsigned>(std::countr_one(taken[word]));
-      if (~taken[word] != 0 && free <= View::most) return static_cast<typename View::Word>(free);
-    }
+    free = static_cast<std::size_t>(std::find(is_taken.begin(), is_taken.end(), false) -
+                                    is_taken.begin());
   }
-  throw TooManyColours{};
+  if (free > View::most) throw TooManyColours{};
+  return static_cast<typename View::Word>(free);
 }
 
 /// The least colour not taken, of those a look at v's neighbours has shown, or beyond them.
