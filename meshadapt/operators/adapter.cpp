@@ -149,7 +149,6 @@ void Adapter<Dim>::run() {
     polish();
   }
   finish();
-  renumber_mesh();
 }
 
 /// Share of the elements next to which something would be done, or what it is at least where that

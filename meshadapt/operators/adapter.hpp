@@ -28,6 +28,7 @@ class Adapter {
   /// Gives the mesh away, which is the end of this adapter's work.
   Mesh<Dim> take_mesh() {
     background_.release(executor_);
+    survey_ = EdgeSurvey<Dim>();
     return std::move(mesh_);
   }
   AdaptReport& report() { return report_; }

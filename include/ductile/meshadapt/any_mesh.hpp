@@ -28,6 +28,7 @@ struct Cells {
     vertices.push_back(corners);
     reference.push_back(ref);
   }
+  friend bool operator==(const Cells&, const Cells&) = default;
 };
 
 struct AnyMesh {
@@ -46,6 +47,7 @@ struct AnyMesh {
   std::string name;                                ///< where it came from, for messages
 
   std::size_t vertex_count() const { return vertex_reference.size(); }
+  friend bool operator==(const AnyMesh&, const AnyMesh&) = default;
 };
 
 /// The elements of a mesh of dimension Dim: its triangles or its tetrahedra.

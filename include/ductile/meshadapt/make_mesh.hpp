@@ -28,23 +28,15 @@ Mesh<Dim> make_mesh(const runtime::Executor& executor, const AnyMesh& any,
                     const MakeMeshOptions& options, Neighbours<Dim>& neighbours,
                     std::vector<std::string>& warnings);
 
-/// The mesh as a file holds it: boundary and interface facets, curves, corners and required
-/// entities with their references. The mesh must be compact (see renumber). Thread safety: one
-/// caller; runs on the executor.
-template <int Dim>
-AnyMesh to_any_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
-
-/// The metric at the vertices, as a field to write beside to_any_mesh. Thread safety: as above.
-template <int Dim>
-AnyField to_any_field(const runtime::Executor& executor, const Mesh<Dim>& mesh);
-
 struct MeshWithMetric {
   AnyMesh mesh;
-  AnyField metric;
+  AnyField metric;  ///< at the vertices
 };
 
-/// Both, of a mesh that is needed no longer: its arrays are given back as soon as they have been
-/// read, so that there is less to hold at once. Thread safety: as above.
+/// The mesh as a file holds it: boundary and interface facets, curves, corners and required
+/// entities with their references. What is gone is left out, and the rest numbered as renumber()
+/// would number it. The mesh's arrays are given back as soon as they have been read, so that there
+/// is less to hold at once. Thread safety: one caller; runs on the executor.
 template <int Dim>
 MeshWithMetric take_apart(const runtime::Executor& executor, Mesh<Dim> mesh);
 

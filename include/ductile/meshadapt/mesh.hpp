@@ -237,11 +237,11 @@ void shell_of(const Mesh<Dim>& mesh, VertexId a, VertexId b, Buffer& shell) {
   visit_shell(mesh, a, b, [&](ElementId element) { shell.push_back(element); });
 }
 
-/// The element on the other side of an element's facet, or none on the boundary.
+/// Of the elements around a facet's first corner, the one beside `element` that has all, or none.
 template <int Dim>
-ElementId neighbour(const Mesh<Dim>& mesh, ElementId element, int facet) {
-  const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[element], facet);
-  for (const ElementId other : mesh.elements_of.of(corners[0])) {
+ElementId sharer_of(const Mesh<Dim>& mesh, std::span<const ElementId> around, ElementId element,
+                    const Facet<Dim>& corners) {
+  for (const ElementId other : around) {
     if (other == element) continue;
     bool all = true;
     for (std::size_t i = 1; i < corners.size(); ++i)
@@ -249,6 +249,13 @@ ElementId neighbour(const Mesh<Dim>& mesh, ElementId element, int facet) {
     if (all) return other;
   }
   return none;
+}
+
+/// The element on the other side of an element's facet, or none on the boundary.
+template <int Dim>
+ElementId neighbour(const Mesh<Dim>& mesh, ElementId element, int facet) {
+  const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[element], facet);
+  return sharer_of<Dim>(mesh, mesh.elements_of.of(corners[0]), element, corners);
 }
 
 extern template struct Mesh<2>;

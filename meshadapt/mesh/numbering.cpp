@@ -1,0 +1,151 @@
+#include "mesh/numbering.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <utility>
+
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "mesh/grouping.hpp"
+#include "mesh/hilbert.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_for;
+
+namespace {
+
+template <int Dim>
+Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh, auto&& is_alive) {
+  return runtime::parallel_reduce(
+      executor, mesh.vertex_slots(), Box<Dim>::empty(),
+      [&](std::size_t v) {
+        if (!is_alive(v)) return Box<Dim>::empty();
+        return Box<Dim>{mesh.site_of[v].position, mesh.site_of[v].position};
+      },
+      [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
+}
+
+/// Keys with their ids in the low bits of a word, so that sorting words sorts ids by their keys,
+/// those of equal keys in order.
+class KeyedWords {
+ public:
+  /// As many of a key's `key_bits` highest bits count as find place beside an id below `count`.
+  KeyedWords(std::size_t count, unsigned key_bits)
+      : id_bits_(static_cast<unsigned>(std::bit_width(count))), key_bits_(key_bits) {}
+
+  std::uint64_t word(std::uint64_t key, std::uint64_t id) const {
+    return fits() ? key << id_bits_ | id : (key << (64 - key_bits_) & ~ids()) | id;
+  }
+  /// Greater than all others; the greatest id is below the number that all its bits would make.
+  std::uint64_t gone() const { return word(greatest_key(), ids()); }
+  std::uint64_t greatest_key() const { return (std::uint64_t{1} << key_bits_) - 1; }
+  unsigned id_bits() const { return id_bits_; }
+  std::uint32_t id(std::uint64_t word) const { return static_cast<std::uint32_t>(word & ids()); }
+
+ private:
+  bool fits() const { return key_bits_ + id_bits_ < 64; }
+  std::uint64_t ids() const { return (std::uint64_t{1} << id_bits_) - 1; }
+
+  unsigned id_bits_, key_bits_;
+};
+
+/// Moves the words that are not `gone` to the front, in order, and returns their end. Mostly all
+/// are gone.
+std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> words,
+                           std::uint64_t gone) {
+  const auto living = runtime::parallel_collect<std::uint64_t>(executor, words.size(),
+                                                               [&](std::size_t i, auto&& append) {
+                                                                 if (words[i] != gone)
+                                                                   append(words[i]);
+                                                               });
+  return std::to_address(std::copy(living.begin(), living.end(), words.begin()));
+}
+
+/// The ids below `count` that are alive, by key_of(id); is_alive(id) says whether one is.
+Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, auto&& is_alive,
+               auto&& key_of) {
+  const KeyedWords keyed(count, key_bits);
+  Unset<std::uint64_t> words(executor, count);
+  parallel_for(executor, count, [&](std::size_t id) {
+    words[id] = is_alive(id) ? keyed.word(key_of(id), id) : keyed.gone();
+  });
+  const std::span all(words.begin(), count);
+  runtime::parallel_sort_above(executor, all, keyed.id_bits());  // ids are in order
+  // Those that are gone may lie among living ones of the greatest key.
+  const auto last = std::lower_bound(all.begin(), all.end(), keyed.word(keyed.greatest_key(), 0));
+  const auto end = remove_gone(executor, std::span(last, all.end()), keyed.gone());
+  Ids order(executor, static_cast<std::size_t>(end - words.begin()));
+  parallel_for(executor, order.size(), [&](std::size_t i) { order[i] = keyed.id(words[i]); });
+  return order;
+}
+
+/// Of living elements; none for those that are gone.
+template <int Dim>
+Ids renumbered_lowest(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex) {
+  Ids lowest_of(executor, mesh.element_slots());
+  parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    Corners<Dim>& corners = mesh.corners_of[e];
+    lowest_of[e] = none;
+    if (!mesh.alive(static_cast<ElementId>(e))) return;
+    for (VertexId& v : corners) {
+      v = new_vertex[v];
+      lowest_of[e] = std::min(lowest_of[e], v);
+    }
+  });
+  return lowest_of;
+}
+
+/// Puts living elements by their lowest vertex, those of a vertex in order, into an array of room
+/// for all, and shrinks it. lowest_of is none for others.
+void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
+                   std::size_t vertex_count) {
+  Ids end_of(executor, vertex_count);  // [vertex], in the order; at first how many elements it has
+  Grouping grouping(executor, GroupingBounds::even(executor, lowest_of.size(), vertex_count),
+                    end_of.all(), [&lowest_of](ElementId element, auto&& visit) {
+                      if (lowest_of[element] != none) visit(lowest_of[element]);
+                    });
+  order.shrink(grouping.size());
+  const auto begin_lists = [&](VertexId begin, VertexId end, std::uint32_t before) {
+    for (VertexId v = begin; v < end; ++v) end_of[v] = std::exchange(before, before + end_of[v]);
+  };
+  grouping.visit(begin_lists, [&](VertexId v, ElementId element) { order[end_of[v]++] = element; });
+}
+
+}  // namespace
+
+template <int Dim>
+Ids order_of_vertices(const Executor& executor, const Mesh<Dim>& mesh, VertexId unlisted) {
+  const auto is_alive = [&mesh, unlisted](std::size_t v) {
+    return v >= unlisted || mesh.vertex_alive(static_cast<VertexId>(v));
+  };
+  const Box<Dim> box = bounding_box(executor, mesh, is_alive);
+  return sorted_ids(executor, mesh.vertex_slots(), hilbert_bits<Dim>, is_alive,
+                    [&](std::size_t v) { return hilbert_key(mesh.site_of[v].position, box); });
+}
+
+Ids places_in(const Executor& executor, const Ids& order, std::size_t count) {
+  Ids place_of(executor, count);
+  parallel_for(executor, order.size(),
+               [&](std::size_t i) { place_of[order[i]] = static_cast<std::uint32_t>(i); });
+  return place_of;
+}
+
+template <int Dim>
+Ids renumber_corners(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex,
+                     std::size_t vertex_count) {
+  Ids order(executor, mesh.element_slots());  // first: what is freed behind it is one piece then
+  const Ids lowest_of = renumbered_lowest(executor, mesh, new_vertex);
+  sort_elements(order, executor, lowest_of, vertex_count);
+  return order;
+}
+
+template Ids order_of_vertices(const Executor&, const Mesh<2>&, VertexId);
+template Ids order_of_vertices(const Executor&, const Mesh<3>&, VertexId);
+template Ids renumber_corners(const Executor&, Mesh<2>&, const Ids&, std::size_t);
+template Ids renumber_corners(const Executor&, Mesh<3>&, const Ids&, std::size_t);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,190 @@
+/// @file
+/// A mesh as files hold it. What is to be listed is found on all threads and gathered in the order
+/// of vertices or elements, so that the lists do not depend on their number.
+#include <algorithm>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "mesh/numbering.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_collect;
+using runtime::parallel_for;
+using runtime::resize_empty;
+
+namespace {
+
+/// The numbers below n that something holds of, in order.
+template <class Holds>
+std::vector<std::uint32_t> numbers_of(const Executor& executor, std::size_t n, Holds&& holds) {
+  return parallel_collect<std::uint32_t>(executor, n, [&](std::size_t i, auto&& append) {
+    if (holds(i)) append(static_cast<std::uint32_t>(i));
+  });
+}
+
+/// The mesh's edges along curves, and which of them are ridges or required. What `vertices` has in
+/// order is to be called by its place there.
+void add_curves(const Executor& executor, const Mesh<3>& mesh, const Ids& vertices,
+                const Ids& place_of, AnyMesh& any) {
+  struct Edge {
+    VertexId from, to;
+    CurveId curve;
+    auto operator<=>(const Edge&) const = default;
+  };
+  auto edges = parallel_collect<Edge>(executor, vertices.size(), [&](std::size_t i, auto&& append) {
+    const auto from = static_cast<VertexId>(i);
+    for (const CurveLink& link : mesh.links_of.of(vertices[i]))
+      if (place_of[link.to] >= from && mesh.curves[link.curve].listed)
+        append({from, place_of[link.to], link.curve});
+  });
+  std::sort(edges.begin(), edges.end());  // those of each vertex, as its links have old numbers
+  for (const Edge& edge : edges) {
+    const Curve& curve = mesh.curves[edge.curve];
+    const auto number = static_cast<std::uint32_t>(any.edges.size());
+    if (curve.ridge) any.ridges.push_back(number);
+    if (curve.required) any.required_edges.push_back(number);
+    any.edges.add({edge.from, edge.to}, curve.reference);
+  }
+}
+
+/// A mesh whose corners have new numbers, while lists are still those of the old vertices.
+template <int Dim>
+class RenumberedFacets {
+ public:
+  RenumberedFacets(const Executor& executor, const Mesh<Dim>& mesh, const Ids& vertices,
+                   const Ids& elements)
+      : executor_(executor), mesh_(mesh), vertices_(vertices), elements_(elements) {}
+
+  /// A facet is written once, by the element that comes first.
+  void add_to(AnyMesh& any) const {
+    const auto listed =
+        parallel_collect<Listed>(executor_, elements_.size(), [&](std::size_t i, auto&& append) {
+          const ElementId element = elements_[i];
+          for (int facet = 0; facet <= Dim; ++facet) {
+            const PatchId patch = mesh_.patches_of[element][static_cast<std::size_t>(facet)];
+            if (patch == 0 || !mesh_.patches[patch].listed) continue;
+            const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
+            if (!is_of_one_before(element, corners)) append({corners, patch});
+          }
+        });
+    for (const Listed& facet : listed) add(any, facet.corners, mesh_.patches[facet.patch]);
+  }
+
+ private:
+  struct Listed {
+    Facet<Dim> corners;
+    PatchId patch;
+  };
+
+  bool is_of_one_before(ElementId element, const Facet<Dim>& corners) const {
+    const auto around = mesh_.elements_of.of(vertices_[corners[0]]);
+    const ElementId other = sharer_of<Dim>(mesh_, around, element, corners);
+    return other != none && rank_of(other) < rank_of(element);
+  }
+
+  /// What elements are in the order of, see renumber_corners().
+  std::pair<VertexId, ElementId> rank_of(ElementId element) const {
+    const Corners<Dim>& corners = mesh_.corners_of[element];
+    return {*std::min_element(corners.begin(), corners.end()), element};
+  }
+
+  static void add(AnyMesh& any, const Facet<Dim>& corners, const Patch<Dim>& patch) {
+    if constexpr (Dim == 2) {
+      const auto number = static_cast<std::uint32_t>(any.edges.size());
+      if (patch.ridge) any.ridges.push_back(number);
+      if (patch.required) any.required_edges.push_back(number);
+      any.edges.add(corners, patch.reference);
+    } else {
+      const auto number = static_cast<std::uint32_t>(any.triangles.size());
+      if (patch.required) any.required_triangles.push_back(number);
+      any.triangles.add(corners, patch.reference);
+    }
+  }
+
+  const Executor& executor_;
+  const Mesh<Dim>& mesh_;
+  const Ids& vertices_;
+  const Ids& elements_;
+};
+
+template <int Dim>
+void add_elements(const Executor& executor, const Mesh<Dim>& mesh, const Ids& elements,
+                  AnyMesh& any) {
+  Cells<Dim + 1>& cells = elements_in<Dim>(any);
+  resize_empty(executor, cells.vertices, elements.size());
+  resize_empty(executor, cells.reference, elements.size());
+  parallel_for(executor, elements.size(), [&](std::size_t i) {
+    cells.vertices[i] = mesh.corners_of[elements[i]];
+    cells.reference[i] = mesh.regions[mesh.region_of[elements[i]]].reference;
+  });
+  auto& required = Dim == 2 ? any.required_triangles : any.required_tetrahedra;
+  required = numbers_of(executor, elements.size(),
+                        [&](std::size_t i) { return mesh.required_element(elements[i]); });
+}
+
+template <int Dim>
+void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& vertices,
+                  AnyMesh& any) {
+  resize_empty(executor, any.vertex_reference, vertices.size());
+  resize_empty(executor, any.coordinates, vertices.size() * Dim);
+  parallel_for(executor, vertices.size(), [&](std::size_t i) {
+    any.vertex_reference[i] = mesh.reference_of[vertices[i]];
+    std::copy_n(mesh.site_of[vertices[i]].position.x.begin(), Dim, &any.coordinates[i * Dim]);
+  });
+  any.corners = numbers_of(executor, vertices.size(),
+                           [&](std::size_t i) { return mesh.kind_of[vertices[i]].corner; });
+  any.required_vertices = numbers_of(
+      executor, vertices.size(), [&](std::size_t i) { return mesh.kind_of[vertices[i]].required; });
+}
+
+template <int Dim>
+AnyField metric_at(const Executor& executor, const Mesh<Dim>& mesh, const Ids& vertices) {
+  AnyField field;
+  field.dimension = Dim;
+  field.vertex_count = vertices.size();
+  field.types = {AnyField::Type::symmetric};
+  resize_empty(executor, field.values, vertices.size() * Metric<Dim>::size);
+  parallel_for(executor, vertices.size(), [&](std::size_t i) {
+    std::copy_n(mesh.site_of[vertices[i]].metric.m.begin(), Metric<Dim>::size,
+                &field.values[i * Metric<Dim>::size]);
+  });
+  return field;
+}
+
+}  // namespace
+
+template <int Dim>
+MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
+  const auto release = [&](auto&... arrays) { (arrays.release(executor), ...); };
+  release(mesh.shape_of, mesh.changed_at, mesh.host_of, mesh.entity_of);
+  MeshWithMetric result;
+  result.mesh.dimension = Dim;
+  const Ids vertices = order_of_vertices(executor, mesh, none);
+  const Ids elements = [&] {
+    const Ids place_of = places_in(executor, vertices, mesh.vertex_slots());
+    if constexpr (Dim == 3) add_curves(executor, mesh, vertices, place_of, result.mesh);
+    return renumber_corners(executor, mesh, place_of, vertices.size());
+  }();
+  RenumberedFacets(executor, mesh, vertices, elements).add_to(result.mesh);
+  release(mesh.elements_of, mesh.links_of, mesh.patches_of);
+  add_elements(executor, mesh, elements, result.mesh);
+  release(mesh.corners_of, mesh.region_of);
+  add_vertices(executor, mesh, vertices, result.mesh);
+  result.metric = metric_at(executor, mesh, vertices);
+  release(mesh.site_of, mesh.kind_of, mesh.reference_of);
+  return result;
+}
+
+template MeshWithMetric take_apart(const Executor&, Mesh<2>);
+template MeshWithMetric take_apart(const Executor&, Mesh<3>);
+
+}  // namespace ductile::meshadapt
