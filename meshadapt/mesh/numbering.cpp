@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
+#include <memory>
+#include <span>
 #include <utility>
 
 #include "ductile/runtime/collect.hpp"
@@ -83,7 +84,8 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
   return order;
 }
 
-/// Of living elements; none for those that are gone.
+/// Gives corners their new numbers. Returns the lowest of each element, none for those that are
+/// gone.
 template <int Dim>
 Ids renumbered_lowest(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex) {
   Ids lowest_of(executor, mesh.element_slots());

@@ -31,8 +31,8 @@ std::vector<std::uint32_t> numbers_of(const Executor& executor, std::size_t n, H
   });
 }
 
-/// The mesh's edges along curves, and which of them are ridges or required. What `vertices` has in
-/// order is to be called by its place there.
+/// The mesh's edges along curves, and which of them are ridges or required. A vertex is called by
+/// its place among `vertices`, which place_of tells.
 void add_curves(const Executor& executor, const Mesh<3>& mesh, const Ids& vertices,
                 const Ids& place_of, AnyMesh& any) {
   struct Edge {

@@ -163,6 +163,7 @@ Mesh<Dim> with_gaps() {
 template <int Dim>
 void expect_same(const MeshWithMetric& apart, const Mesh<Dim>& mesh) {
   const AnyMesh& any = apart.mesh;
+  EXPECT_EQ(any.dimension, Dim);
   ASSERT_EQ(any.vertex_count(), mesh.vertex_slots());
   ASSERT_EQ(apart.metric.vertex_count, mesh.vertex_slots());
   std::vector<std::uint32_t> corners, required;
@@ -181,7 +182,7 @@ void expect_same(const MeshWithMetric& apart, const Mesh<Dim>& mesh) {
   const Cells<Dim + 1>& cells = elements_in<Dim>(any);
   ASSERT_EQ(cells.size(), mesh.element_slots());
   required.clear();
-  std::vector<Facet<Dim>> facets;
+  Cells<Dim> facets;
   for (ElementId e = 0; e < mesh.element_slots(); ++e) {
     EXPECT_EQ(cells.vertices[e], mesh.corners_of[e]);
     EXPECT_EQ(cells.reference[e], mesh.regions[mesh.region_of[e]].reference);
@@ -190,11 +191,23 @@ void expect_same(const MeshWithMetric& apart, const Mesh<Dim>& mesh) {
       const PatchId patch = mesh.patches_of[e][static_cast<std::size_t>(i)];
       const ElementId other = neighbour(mesh, e, i);
       if (patch != 0 && mesh.patches[patch].listed && (other == none || other > e))
-        facets.push_back(facet_of<Dim>(mesh.corners_of[e], i));
+        facets.add(facet_of<Dim>(mesh.corners_of[e], i), mesh.patches[patch].reference);
     }
   }
   EXPECT_EQ(Dim == 2 ? any.required_triangles : any.required_tetrahedra, required);
-  EXPECT_EQ(facets_in<Dim>(any).vertices, facets);
+  EXPECT_TRUE(facets_in<Dim>(any) == facets);
+  if constexpr (Dim == 2) return;
+  Cells<2> edges;
+  std::vector<std::uint32_t> ridges;
+  for (VertexId v = 0; v < mesh.vertex_slots(); ++v)
+    for (const CurveLink& link : mesh.links_of.of(v)) {
+      const Curve& curve = mesh.curves[link.curve];
+      if (link.to < v || !curve.listed) continue;
+      if (curve.ridge) ridges.push_back(static_cast<std::uint32_t>(edges.size()));
+      edges.add({v, link.to}, curve.reference);
+    }
+  EXPECT_TRUE(any.edges == edges);
+  EXPECT_EQ(any.ridges, ridges);
 }
 
 TYPED_TEST(MeshIn, TakingItApartGivesWhatItsArraysHoldInOrder) {
