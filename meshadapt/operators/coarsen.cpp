@@ -163,24 +163,25 @@ void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
   } else {
     for (const VertexId v : plan.crowded.vertices) commit.reconsider(v);
   }
-  const auto ball = mesh_.elements_of.of(plan.gone);
-  for (const ElementId e : ball)
-    if (contains(mesh_.corners_of[e], plan.kept)) pass_patch_on(e, plan);
-  std::size_t stretched = 0;
-  for (const ElementId e : ball) {
+  Buffer<ElementId, 64> removed, stretched;
+  for (const ElementId e : mesh_.elements_of.of(plan.gone))
+    (contains(mesh_.corners_of[e], plan.kept) ? removed : stretched).push_back(e);
+  for (const ElementId e : removed) pass_patch_on(e, plan);
+  for (std::size_t i = 0; i < stretched.size(); ++i) {
+    const ElementId e = stretched[i];
     Corners<Dim>& corners = mesh_.corners_of[e];
-    if (contains(corners, plan.kept)) {
-      remove_element(e, plan, commit);
-      continue;
-    }
     corners[static_cast<std::size_t>(corner_of(corners, plan.gone))] = plan.kept;
-    const std::size_t i = stretched++;
     mesh_.shape_of[e] =
         i < plan.shapes.size() ? plan.shapes[i] : static_cast<float>(mesh_.shape_at(corners));
     mesh_.changed_at[e] = mesh_.epoch;
-    defer_add(commit, plan.kept, e);
   }
-  if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan, commit);
+  for (const ElementId e : removed) remove_element(e, plan);
+  {
+    const auto held = mesh_.elements_of.hold(plan.kept);
+    mesh_.elements_of.replace(plan.kept, std::span(removed.data(), removed.size()),
+                              std::span(stretched.data(), stretched.size()));
+  }
+  if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan);
   mesh_.elements_of.clear(plan.gone);
   // All new neighbours are neighbours of this one.
   if (mesh_.kind_of[plan.kept].freedom != 0) commit.wake(plan.kept);
@@ -206,23 +207,31 @@ void Coarsen<Dim>::pass_patch_on(ElementId element, const Plan& plan) {
   }
 }
 
+/// What else has a corner there loses it. Another collapse may take elements from the same vertex.
 template <int Dim>
-void Coarsen<Dim>::remove_element(ElementId element, const Plan& plan,
-                                  runtime::Commit<Coarsen>& commit) {
-  for (const VertexId v : mesh_.corners_of[element])
-    if (v != plan.gone) defer_remove(commit, v, element);
+void Coarsen<Dim>::remove_element(ElementId element, const Plan& plan) {
+  for (const VertexId v : mesh_.corners_of[element]) {
+    if (v == plan.gone || v == plan.kept) continue;
+    const auto held = mesh_.elements_of.hold(v);
+    mesh_.elements_of.erase(v, element);
+  }
   mesh_.corners_of[element].fill(none);
 }
 
 /// The curve now goes from `kept` straight to the vertex on the other side of `gone`.
 template <int Dim>
-void Coarsen<Dim>::join_links(const Plan& plan, runtime::Commit<Coarsen>& commit) {
-  using Kind = ListChange::Kind;
+void Coarsen<Dim>::join_links(const Plan& plan) {
+  const auto change = [&](VertexId vertex, auto&& how) {
+    const auto held = mesh_.links_of.hold(vertex);
+    how();
+  };
   for (const CurveLink& link : mesh_.links_of.of(plan.gone)) {
-    commit.defer(link.to, {Kind::remove_link, plan.gone, link.curve});
+    change(link.to, [&] {
+      mesh_.links_of.erase(link.to, {plan.gone, link.curve});
+      if (link.to != plan.kept) mesh_.links_of.insert(link.to, {plan.kept, link.curve});
+    });
     if (link.to == plan.kept) continue;
-    commit.defer(link.to, {Kind::add_link, plan.kept, link.curve});
-    commit.defer(plan.kept, {Kind::add_link, link.to, link.curve});
+    change(plan.kept, [&] { mesh_.links_of.insert(plan.kept, {link.to, link.curve}); });
   }
   mesh_.links_of.clear(plan.gone);
 }

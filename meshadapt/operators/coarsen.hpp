@@ -36,7 +36,7 @@ class Coarsen {
   // ---- What it works on ----
   using Item = VertexId;
   using Plan = EdgeCollapse;
-  using Update = ListChange;
+  struct Update {};  // lists of neighbours are changed at once, as they are sorted
   static constexpr bool plans_on_its_own = true;  // reads and writes nothing but its own elements
   static constexpr bool forgoes_wakes = true;  // the next sweep finds who is not worth it at once
 
@@ -56,12 +56,11 @@ class Coarsen {
   std::size_t item_count() const { return mesh_.vertex_slots(); }
   void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
-  // ---- Apply: stretch or remove own elements, defer their vertices' lists, wake whom it concerns
-  // ----
+  // ---- Apply: stretch or remove own elements, hold and change lists, wake whom it concerns ----
   void apply(const Plan& plan, runtime::Commit<Coarsen>& commit);
 
-  // ---- Commit: one owner's list ----
-  void commit(std::uint32_t owner, const Update& update) { change_list(mesh_, owner, update); }
+  // ---- Commit: nothing is deferred ----
+  void commit(std::uint32_t, const Update&) {}
 
  private:
   struct Candidate {
@@ -86,9 +85,9 @@ class Coarsen {
   bool becomes_crowded(VertexId vertex, const Plan& plan) const;
   EdgeCollapse::Crowded crowded_after(const Plan& plan, const Ring& ring) const;
 
-  void remove_element(ElementId element, const Plan& plan, runtime::Commit<Coarsen>& commit);
+  void remove_element(ElementId element, const Plan& plan);
   void pass_patch_on(ElementId element, const Plan& plan);
-  void join_links(const Plan& plan, runtime::Commit<Coarsen>& commit);
+  void join_links(const Plan& plan);
 
   Mesh<Dim>& mesh_;
   Rules rules_;

@@ -4,6 +4,9 @@
 
 #include <random>
 #include <set>
+#include <vector>
+
+#include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -33,6 +36,54 @@ TEST(ListPool, BehavesLikeSortedSets) {
   for (std::uint32_t i = 0; i < lists; ++i)
     EXPECT_TRUE(
         std::equal(pool.of(i).begin(), pool.of(i).end(), expected[i].begin(), expected[i].end()));
+}
+
+TEST(ListPool, ReplacesValuesByOthers) {
+  ListPool<std::uint32_t> pool;
+  std::set<std::uint32_t> expected;
+  pool.reset(executor, 1);
+  std::mt19937 random(2);
+  for (int step = 0; step < 2000; ++step) {
+    std::vector<std::uint32_t> gone, come;
+    const std::uint32_t wanted = random() % 40;
+    for (std::uint32_t value = 0; value < 100; ++value) {
+      if (random() % 2 == 0) continue;
+      if (expected.count(value) != 0)
+        gone.push_back(value);
+      else if (random() % 40 < wanted)
+        come.push_back(value);
+    }
+    for (const std::uint32_t value : gone) expected.erase(value);
+    expected.insert(come.begin(), come.end());
+    pool.replace(0, gone, come);
+    const auto list = pool.of(0);
+    ASSERT_TRUE(std::equal(list.begin(), list.end(), expected.begin(), expected.end())) << step;
+  }
+}
+
+TEST(ListPool, ManyThreadsChangeAListThatTheyHold) {
+  const runtime::Executor many({.threads = 4});
+  constexpr std::uint32_t lists = 3, values = 3000;
+  ListPool<std::uint32_t> pool;
+  pool.reset(many, lists);
+  for (std::uint32_t list = 0; list < lists; ++list)
+    for (std::uint32_t value = 0; value < values; value += 2) pool.insert(list, value);
+  runtime::parallel_for(many, values,
+                        [&](std::size_t i) {
+                          const auto value = static_cast<std::uint32_t>(i);
+                          for (std::uint32_t list = 0; list < lists; ++list) {
+                            const auto held = pool.hold(list);
+                            if (value % 2 == 0)
+                              pool.erase(list, value);
+                            else
+                              pool.insert(list, value);
+                          }
+                        },
+                        {.grain = 1});
+  for (std::uint32_t list = 0; list < lists; ++list) {
+    ASSERT_EQ(pool.of(list).size(), values / 2);
+    for (std::uint32_t i = 0; i < values / 2; ++i) ASSERT_EQ(pool.of(list)[i], 2 * i + 1);
+  }
 }
 
 TEST(ListPool, GrowsAndForgets) {

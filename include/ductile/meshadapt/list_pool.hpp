@@ -4,9 +4,11 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <thread>
 #include <utility>
 
 #include "ductile/runtime/arena.hpp"
@@ -66,11 +68,33 @@ class ListPool {
     __builtin_prefetch(begin + slot.count - 1);
   }
 
-  // What follows changes one list. Thread safety: the owner of that list.
+  /// Keeps a list from all other threads that hold it, as long as it lives.
+  class Held {
+   public:
+    explicit Held(std::uint32_t& word) : word_(word) {
+      constexpr int spins = 1000;  // then whoever holds it may have lost its core
+      // Acquire pairs with the release of whoever held it before.
+      for (int tries = 0; (word_.fetch_or(held, std::memory_order_acquire) & held) != 0;
+           tries += tries < spins)
+        if (tries == spins) std::this_thread::yield();
+    }
+    ~Held() { word_.fetch_and(~held, std::memory_order_release); }
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+
+   private:
+    std::atomic_ref<std::uint32_t> word_;
+  };
+
+  /// For threads that change a list at the same time, which come in any order: it is sorted.
+  /// Thread safety: any thread, if nobody changes or reads the list without holding it.
+  [[nodiscard]] Held hold(std::uint32_t index) { return Held(slot_of_[index].capacity); }
+
+  // What follows changes one list. Thread safety: the owner of that list, or who holds it.
 
   void insert(std::uint32_t index, const T& value) {
     Slot& slot = slot_of_[index];
-    if (slot.count == slot.capacity) reserve(index, slot.count + slot.count / 2 + 4);
+    if (slot.count == slot.room()) reserve(index, slot.count + slot.count / 2 + 4);
     T* const begin = arena_->at(slot.begin);
     T* at = begin + slot.count;
     for (; at != begin && value < at[-1]; --at) *at = at[-1];
@@ -89,14 +113,35 @@ class ListPool {
     --slot.count;
   }
 
+  /// Erases some values and inserts others, both ascending; the former must be in the list.
+  void replace(std::uint32_t index, std::span<const T> gone, std::span<const T> come) {
+    Slot& slot = slot_of_[index];
+    const auto count = static_cast<std::uint32_t>(slot.count - gone.size() + come.size());
+    if (count > slot.room()) reserve(index, count + count / 2);
+    T* const begin = arena_->at(slot.begin);
+    T* from = begin;  // where those that stay end
+    auto next = gone.begin();
+    for (const T *at = begin, *end = begin + slot.count; at != end; ++at)
+      if (next != gone.end() && *at == *next)
+        ++next;
+      else
+        *from++ = *at;
+    // From behind, so that nothing is overwritten that has not been moved.
+    T* to = begin + count;
+    for (std::size_t i = come.size(); i-- > 0; *--to = come[i])
+      while (from != begin && come[i] < from[-1]) *--to = *--from;
+    slot.count = count;
+  }
+
   void clear(std::uint32_t index) { slot_of_[index].count = 0; }
 
   void reserve(std::uint32_t index, std::uint32_t capacity) {
     Slot& slot = slot_of_[index];
-    if (capacity <= slot.capacity) return;
+    if (capacity <= slot.room()) return;
     const std::uint32_t begin = arena_->allocate(capacity);
     if (slot.count != 0) std::copy_n(arena_->at(slot.begin), slot.count, arena_->at(begin));
-    slot = {begin, slot.count, capacity};
+    slot.begin = begin;
+    slot.capacity = capacity | (slot.capacity & held);
   }
 
   /// Makes the lists [begin, end) empty ones with room for capacity_of(index) each, side by side:
@@ -116,8 +161,11 @@ class ListPool {
   T* data(std::uint32_t index) { return arena_->at(slot_of_[index].begin); }
 
  private:
+  static constexpr std::uint32_t held = 1U << 31U;  // beside a capacity
+
   struct Slot {
     std::uint32_t begin = 0, count = 0, capacity = 0;
+    std::uint32_t room() const { return capacity & ~held; }
   };
   runtime::GrowingArray<Slot> slot_of_;
   std::unique_ptr<runtime::Arena<T>> arena_ = std::make_unique<runtime::Arena<T>>();
