@@ -37,7 +37,7 @@ class Coarsen {
   using Item = VertexId;
   using Plan = EdgeCollapse;
   struct Update {};  // lists of neighbours are changed at once, as they are sorted
-  static constexpr bool plans_on_its_own = true;  // reads and writes nothing but its own elements
+  static constexpr bool keeps_to_neighbours = true;  // reads and writes its own elements
   static constexpr bool forgoes_wakes = true;  // the next sweep finds who is not worth it at once
 
   Coarsen(Mesh<Dim>& mesh, const Rules& rules);

@@ -27,6 +27,8 @@ class Batches;
 template <class Op, class Check>
 class ColouredRounds;
 template <class Op>
+class SurveyedTiles;
+template <class Op>
 class OperatorCheck;
 template <class Op>
 class OppositeOrder;
@@ -101,16 +103,23 @@ concept ImmediateOperator =
         requires { Op::plans_on_its_own; } || requires { Op::keeps_to_neighbours; });
 
 /// A coloured operator whose items need not run by classes, but may be planned and applied one by
-/// one in any order, those that do not conflict at the same time. It says so by a member
-/// `keeps_to_neighbours`: conflicts stay, a plan reads nothing that an item writes with which there
-/// is no conflict, and applying defers nothing and wakes only the item and those it conflicts with.
-/// Most then run in tiles, on one thread as long as they lie together. prefetch_neighbour(other) is
-/// called instead of stage 0, for each item that an item conflicts with.
+/// one, those that do not conflict at the same time. It says so by a member `keeps_to_neighbours`:
+/// a plan reads nothing that an item writes with which there is no conflict; applying defers
+/// nothing and wakes only the item and those it conflicts with; what two items both write that do
+/// not conflict, such as a list of a common neighbour, is guarded, and comes out the same in any
+/// order. Items then run in tiles, on one thread as long as they lie together in the work. Those
+/// that may not run so come back in the next round, or, with `keeps_conflicts`, run last.
 template <class Op>
-concept TiledOperator = ColouredOperator<Op> && PrefetchingOperator<Op> &&
-    requires(const Op& op, const typename Op::Item item) {
-  Op::keeps_conflicts;
+concept TiledOperator = ColouredOperator<Op> && PrefetchingOperator<Op> && requires {
   Op::keeps_to_neighbours;
+};
+
+/// A tiled operator whose conflicts stay, so that they need not be looked at before an item has its
+/// turn. prefetch_neighbour(other) is then called instead of prefetch()'s stage 0, for each item
+/// that an item conflicts with, where the work is no small part of all items.
+template <class Op>
+concept SteadyTiledOperator = TiledOperator<Op> && requires(const Op& op, std::uint32_t item) {
+  Op::keeps_conflicts;
   op.prefetch_neighbour(item);
 };
 
@@ -180,13 +189,14 @@ class Commit {
   friend class detail::Batches;
   template <class, class>
   friend class detail::ColouredRounds;
+  friend class detail::SurveyedTiles<Op>;
   friend class detail::OperatorCheck<Op>;
   friend class detail::OppositeOrder<Op>;
   Deferrer<Update> deferrer_;
   Worklist<Item>* woken_ = nullptr;
   std::uint32_t* woken_at_ = nullptr;          // [item], the window it was last woken in
-  const std::uint32_t* turn_of_ = nullptr;     // [item], its class in this window
-  std::uint32_t turn_ = 0;                     // the class being applied
+  const std::uint32_t* turn_of_ = nullptr;     // [item], its class in this window, or Turns
+  std::uint32_t turn_ = 0;                     // that being applied
   std::vector<Item>* reconsidered_ = nullptr;  // if rounds are checked
   std::uint64_t source_ = 0;
   std::uint32_t window_ = 0;

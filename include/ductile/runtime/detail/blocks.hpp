@@ -42,6 +42,14 @@ struct BlockLayout {
   bool same_block(std::uint32_t u, std::uint32_t v) const { return (u ^ v) >> block_bits == 0; }
 };
 
+/// The rank of a block of items that run one after the other, by its step. Blocks next to each
+/// other are mostly neighbours: their ranks are far apart, as all of a row would wait in a chain if
+/// one came right after the other.
+inline std::uint8_t rank_of_block(const BlockLayout& layout, std::size_t block) {
+  const auto first = static_cast<std::uint32_t>(block << layout.block_bits);
+  return static_cast<std::uint8_t>(7 * layout.step_of(first) & (layout.step_count() - 1));
+}
+
 /// The colours as a run shows them to v: none of those who get theirs at the same time.
 template <class Run>
 class SeenFrom {

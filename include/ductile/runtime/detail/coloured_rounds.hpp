@@ -1,13 +1,14 @@
 /// @file
 /// ColouredRounds: cuts a round's work into classes of items that do not conflict, by colouring
-/// their conflict graph, for operators of which most items act. What can run in tiles does so
-/// first.
+/// their conflict graph, for operators of which most items act. Those that can run in tiles instead
+/// do so.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring.hpp"
 #include "ductile/runtime/detail/batches.hpp"
+#include "ductile/runtime/detail/surveyed_tiles.hpp"
 #include "ductile/runtime/detail/tiles.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/operator.hpp"
@@ -85,17 +87,17 @@ class ColouredRounds {
 
   explicit ColouredRounds(Batches<Op, Check>& batches) : batches_(batches) {}
 
-  /// Goes over the work window by window, so that what one window's classes touch stays in cache.
   /// Returns the work of the next round.
   std::vector<Item> run(std::vector<Item> work) {
     woken_at_.resize(executor_, op_.item_count(), 0);
     turn_of_.resize(executor_, op_.item_count(), absent);
-    if constexpr (TiledOperator<Op> && !Check::on) work = run_tiles(std::move(work));
-    const std::size_t largest = Check::on ? 0 : batches_.options.window;
-    for_each_window(std::span<const Item>(work), window_count(work.size(), largest),
-                    [&](std::span<const Item> part) { run_window(part); });
+    if constexpr (TiledOperator<Op> && !Check::on) {
+      run_in_tiles(std::move(work));
+    } else {
+      run_by_classes(work);
+    }
     const std::vector<Item> woken = batches_.take_woken();
-    // Who was woken by one window and planned in a later one has been considered again.
+    // Who was woken and planned after that has been considered again.
     return parallel_collect<Item>(executor_, woken.size(), [&](std::size_t i, auto&& append) {
       if (woken_at_[woken[i]] != 0) append(woken[i]);
     });
@@ -104,17 +106,22 @@ class ColouredRounds {
  private:
   static constexpr LoopOptions copying{.grain = 512, .serial_below = 2048};
   static constexpr std::uint32_t absent = ConflictGraph<Op>::absent;
+  static_assert(absent == Turns::absent);
 
-  /// Returns what is left for the classes.
+  void run_in_tiles(std::vector<Item> work) {
+    if constexpr (SteadyTiledOperator<Op>)
+      if (!Tiles<Op>::are_few(work.size(), op_.item_count())) work = run_tiles(std::move(work));
+    while (!work.empty()) work = run_surveyed(work);
+  }
+
+  /// Returns the items that are left.
   std::vector<Item> run_tiles(std::vector<Item> work) {
-    if (Tiles<Op>::are_few(work.size(), op_.item_count())) return work;
     RoundsReport& report = batches_.report;
     const PhaseTimer timer(report.plan_seconds, executor_, Phase::plan);
     ++window_;
     parallel_sort(executor_, std::span(work));  // which mostly is in order
     Tiles<Op> tiles(executor_, op_, work);
-    // Who wakes an item has a conflict with it, so tiles order what both write here.
-    tiles.run([&] { return new_commit(); }, [&](Item item) { woken_at_[item] = 0; });
+    tiles.run([&] { return new_commit(); }, [&](Item item) { note_planned(item); });
     const FilledArray<std::uint8_t>& is_left = tiles.left();
     auto left = parallel_collect<Item>(executor_, work.size(), [&](std::size_t i, auto&& append) {
       if (is_left[i] != 0) append(work[i]);
@@ -123,6 +130,43 @@ class ColouredRounds {
     report.planned += work.size() - left.size();
     report.applied += tiles.applied();
     return left;
+  }
+
+  /// Returns the items that are to run in the same round yet. Where conflicts change, those that
+  /// are late wait for the next round, as all that are woken do.
+  std::vector<Item> run_surveyed(std::span<const Item> all) {
+    constexpr bool stays = requires { Op::keeps_conflicts; };
+    const std::span<const Item> work =
+        all.first(std::min<std::size_t>(all.size(), Turns::most_items));
+    RoundsReport& report = batches_.report;
+    ++window_;
+    std::optional<SurveyedTiles<Op>> tiles;
+    {
+      const PhaseTimer timer(report.conflict_seconds, executor_, Phase::conflict);
+      tiles.emplace(executor_, op_, work, turn_of_.data());
+    }
+    const PhaseTimer timer(report.plan_seconds, executor_, Phase::plan);
+    tiles->run([&] { return new_commit(); }, [&](Item item) { return is_here(item); },
+               [&](Item item) { note_planned(item); },
+               [](Item item, Commit<Op>& commit) {
+                 if (!stays) commit.wake(item);
+               });
+    const auto [planned, applied] = tiles->counts();
+    ++report.batches;
+    report.planned += planned;
+    report.applied += applied;
+    if (!stays) report.dropped += work.size() - planned;
+    return parallel_collect<Item>(executor_, all.size(), [&](std::size_t i, auto&& append) {
+      turn_of_[all[i]] = absent;
+      if (i >= work.size() || (stays && tiles->is_late(i))) append(all[i]);
+    });
+  }
+
+  /// Goes over the work window by window, so that what one window's classes touch stays in cache.
+  void run_by_classes(std::span<const Item> work) {
+    const std::size_t largest = Check::on ? 0 : batches_.options.window;
+    for_each_window(work, window_count(work.size(), largest),
+                    [&](std::span<const Item> part) { run_window(part); });
   }
 
   void run_window(std::span<const Item> work) {
@@ -195,8 +239,8 @@ class ColouredRounds {
   const Executor& executor_ = batches_.executor;
   Op& op_ = batches_.op;
   FilledArray<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
-  FilledArray<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its class,
-                                         // or absent
+  FilledArray<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its class;
+                                         // or its turn in tiles (Turns); or absent
   std::vector<Item> by_class_;           // the window's work, class after class
   std::size_t turn_ = 0;                 // class being executed
   std::uint32_t window_ = 0;             // the window being run

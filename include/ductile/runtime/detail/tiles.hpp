@@ -3,8 +3,8 @@
 /// while what they touch is in its cache; nothing is coloured and no plan is kept. Each tile has
 /// one of 32 ranks (steps of blocks.hpp), and of neighbours the one whose tile has the lower rank
 /// comes first, see ranked_blocks.hpp. Few items have an earlier neighbour in another tile of the
-/// same rank; they are left for the classes of a coloured round, lest tiles wait for each other in
-/// long chains.
+/// same rank; they are left, lest tiles wait for each other in long chains, and run last, in tiles
+/// of their own (surveyed_tiles.hpp).
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ inline BlockLayout tiles_of(std::size_t item_count) {
   return {static_cast<unsigned>(bits), 5};
 }
 
-template <TiledOperator Op>
+template <SteadyTiledOperator Op>
 class Tiles {
  public:
   using Item = typename Op::Item;
@@ -149,12 +149,7 @@ class Tiles {
 
   std::size_t tile_of(Item item) const { return item >> layout_.block_bits; }
 
-  /// Tiles next to each other are mostly neighbours. Their ranks are far apart, as all of a row
-  /// would wait in a chain if one came right after the other.
-  std::uint8_t rank_of(std::size_t tile) const {
-    const auto item = static_cast<std::uint32_t>(tile << layout_.block_bits);
-    return static_cast<std::uint8_t>(7 * layout_.step_of(item) & (layout_.step_count() - 1));
-  }
+  std::uint8_t rank_of(std::size_t tile) const { return rank_of_block(layout_, tile); }
 
   Op& op_;
   std::span<const Item> work_;

@@ -1,0 +1,236 @@
+/// @file
+/// SurveyedTiles: tiles of a piece of work, see tiles.hpp, for which all conflicts are looked at
+/// before any item runs. So they may change while items run, and items of the work may be few among
+/// all: tiles are stretches of the work, whichever items it has. Work should list next to each
+/// other what lies together.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/detail/blocks.hpp"
+#include "ductile/runtime/detail/ranked_blocks.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime::detail {
+
+/// When items of the work have their turn, as a number: the rank of the tile comes first, then the
+/// place in the work. So who comes before whom, in which tile, is told by comparing numbers.
+struct Turns {
+  static constexpr unsigned rank_bits = 5, place_bits = 32 - rank_bits;
+  static constexpr std::uint32_t most_items = (1U << place_bits) - 1;
+  static constexpr std::uint32_t absent = 0xffffffffU;  ///< of an item that is not in the work
+
+  static std::uint32_t at(std::uint32_t rank, std::size_t place) {
+    return rank << place_bits | static_cast<std::uint32_t>(place);
+  }
+  static std::uint32_t place_of(std::uint32_t turn) { return turn & most_items; }
+};
+
+template <class Op>
+class SurveyedTiles {
+ public:
+  using Item = typename Op::Item;
+  static_assert(TiledOperator<Op>);
+  static_assert(std::is_empty_v<typename Op::Update>, "tiles defer nothing");
+
+  /// Looks at the conflicts of at most Turns::most_items items. turn_of is [item]; it is to be
+  /// Turns::absent for all, and has the turns of the work then. All of these outlive this.
+  SurveyedTiles(const Executor& executor, Op& op, std::span<const Item> work,
+                std::uint32_t* turn_of)
+      : op_(op),
+        work_(work),
+        turn_of_(turn_of),
+        layout_(layout_of(work.size())),
+        tiles_(executor, tile_count(), [&](std::size_t tile) { return rank_of(tile); }),
+        is_late_(std::make_unique_for_overwrite<bool[]>(work.size())),
+        range_of_(tile_count()),
+        counts_of_(tile_count()),
+        met_(executor) {
+    parallel_for(executor, work.size(),
+                 [&](std::size_t place) { turn_of_[work_[place]] = turn_at(place); },
+                 {.grain = 512, .serial_below = 2048});
+    parallel_for(executor, tile_count(), [&](std::size_t tile) { survey(tile); }, {.grain = 1});
+  }
+
+  /// Whether the item at this place has an earlier neighbour in another tile of the same rank, so
+  /// that run() leaves it out.
+  bool is_late(std::size_t place) const { return is_late_[place]; }
+
+  /// Plans and applies the items for which is_here(item) holds when they have their turn, each with
+  /// a commit of its tile, and calls planning(item) before; leaving_out(item, commit) for those
+  /// that are late.
+  void run(auto&& new_commit, auto&& is_here, auto&& planning, auto&& leaving_out) {
+    const auto advance = [&](Begun& begun) {
+      const std::size_t before = first_before(begun);
+      if (before == none) run_items(begun, is_here, planning, leaving_out);
+      return before;
+    };
+    const auto visit_met = [&](std::size_t tile, auto&& visit) {
+      for (const std::uint32_t other : waits_of(tile)) visit(other);
+    };
+    tiles_.run([&](std::size_t tile) { return Begun{tile, new_commit()}; }, advance, visit_met);
+  }
+
+  struct Counts {
+    std::size_t planned = 0, applied = 0;
+  };
+  Counts counts() const {
+    Counts sum;
+    for (const Counts& counts : counts_of_)
+      sum = {sum.planned + counts.planned, sum.applied + counts.applied};
+    return sum;
+  }
+
+ private:
+  /// A tile that a thread has begun, and how many of those it waits for were seen to be done.
+  struct Begun {
+    std::size_t tile;
+    Commit<Op> commit;
+    std::size_t seen = 0;
+  };
+  using Ranked = RankedBlocks<Begun>;
+  static constexpr std::size_t none = Ranked::none;
+  /// Items between asking for something that an item needs and the next stage of it.
+  static constexpr std::size_t ahead = 3;
+
+  /// What a thread's tiles wait for, one tile after the other.
+  struct Met {
+    std::vector<std::uint32_t> tiles;
+    std::vector<std::uint32_t> last_of;  // [tile], the last one that it was noted for
+  };
+  struct Range {
+    std::uint32_t thread, begin, end;  // of the thread's tiles
+  };
+
+  /// Half a thousand tiles or more, if there are as many pairs of items: few items in long tiles
+  /// would wait for each other in a chain. Longer ones than 64 would, too.
+  static BlockLayout layout_of(std::size_t items) {
+    const int bits = std::clamp(static_cast<int>(std::bit_width(items)) - 11, 1, 6);
+    return {static_cast<unsigned>(bits), Turns::rank_bits};
+  }
+  std::size_t tile_count() const {
+    return (work_.size() + layout_.block_size() - 1) >> layout_.block_bits;
+  }
+  std::uint8_t rank_of(std::size_t tile) const { return rank_of_block(layout_, tile); }
+  std::size_t first_place(std::size_t tile) const { return tile << layout_.block_bits; }
+  std::uint32_t turn_at(std::size_t place) const {
+    return Turns::at(rank_of(place >> layout_.block_bits), place);
+  }
+  std::span<const Item> items_of(std::size_t tile) const {
+    const std::size_t begin = first_place(tile);
+    return work_.subspan(begin, std::min(layout_.block_size(), work_.size() - begin));
+  }
+
+  /// Finds which of a tile's items are late, and which tiles of lower rank it meets.
+  void survey(std::size_t tile) {
+    const std::span<const Item> items = items_of(tile);
+    Met& met = met_.mine();
+    met.last_of.resize(tile_count(), Turns::absent);
+    const auto begin = static_cast<std::uint32_t>(met.tiles.size());
+    for (std::size_t i = 0; i < items.size() + 2 * ahead; ++i) {
+      if (i < items.size()) op_.prefetch(items[i], 2);
+      if (i - ahead < items.size()) op_.prefetch(items[i - ahead], 1);
+      if (i >= 2 * ahead)
+        is_late_[first_place(tile) + i - 2 * ahead] = look(items[i - 2 * ahead], tile, met);
+    }
+    range_of_[tile] = {static_cast<std::uint32_t>(this_thread()), begin,
+                       static_cast<std::uint32_t>(met.tiles.size())};
+  }
+
+  /// Whether an item is late; notes the tiles of lower rank that it meets. Without branches for
+  /// each neighbour, as the answers cannot be foreseen.
+  bool look(Item item, std::size_t tile, Met& met) const {
+    const std::uint32_t first_of_tile = turn_at(first_place(tile));
+    const std::uint32_t first_of_rank = Turns::at(rank_of(tile), 0);
+    std::array<std::uint32_t, 256> lower;
+    std::size_t count = 0;
+    unsigned late = 0;
+    op_.conflicts(item, [&](Item other) {
+      const std::uint32_t turn = turn_of_[other];
+      late |= static_cast<unsigned>(turn - first_of_rank < first_of_tile - first_of_rank);
+      lower[count] = turn;
+      count += static_cast<std::size_t>(turn < first_of_rank);
+      if (count == lower.size()) [[unlikely]]
+        note(tile, std::span(lower).first(std::exchange(count, 0)), met);
+    });
+    note(tile, std::span(lower).first(count), met);
+    return late != 0;
+  }
+
+  void note(std::size_t tile, std::span<const std::uint32_t> turns, Met& met) const {
+    for (const std::uint32_t turn : turns) {
+      const std::uint32_t other = Turns::place_of(turn) >> layout_.block_bits;
+      if (std::exchange(met.last_of[other], static_cast<std::uint32_t>(tile)) != tile)
+        met.tiles.push_back(other);
+    }
+  }
+
+  std::span<const std::uint32_t> waits_of(std::size_t tile) const {
+    const Range& range = range_of_[tile];
+    return std::span(met_[range.thread].tiles).subspan(range.begin, range.end - range.begin);
+  }
+
+  /// One of the tiles that this one waits for; none if they are done.
+  std::size_t first_before(Begun& begun) {
+    const std::span<const std::uint32_t> waits = waits_of(begun.tile);
+    for (; begun.seen < waits.size(); ++begun.seen)
+      if (tiles_.comes_before(waits[begun.seen], rank_of(begun.tile))) return waits[begun.seen];
+    return none;
+  }
+
+  /// Asks ahead only for items that run: others may change at the same time what belongs to one
+  /// that has left the round.
+  void run_items(Begun& begun, auto&& is_here, auto&& planning, auto&& leaving_out) {
+    const std::span<const Item> items = items_of(begun.tile);
+    const bool* const late = is_late_.get() + first_place(begun.tile);
+    const auto runs = [&](std::size_t i) {
+      return i < items.size() && !late[i] && is_here(items[i]);
+    };
+    for (std::size_t i = 0; i < items.size() + 3 * ahead; ++i) {
+      for (const int stage : {2, 1, 0}) {
+        const std::size_t asked = i - static_cast<std::size_t>(2 - stage) * ahead;
+        if (runs(asked)) op_.prefetch(items[asked], stage);
+      }
+      const std::size_t now = i - 3 * ahead;
+      if (now >= items.size()) continue;
+      if (late[now]) leaving_out(items[now], begun.commit);
+      if (!runs(now)) continue;
+      planning(items[now]);
+      run_item(begun, first_place(begun.tile) + now);
+    }
+  }
+
+  void run_item(Begun& begun, std::size_t place) {
+    Counts& counts = counts_of_[begun.tile];
+    ++counts.planned;
+    const std::optional<typename Op::Plan> plan = op_.plan(work_[place]);
+    if (!plan) return;
+    ++counts.applied;
+    begun.commit.turn_ = turn_at(place);
+    op_.apply(*plan, begun.commit);
+  }
+
+  Op& op_;
+  std::span<const Item> work_;
+  std::uint32_t* turn_of_;  // [item]
+  BlockLayout layout_;
+  Ranked tiles_;
+  std::unique_ptr<bool[]> is_late_;  // [place]
+  std::vector<Range> range_of_;      // [tile], what it waits for
+  std::vector<Counts> counts_of_;    // [tile]
+  PerThread<Met> met_;
+};
+
+}  // namespace ductile::runtime::detail
