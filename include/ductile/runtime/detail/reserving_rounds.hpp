@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -58,9 +59,20 @@ class ReservingRounds {
     std::size_t run = 0, lost = 0, left = 0;
   };
 
+  struct Winners {
+    std::unique_ptr<Item[]> items;
+    std::size_t count = 0;
+  };
+
+  /// Items that a thread looks at in one go: fewer of a small window, so that each of many threads
+  /// gets some.
+  static std::size_t block_of(std::size_t items) {
+    return std::clamp<std::size_t>(items / 512, 4, short_block);
+  }
+
   /// Runs the items of a window that win, and appends those that have to wait to `rest`.
   void reserve_and_run(std::span<Item> work, std::vector<Item>& rest) {
-    std::vector<Item> winners;
+    Winners winners;
     {
       const PhaseTimer timer(batches_.report.conflict_seconds, executor_, Phase::conflict);
       ++window_;
@@ -69,7 +81,8 @@ class ReservingRounds {
       winners = take_winners(work, rest);
     }
     batches_.run(
-        winners, all_are_here, [](const Item&) {}, [&] { return batches_.new_commit(window_); });
+        std::span<const Item>(winners.items.get(), winners.count), all_are_here,
+        [](const Item&) {}, [&] { return batches_.new_commit(window_); });
   }
 
   /// A later window has lower keys, so that reservations never have to be cleared but where there
@@ -90,7 +103,7 @@ class ReservingRounds {
     outcome_of_.resize(work.size());
     ticket_ = 0;
     parallel_for_blocks(
-        executor_, work.size(), short_block,
+        executor_, work.size(), block_of(work.size()),
         [&](std::size_t, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             if (share_ == everyone) prefetch_items_after<Op>(op_, work, i, all_are_here);
@@ -102,10 +115,11 @@ class ReservingRounds {
 
   /// Finds out who holds all of its footprint; moves those out of the work, and those that have to
   /// wait to `rest`, in order.
-  std::vector<Item> take_winners(std::span<Item> work, std::vector<Item>& rest) {
-    std::vector<Counts> counts((work.size() + short_block - 1) / short_block);
+  Winners take_winners(std::span<Item> work, std::vector<Item>& rest) {
+    const std::size_t block = block_of(work.size());
+    std::vector<Counts> counts((work.size() + block - 1) / block);
     parallel_for_blocks(
-        executor_, work.size(), short_block,
+        executor_, work.size(), block,
         [&](std::size_t b, std::size_t begin, std::size_t end) {
           Counts found;
           for (std::size_t i = begin; i < end; ++i) {
@@ -119,18 +133,18 @@ class ReservingRounds {
     for (Counts& count : counts)
       total = {total.run + std::exchange(count.run, total.run), total.lost + count.lost,
                total.left + std::exchange(count.left, total.left)};
-    std::vector<Item> winners(total.run);
+    Winners winners{std::make_unique_for_overwrite<Item[]>(total.run), total.run};
     rest.resize(total.left);
     parallel_for_blocks(
-        executor_, work.size(), short_block,
+        executor_, work.size(), block,
         [&](std::size_t b, std::size_t begin, std::size_t end) {
           Counts at = counts[b];
           for (std::size_t i = begin; i < end; ++i) {
-            if (outcome_of_[i] == Outcome::runs) winners[at.run++] = std::move(work[i]);
+            if (outcome_of_[i] == Outcome::runs) winners.items[at.run++] = std::move(work[i]);
             if (is_left(outcome_of_[i])) rest[at.left++] = std::move(work[i]);
           }
         },
-        by_block);
+        {.grain = 4, .serial_below = 2048 / block});
     batches_.report.lost += total.lost;
     adapt_share(total.run, total.lost);
     return winners;

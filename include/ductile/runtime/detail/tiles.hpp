@@ -39,7 +39,7 @@ class Tiles {
   static_assert(std::is_empty_v<typename Op::Update>, "tiles defer nothing");
 
   /// Not worth it: so few items, or so small a share of all, as each tile is looked at.
-  static bool are_few(std::size_t work, std::size_t all) { return work < 2048 || work < all / 64; }
+  static bool are_few(std::size_t work, std::size_t all) { return work < 2048 || work < all / 4; }
 
   /// Of work in ascending order, which outlives this.
   Tiles(const Executor& executor, Op& op, std::span<const Item> work)
