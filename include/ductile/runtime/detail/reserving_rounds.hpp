@@ -81,8 +81,8 @@ class ReservingRounds {
       winners = take_winners(work, rest);
     }
     batches_.run(
-        std::span<const Item>(winners.items.get(), winners.count), all_are_here,
-        [](const Item&) {}, [&] { return batches_.new_commit(window_); });
+        std::span<const Item>(winners.items.get(), winners.count), all_are_here, [](const Item&) {},
+        [&] { return batches_.new_commit(window_); });
   }
 
   /// A later window has lower keys, so that reservations never have to be cleared but where there
@@ -135,16 +135,16 @@ class ReservingRounds {
                total.left + std::exchange(count.left, total.left)};
     Winners winners{std::make_unique_for_overwrite<Item[]>(total.run), total.run};
     rest.resize(total.left);
-    parallel_for_blocks(
-        executor_, work.size(), block,
-        [&](std::size_t b, std::size_t begin, std::size_t end) {
-          Counts at = counts[b];
-          for (std::size_t i = begin; i < end; ++i) {
-            if (outcome_of_[i] == Outcome::runs) winners.items[at.run++] = std::move(work[i]);
-            if (is_left(outcome_of_[i])) rest[at.left++] = std::move(work[i]);
-          }
-        },
-        {.grain = 4, .serial_below = 2048 / block});
+    parallel_for_blocks(executor_, work.size(), block,
+                        [&](std::size_t b, std::size_t begin, std::size_t end) {
+                          Counts at = counts[b];
+                          for (std::size_t i = begin; i < end; ++i) {
+                            if (outcome_of_[i] == Outcome::runs)
+                              winners.items[at.run++] = std::move(work[i]);
+                            if (is_left(outcome_of_[i])) rest[at.left++] = std::move(work[i]);
+                          }
+                        },
+                        {.grain = 4, .serial_below = 2048 / block});
     batches_.report.lost += total.lost;
     adapt_share(total.run, total.lost);
     return winners;
