@@ -164,7 +164,9 @@ TEST(SurveyedTiles, RunByTheirRanksAndWakeWhomAnEqualOneComesBefore) {
       InTurn in_turn(expected);
       std::vector<Vertex> left = work;
       for (int round = 0; round < rounds && !left.empty(); ++round) left = in_turn.run(left);
-      EXPECT_EQ(in_turn.late != 0, work.size() == std::size_t{side} * side);
+      if (work.size() == expected.item_count()) {
+        EXPECT_GT(in_turn.late, 0U);
+      }
       for (const int threads : thread_counts) {
         Contract contract(side);
         const Executor executor({.threads = threads});

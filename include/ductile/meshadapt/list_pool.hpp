@@ -141,7 +141,7 @@ class ListPool {
     const std::uint32_t begin = arena_->allocate(capacity);
     if (slot.count != 0) std::copy_n(arena_->at(slot.begin), slot.count, arena_->at(begin));
     slot.begin = begin;
-    slot.capacity = capacity | (slot.capacity & held);
+    slot.set_room(capacity);
   }
 
   /// Makes the lists [begin, end) empty ones with room for capacity_of(index) each, side by side:
@@ -165,7 +165,14 @@ class ListPool {
 
   struct Slot {
     std::uint32_t begin = 0, count = 0, capacity = 0;
-    std::uint32_t room() const { return capacity & ~held; }
+
+    // Others may try to hold the list, and so write what they find, at the same time.
+    std::uint32_t room() { return word().load(std::memory_order_relaxed) & ~held; }
+    void set_room(std::uint32_t room) {
+      const std::uint32_t mark = word().load(std::memory_order_relaxed) & held;
+      word().store(room | mark, std::memory_order_relaxed);
+    }
+    std::atomic_ref<std::uint32_t> word() { return std::atomic_ref(capacity); }
   };
   runtime::GrowingArray<Slot> slot_of_;
   std::unique_ptr<runtime::Arena<T>> arena_ = std::make_unique<runtime::Arena<T>>();
