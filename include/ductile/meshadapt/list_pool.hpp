@@ -4,17 +4,16 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <thread>
 #include <utility>
 
 #include "ductile/runtime/arena.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/growing_array.hpp"
+#include "ductile/runtime/number_with_lock.hpp"
 
 namespace ductile::meshadapt {
 
@@ -68,33 +67,17 @@ class ListPool {
     __builtin_prefetch(begin + slot.count - 1);
   }
 
-  /// Keeps a list from all other threads that hold it, as long as it lives.
-  class Held {
-   public:
-    explicit Held(std::uint32_t& word) : word_(word) {
-      constexpr int spins = 1000;  // then whoever holds it may have lost its core
-      // Acquire pairs with the release of whoever held it before.
-      for (int tries = 0; (word_.fetch_or(held, std::memory_order_acquire) & held) != 0;
-           tries += tries < spins)
-        if (tries == spins) std::this_thread::yield();
-    }
-    ~Held() { word_.fetch_and(~held, std::memory_order_release); }
-    Held(const Held&) = delete;
-    Held& operator=(const Held&) = delete;
-
-   private:
-    std::atomic_ref<std::uint32_t> word_;
-  };
-
   /// For threads that change a list at the same time, which come in any order: it is sorted.
   /// Thread safety: any thread, if nobody changes or reads the list without holding it.
-  [[nodiscard]] Held hold(std::uint32_t index) { return Held(slot_of_[index].capacity); }
+  [[nodiscard]] runtime::NumberWithLock::Held hold(std::uint32_t index) {
+    return slot_of_[index].capacity.hold();
+  }
 
   // What follows changes one list. Thread safety: the owner of that list, or who holds it.
 
   void insert(std::uint32_t index, const T& value) {
     Slot& slot = slot_of_[index];
-    if (slot.count == slot.room()) reserve(index, slot.count + slot.count / 2 + 4);
+    if (slot.count == slot.capacity.get()) reserve(index, slot.count + slot.count / 2 + 4);
     T* const begin = arena_->at(slot.begin);
     T* at = begin + slot.count;
     for (; at != begin && value < at[-1]; --at) *at = at[-1];
@@ -117,7 +100,7 @@ class ListPool {
   void replace(std::uint32_t index, std::span<const T> gone, std::span<const T> come) {
     Slot& slot = slot_of_[index];
     const auto count = static_cast<std::uint32_t>(slot.count - gone.size() + come.size());
-    if (count > slot.room()) reserve(index, count + count / 2);
+    if (count > slot.capacity.get()) reserve(index, count + count / 2);
     T* const begin = arena_->at(slot.begin);
     T* from = begin;  // where those that stay end
     auto next = gone.begin();
@@ -137,22 +120,26 @@ class ListPool {
 
   void reserve(std::uint32_t index, std::uint32_t capacity) {
     Slot& slot = slot_of_[index];
-    if (capacity <= slot.room()) return;
+    if (capacity <= slot.capacity.get()) return;
     const std::uint32_t begin = arena_->allocate(capacity);
     if (slot.count != 0) std::copy_n(arena_->at(slot.begin), slot.count, arena_->at(begin));
     slot.begin = begin;
-    slot.set_room(capacity);
+    slot.capacity.set(capacity);
   }
 
   /// Makes the lists [begin, end) empty ones with room for capacity_of(index) each, side by side:
   /// one request to the arena, which threads would else wait for each other to make.
   void reserve_all(std::uint32_t begin, std::uint32_t end, auto&& capacity_of) {
     std::uint32_t total = 0;
-    for (std::uint32_t i = begin; i < end; ++i) total += slot_of_[i].capacity = capacity_of(i);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t capacity = capacity_of(i);
+      slot_of_[i].capacity.set(capacity);
+      total += capacity;
+    }
     std::uint32_t place = arena_->allocate(total);
     for (std::uint32_t i = begin; i < end; ++i) {
       slot_of_[i].count = 0;
-      slot_of_[i].begin = std::exchange(place, place + slot_of_[i].capacity);
+      slot_of_[i].begin = std::exchange(place, place + slot_of_[i].capacity.get());
     }
   }
 
@@ -161,18 +148,9 @@ class ListPool {
   T* data(std::uint32_t index) { return arena_->at(slot_of_[index].begin); }
 
  private:
-  static constexpr std::uint32_t held = 1U << 31U;  // beside a capacity
-
   struct Slot {
-    std::uint32_t begin = 0, count = 0, capacity = 0;
-
-    // Others may try to hold the list, and so write what they find, at the same time.
-    std::uint32_t room() { return word().load(std::memory_order_relaxed) & ~held; }
-    void set_room(std::uint32_t room) {
-      const std::uint32_t mark = word().load(std::memory_order_relaxed) & held;
-      word().store(room | mark, std::memory_order_relaxed);
-    }
-    std::atomic_ref<std::uint32_t> word() { return std::atomic_ref(capacity); }
+    std::uint32_t begin = 0, count = 0;
+    runtime::NumberWithLock capacity;
   };
   runtime::GrowingArray<Slot> slot_of_;
   std::unique_ptr<runtime::Arena<T>> arena_ = std::make_unique<runtime::Arena<T>>();
