@@ -35,11 +35,12 @@ struct Metric {
   friend Metric operator*(double s, Metric a) { return a *= s; }
 };
 
-/// d' M d.
-inline double squared_length(const Metric<2>& a, const Vector<2>& d) {
+/// d' M d. Inlined everywhere: loops over it run side by side only then, and a compiler that counts
+/// all code of a source file may else decide otherwise for reasons that lie far away.
+[[gnu::always_inline]] inline double squared_length(const Metric<2>& a, const Vector<2>& d) {
   return a.m[0] * d[0] * d[0] + 2 * a.m[1] * d[0] * d[1] + a.m[2] * d[1] * d[1];
 }
-inline double squared_length(const Metric<3>& a, const Vector<3>& d) {
+[[gnu::always_inline]] inline double squared_length(const Metric<3>& a, const Vector<3>& d) {
   return a.m[0] * d[0] * d[0] + a.m[2] * d[1] * d[1] + a.m[5] * d[2] * d[2] +
          2 * (a.m[1] * d[0] * d[1] + a.m[3] * d[0] * d[2] + a.m[4] * d[1] * d[2]);
 }
