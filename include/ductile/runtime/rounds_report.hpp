@@ -13,7 +13,7 @@ struct RoundsOptions {
   CommitOrder order = CommitOrder::any;  ///< by_source if an owner's updates do not commute
   /// Colouring: a round goes over its work in windows of at most so many items, one after the
   /// other; 0: all at once. Small windows stay in cache while their classes run; large ones keep
-  /// many threads busy. What can run in tiles does so first.
+  /// many threads busy. Tiles have no windows.
   std::size_t window = 32768;
   /// Reservations: the same, but an item of a window then runs before one of a later window, of
   /// whatever priority. 0: the highest priority of all goes first, or of 2^24 items if there are
@@ -29,11 +29,12 @@ struct RoundsOptions {
 struct RoundsReport {
   std::size_t rounds = 0;
   std::size_t batches = 0;    ///< sets of items that ran together: classes, a window's winners,
-                              ///< or all that ran in tiles in a round
+                              ///< or all that ran in tiles at once
   std::size_t planned = 0;    ///< calls of plan
   std::size_t applied = 0;    ///< plans carried out
   std::size_t lost = 0;       ///< conflicts: reservations that met a higher priority
-  std::size_t dropped = 0;    ///< conflicts: items that left a round because they were woken in it
+  std::size_t dropped = 0;    ///< conflicts: items that left a round because they were woken in it,
+                              ///< or as a tile of the same rank has a neighbour
   std::size_t committed = 0;  ///< deferred updates
   std::size_t woken = 0;      ///< items woken, each once a round
   std::size_t left = 0;       ///< work that most_rounds cut off

@@ -38,7 +38,8 @@ class Tiles {
   using Item = typename Op::Item;
   static_assert(std::is_empty_v<typename Op::Update>, "tiles defer nothing");
 
-  /// Not worth it: so few items, or so small a share of all, as each tile is looked at.
+  /// Not worth it: so few items, or so small a share of all, as each tile is looked at. Those are
+  /// for SurveyedTiles.
   static bool are_few(std::size_t work, std::size_t all) { return work < 2048 || work < all / 4; }
 
   /// Of work in ascending order, which outlives this.
