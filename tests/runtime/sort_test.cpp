@@ -20,7 +20,7 @@ using Types =
 TYPED_TEST_SUITE(ParallelSort, Types);
 
 TYPED_TEST(ParallelSort, AgreesWithTheStandardOne) {
-  for (std::size_t n : {0, 1, 2, 1000, 1024, 32768, 32769, 150000}) {
+  for (std::size_t n : {0, 1, 2, 1000, 1024, 10000, 32768, 32769, 150000}) {
     std::vector<TypeParam> values(n);
     for (std::size_t i = 0; i < n; ++i)
       values[i] = static_cast<TypeParam>(mix64(i) >> (i % 3 == 0 ? 40U : 0U));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +13,6 @@
 #include <numeric>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
@@ -20,8 +20,6 @@
 
 namespace ductile::runtime::sort_detail {
 
-constexpr std::size_t radix_block = 16384;  // at least
-constexpr std::size_t few = 32768;          // values that one thread sorts sooner than several
 constexpr unsigned digit_bits = 11;
 constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
 using DigitCounts = std::array<std::size_t, digit_count>;
@@ -38,8 +36,8 @@ void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
 
 /// One pass over the digit at `shift`, in blocks of `block` values.
 struct DigitPass {
-  std::size_t block;
-  std::vector<DigitCounts> counts;  // [block], of each digit; then where its values go
+  std::size_t block, blocks;
+  std::unique_ptr<DigitCounts[]> counts;  // [block], of each digit; then where its values go
   unsigned shift = 0;
 
   std::size_t digit(std::unsigned_integral auto value) const {
@@ -95,7 +93,7 @@ inline bool crowd_a_cache_set(const DigitCounts& place_of, std::size_t bytes) {
 
 /// Makes of each block's counts where its values go. Block by block, as that is how they lie in
 /// memory.
-inline void counts_to_places(std::vector<DigitCounts>& counts_of) {
+inline void counts_to_places(std::span<DigitCounts> counts_of) {
   DigitCounts place{};
   for (const DigitCounts& counts : counts_of)
     for (std::size_t d = 0; d < digit_count; ++d) place[d] += counts[d];
@@ -123,28 +121,41 @@ void scatter_by_digit(const Executor& executor, std::span<const T> from, std::sp
     }
   };
   parallel_for_blocks(executor, from.size(), pass.block, count);
-  counts_to_places(pass.counts);
+  counts_to_places({pass.counts.get(), pass.blocks});
   parallel_for_blocks(executor, from.size(), pass.block, scatter);
+}
+
+/// Values that one thread sorts sooner than several.
+inline std::size_t few_for(std::size_t threads) {
+  return std::max<std::size_t>(4096, 65536 / threads);
+}
+
+/// One block for each thread, as long as one thread needs less to add up all counts than another
+/// takes off the work; or some more, if they are long.
+inline std::size_t radix_blocks(std::size_t size, std::size_t threads) {
+  const auto worth_it = static_cast<std::size_t>(std::sqrt(static_cast<double>(size) / 512));
+  return std::max(
+      {std::size_t{1}, std::min(threads, worth_it), std::min(size / 16384, 4 * threads)});
 }
 
 /// Stable: sorts by value >> low.
 template <std::unsigned_integral T>
 void radix_sort(const Executor& executor, std::span<T> values, unsigned low) {
-  if (values.size() < few && executor.threads() > 1)
+  const auto threads = static_cast<std::size_t>(executor.threads());
+  if (threads > 1 && values.size() < few_for(threads))
     return radix_sort(Executor({.threads = 1}), values, low);
   const T top = parallel_reduce(
       executor, values.size(), T{0}, [&](std::size_t i) { return values[i]; },
       [](T a, T b) { return std::max(a, b); });
   const auto bits = static_cast<unsigned>(std::bit_width(top));
-  const std::size_t most_blocks = 4 * static_cast<std::size_t>(executor.threads());
-  const std::size_t blocks = std::clamp<std::size_t>(values.size() / radix_block, 1, most_blocks);
-  const std::size_t block = values.size() / blocks + 1;
-  DigitPass pass{block, std::vector<DigitCounts>((values.size() + block - 1) / block), low};
+  const std::size_t block = values.size() / radix_blocks(values.size(), threads) + 1;
+  const std::size_t blocks = (values.size() + block - 1) / block;
+  DigitPass pass{block, blocks, std::make_unique_for_overwrite<DigitCounts[]>(blocks), low};
   const auto scratch = make_unset<T>(executor, values.size());
   // All memory is taken before the first pass: later, running out of it would lose values.
   std::unique_ptr<Line<T>[]> lines;
   if (values.size_bytes() > 262144)
-    lines = std::make_unique_for_overwrite<Line<T>[]>(pass.counts.size() * digit_count);
+    lines = std::make_unique_for_overwrite<Line<T>[]>(blocks * digit_count);
   std::span<T> from = values, to(scratch.get(), values.size());
   for (; pass.shift < bits; pass.shift += digit_bits) {
     scatter_by_digit<T>(executor, from, to, pass, lines.get());
