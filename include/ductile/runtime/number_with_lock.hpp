@@ -10,8 +10,8 @@
 namespace ductile::runtime {
 
 /// A number below 2^31 that a lock lies beside. Who waits for it spins, so it is for what takes no
-/// longer than some hundred instructions. Thread safety: hold() any thread; the others who holds
-/// it, or where nobody else does anything but hold().
+/// longer than some hundred instructions. Thread safety: hold() any thread; get() and set() whoever
+/// holds it, or one thread if no other does anything with it.
 class NumberWithLock {
  public:
   /// Keeps others that hold the same from going on, as long as it lives.
@@ -34,7 +34,7 @@ class NumberWithLock {
 
   [[nodiscard]] Held hold() { return Held(word_); }
 
-  // Relaxed, and not plain, as others may try to hold it and so write what they find.
+  // Relaxed, and not plain, as others may try to hold it meanwhile, and so write what they find.
 
   std::uint32_t get() { return std::atomic_ref(word_).load(std::memory_order_relaxed) & ~held; }
   void set(std::uint32_t number) {
