@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -114,24 +115,35 @@ T parallel_reduce(const Executor& executor, std::size_t n, T identity, Map&& map
   return total;
 }
 
+namespace detail {
+
+/// Replaces each value by the sum of `before` and the values before it; returns what would come
+/// next.
+template <class T>
+T scan_from(T before, std::span<T> values) {
+  for (T& value : values) before += std::exchange(value, before);
+  return before;
+}
+
+}  // namespace detail
+
 /// Replaces each value by the sum of those before it and returns the total. T is an integer.
 template <class T>
 T exclusive_scan(const Executor& executor, std::span<T> values) {
-  constexpr std::size_t block_size = 4096;
+  constexpr std::size_t block_size = 4096, worth_sharing = 8 * block_size;
+  if (executor.threads() == 1 || values.size() < worth_sharing)
+    return detail::scan_from(T{}, values);
   const std::size_t blocks = (values.size() + block_size - 1) / block_size;
   std::vector<T> offset(blocks + 1, T{});
   parallel_for_blocks(executor, values.size(), block_size,
                       [&](std::size_t block, std::size_t begin, std::size_t end) {
-                        T sum{};
-                        for (std::size_t i = begin; i < end; ++i) sum += values[i];
-                        offset[block + 1] = sum;
+                        offset[block + 1] =
+                            std::accumulate(values.data() + begin, values.data() + end, T{});
                       });
-  for (std::size_t b = 0; b < blocks; ++b) offset[b + 1] += offset[b];
+  std::partial_sum(offset.begin(), offset.end(), offset.begin());
   parallel_for_blocks(executor, values.size(), block_size,
                       [&](std::size_t block, std::size_t begin, std::size_t end) {
-                        T sum = offset[block];
-                        for (std::size_t i = begin; i < end; ++i)
-                          values[i] = std::exchange(sum, static_cast<T>(sum + values[i]));
+                        detail::scan_from(offset[block], values.subspan(begin, end - begin));
                       });
   return offset[blocks];
 }
