@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <span>
+#include <vector>
 
 #include "ductile/runtime/parallel_for.hpp"
 
@@ -21,7 +23,8 @@
 #endif
 #endif
 
-namespace ductile::runtime::detail {
+namespace ductile::runtime {
+namespace detail {
 
 void GrowingMemory::reserve_from_malloc(std::size_t bytes) {
   auto* const place = static_cast<std::byte*>(std::realloc(data_, bytes));
@@ -113,26 +116,11 @@ void GrowingMemory::add_pages(std::size_t bytes, FreshMemory& fresh) {
   added_ = end;
 }
 
-void GrowingMemory::release(const Executor& executor) {
-  constexpr std::size_t least = std::size_t{1} << 20U;
-  const auto threads = static_cast<std::size_t>(executor.threads());
-  // In large parts, as each interrupts all threads.
-  const std::size_t part = whole_pages(std::max(bytes_ / threads, least));
-  const auto give_back = [this](std::size_t, std::size_t begin, std::size_t end) {
-    madvise(data_ + begin, end - begin, MADV_DONTNEED);
-  };
-  // Unmapping what has no pages any more takes no time. If it could not be, this takes it.
-  if (bytes_ > part) parallel_for_blocks(executor, bytes_, part, give_back);
-  *this = GrowingMemory();
-}
-
 #else
 
 GrowingMemory::~GrowingMemory() { std::free(data_); }
 
 void GrowingMemory::add_pages(std::size_t, FreshMemory&) {}
-
-void GrowingMemory::release(const Executor&) { *this = GrowingMemory(); }
 
 void GrowingMemory::reserve(std::size_t bytes) {
   if (bytes > bytes_) reserve_from_malloc(bytes);
@@ -140,4 +128,35 @@ void GrowingMemory::reserve(std::size_t bytes) {
 
 #endif
 
-}  // namespace ductile::runtime::detail
+}  // namespace detail
+
+#ifdef DUCTILE_MOVES_PAGES
+
+void SpentMemory::give_back(const Executor& executor) {
+  constexpr std::size_t least = std::size_t{1} << 20U;
+  const auto threads = static_cast<std::size_t>(executor.threads());
+  std::size_t all = 0;
+  for (const auto& memory : memories_) all += memory.is_mapped() ? memory.bytes() : 0;
+  // In large parts, as each interrupts all threads; the largest first.
+  const std::size_t most = detail::whole_pages(std::max(all / threads, least));
+  std::vector<std::span<std::byte>> parts;
+  for (const auto& memory : memories_)
+    for (std::size_t at = 0; memory.is_mapped() && at < memory.bytes(); at += most)
+      parts.emplace_back(memory.data() + at, std::min(most, memory.bytes() - at));
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  const auto give_back = [&](std::size_t i) {
+    madvise(parts[i].data(), parts[i].size(), MADV_DONTNEED);
+  };
+  // Unmapping what has no pages any more takes no time. If it could not be, this takes it.
+  if (all > most) parallel_for(executor, parts.size(), give_back, {.grain = 1});
+  memories_.clear();
+}
+
+#else
+
+void SpentMemory::give_back(const Executor&) { memories_.clear(); }
+
+#endif
+
+}  // namespace ductile::runtime

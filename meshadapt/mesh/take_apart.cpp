@@ -10,6 +10,7 @@
 
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/growing_array.hpp"
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/numbering.hpp"
@@ -164,7 +165,11 @@ AnyField metric_at(const Executor& executor, const Mesh<Dim>& mesh, const Ids& v
 
 template <int Dim>
 MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
-  const auto release = [&](auto&... arrays) { (arrays.release(executor), ...); };
+  const auto release = [&](auto&... arrays) {
+    runtime::SpentMemory spent;
+    (arrays.release(spent), ...);
+    spent.give_back(executor);
+  };
   release(mesh.shape_of, mesh.changed_at, mesh.host_of, mesh.entity_of);
   MeshWithMetric result;
   result.mesh.dimension = Dim;
@@ -175,7 +180,9 @@ MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
     return renumber_corners(executor, mesh, place_of, vertices.size());
   }();
   RenumberedFacets(executor, mesh, vertices, elements).add_to(result.mesh);
-  release(mesh.elements_of, mesh.links_of, mesh.patches_of);
+  mesh.elements_of.release(executor);
+  mesh.links_of.release(executor);
+  release(mesh.patches_of);
   add_elements(executor, mesh, elements, result.mesh);
   release(mesh.corners_of, mesh.region_of);
   add_vertices(executor, mesh, vertices, result.mesh);

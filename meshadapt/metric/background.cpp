@@ -31,10 +31,12 @@ Background<Dim>::~Background() = default;
 
 template <int Dim>
 void Background<Dim>::release(const runtime::Executor& executor) {
-  corners_of_.release(executor);
-  neighbours_.release(executor);
-  position_of_.release(executor);
-  log_metric_of_.release(executor);
+  runtime::SpentMemory spent;
+  corners_of_.release(spent);
+  neighbours_.release(spent);
+  position_of_.release(spent);
+  log_metric_of_.release(spent);
+  spent.give_back(executor);
 }
 
 /// The tree is made by the thread that needs it first, on its own: the others are busy.

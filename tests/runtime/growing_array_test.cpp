@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <new>
@@ -85,6 +86,27 @@ TEST(GrowingArray, IsEmptyAndGrowsAnewAfterItsRelease) {
       array.resize(n + 5);
       EXPECT_EQ(std::count(array.begin(), array.end(), 0U), static_cast<std::ptrdiff_t>(n + 5));
     }
+}
+
+TEST(SpentMemory, TakesWhatArraysOfAnySizeLeave) {
+  for (const int threads : {1, 2, 8}) {
+    SpentMemory spent;
+    std::vector<GrowingArray<std::uint32_t>> arrays(5);
+    for (int turn = 0; turn < 2; ++turn) {
+      for (std::size_t a = 0; a < arrays.size(); ++a) {
+        arrays[a].resize(std::array{0U, 10U, 100000U, 1000000U, 3000001U}[a]);
+        for (std::uint32_t& value : arrays[a]) value = 7;
+        arrays[a].release(spent);
+        EXPECT_EQ(arrays[a].size(), 0U);
+        EXPECT_EQ(arrays[a].bytes(), 0U);
+      }
+      spent.give_back(Executor({.threads = threads}));
+    }
+    for (auto& array : arrays) {
+      array.resize(1000);
+      EXPECT_EQ(std::count(array.begin(), array.end(), 0U), 1000);
+    }
+  }
 }
 
 TEST(GrowingArray, StaysAsItIsWhereAskedForTooMuch) {

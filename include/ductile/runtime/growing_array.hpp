@@ -12,6 +12,7 @@
 #include <new>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
@@ -42,8 +43,8 @@ class GrowingMemory {
   /// Adds the pages of the first so many bytes, save those added before, and a few more.
   void add_pages(std::size_t bytes, FreshMemory& fresh);
 
-  /// Gives all of them back, by all threads of an executor.
-  void release(const Executor& executor);
+  /// Whether pages come straight from the system.
+  bool is_mapped() const { return space_ != 0; }
 
  private:
   void swap(GrowingMemory& other) {
@@ -52,7 +53,6 @@ class GrowingMemory {
     std::swap(space_, other.space_);
     std::swap(added_, other.added_);
   }
-  bool is_mapped() const { return space_ != 0; }
   void reserve_from_malloc(std::size_t bytes);
   void reserve_pages(std::size_t bytes);
   void move_to_larger_space(std::size_t wanted);
@@ -64,6 +64,26 @@ class GrowingMemory {
 };
 
 }  // namespace detail
+
+template <class T>
+requires(std::is_trivially_copyable_v<T> &&
+         alignof(T) <= alignof(std::max_align_t)) class GrowingArray;
+
+/// Memory that arrays no longer want. The system takes it page by page: by all threads of an
+/// executor and in one loop for all arrays, where one thread alone would hold up the others.
+class SpentMemory {
+ public:
+  /// Gives all of it back, which the destructor does on its own thread. Thread safety: one caller;
+  /// runs on the executor.
+  void give_back(const Executor& executor);
+
+ private:
+  template <class T>
+  requires(std::is_trivially_copyable_v<T> &&
+           alignof(T) <= alignof(std::max_align_t)) friend class GrowingArray;
+
+  std::vector<detail::GrowingMemory> memories_;
+};
 
 /// Thread safety: elements as those of an array; what changes the size, one thread.
 template <class T>
@@ -126,11 +146,17 @@ requires(std::is_trivially_copyable_v<T> &&
     memory_.add_pages(n * sizeof(T), fresh);
   }
 
-  /// Empties the array and gives its memory back, which the system takes page by page: by all
-  /// threads of an executor, where one thread alone would hold up the others.
-  void release(const Executor& executor) {
-    memory_.release(executor);
+  /// Empties the array and leaves its memory to others to give back. Throws std::bad_alloc.
+  void release(SpentMemory& spent) {
+    spent.memories_.push_back(std::move(memory_));
     size_ = touched_ = 0;
+  }
+
+  /// Empties the array and gives its memory back by all threads of an executor.
+  void release(const Executor& executor) {
+    SpentMemory spent;
+    release(spent);
+    spent.give_back(executor);
   }
 
   /// Bytes there is room for; those never written take no memory, unless the array is small.
