@@ -118,6 +118,7 @@ std::string to_json(const AdaptSummary& summary) {
   return "{\"before\": " + json_of(summary.before) + ",\n \"after\": " + json_of(summary.after) +
          ",\n \"threads\": " + std::to_string(summary.threads) +
          ", \"deterministic\": " + (summary.deterministic ? "true" : "false") +
+         ", \"instructions\": " + json_string(std::string(report.instructions)) +
          ", \"iterations\": " + std::to_string(report.iterations) +
          ", \"converged\": " + (report.converged ? "true" : "false") + ",\n \"kernels\": {" +
          kernel_list + "},\n \"seconds\": {\"total\": " + json_number(report.total_seconds) +

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
@@ -52,6 +53,9 @@ struct AdaptReport {
   KernelReport coarsen, refine, swap, smooth;
   double setup_seconds = 0, renumber_seconds = 0, total_seconds = 0;
   std::vector<std::string> warnings;
+  /// What the kernels were compiled for: "as built", "x86-64-v3" or "x86-64-v4". The library may
+  /// hold them for several processors and uses the best that this one can run.
+  std::string_view instructions = "as built";
 };
 
 /// A mesh and the metric at its vertices.
@@ -63,9 +67,10 @@ struct AdaptedMesh {
 
 /// Adapts `mesh` to `metric`, which has one symmetric positive definite tensor per vertex (see
 /// metric_field.hpp to get one from a file). With a deterministic executor the result depends on
-/// nothing but the input. Throws InputError for input that is not a valid mesh, Error if
-/// memory runs out. If the executor has a recording, each kernel gets a section of it: "setup",
-/// "coarsen", "refine", "swap", "smooth", "renumber", and "other" for what is between them.
+/// nothing but the input, and exp() and log() of the C library: neither on threads nor on what the
+/// processor can do. Throws InputError for input that is not a valid mesh, Error if memory runs
+/// out. If the executor has a recording, each kernel gets a section of it: "setup", "coarsen",
+/// "refine", "swap", "smooth", "renumber", and "other" for what is between them.
 /// Thread safety: any thread; the work runs on the executor.
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options = {});

@@ -1,0 +1,82 @@
+/// @file
+/// The whole of adapt() but the choice of its level: from an AnyMesh by way of an Adapter to another.
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "ductile/meshadapt/metric_operations.hpp"
+#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/recording.hpp"
+#include "operators/adapter.hpp"
+#include "operators/processor_level.hpp"
+
+#ifndef DUCTILE_LEVEL  // which is only given where this is compiled once more
+#define DUCTILE_LEVEL as_built
+#endif
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// The metrics of the field within the sizes and the growth that the options allow.
+template <int Dim>
+std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const AnyField& field,
+                                    const Mesh<Dim>& mesh, const AdaptOptions& options,
+                                    std::vector<std::string>& warnings) {
+  auto metric_of = runtime::make_vector<Metric<Dim>>(executor, field.vertex_count);
+  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
+    std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric_of[v].m.begin());
+  });
+  const SizeBounds bounds{options.smallest_size, options.largest_size};
+  bound_sizes(executor, metric_of, bounds);
+  if (options.gradation > 0) {
+    const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
+    if (!report.converged)
+      warnings.push_back(field.name + ": sizes still grow faster than asked for in places, after " +
+                         std::to_string(report.sweeps) + " sweeps over the edges");
+    bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
+  }
+  return metric_of;
+}
+
+template <int Dim>
+AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
+                     const AdaptOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  if (auto* recording = executor.recording()) recording->begin_section("setup");
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
+  auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
+  Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
+                       std::exchange(metric_of, {}));
+  adapter.report().setup_seconds = seconds();
+  if (auto* recording = executor.recording()) recording->begin_section("other");
+  adapter.run();
+  auto [adapted, metric_on_it] = take_apart(executor, adapter.take_mesh());
+  AdaptedMesh result{std::move(adapted), std::move(metric_on_it), adapter.report()};
+  result.report.warnings = std::move(warnings);
+  result.report.total_seconds = seconds();
+  return result;
+}
+
+}  // namespace
+
+template <ProcessorLevel level>
+AdaptedMesh adapt_at_level(const runtime::Executor& executor, const AnyMesh& mesh,
+                           const AnyField& metric, const AdaptOptions& options) {
+  AdaptedMesh result = mesh.dimension == 2 ? adapt_in<2>(executor, mesh, metric, options)
+                                           : adapt_in<3>(executor, mesh, metric, options);
+  result.report.instructions = name_of(level);
+  return result;
+}
+
+template AdaptedMesh adapt_at_level<ProcessorLevel::DUCTILE_LEVEL>(const runtime::Executor&,
+                                                                   const AnyMesh&, const AnyField&,
+                                                                   const AdaptOptions&);
+
+}  // namespace ductile::meshadapt

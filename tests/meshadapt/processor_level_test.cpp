@@ -1,0 +1,66 @@
+#include "operators/processor_level.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+
+std::vector<std::uint64_t> bits(const std::vector<double>& values) {
+  std::vector<std::uint64_t> result;
+  result.reserve(values.size());
+  for (const double value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
+  return result;
+}
+
+TEST(ProcessorLevel, BestComesFirstAndAsBuiltIsAlwaysThere) {
+  const std::vector<ProcessorLevel> levels = usable_levels();
+  ASSERT_FALSE(levels.empty());
+  EXPECT_EQ(levels.back(), ProcessorLevel::as_built);
+  EXPECT_TRUE(std::is_sorted(levels.rbegin(), levels.rend()));
+  EXPECT_EQ(std::adjacent_find(levels.begin(), levels.end()), levels.end());
+}
+
+/// Both dimensions.
+class ProcessorLevelOf : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, ProcessorLevelOf, testing::Values(2, 3),
+                         [](const auto& at) { return std::to_string(at.param) + "D"; });
+
+TEST_P(ProcessorLevelOf, AllGiveTheSameBytes) {
+  const int dimension = GetParam();
+  AnyMesh mesh = test::make_grid(test::unit_grid(dimension, dimension == 2 ? 12 : 5));
+  test::Random random(11);
+  test::jiggle(mesh, random, 0.2);
+  AnyField metric = test::layer_field(mesh, random, 0.05);
+  test::scale_to(metric, mesh, dimension == 2 ? 1500 : 700);
+  const Executor executor({.threads = 2});
+  const AdaptedMesh expected = adapt_at(ProcessorLevel::as_built, executor, mesh, metric, {});
+  EXPECT_EQ(expected.report.instructions, "as built");
+  for (const ProcessorLevel level : usable_levels()) {
+    SCOPED_TRACE(name_of(level));
+    const AdaptedMesh result = adapt_at(level, executor, mesh, metric, {});
+    EXPECT_EQ(result.report.instructions, name_of(level));
+    EXPECT_EQ(bits(result.mesh.coordinates), bits(expected.mesh.coordinates));
+    EXPECT_TRUE(result.mesh == expected.mesh);
+    EXPECT_EQ(bits(result.metric.values), bits(expected.metric.values));
+  }
+}
+
+TEST_P(ProcessorLevelOf, AdaptUsesTheBest) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(GetParam(), 3));
+  test::Random random(5);
+  const AnyField metric = test::layer_field(mesh, random, 0.2);
+  EXPECT_EQ(adapt(Executor({.threads = 1}), mesh, metric).report.instructions,
+            name_of(usable_levels().front()));
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
