@@ -8,8 +8,11 @@
 #include <utility>
 
 #include "ductile/meshadapt/quality.hpp"
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/sort.hpp"
+#include "mesh/grouping.hpp"
+#include "mesh/numbering.hpp"
 
 namespace ductile::meshadapt {
 
@@ -22,7 +25,7 @@ template <int Dim>
 std::vector<Site<Dim>> make_sites(const Executor& executor, const AnyMesh& mesh,
                                   const AnyField* metric) {
   constexpr std::size_t stride = Metric<Dim>::size;
-  std::vector<Site<Dim>> site_of(mesh.vertex_count());
+  auto site_of = runtime::make_vector<Site<Dim>>(executor, mesh.vertex_count());
   runtime::parallel_for(executor, site_of.size(), [&](std::size_t v) {
     Metric<Dim> tensor = isotropic<Dim>(1);
     if (metric) std::copy_n(&metric->values[v * stride], stride, tensor.m.begin());
@@ -55,47 +58,84 @@ template <int Dim>
 double quality_of(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   const double measure = signed_measure<Dim>(corner);
   const double highest = densest<Dim>(corner).density;
+  const double metric_measure = std::abs(measure) * highest;
+  const double ideal = Dim == 2 ? 4 * std::numbers::sqrt3 * metric_measure
+                                : 12 * std::cbrt(9 * metric_measure * metric_measure);
   double sum = 0;
   int ties = 0;
   for (const Site<Dim>* judge : corner) {
     if (judge->density < highest * (1 - 1e-9)) continue;
-    const double squares = sum_of_squared_lengths<Dim>(judge->metric, corner);
-    const double metric_measure = std::abs(measure) * judge->density;
-    sum += Dim == 2 ? 4 * std::numbers::sqrt3 * metric_measure / squares
-                    : 12 * std::cbrt(9 * metric_measure * metric_measure) / squares;
+    sum += ideal / sum_of_squared_lengths<Dim>(judge->metric, corner);
     ++ties;
   }
   return std::copysign(sum / ties, measure);
 }
 
-/// Every edge once, as the lower vertex in the upper half and the higher in the lower one.
+/// For each vertex, those of a higher number to which an edge leads.
 template <int Dim>
-std::vector<std::uint64_t> unique_edges(const Executor& executor,
-                                        const std::vector<Corners<Dim>>& elements) {
-  constexpr std::size_t per_element = Simplex<Dim>::edges;
-  std::vector<std::uint64_t> keys(elements.size() * per_element);
-  runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
-    for (std::size_t i = 0; i < per_element; ++i) {
-      const auto& ends = Simplex<Dim>::edge[i];
-      const std::uint64_t a = elements[e][static_cast<std::size_t>(ends[0])];
-      const std::uint64_t b = elements[e][static_cast<std::size_t>(ends[1])];
-      keys[e * per_element + i] = std::min(a, b) << 32U | std::max(a, b);
-    }
-  });
-  runtime::parallel_sort(executor, std::span(keys));
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  keys.shrink_to_fit();
-  return keys;
-}
+class HigherNeighbours {
+ public:
+  HigherNeighbours(const Executor& executor, const std::vector<Corners<Dim>>& elements,
+                   std::size_t vertex_count)
+      : elements_(elements),
+        end_of_(executor, vertex_count),
+        listed_(executor, elements.size() * Dim) {
+    Grouping grouping(executor, GroupingBounds::even(executor, elements.size(), vertex_count),
+                      end_of_.all(), [&elements](std::uint32_t element, auto&& visit) {
+                        const Corners<Dim>& corners = elements[element];
+                        const VertexId highest = *std::max_element(corners.begin(), corners.end());
+                        for (const VertexId v : corners)
+                          if (v != highest) visit(v);
+                      });
+    const auto begin_lists = [&](VertexId begin, VertexId end, std::uint32_t before) {
+      for (VertexId v = begin; v < end; ++v)
+        end_of_[v] = std::exchange(before, before + end_of_[v]);
+    };
+    grouping.visit(begin_lists,
+                   [&](VertexId v, std::uint32_t element) { listed_[end_of_[v]++] = element; });
+  }
 
+  /// Sets `found` to those of a vertex, each once, in an order that depends on the mesh alone.
+  /// Thread safety: any thread.
+  void find(VertexId vertex, std::vector<VertexId>& found) const {
+    constexpr std::size_t few = 64;  // to be looked through for each
+    found.clear();
+    const auto is_new = [&](VertexId v) {
+      return found.size() > few || std::find(found.begin(), found.end(), v) == found.end();
+    };
+    for (const std::uint32_t element : around(vertex))
+      for (const VertexId v : elements_[element])
+        if (v > vertex && is_new(v)) found.push_back(v);
+    if (found.size() <= few) return;
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+  }
+
+ private:
+  /// The elements of which a vertex is a corner, but not the highest.
+  std::span<const std::uint32_t> around(VertexId vertex) const {
+    const std::uint32_t begin = vertex == 0 ? 0 : end_of_[vertex - 1];
+    return listed_.all().subspan(begin, end_of_[vertex] - begin);
+  }
+
+  const std::vector<Corners<Dim>>& elements_;
+  Ids end_of_;  // [vertex], in the list
+  Ids listed_;  // elements, vertex by vertex
+};
+
+/// Of every edge once.
 template <int Dim>
 std::vector<double> edge_lengths(const Executor& executor, const std::vector<Site<Dim>>& site_of,
-                                 const std::vector<std::uint64_t>& edges) {
-  std::vector<double> length_of(edges.size());
-  runtime::parallel_for(executor, edges.size(), [&](std::size_t e) {
-    length_of[e] = edge_length(site_of[edges[e] >> 32U], site_of[edges[e] & 0xffffffffU]);
-  });
-  return length_of;
+                                 const std::vector<Corners<Dim>>& elements) {
+  const HigherNeighbours<Dim> neighbours(executor, elements, site_of.size());
+  runtime::PerThread<std::vector<VertexId>> found(executor);
+  return runtime::parallel_collect<double>(executor, site_of.size(),
+                                           [&](std::size_t v, auto&& append) {
+                                             std::vector<VertexId>& higher = found.mine();
+                                             neighbours.find(static_cast<VertexId>(v), higher);
+                                             for (const VertexId other : higher)
+                                               append(edge_length(site_of[v], site_of[other]));
+                                           });
 }
 
 template <int Dim>
@@ -133,9 +173,8 @@ std::size_t count_if_below(const Executor& executor, const std::vector<double>& 
 template <int Dim>
 MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   const auto& elements = elements_in<Dim>(mesh).vertices;
-  std::vector<std::uint64_t> edges = unique_edges<Dim>(executor, elements);  // takes most memory
   const std::vector<Site<Dim>> site_of = make_sites<Dim>(executor, mesh, metric);
-  std::vector<double> lengths = edge_lengths<Dim>(executor, site_of, std::exchange(edges, {}));
+  std::vector<double> lengths = edge_lengths<Dim>(executor, site_of, elements);
 
   MeshStatistics result;
   result.in_metric = metric != nullptr;
@@ -146,52 +185,15 @@ MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const A
     const double past_long = std::nextafter(std::numbers::sqrt2, 2.0);
     result.edges_in_range = count_if_below(executor, lengths, past_long) - result.edges_short;
     result.edges_long = lengths.size() - result.edges_short - result.edges_in_range;
-    result.edge_length = distribution(executor, std::move(lengths), 0, 3);
+    result.edge_length = distribution(executor, lengths, 0, 3);
   } else {
     const double longest = lengths.empty() ? 1 : *std::max_element(lengths.begin(), lengths.end());
-    result.edge_length = distribution(executor, std::move(lengths), 0, longest);
+    result.edge_length = distribution(executor, lengths, 0, longest);
   }
   return result;
-}
-
-/// The smallest of the sorted values that at least this share of them do not exceed.
-double percentile(std::span<const double> sorted, double share) {
-  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
-  return sorted[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
 }
 
 }  // namespace
-
-Distribution distribution(const Executor& executor, std::vector<double> values, double from,
-                          double to) {
-  Distribution result;
-  result.histogram_from = from;
-  result.histogram_to = to;
-  result.count = values.size();
-  if (values.empty()) return result;
-  result.mean = runtime::parallel_reduce(
-                    executor, values.size(), 0.0, [&](std::size_t i) { return values[i]; },
-                    [](double a, double b) { return a + b; }) /
-                static_cast<double>(values.size());
-  runtime::parallel_sort(executor, std::span(values));
-  result.min = values.front();
-  result.low = percentile(values, 0.01);
-  result.median = percentile(values, 0.5);
-  result.max = values.back();
-  const double width = (to - from) / static_cast<double>(result.histogram.size());
-  auto begin = std::lower_bound(values.begin(), values.end(), from);
-  result.below = static_cast<std::size_t>(begin - values.begin());
-  for (std::size_t bin = 0; bin < result.histogram.size(); ++bin) {
-    const bool last = bin + 1 == result.histogram.size();
-    const double bound = last ? to : from + width * static_cast<double>(bin + 1);
-    const auto end = last ? std::upper_bound(begin, values.end(), bound)
-                          : std::lower_bound(begin, values.end(), bound);
-    result.histogram[bin] = static_cast<std::size_t>(end - begin);
-    begin = end;
-  }
-  result.above = static_cast<std::size_t>(values.end() - begin);
-  return result;
-}
 
 std::vector<double> element_qualities(const Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric) {

@@ -2,9 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
+#include <random>
+#include <set>
+#include <utility>
 
 #include "ductile/meshadapt/default_metric.hpp"
+#include "support/meshes.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -91,6 +98,97 @@ TEST(Statistics, AreTheSameAtEachThreadCount) {
     EXPECT_EQ(one.edge_length.mean, many.edge_length.mean);
     EXPECT_EQ(one.complexity, many.complexity);
     EXPECT_EQ(one.edge_length.histogram, many.edge_length.histogram);
+  }
+}
+
+/// n triangles around vertex `hub`, which has more neighbours than are searched one by one.
+AnyMesh fan(std::uint32_t n, std::uint32_t hub) {
+  AnyMesh mesh;
+  mesh.dimension = 2;
+  std::vector<std::uint32_t> rim;
+  for (std::uint32_t v = 0; v <= n; ++v) {
+    const double angle = 2 * std::numbers::pi * v / n;
+    mesh.coordinates.push_back(v == hub ? 0 : std::cos(angle));
+    mesh.coordinates.push_back(v == hub ? 0 : std::sin(angle));
+    mesh.vertex_reference.push_back(0);
+    if (v != hub) rim.push_back(v);
+  }
+  for (std::size_t i = 0; i < rim.size(); ++i)
+    mesh.triangles.add({hub, rim[i], rim[(i + 1) % rim.size()]}, 1);
+  return mesh;
+}
+
+std::size_t edge_count(const AnyMesh& mesh) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  const auto add = [&](const auto& corners) {
+    for (const std::uint32_t a : corners)
+      for (const std::uint32_t b : corners)
+        if (a < b) edges.emplace(a, b);
+  };
+  for (const auto& corners : mesh.triangles.vertices)
+    if (mesh.dimension == 2) add(corners);
+  for (const auto& corners : mesh.tetrahedra.vertices) add(corners);
+  return edges.size();
+}
+
+TEST(Statistics, FindsEveryEdgeHoweverVerticesAreNumbered) {
+  std::mt19937_64 random(17);
+  std::vector<AnyMesh> meshes{grid(40), fan(300, 0), fan(300, 300), fan(300, 123)};
+  for (const int dimension : {2, 3}) {
+    meshes.push_back(test::make_grid(test::unit_grid(dimension, 9)));
+    AnyMesh& shuffled = meshes.emplace_back(meshes.back());
+    std::vector<std::uint32_t> number(shuffled.vertex_count());
+    std::iota(number.begin(), number.end(), 0U);
+    std::shuffle(number.begin(), number.end(), random);
+    for (auto& corners : shuffled.triangles.vertices)
+      for (std::uint32_t& v : corners) v = number[v];
+    for (auto& corners : shuffled.tetrahedra.vertices)
+      for (std::uint32_t& v : corners) v = number[v];
+  }
+  for (const AnyMesh& mesh : meshes)
+    for (const int threads : {1, 2, 8})
+      EXPECT_EQ(measure(Executor({.threads = threads}), mesh, nullptr).edge_length.count,
+                edge_count(mesh));
+}
+
+TEST(Distribution, IsThatOfTheSortedValues) {
+  std::mt19937_64 random(23);
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<double> values(1 + random() % (trial < 30 ? 50 : 20000));
+    const int kind = trial % 6;
+    for (double& value : values) {
+      value = std::generate_canonical<double, 53>(random);
+      if (kind == 1) value = 0.5;                          // all alike
+      if (kind == 2) value = std::floor(5 * value) / 4;    // on bounds of bins, beyond one
+      if (kind == 3) value = std::pow(value, 40) * 1e9;    // most in one part
+      if (kind == 4) value = (value - 0.5) * 1e308 * 1.9;  // a range that overflows
+      if (kind == 5) value = value < 0.1 ? -1 - value : value;
+    }
+    const Distribution d =
+        distribution(Executor({.threads = 1 + static_cast<int>(random() % 4)}), values, 0, 1);
+    std::sort(values.begin(), values.end());
+    const auto at_rank = [&](double share) {
+      const double rank = std::ceil(share * static_cast<double>(values.size()));
+      return values[static_cast<std::size_t>(rank) - 1];
+    };
+    EXPECT_EQ(d.count, values.size());
+    EXPECT_EQ(d.min, values.front());
+    EXPECT_EQ(d.max, values.back());
+    EXPECT_EQ(d.low, at_rank(0.01));
+    EXPECT_EQ(d.median, at_rank(0.5));
+    const auto below = [&](double bound) {
+      const auto end = std::lower_bound(values.begin(), values.end(), bound);
+      return static_cast<std::size_t>(end - values.begin());
+    };
+    const std::size_t above = values.size() - below(std::nextafter(1.0, 2.0));
+    EXPECT_EQ(d.below, below(0));
+    EXPECT_EQ(d.above, above);
+    const double width = 0.1;
+    for (std::size_t bin = 0; bin < 9; ++bin)
+      EXPECT_EQ(d.histogram[bin],
+                below(width * static_cast<double>(bin + 1)) -
+                    (bin == 0 ? below(0) : below(width * static_cast<double>(bin))));
+    EXPECT_EQ(d.histogram[9], values.size() - above - below(width * 9));
   }
 }
 

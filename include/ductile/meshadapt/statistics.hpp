@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
@@ -52,8 +53,9 @@ MeshStatistics measure(const runtime::Executor& executor, const AnyMesh& mesh,
 std::vector<double> element_qualities(const runtime::Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric);
 
-/// Summary of `values`, with a histogram over [from, to].
-Distribution distribution(const runtime::Executor& executor, std::vector<double> values,
+/// Summary of `values`, none of which is not a number, with a histogram over [from, to].
+/// Thread safety: one caller; runs on the executor.
+Distribution distribution(const runtime::Executor& executor, std::span<const double> values,
                           double from, double to);
 
 }  // namespace ductile::meshadapt
