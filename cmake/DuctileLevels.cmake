@@ -8,7 +8,7 @@
 include(CheckCXXSourceCompiles)
 
 option(DUCTILE_PROCESSOR_LEVELS
-  "Release builds for x86-64 also hold the kernels for processors with AVX2 and with AVX-512" ON)
+  "Optimised builds for x86-64 also hold the kernels for processors with AVX2 and with AVX-512" ON)
 
 set(ductile_flags_of_v3 -mpopcnt -mbmi -mbmi2 -mavx2)
 set(ductile_flags_of_v4 ${ductile_flags_of_v3} -mavx512f -mavx512bw -mavx512cd -mavx512dq -mavx512vl)
@@ -18,7 +18,7 @@ check_cxx_source_compiles("#ifdef __AVX512VL__\n#error\n#endif\nint main() {}" D
 # Sets `result` to the levels that are to be compiled.
 function(ductile_levels result)
   set(${result} "" PARENT_SCOPE)
-  if(NOT DUCTILE_PROCESSOR_LEVELS OR NOT CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo)$"
+  if(NOT DUCTILE_PROCESSOR_LEVELS OR NOT CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo|None)$"
      OR NOT CMAKE_SYSTEM_NAME STREQUAL Linux OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$"
      OR NOT CMAKE_SIZEOF_VOID_P EQUAL 8 OR CMAKE_INTERPROCEDURAL_OPTIMIZATION OR NOT CMAKE_OBJCOPY)
     return()
@@ -58,5 +58,6 @@ function(ductile_add_levels target entry)
     target_compile_definitions(${target} PRIVATE DUCTILE_LEVEL_${level})
     set_property(TARGET ${target} APPEND PROPERTY DUCTILE_LEVEL_OBJECTS ${one})
   endforeach()
-  message(STATUS "processor levels of ${target}: as built ${levels}")
+  list(JOIN levels ", " names)
+  message(STATUS "processor levels of ${target}, beside as built: ${names}")
 endfunction()
