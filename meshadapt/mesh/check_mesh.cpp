@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/facet_key.hpp"
 #include "mesh/grouping.hpp"
 #include "mesh/problems.hpp"
 
@@ -138,23 +138,9 @@ class AnyMeshChecker {
 
   // ---- Facets ----
 
-  /// Sorts the corners of a facet, without branches, as their order is a matter of chance; its
-  /// parity tells the two sides apart.
-  static Entry make_entry(Facet<Dim> f, std::uint32_t owner) {
-    unsigned parity = even;
-    const auto order = [&](std::size_t a, std::size_t b) {
-      const VertexId first = f[a], second = f[b];
-      parity ^= static_cast<unsigned>(first > second);
-      f[a] = std::min(first, second);
-      f[b] = std::max(first, second);
-    };
-    order(0, 1);
-    if constexpr (Dim == 3) {
-      order(1, 2);
-      order(0, 1);
-    }
-    const std::uint64_t others = Dim == 2 ? f[1] : std::uint64_t{f[1]} << 32U | f[Dim - 1];
-    return {others, owner, static_cast<std::uint8_t>(parity)};
+  static Entry make_entry(const Facet<Dim>& corners, std::uint32_t owner) {
+    const FacetKey key = key_of<Dim>(corners);
+    return {key.others, owner, static_cast<std::uint8_t>(key.odd ? odd : even)};
   }
 
   /// Those of the elements, one after the other, then those listed.
@@ -199,34 +185,29 @@ class AnyMeshChecker {
     return {entries_.get() + begin, end_[v] - begin};
   }
 
-  /// Are these all sound, and few? Counts each facet in a table where it has the place that its
-  /// hash says, or the next one that is free.
+  /// Are these all sound, and few? Counts each facet in a table.
   static bool are_few_and_sound(std::span<const Entry> bucket) {
     constexpr std::size_t most = 128;  // an inner vertex has 72 in the mean, if it is the lowest
     static_assert(most < 256, "a counter is a byte");
-    if (bucket.empty()) return true;
     if (bucket.size() > most) return false;
-    std::array<std::uint64_t, 2 * most> others_at;  // 0 where it is free: no facet has that
-    std::array<std::uint32_t, 2 * most> counts_at;  // a byte for each kind
-    const std::size_t size = std::bit_ceil(2 * bucket.size());
-    const auto shift = static_cast<unsigned>(64 - std::countr_zero(size));
-    std::fill_n(others_at.begin(), size, 0);
-    std::fill_n(counts_at.begin(), size, 0);
+    struct Place {
+      std::uint64_t others;
+      std::uint32_t counts;  // a byte for each kind
+    };
+    std::array<Place, 4 * most> places;
+    const std::span table = std::span(places).first(facet_table_size(bucket.size()));
+    std::fill(table.begin(), table.end(), Place{0, 0});
     for (const Entry& entry : bucket) {
-      std::size_t place = entry.others * 0x9e3779b97f4a7c15U >> shift;
-      while (others_at[place] != 0 && others_at[place] != entry.others) place = (place + 1) % size;
-      others_at[place] = entry.others;
-      counts_at[place] += 1U << 8U * entry.kind;
+      Place& place = facet_place(table, entry.others);
+      place.others = entry.others;
+      place.counts += 1U << 8U * entry.kind;
     }
-    bool all = true;
-    for (std::size_t place = 0; place < size; ++place) {
-      const auto count = [counts = counts_at[place]](Kind kind) {
-        return static_cast<int>(counts >> 8U * kind & 255U);
+    return std::all_of(table.begin(), table.end(), [](const Place& place) {
+      const auto count = [&](Kind kind) {
+        return static_cast<int>(place.counts >> 8U * kind & 255U);
       };
-      if (others_at[place] != 0)
-        all = all && fault({count(even), count(odd), count(listed)}) == sound;
-    }
-    return all;
+      return place.others == 0 || fault({count(even), count(odd), count(listed)}) == sound;
+    });
   }
 
   /// Sorts a bucket and sets its faults.

@@ -11,6 +11,7 @@
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/classify.hpp"
+#include "mesh/facet_key.hpp"
 #include "mesh/first_bad.hpp"
 
 namespace ductile::meshadapt {
@@ -193,23 +194,23 @@ class MeshMaker {
 
   static constexpr ElementId crowded = none - 1;  // more than one element across a facet
 
-  /// Each pair of neighbours is found by the one with the lower number.
+  /// A facet that has been met, and by which element first.
+  struct Met {
+    std::uint64_t others = 0;
+    ElementId element = none;
+    std::uint8_t facet = 0;
+    bool odd = false, twice = false;
+  };
+
   void find_neighbours() {
     runtime::FreshMemory fresh;
     neighbours_.resize_for_overwrite(mesh_.element_slots(), fresh);
     fresh.touch(executor_);
     parallel_for(executor_, mesh_.element_slots(),
                  [&](std::size_t e) { neighbours_[e].fill(none); });
-    parallel_for(executor_, mesh_.element_slots(), [&](std::size_t e) {
-      const auto element = static_cast<ElementId>(e);
-      for (int i = 0; i <= Dim; ++i) {
-        const ElementId other = across(element, i);
-        if (other == none) continue;
-        neighbours_[e][static_cast<std::size_t>(i)] = other;
-        if (other == crowded) continue;
-        const int back = facet_number(other, facet_of<Dim>(mesh_.corners_of[e], i));
-        neighbours_[other][static_cast<std::size_t>(back)] = element;
-      }
+    runtime::PerThread<std::vector<Met>> table(executor_);
+    parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t v) {
+      find_neighbours_at(static_cast<VertexId>(v), table.mine());
     });
     const std::size_t bad = first_bad(executor_, mesh_.element_slots(), [&](std::size_t e) {
       return contains(neighbours_[e], crowded);
@@ -217,31 +218,44 @@ class MeshMaker {
     if (bad != no_index) fail_crowded(static_cast<ElementId>(bad));
   }
 
-  /// The element across a facet, if it has a greater number: one that has the facet's corners in
-  /// the opposite order.
-  ElementId across(ElementId element, int facet) const {
-    const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
-    ElementId found = none;
-    for (const ElementId other : mesh_.elements_of.of(corners[0])) {
-      if (other <= element || !has_all(other, corners)) continue;
-      if (found != none || same_side(other, corners)) return crowded;
-      found = other;
+  /// Neighbours find each other at the lowest corner of their facet.
+  void find_neighbours_at(VertexId lowest, std::vector<Met>& table) {
+    const auto around = mesh_.elements_of.of(lowest);
+    table.assign(facet_table_size(Dim * around.size()), {});
+    for (const ElementId element : around) {
+      const Corners<Dim>& corners = mesh_.corners_of[element];
+      const auto lower = std::count_if(corners.begin(), corners.end(),
+                                       [lowest](VertexId v) { return v < lowest; });
+      for (int i = 0; i <= Dim; ++i) {
+        const VertexId opposite = corners[static_cast<std::size_t>(i)];
+        if (opposite != lowest && lower == (opposite < lowest ? 1 : 0))
+          meet(element, i, facet_of<Dim>(corners, i), table);
+      }
     }
-    return found;
+  }
+
+  /// Elements come in order, so the first is the lowest. Facets belong to two, one on each side.
+  void meet(ElementId element, int facet, const Facet<Dim>& corners, std::span<Met> table) {
+    const FacetKey key = key_of<Dim>(corners);
+    const auto neighbour_at = [this](ElementId e, int i) -> ElementId& {
+      return neighbours_[e][static_cast<std::size_t>(i)];
+    };
+    Met& met = facet_place(table, key.others);
+    if (met.others == 0) {
+      met = {key.others, element, static_cast<std::uint8_t>(facet), key.odd};
+    } else if (met.twice || met.odd == key.odd) {
+      neighbour_at(met.element, met.facet) = neighbour_at(element, facet) = crowded;
+    } else {
+      met.twice = true;
+      neighbour_at(met.element, met.facet) = element;
+      neighbour_at(element, facet) = met.element;
+    }
   }
 
   bool has_all(ElementId element, const Facet<Dim>& corners) const {
     for (std::size_t i = 1; i < corners.size(); ++i)
       if (!contains(mesh_.corners_of[element], corners[i])) return false;
     return true;
-  }
-
-  /// Is the other element on the side of the facet that already has one? Its facet is then listed
-  /// in the same turn.
-  bool same_side(ElementId other, const Facet<Dim>& corners) const {
-    const Facet<Dim> own = facet_of<Dim>(mesh_.corners_of[other], facet_number(other, corners));
-    const auto at = static_cast<std::size_t>(corner_of(own, corners[0]));
-    return own[(at + 1) % Dim] == corners[1] && (Dim == 3 || at == 0);
   }
 
   int facet_number(ElementId element, const Facet<Dim>& corners) const {
