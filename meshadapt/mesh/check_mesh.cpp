@@ -192,21 +192,22 @@ class AnyMeshChecker {
     if (bucket.size() > most) return false;
     struct Place {
       std::uint64_t others;
-      std::uint32_t counts;  // a byte for each kind
+      std::uint32_t counts;  // a byte for each kind; 0 if it is free
     };
     std::array<Place, 4 * most> places;
     const std::span table = std::span(places).first(facet_table_size(bucket.size()));
     std::fill(table.begin(), table.end(), Place{0, 0});
+    const auto is_free = [](const Place& place) { return place.counts == 0; };
     for (const Entry& entry : bucket) {
-      Place& place = facet_place(table, entry.others);
+      Place& place = facet_place(table, entry.others, is_free);
       place.others = entry.others;
       place.counts += 1U << 8U * entry.kind;
     }
-    return std::all_of(table.begin(), table.end(), [](const Place& place) {
-      const auto count = [&](Kind kind) {
+    return std::all_of(table.begin(), table.end(), [&](const Place& place) {
+      const auto count = [&place](Kind kind) {
         return static_cast<int>(place.counts >> 8U * kind & 255U);
       };
-      return place.others == 0 || fault({count(even), count(odd), count(listed)}) == sound;
+      return is_free(place) || fault({count(even), count(odd), count(listed)}) == sound;
     });
   }
 

@@ -13,7 +13,7 @@
 namespace ductile::meshadapt {
 
 struct FacetKey {
-  std::uint64_t others;  ///< its corners but the lowest, ascending; not 0
+  std::uint64_t others;  ///< its corners but the lowest, ascending
   bool odd;              ///< is their order of odd parity? So it is from one side of two
 };
 
@@ -39,13 +39,13 @@ FacetKey key_of(Facet<Dim> corners) {
 /// The places that a table for so many facets is to have.
 inline std::size_t facet_table_size(std::size_t facets) { return std::bit_ceil(2 * facets + 2); }
 
-/// Where a table has a facet, or where it would have it. Its size is that of facet_table_size(); a
-/// place is free where its `others` are 0.
+/// Where a table has a facet, or the free place where it would have it. Its size is that of
+/// facet_table_size() for so many or more.
 template <class Place>
-Place& facet_place(std::span<Place> table, std::uint64_t others) {
+Place& facet_place(std::span<Place> table, std::uint64_t others, auto&& is_free) {
   const auto shift = static_cast<unsigned>(64 - std::countr_zero(table.size()));
   std::size_t at = others * 0x9e3779b97f4a7c15U >> shift;
-  while (table[at].others != 0 && table[at].others != others) at = (at + 1) % table.size();
+  while (!is_free(table[at]) && table[at].others != others) at = (at + 1) & (table.size() - 1);
   return table[at];
 }
 

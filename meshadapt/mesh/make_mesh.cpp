@@ -194,9 +194,11 @@ class MeshMaker {
 
   static constexpr ElementId crowded = none - 1;  // more than one element across a facet
 
-  /// A facet that has been met, and by which element first.
+  /// A facet that has been met, and of which element first; by its lowest corner, as a table keeps
+  /// what it has of others.
   struct Met {
     std::uint64_t others = 0;
+    VertexId lowest = none;
     ElementId element = none;
     std::uint8_t facet = 0;
     bool odd = false, twice = false;
@@ -221,7 +223,7 @@ class MeshMaker {
   /// Neighbours find each other at the lowest corner of their facet.
   void find_neighbours_at(VertexId lowest, std::vector<Met>& table) {
     const auto around = mesh_.elements_of.of(lowest);
-    table.assign(facet_table_size(Dim * around.size()), {});
+    table.resize(std::max(table.size(), facet_table_size(Dim * around.size())));
     for (const ElementId element : around) {
       const Corners<Dim>& corners = mesh_.corners_of[element];
       const auto lower = std::count_if(corners.begin(), corners.end(),
@@ -229,20 +231,21 @@ class MeshMaker {
       for (int i = 0; i <= Dim; ++i) {
         const VertexId opposite = corners[static_cast<std::size_t>(i)];
         if (opposite != lowest && lower == (opposite < lowest ? 1 : 0))
-          meet(element, i, facet_of<Dim>(corners, i), table);
+          meet(lowest, element, i, table);
       }
     }
   }
 
   /// Elements come in order, so the first is the lowest. Facets belong to two, one on each side.
-  void meet(ElementId element, int facet, const Facet<Dim>& corners, std::span<Met> table) {
-    const FacetKey key = key_of<Dim>(corners);
+  void meet(VertexId lowest, ElementId element, int facet, std::span<Met> table) {
+    const FacetKey key = key_of<Dim>(facet_of<Dim>(mesh_.corners_of[element], facet));
     const auto neighbour_at = [this](ElementId e, int i) -> ElementId& {
       return neighbours_[e][static_cast<std::size_t>(i)];
     };
-    Met& met = facet_place(table, key.others);
-    if (met.others == 0) {
-      met = {key.others, element, static_cast<std::uint8_t>(facet), key.odd};
+    const auto is_free = [lowest](const Met& met) { return met.lowest != lowest; };
+    Met& met = facet_place(table, key.others, is_free);
+    if (is_free(met)) {
+      met = {key.others, lowest, element, static_cast<std::uint8_t>(facet), key.odd};
     } else if (met.twice || met.odd == key.odd) {
       neighbour_at(met.element, met.facet) = neighbour_at(element, facet) = crowded;
     } else {
