@@ -4,11 +4,13 @@
 /// its links to the next section right from the start.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <string>
 #include <type_traits>
 
@@ -93,8 +95,8 @@ class BinarySink {
     static_assert(std::is_trivially_copyable_v<Number>);
     unsigned char bytes[sizeof(Number)];
     std::memcpy(bytes, &number, sizeof(Number));
-    for (std::size_t i = 0; i < sizeof(Number); ++i)
-      at_[i] = static_cast<char>(bytes[swapped_ ? sizeof(Number) - 1 - i : i]);
+    if (swapped_) std::reverse(std::begin(bytes), std::end(bytes));
+    std::memcpy(at_, bytes, sizeof(Number));
     at_ += sizeof(Number);
   }
   /// A number outside records.
