@@ -20,12 +20,16 @@ function(ductile_levels result)
   set(${result} "" PARENT_SCOPE)
   if(NOT DUCTILE_PROCESSOR_LEVELS OR NOT CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo|None)$"
      OR NOT CMAKE_SYSTEM_NAME STREQUAL Linux OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$"
-     OR NOT CMAKE_SIZEOF_VOID_P EQUAL 8 OR CMAKE_INTERPROCEDURAL_OPTIMIZATION OR NOT CMAKE_OBJCOPY)
+     OR NOT CMAKE_SIZEOF_VOID_P EQUAL 8 OR CMAKE_INTERPROCEDURAL_OPTIMIZATION OR CMAKE_CROSSCOMPILING
+     OR NOT CMAKE_OBJCOPY)
     return()
   endif()
-  execute_process(COMMAND ${CMAKE_LINKER} --help OUTPUT_VARIABLE help ERROR_QUIET)
+  # LLVM's, which CMake takes for Clang, cannot do it.
+  find_program(DUCTILE_OBJECT_LINKER NAMES ld.bfd ${CMAKE_LINKER})
+  mark_as_advanced(DUCTILE_OBJECT_LINKER)
+  execute_process(COMMAND ${DUCTILE_OBJECT_LINKER} --help OUTPUT_VARIABLE help ERROR_QUIET)
   if(NOT help MATCHES "force-group-allocation")
-    message(STATUS "no processor levels: ${CMAKE_LINKER} cannot link objects to one")
+    message(STATUS "no processor levels: there is no linker that links objects to one")
     return()
   endif()
   foreach(level v3 v4)
@@ -51,7 +55,7 @@ function(ductile_add_levels target entry)
       ${ductile_flags_of_${level}} $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
     set(one ${CMAKE_CURRENT_BINARY_DIR}/${objects}.o)
     add_custom_command(OUTPUT ${one} DEPENDS ${objects} $<TARGET_OBJECTS:${objects}>
-      COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${one} $<TARGET_OBJECTS:${objects}>
+      COMMAND ${DUCTILE_OBJECT_LINKER} -r --force-group-allocation -o ${one} $<TARGET_OBJECTS:${objects}>
       COMMAND ${CMAKE_OBJCOPY} --wildcard "--keep-global-symbol=*${entry}*" ${one}
       COMMENT "Linking the objects of ${objects} to one" COMMAND_EXPAND_LISTS VERBATIM)
     target_sources(${target} PRIVATE ${one})
@@ -59,5 +63,5 @@ function(ductile_add_levels target entry)
     set_property(TARGET ${target} APPEND PROPERTY DUCTILE_LEVEL_OBJECTS ${one})
   endforeach()
   list(JOIN levels ", " names)
-  message(STATUS "processor levels of ${target}, beside as built: ${names}")
+  message(STATUS "processor levels of ${target} beside as built: ${names}")
 endfunction()
