@@ -1,5 +1,6 @@
 /// @file
-/// The whole of adapt() but the choice of its level: from an AnyMesh by way of an Adapter to another.
+/// The whole of adapt() but the choice of its level: from an AnyMesh by way of an Adapter to
+/// another.
 #include <algorithm>
 #include <chrono>
 #include <utility>

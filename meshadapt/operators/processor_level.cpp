@@ -34,8 +34,8 @@ std::vector<ProcessorLevel> usable_levels() {
   return levels;
 }
 
-AdaptedMesh adapt_at(ProcessorLevel level, const runtime::Executor& executor, const AnyMesh& mesh,
-                     const AnyField& metric, const AdaptOptions& options) {
+AdaptedMesh adapt_at([[maybe_unused]] ProcessorLevel level, const runtime::Executor& executor,
+                     const AnyMesh& mesh, const AnyField& metric, const AdaptOptions& options) {
 #ifdef DUCTILE_LEVEL_v4
   if (level == ProcessorLevel::v4)
     return adapt_at_level<ProcessorLevel::v4>(executor, mesh, metric, options);

@@ -85,9 +85,9 @@ TEST(AdaptCommand, ReportsAsJsonAndForParaView) {
   folder.add_example("waves2d");
   EXPECT_EQ(folder.run("adapt waves2d.mesh --json r.json --vtu r.vtu --racing").status, 0);
   const std::string json = folder.read("r.json");
-  for (const char* part : {"\"before\"", "\"after\"", "\"coarsen\"", "\"seconds\"", "\"threads\"",
-                           "\"peak_memory_bytes\"", "\"deterministic\": false", "\"instructions\"",
-                           "\"quality\""})
+  for (const char* part :
+       {"\"before\"", "\"after\"", "\"coarsen\"", "\"seconds\"", "\"threads\"",
+        "\"peak_memory_bytes\"", "\"deterministic\": false", "\"instructions\"", "\"quality\""})
     EXPECT_TRUE(contains(json, part)) << part;
   EXPECT_TRUE(contains(folder.read("r.vtu"), "UnstructuredGrid"));
 }
