@@ -1,5 +1,6 @@
 /// @file
 /// Puts the arrays of a mesh into the order of its new numbers.
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/first_bad.hpp"
 #include "mesh/numbering.hpp"
 
 namespace ductile::meshadapt {
@@ -100,8 +102,7 @@ void permute_vertices(const Executor& executor, Mesh<Dim>& mesh, const Ids& orde
 
 /// Vertices. Returns what they were renumbered to.
 template <int Dim>
-Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted) {
-  const Ids order = order_of_vertices(executor, mesh, unlisted);
+Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, Ids order) {
   Ids new_vertex = places_in(executor, order, mesh.vertex_slots());
   if constexpr (Dim == 3) renumber_links(executor, mesh, order, new_vertex);
   permute_vertices(executor, mesh, order);
@@ -126,26 +127,48 @@ void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& ord
 }
 
 template <int Dim>
-void renumber_all(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted,
+void renumber_all(const Executor& executor, Mesh<Dim>& mesh, Ids order_of_vertices,
                   Neighbours<Dim>* neighbours) {
   const auto ordered = [&] {
-    const Ids new_vertex = renumber_vertices(executor, mesh, unlisted);
+    const Ids new_vertex = renumber_vertices(executor, mesh, std::move(order_of_vertices));
     return renumber_corners(executor, mesh, new_vertex, mesh.vertex_slots());
   };
   renumber_elements(executor, mesh, ordered(), neighbours);
   rebuild_elements_of(executor, mesh);
 }
 
+/// Is every vertex where the order has it?
+bool keeps_all(const Executor& executor, const Ids& order, std::size_t count) {
+  return order.size() == count &&
+         first_bad(executor, count, [&](std::size_t i) { return order[i] != i; }) == no_index;
+}
+
+/// Do elements lie in the order of their lowest corners, and are there no others?
+template <int Dim>
+bool elements_are_in_order(const Executor& executor, const Mesh<Dim>& mesh) {
+  const auto lowest_of = [&](std::size_t element) {
+    return *std::min_element(mesh.corners_of[element].begin(), mesh.corners_of[element].end());
+  };
+  return first_bad(executor, mesh.element_slots(), [&](std::size_t e) {
+           return !mesh.alive(static_cast<ElementId>(e)) ||
+                  (e != 0 && lowest_of(e) < lowest_of(e - 1));
+         }) == no_index;
+}
+
 }  // namespace
 
 template <int Dim>
 void renumber(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted) {
-  renumber_all<Dim>(executor, mesh, unlisted, nullptr);
+  renumber_all<Dim>(executor, mesh, order_of_vertices(executor, mesh, unlisted), nullptr);
 }
 
 template <int Dim>
 void renumber(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>& neighbours) {
-  renumber_all<Dim>(executor, mesh, none, &neighbours);
+  Ids order = order_of_vertices(executor, mesh, none);
+  // As it is if the mesh has been adapted before.
+  if (keeps_all(executor, order, mesh.vertex_slots()) && elements_are_in_order(executor, mesh))
+    return;
+  renumber_all<Dim>(executor, mesh, std::move(order), &neighbours);
 }
 
 template void renumber(const Executor&, Mesh<2>&, VertexId);

@@ -101,6 +101,60 @@ TYPED_TEST(MeshIn, RenumberingIsTheSameAtEachThreadCount) {
   }
 }
 
+template <int Dim>
+struct WithNeighbours {
+  Mesh<Dim> mesh;
+  Neighbours<Dim> neighbours;
+};
+
+template <int Dim>
+WithNeighbours<Dim> renumbered(const Executor& executor, const AnyMesh& any) {
+  WithNeighbours<Dim> result;
+  std::vector<std::string> warnings;
+  result.mesh = make_mesh<Dim>(executor, any, {}, result.neighbours, warnings);
+  for (auto& site : result.mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
+  update_shapes(executor, result.mesh);
+  renumber(executor, result.mesh, result.neighbours);
+  return result;
+}
+
+TYPED_TEST(MeshIn, RenumberingWhatIsInOrderOrNearlySoGivesTheSame) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 2});
+  const AnyMesh shuffled = shuffled_box<Dim>(Dim == 2 ? 30 : 7);
+  const AnyMesh in_order = take_apart(executor, renumbered<Dim>(executor, shuffled).mesh).mesh;
+  const auto expected = renumbered<Dim>(executor, in_order);
+  EXPECT_EQ(expected.mesh.corners_of.size(), elements_in<Dim>(in_order).size());
+  for (std::size_t e = 0; e < expected.mesh.element_slots(); ++e)
+    EXPECT_EQ(expected.mesh.corners_of[e], elements_in<Dim>(in_order).vertices[e]);
+
+  AnyMesh moved = in_order;  // the first element comes last
+  auto& elements = elements_in<Dim>(moved).vertices;
+  std::rotate(elements.begin(), elements.begin() + 1, elements.end());
+  AnyMesh named = in_order;  // the last two vertices change their numbers
+  const auto last = static_cast<VertexId>(named.vertex_count() - 1);
+  for (int k = 0; k < Dim; ++k)
+    std::swap(named.coordinates[last * Dim + k], named.coordinates[(last - 1) * Dim + k]);
+  const auto rename = [&](auto& cells) {
+    for (auto& corners : cells.vertices)
+      for (VertexId& v : corners) v = v == last ? last - 1 : v == last - 1 ? last : v;
+  };
+  rename(named.edges), rename(named.triangles), rename(named.tetrahedra);
+  for (const AnyMesh& any : std::vector{shuffled, moved, named}) {
+    const auto result = renumbered<Dim>(executor, any);
+    EXPECT_TRUE(check_mesh(executor, result.mesh).empty());
+    ASSERT_EQ(result.mesh.vertex_slots(), expected.mesh.vertex_slots());
+    for (VertexId v = 0; v < result.mesh.vertex_slots(); ++v)
+      EXPECT_EQ(result.mesh.site_of[v].position, expected.mesh.site_of[v].position);
+    for (ElementId e = 0; e < result.mesh.element_slots(); ++e)
+      for (int i = 0; i <= Dim; ++i) {
+        const auto facet = static_cast<std::size_t>(i);
+        const ElementId other = result.neighbours[e][facet];
+        EXPECT_EQ(other, neighbour(result.mesh, e, i));
+      }
+  }
+}
+
 TYPED_TEST(MeshIn, RenumberingDropsVerticesThatComeFirst) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 2});

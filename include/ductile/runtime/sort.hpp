@@ -161,7 +161,7 @@ void parallel_sort(const Executor& executor, std::span<T> values) {
 /// std::bad_alloc; no value is lost then. Thread safety: one thread.
 template <std::unsigned_integral T>
 void parallel_sort_above(const Executor& executor, std::span<T> values, unsigned low) {
-  sort_detail::radix_sort(executor, values, low);
+  if (!sort_detail::is_sorted<T>(executor, values)) sort_detail::radix_sort(executor, values, low);
 }
 
 /// Moves the first of each run of equal items (neither is less) of a sorted range to the front, in
