@@ -363,7 +363,10 @@ void write_tables(const Results& results, const fs::path& folder) {
 void write_page(const Results& results, const fs::path& folder) {
   const std::vector<Summary> summaries = summarise(results.samples);
   Page page("Mesh adaptation, measured");
-  page.paragraph(machine_line());
+  page.paragraph(machine_line() +
+                 (results.samples.empty()
+                      ? std::string()
+                      : "; kernels " + std::string(results.samples.front().instructions)));
   page.paragraph(results.sound()
                      ? "All meshes are valid, and those of the deterministic mode the same bit for "
                        "bit on every number of threads and in the recorded run."

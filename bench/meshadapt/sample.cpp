@@ -147,6 +147,7 @@ Sample Sampler::take(const RunSettings& settings, int repetition) {
   sample.start_elements = element_count(case_.start);
   sample.elements = element_count(result.mesh);
   sample.fingerprint = fingerprint(result);
+  sample.instructions = result.report.instructions;
   const auto known = known_.find(sample.fingerprint);
   sample.figures = known != known_.end() ? known->second : judge(result);
   known_[sample.fingerprint] = sample.figures;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cases/adapt_case.hpp"
@@ -49,6 +50,7 @@ struct Sample {
   std::size_t start_elements = 0, elements = 0;
   std::size_t peak_memory = 0;    ///< bytes, with the case in memory
   std::uint64_t fingerprint = 0;  ///< of all bytes of the result
+  std::string_view instructions;  ///< see AdaptReport
   MeshFigures figures;
   CoreDistance before, after;
 
