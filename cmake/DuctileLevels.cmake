@@ -4,7 +4,8 @@
 #
 # What a compiler makes of an inline function or a template is shared by all that use it, so a
 # program could end up with instructions that its processor does not have. Therefore the objects of
-# a level are linked to one, of which only the entry is seen from outside.
+# a level are linked to one, of which only the entry is seen from outside. Link-time optimisation
+# would look past that. Generators of several configurations get no levels.
 include(CheckCXXSourceCompiles)
 
 option(DUCTILE_PROCESSOR_LEVELS
@@ -21,7 +22,7 @@ function(ductile_levels result)
   if(NOT DUCTILE_PROCESSOR_LEVELS OR NOT CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo|None)$"
      OR NOT CMAKE_SYSTEM_NAME STREQUAL Linux OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$"
      OR NOT CMAKE_SIZEOF_VOID_P EQUAL 8 OR CMAKE_INTERPROCEDURAL_OPTIMIZATION OR CMAKE_CROSSCOMPILING
-     OR NOT CMAKE_OBJCOPY)
+     OR CMAKE_CONFIGURATION_TYPES OR NOT CMAKE_OBJCOPY)
     return()
   endif()
   # LLVM's, which CMake takes for Clang, cannot do it.
@@ -32,6 +33,7 @@ function(ductile_levels result)
     message(STATUS "no processor levels: there is no linker that links objects to one")
     return()
   endif()
+  set(levels "")
   foreach(level v3 v4)
     if(DUCTILE_BUILT_BELOW_${level})
       list(APPEND levels ${level})
@@ -52,7 +54,7 @@ function(ductile_add_levels target entry)
     target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
     target_link_libraries(${objects} PRIVATE $<TARGET_PROPERTY:${target},LINK_LIBRARIES>)
     target_compile_options(${objects} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_OPTIONS>
-      ${ductile_flags_of_${level}} $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
+      ${ductile_flags_of_${level}} -fno-lto $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
     set(one ${CMAKE_CURRENT_BINARY_DIR}/${objects}.o)
     add_custom_command(OUTPUT ${one} DEPENDS ${objects} $<TARGET_OBJECTS:${objects}>
       COMMAND ${DUCTILE_OBJECT_LINKER} -r --force-group-allocation -o ${one} $<TARGET_OBJECTS:${objects}>
@@ -62,6 +64,8 @@ function(ductile_add_levels target entry)
     target_compile_definitions(${target} PRIVATE DUCTILE_LEVEL_${level})
     set_property(TARGET ${target} APPEND PROPERTY DUCTILE_LEVEL_OBJECTS ${one})
   endforeach()
-  list(JOIN levels ", " names)
-  message(STATUS "processor levels of ${target} beside as built: ${names}")
+  if(levels)
+    list(JOIN levels ", " names)
+    message(STATUS "processor levels of ${target} beside as built: ${names}")
+  endif()
 endfunction()

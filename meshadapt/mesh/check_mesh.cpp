@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
 
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/atomic_count.hpp"
@@ -173,11 +172,8 @@ class AnyMeshChecker {
                       GroupingBounds::even(executor_, facet_count(), mesh_.vertex_count()),
                       std::span(end_), lowest_corner);
     entries_ = runtime::make_unset<Entry>(executor_, grouping.size());
-    const auto begin_buckets = [&](VertexId begin, VertexId end, std::uint32_t before) {
-      for (VertexId v = begin; v < end; ++v) end_[v] = std::exchange(before, before + end_[v]);
-    };
-    grouping.visit(begin_buckets,
-                   [&](VertexId v, std::uint32_t facet) { entries_[end_[v]++] = entry_of(facet); });
+    grouping.list(
+        [&](std::uint32_t place, std::uint32_t facet) { entries_[place] = entry_of(facet); });
   }
 
   std::span<Entry> bucket(std::size_t v) const {

@@ -1,8 +1,9 @@
 /// @file
 /// Distribution: numbers in short, in a few passes over them. A percentile is found among those of
-/// a narrow range that must hold it, so nothing is sorted.
+/// a narrow range that must hold it, so that they need not be sorted.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -51,28 +52,39 @@ std::array<std::size_t, places> counts_of(const Executor& executor, std::span<co
   return counts;
 }
 
-/// Values by the part of their range that they lie in. A greater value is in no lower part.
+/// A number for each double, in the order of their values.
+std::uint64_t place_in_order(double value) {
+  constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
+  const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 is 0
+  return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
+/// Values by the part of their range that they lie in; parts have as many doubles each, so that few
+/// values are in one, however they are spread.
 class Parts {
  public:
   Parts(const Executor& executor, std::span<const double> values, const Summary& summary)
-      : executor_(executor), values_(values), least_(summary.min) {
-    const double scale = static_cast<double>(count) / (summary.max - summary.min);
-    if (std::isfinite(scale)) scale_ = scale;  // else one part is all
-    size_of_ = counts_of<count>(executor, values, [this](double value) { return part_of(value); });
-  }
+      : executor_(executor),
+        values_(values),
+        first_(place_in_order(summary.min)),
+        shift_(shift_for(place_in_order(summary.max) - first_)),
+        size_of_(
+            counts_of<count>(executor, values, [this](double value) { return part_of(value); })) {}
 
-  /// The smallest of the values that at least this share of them do not exceed.
-  double percentile(double share) const {
-    const double rank = std::ceil(share * static_cast<double>(values_.size()));
-    auto below = static_cast<std::size_t>(std::max(1.0, rank)) - 1;
+  /// The value that so many come before, were they sorted.
+  double value_after(std::size_t before) const {
+    constexpr std::size_t few = 65536;  // for one thread
     std::size_t part = 0;
-    for (; below >= size_of_[part]; ++part) below -= size_of_[part];
+    for (; before >= size_of_[part]; ++part) before -= size_of_[part];
     auto found = runtime::parallel_collect<double>(executor_, values_.size(),
                                                    [&](std::size_t i, auto&& append) {
                                                      if (part_of(values_[i]) == part)
                                                        append(values_[i]);
                                                    });
-    const auto at = found.begin() + static_cast<std::ptrdiff_t>(below);
+    if (shift_ == 0) return found[before];  // all are the same
+    if (found.size() > few)
+      return Parts(executor_, found, summarise(executor_, found)).value_after(before);
+    const auto at = found.begin() + static_cast<std::ptrdiff_t>(before);
     std::nth_element(found.begin(), at, found.end());
     return *at;
   }
@@ -80,16 +92,24 @@ class Parts {
  private:
   static constexpr std::size_t count = 1024;
 
-  std::size_t part_of(double value) const {
-    const double part = (value - least_) * scale_;
-    return part < static_cast<double>(count) ? static_cast<std::size_t>(part) : count - 1;
+  static unsigned shift_for(std::uint64_t range) {
+    constexpr auto bits = static_cast<unsigned>(std::bit_width(count - 1));
+    return std::max(bits, static_cast<unsigned>(std::bit_width(range))) - bits;
   }
+  std::size_t part_of(double value) const { return (place_in_order(value) - first_) >> shift_; }
 
   const Executor& executor_;
   std::span<const double> values_;
-  double least_, scale_ = 0;
+  std::uint64_t first_;
+  unsigned shift_;
   std::array<std::size_t, count> size_of_;  // [part]
 };
+
+/// The smallest of the values that at least this share of them do not exceed.
+double percentile(const Parts& parts, std::size_t values, double share) {
+  const double rank = std::ceil(share * static_cast<double>(values));
+  return parts.value_after(static_cast<std::size_t>(std::max(1.0, rank)) - 1);
+}
 
 }  // namespace
 
@@ -105,19 +125,19 @@ Distribution distribution(const Executor& executor, std::span<const double> valu
   result.min = summary.min;
   result.max = summary.max;
   const Parts parts(executor, values, summary);
-  result.low = parts.percentile(0.01);
-  result.median = parts.percentile(0.5);
+  result.low = percentile(parts, values.size(), 0.01);
+  result.median = percentile(parts, values.size(), 0.5);
 
   constexpr std::size_t bins = std::tuple_size_v<decltype(result.histogram)>;
-  std::array<double, bins> end_of;  // [bin]; the last has its end, too
+  std::array<double, bins - 1> end_of;  // [bin] but the last, which has `to` as well
   const double width = (to - from) / static_cast<double>(bins);
-  for (std::size_t bin = 0; bin < bins; ++bin)
+  for (std::size_t bin = 0; bin < end_of.size(); ++bin)
     end_of[bin] = from + width * static_cast<double>(bin + 1);
   const auto counts = counts_of<bins + 2>(executor, values, [&](double value) -> std::size_t {
     if (value < from) return 0;
     if (value > to) return bins + 1;
     std::size_t bin = 0;
-    for (std::size_t i = 0; i + 1 < bins; ++i) bin += static_cast<std::size_t>(value >= end_of[i]);
+    for (const double end : end_of) bin += static_cast<std::size_t>(value >= end);
     return bin + 1;
   });
   result.below = counts.front();

@@ -75,6 +75,19 @@ class Grouping {
     if (total != 0) for_each_chunk([&](std::size_t c) { note(c); });
   }
 
+  /// Once: calls put(place, item) for each key of each item, in order, where places are numbered
+  /// key by key; count_of becomes where each key's end.
+  void list(auto&& put) {
+    const auto begin_lists = [count_of = count_of_](std::uint32_t begin, std::uint32_t end,
+                                                    std::uint32_t before) {
+      for (std::uint32_t key = begin; key < end; ++key)
+        count_of[key] = std::exchange(before, before + count_of[key]);
+    };
+    visit(begin_lists, [&put, count_of = count_of_](std::uint32_t key, std::uint32_t item) {
+      put(count_of[key]++, item);
+    });
+  }
+
   /// How many keys all items have.
   std::uint32_t size() const {
     std::uint32_t sum = noted_begin_.back();

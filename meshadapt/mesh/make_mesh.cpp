@@ -223,7 +223,8 @@ class MeshMaker {
   /// Neighbours find each other at the lowest corner of their facet.
   void find_neighbours_at(VertexId lowest, std::vector<Met>& table) {
     const auto around = mesh_.elements_of.of(lowest);
-    table.resize(std::max(table.size(), facet_table_size(Dim * around.size())));
+    const std::size_t size = facet_table_size(Dim * around.size());
+    table.resize(std::max(table.size(), size));
     for (const ElementId element : around) {
       const Corners<Dim>& corners = mesh_.corners_of[element];
       const auto lower = std::count_if(corners.begin(), corners.end(),
@@ -231,7 +232,7 @@ class MeshMaker {
       for (int i = 0; i <= Dim; ++i) {
         const VertexId opposite = corners[static_cast<std::size_t>(i)];
         if (opposite != lowest && lower == (opposite < lowest ? 1 : 0))
-          meet(lowest, element, i, table);
+          meet(lowest, element, i, std::span(table).first(size));
       }
     }
   }
@@ -247,6 +248,7 @@ class MeshMaker {
     if (is_free(met)) {
       met = {key.others, lowest, element, static_cast<std::uint8_t>(facet), key.odd};
     } else if (met.twice || met.odd == key.odd) {
+      met.twice = true;
       neighbour_at(met.element, met.facet) = neighbour_at(element, facet) = crowded;
     } else {
       met.twice = true;

@@ -4,7 +4,6 @@
 #include <bit>
 #include <memory>
 #include <span>
-#include <utility>
 
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -105,16 +104,13 @@ Ids renumbered_lowest(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_
 /// for all, and shrinks it. lowest_of is none for others.
 void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
                    std::size_t vertex_count) {
-  Ids end_of(executor, vertex_count);  // [vertex], in the order; at first how many elements it has
+  Ids count_of(executor, vertex_count);
   Grouping grouping(executor, GroupingBounds::even(executor, lowest_of.size(), vertex_count),
-                    end_of.all(), [&lowest_of](ElementId element, auto&& visit) {
+                    count_of.all(), [&lowest_of](ElementId element, auto&& visit) {
                       if (lowest_of[element] != none) visit(lowest_of[element]);
                     });
   order.shrink(grouping.size());
-  const auto begin_lists = [&](VertexId begin, VertexId end, std::uint32_t before) {
-    for (VertexId v = begin; v < end; ++v) end_of[v] = std::exchange(before, before + end_of[v]);
-  };
-  grouping.visit(begin_lists, [&](VertexId v, ElementId element) { order[end_of[v]++] = element; });
+  grouping.list([&](std::uint32_t place, ElementId element) { order[place] = element; });
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <numbers>
 #include <span>
-#include <utility>
 
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/runtime/collect.hpp"
@@ -65,7 +64,8 @@ double quality_of(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   int ties = 0;
   for (const Site<Dim>* judge : corner) {
     if (judge->density < highest * (1 - 1e-9)) continue;
-    sum += ideal / sum_of_squared_lengths<Dim>(judge->metric, corner);
+    const double squares = sum_of_squared_lengths<Dim>(judge->metric, corner);
+    sum += squares > 0 ? ideal / squares : 0;  // all corners may be one point
     ++ties;
   }
   return std::copysign(sum / ties, measure);
@@ -87,12 +87,7 @@ class HigherNeighbours {
                         for (const VertexId v : corners)
                           if (v != highest) visit(v);
                       });
-    const auto begin_lists = [&](VertexId begin, VertexId end, std::uint32_t before) {
-      for (VertexId v = begin; v < end; ++v)
-        end_of_[v] = std::exchange(before, before + end_of_[v]);
-    };
-    grouping.visit(begin_lists,
-                   [&](VertexId v, std::uint32_t element) { listed_[end_of_[v]++] = element; });
+    grouping.list([&](std::uint32_t place, std::uint32_t element) { listed_[place] = element; });
   }
 
   /// Sets `found` to those of a vertex, each once, in an order that depends on the mesh alone.
@@ -123,6 +118,13 @@ class HigherNeighbours {
   Ids listed_;  // elements, vertex by vertex
 };
 
+/// Metric length of an edge, the ends of which may be one point.
+template <int Dim>
+double length_of(const Site<Dim>& a, const Site<Dim>& b) {
+  const EndSquares squares = end_squares(a, b);
+  return squares.at_a + squares.at_b > 0 ? edge_length(squares) : 0;
+}
+
 /// Of every edge once.
 template <int Dim>
 std::vector<double> edge_lengths(const Executor& executor, const std::vector<Site<Dim>>& site_of,
@@ -134,7 +136,7 @@ std::vector<double> edge_lengths(const Executor& executor, const std::vector<Sit
                                              std::vector<VertexId>& higher = found.mine();
                                              neighbours.find(static_cast<VertexId>(v), higher);
                                              for (const VertexId other : higher)
-                                               append(edge_length(site_of[v], site_of[other]));
+                                               append(length_of(site_of[v], site_of[other]));
                                            });
 }
 

@@ -234,6 +234,20 @@ TEST(MakeMesh, RefusesDuplicates) {
   EXPECT_COMPLAINT(twice, "edge 9 is the same as edge 4");
 }
 
+TEST(MakeMesh, NamesTheFirstElementsOfACrowdInAnyOrder) {
+  AnyMesh any;  // two triangles above the edge 0-1, one below
+  any.dimension = 2;
+  any.coordinates = {0, 0, 1, 0, 0.4, 1, 0.6, 2, 0.5, -1};
+  any.vertex_reference = {0, 0, 0, 0, 0};
+  const std::vector<Corners<2>> crowd{{0, 1, 2}, {0, 1, 3}, {1, 0, 4}};
+  for (const auto& order : {std::array{0, 1, 2}, {0, 2, 1}, {2, 0, 1}}) {
+    any.triangles = {};
+    for (const int i : order) any.triangles.add(crowd[static_cast<std::size_t>(i)], 1);
+    EXPECT_COMPLAINT(any, "triangle 1 and");
+    EXPECT_COMPLAINT(any, "overlap, or share an edge with a third");
+  }
+}
+
 TEST(MakeMesh, RefusesAThirdElementAtAFacet) {
   AnyMesh any = square(1);
   any.coordinates.insert(any.coordinates.end(), {0.9, 0.2});

@@ -6,6 +6,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/error.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
@@ -36,22 +38,33 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, ProcessorLevelOf, testing::Values(2, 3),
 
 TEST_P(ProcessorLevelOf, AllGiveTheSameBytes) {
   const int dimension = GetParam();
+  if (usable_levels().size() == 1) GTEST_SKIP() << "there is one level only";
   AnyMesh mesh = test::make_grid(test::unit_grid(dimension, dimension == 2 ? 12 : 5));
   test::Random random(11);
   test::jiggle(mesh, random, 0.2);
   AnyField metric = test::layer_field(mesh, random, 0.05);
   test::scale_to(metric, mesh, dimension == 2 ? 1500 : 700);
   const Executor executor({.threads = 2});
-  const AdaptedMesh expected = adapt_at(ProcessorLevel::as_built, executor, mesh, metric, {});
+  const AdaptOptions options{.smallest_size = 0.01, .largest_size = 0.3, .gradation = 1.5};
+  const AdaptedMesh expected = adapt_at(ProcessorLevel::as_built, executor, mesh, metric, options);
   EXPECT_EQ(expected.report.instructions, "as built");
   for (const ProcessorLevel level : usable_levels()) {
     SCOPED_TRACE(name_of(level));
-    const AdaptedMesh result = adapt_at(level, executor, mesh, metric, {});
+    const AdaptedMesh result = adapt_at(level, executor, mesh, metric, options);
     EXPECT_EQ(result.report.instructions, name_of(level));
     EXPECT_EQ(bits(result.mesh.coordinates), bits(expected.mesh.coordinates));
     EXPECT_TRUE(result.mesh == expected.mesh);
     EXPECT_EQ(bits(result.metric.values), bits(expected.metric.values));
   }
+}
+
+TEST_P(ProcessorLevelOf, WhatTheyThrowIsCaughtByItsType) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(GetParam(), 2));
+  const AnyField metric = constant_metric(mesh, 0.3);
+  (GetParam() == 2 ? mesh.triangles.vertices[1][0] : mesh.tetrahedra.vertices[1][0]) = 1000;
+  for (const ProcessorLevel level : usable_levels())
+    EXPECT_THROW(adapt_at(level, Executor({.threads = 2}), mesh, metric, {}), InputError)
+        << name_of(level);
 }
 
 TEST_P(ProcessorLevelOf, AdaptUsesTheBest) {

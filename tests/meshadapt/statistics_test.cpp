@@ -65,6 +65,16 @@ TEST(Statistics, AnInvertedElementIsNegativeAndAFlatOneZero) {
   EXPECT_EQ(measure(executor, one_tetrahedron(0), nullptr).quality.min, 0);
 }
 
+TEST(Statistics, AnElementWhoseCornersAreOnePointHasNoQuality) {
+  AnyMesh mesh = one_tetrahedron(0);
+  mesh.coordinates.assign(12, 0.5);
+  const MeshStatistics s = measure(Executor({.threads = 1}), mesh, nullptr);
+  EXPECT_EQ(s.quality.min, 0);
+  EXPECT_EQ(s.quality.max, 0);
+  EXPECT_EQ(s.quality.mean, 0);
+  EXPECT_EQ(s.edge_length.max, 0);
+}
+
 TEST(Statistics, CountsEachEdgeOnceAndSortsThemByLength) {
   const Executor executor({.threads = 2});
   const AnyMesh mesh = grid(10);
@@ -153,9 +163,9 @@ TEST(Statistics, FindsEveryEdgeHoweverVerticesAreNumbered) {
 
 TEST(Distribution, IsThatOfTheSortedValues) {
   std::mt19937_64 random(23);
-  for (int trial = 0; trial < 60; ++trial) {
-    std::vector<double> values(1 + random() % (trial < 30 ? 50 : 20000));
-    const int kind = trial % 6;
+  for (int trial = 0; trial < 84; ++trial) {
+    std::vector<double> values(1 + random() % (trial < 35 ? 50 : trial < 70 ? 20000 : 300000));
+    const int kind = trial % 7;
     for (double& value : values) {
       value = std::generate_canonical<double, 53>(random);
       if (kind == 1) value = 0.5;                          // all alike
@@ -163,6 +173,8 @@ TEST(Distribution, IsThatOfTheSortedValues) {
       if (kind == 3) value = std::pow(value, 40) * 1e9;    // most in one part
       if (kind == 4) value = (value - 0.5) * 1e308 * 1.9;  // a range that overflows
       if (kind == 5) value = value < 0.1 ? -1 - value : value;
+      if (kind == 6)
+        value = value < 0.9 ? 1 + value * 1e-12 : 1e-300 + value;  // narrow, and few far
     }
     const Distribution d =
         distribution(Executor({.threads = 1 + static_cast<int>(random() % 4)}), values, 0, 1);

@@ -67,10 +67,11 @@ struct AdaptedMesh {
 
 /// Adapts `mesh` to `metric`, which has one symmetric positive definite tensor per vertex (see
 /// metric_field.hpp to get one from a file). With a deterministic executor the result depends on
-/// nothing but the input, and exp() and log() of the C library: neither on threads nor on what the
-/// processor can do. Throws InputError for input that is not a valid mesh, Error if memory runs
-/// out. If the executor has a recording, each kernel gets a section of it: "setup", "coarsen",
-/// "refine", "swap", "smooth", "renumber", and "other" for what is between them.
+/// nothing but the input and the last bits of the C library's exp() and log(), of which glibc has
+/// one version for processors with AVX2 and one for others. Throws InputError for input that is not
+/// a valid mesh, Error if memory runs out. If the executor has a recording, each kernel gets a
+/// section of it: "setup", "coarsen", "refine", "swap", "smooth", "renumber", and "other" for what
+/// is between them.
 /// Thread safety: any thread; the work runs on the executor.
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options = {});

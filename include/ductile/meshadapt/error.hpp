@@ -14,12 +14,14 @@ namespace ductile::meshadapt {
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  ~Error() override;  // defined in one place, as the type then is, whoever throws it
 };
 
 /// What the user gave is wrong: a file, a mesh, a metric or an option.
 class InputError : public Error {
  public:
   using Error::Error;
+  ~InputError() override;
 };
 
 /// What was met and not taken over, or looks doubtful: one line each, as in an error.
