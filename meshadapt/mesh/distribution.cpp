@@ -82,7 +82,7 @@ class Parts {
                                                        append(values_[i]);
                                                    });
     if (shift_ == 0) return found[before];  // all are the same
-    if (found.size() > few)
+    if (found.size() > few && found.size() < values_.size())
       return Parts(executor_, found, summarise(executor_, found)).value_after(before);
     const auto at = found.begin() + static_cast<std::ptrdiff_t>(before);
     std::nth_element(found.begin(), at, found.end());
@@ -96,7 +96,10 @@ class Parts {
     constexpr auto bits = static_cast<unsigned>(std::bit_width(count - 1));
     return std::max(bits, static_cast<unsigned>(std::bit_width(range))) - bits;
   }
-  std::size_t part_of(double value) const { return (place_in_order(value) - first_) >> shift_; }
+  /// Of what is not a number, which has no place in the order, the last.
+  std::size_t part_of(double value) const {
+    return std::min<std::size_t>((place_in_order(value) - first_) >> shift_, count - 1);
+  }
 
   const Executor& executor_;
   std::span<const double> values_;

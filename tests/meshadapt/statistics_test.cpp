@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -202,6 +203,17 @@ TEST(Distribution, IsThatOfTheSortedValues) {
                     (bin == 0 ? below(0) : below(width * static_cast<double>(bin))));
     EXPECT_EQ(d.histogram[9], values.size() - above - below(width * 9));
   }
+}
+
+TEST(Distribution, EndsEvenIfValuesAreNotNumbers) {
+  const Executor executor({.threads = 2});
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (const double other : {none, -none, 0.5, 1e300})
+    for (const std::size_t n : {1U, 100U, 200000U}) {
+      std::vector<double> values(n, none);
+      for (std::size_t i = 0; i < n; i += 2) values[i] = other;
+      EXPECT_EQ(distribution(executor, values, 0, 1).count, n);
+    }
 }
 
 TEST(Distribution, TakesPercentilesByNearestRank) {

@@ -53,7 +53,8 @@ MeshStatistics measure(const runtime::Executor& executor, const AnyMesh& mesh,
 std::vector<double> element_qualities(const runtime::Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric);
 
-/// Summary of `values`, none of which is not a number, with a histogram over [from, to].
+/// Summary of `values`, with a histogram over [from, to]. If some are not numbers, nothing but the
+/// count is to be relied on.
 /// Thread safety: one caller; runs on the executor.
 Distribution distribution(const runtime::Executor& executor, std::span<const double> values,
                           double from, double to);
