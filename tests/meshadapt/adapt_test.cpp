@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <iterator>
 #include <set>
 
@@ -12,6 +11,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/runtime/replay.hpp"
+#include "support/bits.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
@@ -20,6 +20,7 @@ namespace ductile::meshadapt {
 namespace {
 
 using runtime::Executor;
+using test::bits;
 using test::Random;
 
 /// Every test runs for both dimensions.
@@ -54,13 +55,6 @@ class Adapt : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Dimensions, Adapt, testing::Values(2, 3),
                          [](const auto& at) { return std::to_string(at.param) + "D"; });
-
-std::vector<std::uint64_t> bits(const std::vector<double>& values) {
-  std::vector<std::uint64_t> result;
-  result.reserve(values.size());
-  for (const double value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
-  return result;
-}
 
 void expect_identical(const AdaptedMesh& a, const AdaptedMesh& b) {
   EXPECT_EQ(bits(a.mesh.coordinates), bits(b.mesh.coordinates));

@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
 
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "support/bits.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
@@ -15,13 +14,7 @@ namespace ductile::meshadapt {
 namespace {
 
 using runtime::Executor;
-
-std::vector<std::uint64_t> bits(const std::vector<double>& values) {
-  std::vector<std::uint64_t> result;
-  result.reserve(values.size());
-  for (const double value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
-  return result;
-}
+using test::bits;
 
 TEST(ProcessorLevel, BestComesFirstAndAsBuiltIsAlwaysThere) {
   const std::vector<ProcessorLevel> levels = usable_levels();
