@@ -322,6 +322,25 @@ TEST(Recolour, ColoursAPartAsIfTheRestWereNotThere) {
     }
 }
 
+template <class Width>
+void expect_to_fill_what_is_asked_for() {
+  using Word = typename Width::Word;
+  constexpr std::size_t n = 40;
+  const auto most = static_cast<Word>(Width::most);
+  for (std::size_t begin = 0; begin <= n; ++begin)
+    for (std::size_t end = begin; end <= n; ++end) {
+      std::vector<Word> words(n, 1), expected = words;
+      detail::Colours<Width>(words).fill(begin, end, most);
+      for (std::size_t i = begin; i < end; ++i) expected[i] = most;
+      ASSERT_EQ(words, expected) << begin << " to " << end;
+    }
+}
+
+TEST(Colours, FillWhatIsAskedFor) {
+  expect_to_fill_what_is_asked_for<detail::OneByte<>>();
+  expect_to_fill_what_is_asked_for<detail::FourBytes<>>();
+}
+
 TEST(ColourClasses, HoldTheVerticesOfEachColourInOrder) {
   for (const auto& graph : test::test_graphs())
     for (int threads : {1, 2, 8}) {

@@ -111,8 +111,7 @@ class MarkedRun {
   void mark(const Turn& turn) {
     const Window block = block_of(turn);
     const Word word = Colours<Width>::mark(static_cast<std::uint32_t>(turn.row));
-    const Colours<Width> colours = colours_;
-    for (std::uint32_t v = block.begin; v < block.end; ++v) colours.set(v, word);
+    colours_.fill(block.begin, block.end, word);
   }
 
   void show_hidden(std::size_t row, std::uint32_t step) {

@@ -69,7 +69,7 @@ class FirstRound {
  private:
   void colour(Window window) {
     const auto mark = Colours<Width>::mark(number());
-    for (std::uint32_t v = window.begin; v < window.end; ++v) colours_.set(v, mark);
+    colours_.fill(window.begin, window.end, mark);
     // Pairs with that of any other window: one of the two sees the other's marks, or its colours.
     std::atomic_thread_fence(std::memory_order_seq_cst);
     std::uint32_t done = 0;
