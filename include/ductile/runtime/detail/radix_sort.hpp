@@ -91,16 +91,21 @@ inline bool crowd_a_cache_set(const DigitCounts& place_of, std::size_t bytes) {
   return *std::max_element(digits_in.begin(), digits_in.end()) > 4 * (used / sets + 4);
 }
 
-/// Makes of each block's counts where its values go. Block by block, as that is how they lie in
-/// memory.
-inline void counts_to_places(std::span<DigitCounts> counts_of) {
-  DigitCounts place{};
-  for (const DigitCounts& counts : counts_of)
-    for (std::size_t d = 0; d < digit_count; ++d) place[d] += counts[d];
-  std::exclusive_scan(place.begin(), place.end(), place.begin(), std::size_t{0});
-  for (DigitCounts& counts : counts_of)
-    for (std::size_t d = 0; d < digit_count; ++d)
-      counts[d] = std::exchange(place[d], place[d] + counts[d]);
+/// Makes of each block's counts where its values go: those of a digit follow each other, block by
+/// block. Some digits at a time, each on the thread that comes, but block by block, as that is how
+/// counts lie in memory. Returns where the values of each digit begin, from which places count.
+inline DigitCounts counts_to_places(const Executor& executor, std::span<DigitCounts> counts_of) {
+  constexpr std::size_t slice = 128, slices = digit_count / slice, few_blocks = 16;
+  DigitCounts begin_of{};
+  const auto add_up = [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (DigitCounts& counts : counts_of)
+      for (std::size_t d = begin; d < end; ++d)
+        counts[d] = std::exchange(begin_of[d], begin_of[d] + counts[d]);
+  };
+  parallel_for_blocks(executor, digit_count, slice, add_up,
+                      {.grain = 1, .serial_below = counts_of.size() < few_blocks ? slices + 1 : 0});
+  std::exclusive_scan(begin_of.begin(), begin_of.end(), begin_of.begin(), std::size_t{0});
+  return begin_of;
 }
 
 /// Stable: sorts `from` by the pass's digit into `to`. `lines` has room for one of each digit for
@@ -108,12 +113,14 @@ inline void counts_to_places(std::span<DigitCounts> counts_of) {
 template <std::unsigned_integral T>
 void scatter_by_digit(const Executor& executor, std::span<const T> from, std::span<T> to,
                       DigitPass& pass, Line<T>* lines) {
+  DigitCounts begin_of{};
   const auto count = [&](std::size_t b, std::size_t begin, std::size_t end) {
     pass.counts[b].fill(0);
     for (std::size_t i = begin; i < end; ++i) ++pass.counts[b][pass.digit(from[i])];
   };
   const auto scatter = [&](std::size_t b, std::size_t begin, std::size_t end) {
     const std::span values = from.subspan(begin, end - begin);
+    for (std::size_t d = 0; d < digit_count; ++d) pass.counts[b][d] += begin_of[d];
     if (lines != nullptr && crowd_a_cache_set(pass.counts[b], sizeof(T))) {
       scatter_lines(values, to.data(), pass, pass.counts[b], lines + b * digit_count);
     } else {
@@ -121,7 +128,7 @@ void scatter_by_digit(const Executor& executor, std::span<const T> from, std::sp
     }
   };
   parallel_for_blocks(executor, from.size(), pass.block, count);
-  counts_to_places({pass.counts.get(), pass.blocks});
+  begin_of = counts_to_places(executor, {pass.counts.get(), pass.blocks});
   parallel_for_blocks(executor, from.size(), pass.block, scatter);
 }
 
