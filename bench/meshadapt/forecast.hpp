@@ -25,8 +25,8 @@ struct Forecast {
   std::vector<ForecastRow> rows{};  ///< 1, 2, 4, ..., 64 threads
 };
 
-/// Records a run several times, takes the least of each cost and replays that, with launches of
-/// 1 us + 30 ns a thread.
+/// Records runs whose loops are cut for 8, 16 and 64 threads several times each, takes the least of
+/// each cost and replays that on as many threads or fewer, with launches of 1 us + 30 ns a thread.
 Forecast forecast(const Sampler& sampler, const std::string& case_name);
 
 }  // namespace ductile::bench
