@@ -39,7 +39,8 @@ void wait_briefly([[maybe_unused]] char** arguments) {
 void reuse_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 32 << 20);  // larger arrays in pages of their own
-  mallopt(M_TRIM_THRESHOLD, 16 << 20);  // more than this, free at the heap's end, is given back
+  mallopt(M_TRIM_THRESHOLD, 6 << 20);   // more than this, free at the heap's end, is given back
+  mallopt(M_ARENA_MAX, 1);              // one heap: what a thread frees serves all
 #endif
 }
 

@@ -1,6 +1,7 @@
 /// @file
 /// Puts the arrays of a mesh into the order of its new numbers.
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <memory>
@@ -37,6 +38,17 @@ class Permutation {
   void operator()(GrowingArray<T>&... values) {
     permute<T...>([&values](std::size_t i) -> T& { return values[i]; }...);
     (values.resize(order_.size()), ...);
+  }
+
+  /// The same of an array of arrays, two members at a time.
+  template <class T, std::size_t N>
+  void by_pairs(GrowingArray<std::array<T, N>>& values) {
+    const auto member = [&values](std::size_t k) {
+      return [&values, k](std::size_t i) -> T& { return values[i][k]; };
+    };
+    for (std::size_t k = 0; k + 1 < N; k += 2) permute<T, T>(member(k), member(k + 1));
+    if constexpr (N % 2 == 1) permute<T>(member(N - 1));
+    values.resize(order_.size());
   }
 
   /// The same of members, but leaves the array as long as it was.
@@ -113,13 +125,14 @@ Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, Ids order) {
 template <int Dim>
 void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& order,
                        Neighbours<Dim>* neighbours) {
-  Permutation permute(executor, order, sizeof(Corners<Dim>));
-  permute(mesh.corners_of);
-  permute(mesh.patches_of);
-  permute(mesh.region_of, mesh.shape_of, mesh.changed_at);
+  Permutation permute(executor, order, 2 * sizeof(VertexId));
+  permute.by_pairs(mesh.corners_of);
+  permute.by_pairs(mesh.patches_of);
+  permute(mesh.region_of, mesh.shape_of);
+  permute(mesh.changed_at);
   if (neighbours == nullptr) return;
   const Ids new_element = places_in(executor, order, neighbours->size());
-  permute(*neighbours);
+  permute.by_pairs(*neighbours);
   parallel_for(executor, neighbours->size(), [&](std::size_t e) {
     for (ElementId& other : (*neighbours)[e])
       if (other != none) other = new_element[other];
