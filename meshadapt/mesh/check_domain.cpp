@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
+#include <sstream>
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/vector.hpp"
@@ -55,7 +58,40 @@ Measures measures_3d(const AnyMesh& mesh) {
   return sum;
 }
 
-bool agree(double a, double b, double total) { return std::abs(a - b) <= 1e-9 * total; }
+/// How far a mesh reaches, and how far its boundary may go astray: what counts as flat is so by
+/// this fraction of the extent (see classify.cpp), and coordinates are rounded.
+struct Scale {
+  double extent = 0, slack = 0;
+};
+
+template <int Dim>
+Scale scale_of(const AnyMesh& mesh) {
+  double farthest = 0;
+  Scale scale;
+  for (std::size_t i = 0; i < Dim; ++i) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t at = i; at < mesh.coordinates.size(); at += Dim) {
+      low = std::min(low, mesh.coordinates[at]);
+      high = std::max(high, mesh.coordinates[at]);
+    }
+    scale.extent = std::max(scale.extent, high - low);
+    farthest = std::max({farthest, std::abs(low), std::abs(high)});
+  }
+  scale.slack = 2e-10 * scale.extent + 16 * std::numeric_limits<double>::epsilon() * farthest;
+  return scale;
+}
+
+/// Says what differs by more than is allowed, with as many digits as show it.
+void compare(const std::string& what, double now, double expected, double allowed,
+             std::vector<std::string>& faults) {
+  if (std::abs(now - expected) <= allowed) return;
+  std::ostringstream text;
+  text.precision(17);
+  text << what << now << ", expected " << expected;
+  text.precision(3);
+  text << " up to " << allowed;
+  faults.push_back(text.str());
+}
 
 }  // namespace
 
@@ -65,17 +101,17 @@ std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& afte
   };
   const Measures old = measure(before);
   Measures now = measure(after);
-  std::vector<std::string> faults;
-  if (!agree(old.domain, now.domain, old.domain))
-    faults.push_back("the domain measures " + std::to_string(now.domain) + ", expected " +
-                     std::to_string(old.domain));
+  const auto [extent, slack] = before.dimension == 2 ? scale_of<2>(before) : scale_of<3>(before);
   double total = 0;
   for (const auto& [reference, value] : old.facets) total += value;
+  std::vector<std::string> faults;
+  compare("the domain measures ", now.domain, old.domain, 1e-9 * old.domain + slack * total,
+          faults);
+  // The rim of a patch of facets: two points in 2D, in 3D a line about as long as the mesh.
+  const double rim = before.dimension == 2 ? 2 : 4 * extent;
   for (const auto& [reference, value] : old.facets)
-    if (!agree(value, now.facets[reference], total))
-      faults.push_back("facets of reference " + std::to_string(reference) + " measure " +
-                       std::to_string(now.facets[reference]) + ", expected " +
-                       std::to_string(value));
+    compare("facets of reference " + std::to_string(reference) + " measure ", now.facets[reference],
+            value, 1e-9 * total + slack * rim, faults);
   return faults;
 }
 

@@ -206,5 +206,26 @@ TEST(CheckDomain, FindsWhatLeftItsPlace) {
   }
 }
 
+TEST(CheckDomain, AllowsForRoundingFarFromTheOriginAndInThinDomains) {
+  constexpr double thickness = 1e-3, offset = 1e6;
+  for (const int dimension : {2, 3}) {
+    AnyMesh before = box(dimension);
+    const auto stride = static_cast<std::size_t>(dimension);
+    for (std::size_t i = 0; i < before.coordinates.size(); ++i) {
+      if (i % stride == stride - 1) before.coordinates[i] *= thickness;
+      before.coordinates[i] += offset;
+    }
+    AnyMesh after = before;  // half of the bottom as the next numbers have it
+    const double bottom = offset;
+    for (std::size_t i = stride - 1; i < after.coordinates.size(); i += 2 * stride)
+      if (after.coordinates[i] == bottom) after.coordinates[i] = std::nextafter(bottom, 2 * bottom);
+    EXPECT_EQ(test::joined(check_domain(before, after)), "");
+    after.coordinates[stride - 1] += 1e-6;
+    const std::string found = test::joined(check_domain(before, after));
+    EXPECT_NE(found.find("the domain measures"), std::string::npos);
+    EXPECT_NE(found.find(", expected 0.00"), std::string::npos) << found;
+  }
+}
+
 }  // namespace
 }  // namespace ductile::meshadapt

@@ -90,8 +90,8 @@ class Colours {
   void fill(std::size_t begin, std::size_t end, Word colour) const {
     using Many [[gnu::may_alias]] = std::uint64_t;
     constexpr std::size_t step = sizeof(Many) / sizeof(Word);
-    constexpr auto most = static_cast<Word>(~Word{0});
-    const Many many = ~Many{0} / most * colour;
+    constexpr auto ones = static_cast<Word>(~Word{0});
+    const Many many = ~Many{0} / ones * colour;
     const auto begins_many = [this](std::size_t v) {
       return reinterpret_cast<std::uintptr_t>(&words_[v]) % sizeof(Many) == 0;
     };
