@@ -90,6 +90,9 @@ void set_files(Job& job, const Arguments& arguments) {
                         .replace_extension("." + job.field_in->stem().string() +
                                            field_beside(job.output).extension().string());
   job.size = arguments.positive("-hsiz");
+  if (job.size && (*job.size < 1e-75 || *job.size > 1e75))
+    throw UsageError("option -hsiz: expected a size from 1e-75 to 1e75, found '" +
+                     *arguments.text("-hsiz") + "'");
   job.metric_in = arguments.text("-sol");
   if (job.size && job.metric_in)
     throw UsageError("options -hsiz and -sol: expected one of them, found both");
@@ -209,11 +212,12 @@ int run(const Arguments& arguments) {
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);
   adapted.mesh.name = job.output.string();
   const auto carried = carry_field(executor, job, {mesh, field}, adapted.mesh);
-  warnings.insert(warnings.end(), adapted.report.warnings.begin(), adapted.report.warnings.end());
+  const AdaptSummary summary = summarise(executor, mesh, metric, adapted,
+                                         {.before = job.json || job.verbosity > 1,
+                                          .after = job.json || job.verbosity > 0,
+                                          .expects_lengths = job.adapt.insert});
+  warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   print_warnings(warnings, job.verbosity);
-  const AdaptSummary summary =
-      summarise(executor, mesh, metric, adapted,
-                {.before = job.json || job.verbosity > 1, .after = job.json || job.verbosity > 0});
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string());
   if (job.verbosity > 0) {
     std::printf("%s", to_text(summary, job.verbosity > 1).c_str());

@@ -1,6 +1,8 @@
 #include "adapt_report.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -77,6 +79,18 @@ std::string json_of(const KernelReport& kernel) {
          ", \"rounds\": " + std::to_string(kernel.rounds) + "}";
 }
 
+/// Of a mesh that is far from its metric, what to do; else nothing.
+std::string advice_on_lengths(const meshadapt::MeshStatistics& statistics) {
+  constexpr double many = 0.25;
+  const double share = static_cast<double>(statistics.edges_long) /
+                       static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
+  if (share < many) return {};
+  return std::to_string(std::lround(100 * share)) +
+         " % of the edges are longer than asked for: the metric was too far from the mesh; adapt"
+         " first to one whose sizes differ less between directions, by steps of three or so"
+         " (ductile metric bound --anisotropy)";
+}
+
 }  // namespace
 
 AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
@@ -90,6 +104,9 @@ AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
   summary.peak_memory = peak_memory();
   if (options.before) summary.before.statistics = measure(executor, before, &metric);
   if (options.after) summary.after.statistics = measure(executor, after.mesh, &after.metric);
+  if (options.expects_lengths && summary.after.statistics)
+    if (std::string advice = advice_on_lengths(*summary.after.statistics); !advice.empty())
+      summary.report.warnings.push_back(std::move(advice));
   return summary;
 }
 

@@ -26,9 +26,9 @@ struct AdaptSummary {
   std::size_t peak_memory = 0;
 };
 
-/// Which meshes to measure.
 struct SummaryOptions {
-  bool before = true, after = true;
+  bool before = true, after = true;  ///< which meshes to measure
+  bool expects_lengths = true;       ///< a warning is added if too many edges are too long
 };
 
 AdaptSummary summarise(const runtime::Executor& executor, const meshadapt::AnyMesh& before,

@@ -92,6 +92,34 @@ TEST(AdaptCommand, ReportsAsJsonAndForParaView) {
   EXPECT_TRUE(contains(folder.read("r.vtu"), "UnstructuredGrid"));
 }
 
+TEST(AdaptCommand, WarnsWhereItCameNowhereNearTheMetric) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  EXPECT_EQ(folder.run("adapt waves2d.mesh").err, "");
+  const auto mesh = meshadapt::read_mesh(folder.path() / "waves2d.mesh");
+  meshadapt::AnyField metric{
+      2, mesh.vertex_count(), {meshadapt::AnyField::Type::symmetric}, {}, {}};
+  // Of sizes 1 along (0.8, 0.6) and 0.00001 across.
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    for (const double value : {0.36e10, -0.48e10, 0.64e10 + 1}) metric.values.push_back(value);
+  meshadapt::write_field(folder.path() / "thin.sol", metric);
+  const Outcome outcome = folder.run("adapt waves2d.mesh -sol thin.sol --json r.json");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "longer than asked for")) << outcome.err;
+  EXPECT_TRUE(contains(folder.read("r.json"), "longer than asked for"));
+  EXPECT_EQ(folder.run("adapt waves2d.mesh -sol thin.sol -noinsert").err, "");
+}
+
+TEST(AdaptCommand, RefusesSizesThatNoMetricCanHave) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  for (const char* size : {"1e300", "1e-300"}) {
+    const Outcome outcome = folder.run(std::string("adapt waves2d.mesh -hsiz ") + size);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(contains(outcome.err, "1e-75 to 1e75")) << outcome.err;
+  }
+}
+
 /// Writes u.sol, a scalar x + y and a vector, at the vertices of a mesh there.
 void add_field(const Folder& folder, const std::string& mesh_name) {
   const auto mesh = meshadapt::read_mesh(folder.path() / mesh_name);
