@@ -1,5 +1,6 @@
 #include "ductile/meshadapt/default_metric.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -73,7 +74,9 @@ Metric<Dim> metric_of_element(const std::array<Vector<Dim>, Dim + 1>& corner) {
           sum.m[at] += edge.x[row] * edge.x[column];
     }
   PrincipalAxes<Dim> axes = principal_axes(sum);
-  for (double& value : axes.value) value = (Dim + 1) / (2 * value);
+  // Of elements as flat as rounding the small ones may be anything, even negative.
+  const double least = 1e-15 * *std::max_element(axes.value.begin(), axes.value.end());
+  for (double& value : axes.value) value = (Dim + 1) / (2 * std::max(value, least));
   return compose(axes);
 }
 

@@ -54,6 +54,24 @@ TYPED_TEST(DefaultMetricIn, KeepsTheStretchOfTheMesh) {
   EXPECT_LT(measure(executor, any, &alike).share_in_range(), 0.5);
 }
 
+/// Rotated, so that what is thin is along no axis, and rounding shows.
+TYPED_TEST(DefaultMetricIn, OfElementsAsFlatAsRoundingIsAMetric) {
+  constexpr int Dim = TypeParam::value;
+  for (const double thickness : {1e-6, 1e-8, 1e-10, 1e-13}) {
+    AnyMesh any = test::make_grid(test::unit_grid(Dim, 4));
+    for (std::size_t v = 0; v < any.vertex_count(); ++v) {
+      double& x = any.coordinates[v * Dim];
+      double& y = any.coordinates[v * Dim + 1];
+      const double flat = thickness * y;
+      y = 0.6 * x + 0.8 * flat;
+      x = 0.8 * x - 0.6 * flat;
+    }
+    const AnyField implied = implied_tensors(executor, any);
+    EXPECT_NO_THROW(metric_of(implied, any)) << thickness;
+    for (const double value : implied.values) ASSERT_TRUE(std::isfinite(value)) << thickness;
+  }
+}
+
 TYPED_TEST(DefaultMetricIn, DoesNotDependOnThreads) {
   constexpr int Dim = TypeParam::value;
   AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 40 : 9));
