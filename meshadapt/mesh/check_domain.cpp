@@ -66,8 +66,9 @@ struct Scale {
 
 template <int Dim>
 Scale scale_of(const AnyMesh& mesh) {
-  double farthest = 0;
   Scale scale;
+  if (mesh.coordinates.empty()) return scale;
+  double farthest = 0;
   for (std::size_t i = 0; i < Dim; ++i) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t at = i; at < mesh.coordinates.size(); at += Dim) {

@@ -206,6 +206,12 @@ TEST(CheckDomain, FindsWhatLeftItsPlace) {
   }
 }
 
+TEST(CheckDomain, FindsNothingWhereThereIsNothing) {
+  AnyMesh nothing;
+  nothing.dimension = 2;
+  EXPECT_EQ(test::joined(check_domain(nothing, nothing)), "");
+}
+
 TEST(CheckDomain, AllowsForRoundingFarFromTheOriginAndInThinDomains) {
   constexpr double thickness = 1e-3, offset = 1e6;
   for (const int dimension : {2, 3}) {

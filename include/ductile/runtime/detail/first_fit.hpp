@@ -87,6 +87,7 @@ class Colours {
     std::atomic_ref(words_[v]).store(colour, std::memory_order_relaxed);
   }
   /// Sets those of [begin, end): eight bytes by one store, as compilers do not join atomic ones.
+  /// Others may read single words meanwhile: GCC's and Clang's atomics allow it, not the language.
   void fill(std::size_t begin, std::size_t end, Word colour) const {
     using Many [[gnu::may_alias]] = std::uint64_t;
     constexpr std::size_t step = sizeof(Many) / sizeof(Word);
