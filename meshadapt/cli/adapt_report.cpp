@@ -86,8 +86,8 @@ std::string advice_on_lengths(const meshadapt::MeshStatistics& statistics) {
                        static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
   if (share < many) return {};
   return std::to_string(std::lround(100 * share)) +
-         " % of the edges are longer than asked for: the metric was too far from the mesh; adapt"
-         " first to one whose sizes differ less between directions, by steps of three or so"
+         " % of the edges are longer than asked for: the metric is too far from the mesh; adapt the"
+         " result again, or first to a metric whose sizes differ less between directions"
          " (ductile metric bound --anisotropy)";
 }
 

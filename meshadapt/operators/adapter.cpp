@@ -14,6 +14,7 @@
 #include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "operators/coarsen.hpp"
+#include "operators/metric_path.hpp"
 #include "operators/refine.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"
@@ -50,6 +51,7 @@ struct Tuning<2> {
   static constexpr double optimise_below = 0.8;  ///< of those that are optimised in the end
   /// ... and of those around a vertex on the whole where they are finished together.
   static constexpr double mean_below = 0.7;
+  static constexpr double far = 0.003;  ///< of most elements where the metric is far from the mesh
 };
 
 template <>
@@ -65,6 +67,7 @@ struct Tuning<3> {
   static constexpr double swap_below = 0.8;
   static constexpr double optimise_below = 0.6;
   static constexpr double mean_below = 0;
+  static constexpr double far = 0.012;
 };
 
 /// A mesh of which a smaller share would change is left alone, or only finished.
@@ -135,6 +138,7 @@ void Adapter<Dim>::run() {
   const double wanted = share_to_change();
   report_.converged = wanted < little;
   if (wanted < nothing) return;
+  if (options_.insert && is_far()) come_near();
   while (!report_.converged && report_.iterations < options_.iterations) {
     ++report_.iterations;
     const double changed = share(iterate());
@@ -149,6 +153,46 @@ void Adapter<Dim>::run() {
     polish();
   }
   finish();
+}
+
+/// Are most elements slivers in the metric?
+template <int Dim>
+bool Adapter<Dim>::is_far() const {
+  const double sliver = shape_of_mean_ratio<Dim>(Tuning<Dim>::far);
+  const auto is_sliver = [&](std::size_t e) -> std::size_t {
+    return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < sliver;
+  };
+  return share(runtime::parallel_reduce(executor_, mesh_.element_slots(), std::size_t{0}, is_sliver,
+                                        std::plus<>())) > 0.5;
+}
+
+/// Adapts to metrics on the way to one that is far, roughly, before what is done for any.
+template <int Dim>
+void Adapter<Dim>::come_near() {
+  constexpr int most_rounds = 6;  // to each
+  MetricPath<Dim> path(executor_, mesh_, background_);
+  stage_ = std::size(Tuning<Dim>::stages) - 1;  // none is far from the one before
+  for (int step = 1; step <= path.steps(); ++step) {
+    path.go_to(step);
+    take_metrics();
+    bool is_near = step == path.steps();
+    for (int round = 0; round < most_rounds && !is_near; ++round) is_near = share(iterate()) < 0.1;
+  }
+}
+
+/// Those that the background has now.
+template <int Dim>
+void Adapter<Dim>::take_metrics() {
+  parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t i) {
+    const auto v = static_cast<VertexId>(i);
+    if (!mesh_.vertex_alive(v)) return;
+    const auto [host, metric] = background_.sample(mesh_.site_of[v].position, mesh_.host_of[v]);
+    mesh_.host_of[v] = host;
+    mesh_.site_of[v] = make_site(mesh_.site_of[v].position, metric);
+  });
+  update_shapes(executor_, mesh_);
+  survey_.forget();
+  seen_by_coarsen_ = seen_by_refine_ = seen_by_swap_ = seen_by_smooth_ = 0;
 }
 
 /// Share of the elements next to which something would be done, or what it is at least where that

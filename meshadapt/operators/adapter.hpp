@@ -52,6 +52,9 @@ class Adapter {
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
 
   // ---- Steps, in the order of a run ----
+  bool is_far() const;
+  void come_near();
+  void take_metrics();
   double share_to_change();
   std::size_t feasible_changes();
   std::size_t iterate();

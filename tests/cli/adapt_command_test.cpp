@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "adapt_report.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "program.hpp"
 
@@ -92,22 +94,21 @@ TEST(AdaptCommand, ReportsAsJsonAndForParaView) {
   EXPECT_TRUE(contains(folder.read("r.vtu"), "UnstructuredGrid"));
 }
 
-TEST(AdaptCommand, WarnsWhereItCameNowhereNearTheMetric) {
+TEST(AdaptSummary, WarnsOfEdgesThatAreTooLong) {
   const Folder folder;
   folder.add_example("waves2d");
-  EXPECT_EQ(folder.run("adapt waves2d.mesh").err, "");
   const auto mesh = meshadapt::read_mesh(folder.path() / "waves2d.mesh");
-  meshadapt::AnyField metric{
-      2, mesh.vertex_count(), {meshadapt::AnyField::Type::symmetric}, {}, {}};
-  // Of sizes 1 along (0.8, 0.6) and 0.00001 across.
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-    for (const double value : {0.36e10, -0.48e10, 0.64e10 + 1}) metric.values.push_back(value);
-  meshadapt::write_field(folder.path() / "thin.sol", metric);
-  const Outcome outcome = folder.run("adapt waves2d.mesh -sol thin.sol --json r.json");
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "longer than asked for")) << outcome.err;
-  EXPECT_TRUE(contains(folder.read("r.json"), "longer than asked for"));
-  EXPECT_EQ(folder.run("adapt waves2d.mesh -sol thin.sol -noinsert").err, "");
+  const runtime::Executor executor({.threads = 1});
+  const auto warnings_for = [&](double size, bool expects_lengths) {
+    const meshadapt::AdaptedMesh as_it_is{mesh, meshadapt::constant_metric(mesh, size), {}};
+    return summarise(executor, mesh, as_it_is.metric, as_it_is,
+                     {.before = false, .expects_lengths = expects_lengths})
+        .report.warnings;
+  };
+  ASSERT_EQ(warnings_for(1e-3, true).size(), 1U);
+  EXPECT_TRUE(contains(warnings_for(1e-3, true).front(), "100 % of the edges are longer"));
+  EXPECT_TRUE(warnings_for(1e-3, false).empty());
+  EXPECT_TRUE(warnings_for(1e3, true).empty());
 }
 
 TEST(AdaptCommand, RefusesSizesThatNoMetricCanHave) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <set>
 
@@ -144,6 +145,33 @@ TEST_P(Adapt, MeetsAUniformSize) {
   EXPECT_GT(statistics.share_in_range(), dimension() == 2 ? 0.97 : 0.9);
   EXPECT_GT(statistics.quality.mean, dimension() == 2 ? 0.93 : 0.78);
   EXPECT_GT(statistics.quality.min, dimension() == 2 ? 0.3 : 0.05);
+}
+
+/// Edges of `along` but for one direction, oblique to the mesh, in which they are `across`.
+AnyField sheets(const AnyMesh& mesh, double along, double across) {
+  const std::array<double, 3> normal =
+      mesh.dimension == 2 ? std::array{0.8, 0.6, 0.0} : std::array{2. / 3, 1. / 3, 2. / 3};
+  AnyField field = constant_metric(mesh, along);
+  const auto dimension = static_cast<std::size_t>(mesh.dimension);
+  for (std::size_t at = 0; at < field.values.size();)
+    for (std::size_t column = 0; column < dimension; ++column)
+      for (std::size_t row = 0; row <= column; ++row, ++at)
+        field.values[at] +=
+            (1 / (across * across) - 1 / (along * along)) * normal[row] * normal[column];
+  return field;
+}
+
+/// In which nearly all elements of the mesh are slivers.
+TEST_P(Adapt, ComesToAMetricFarFromTheMesh) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), dimension() == 2 ? 10 : 3));
+  const AnyField metric = dimension() == 2 ? sheets(mesh, 0.5, 2e-4) : sheets(mesh, 0.7, 0.7 / 200);
+  const AdaptedMesh adapted = adapt(Executor({.threads = 1}), mesh, metric);
+  EXPECT_EQ(test::joined(check_mesh(Executor({.threads = 1}), adapted.mesh)), "");
+  EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "");
+  const MeshStatistics found = measure(Executor({.threads = 1}), adapted.mesh, &adapted.metric);
+  EXPECT_GT(found.share_in_range(), dimension() == 2 ? 0.9 : 0.75);
+  EXPECT_GT(found.quality.mean, dimension() == 2 ? 0.85 : 0.7);
+  expect_identical(adapted, adapt(Executor({.threads = 3}), mesh, metric));
 }
 
 TEST_P(Adapt, CoarsensABoxToLittleMoreThanItsCorners) {

@@ -24,7 +24,8 @@ struct AdaptProgress {
 };
 
 struct AdaptOptions {
-  int iterations = 16;       ///< at most this many rounds of the four kernels
+  int iterations = 16;       ///< at most this many rounds of the four kernels, but for those on
+                             ///< the way to a metric that is far from the mesh
   double smallest_size = 0;  ///< no edge length below this is asked for; 0: no bound
   double largest_size = 0;   ///< no edge length above this is asked for; 0: no bound
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see

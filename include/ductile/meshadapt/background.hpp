@@ -54,6 +54,10 @@ class Background {
     }
   }
 
+  /// The logarithm of the metric at one of its vertices. Thread safety: to change it, while nobody
+  /// samples, one thread for each vertex.
+  Metric<Dim>& log_metric(VertexId v) { return log_metric_of_[v]; }
+
   /// Gives the memory of its elements and vertices back, by all threads of an executor; there is
   /// nothing to sample any more. Thread safety: one thread.
   void release(const runtime::Executor& executor);

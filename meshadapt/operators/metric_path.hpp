@@ -1,0 +1,87 @@
+/// @file
+/// MetricPath: a way to a metric that is far from what a mesh is like, by metrics between the two.
+/// In a metric in which nearly all elements are slivers no operator can tell what makes them
+/// better: splits would make slivers of slivers, and are refused, or go on for ever. A mesh whose
+/// elements are stretched three times as much as the ones before is no trouble.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "ductile/meshadapt/background.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "metric/metric_of_element.hpp"
+
+namespace ductile::meshadapt {
+
+/// Changes the metric of a background. Thread safety: one caller; runs on the executor.
+template <int Dim>
+class MetricPath {
+ public:
+  /// From the metric of the elements of the mesh, of which the background is a copy.
+  MetricPath(const runtime::Executor& executor, const Mesh<Dim>& mesh, Background<Dim>& background)
+      : executor_(executor),
+        background_(background),
+        from_(mesh.vertex_slots()),
+        to_(mesh.vertex_slots()) {
+    runtime::parallel_for(executor, from_.size(), [&](std::size_t i) {
+      const auto v = static_cast<VertexId>(i);
+      from_[v] = mean_log_around(mesh, v);
+      to_[v] = background.log_metric(v);
+    });
+    const double all = runtime::parallel_reduce(
+        executor, from_.size(), 0.0, [&](std::size_t v) { return log_stretch(v); }, std::plus<>());
+    const double mean = all / static_cast<double>(std::max<std::size_t>(1, from_.size()));
+    steps_ = static_cast<int>(std::clamp(std::ceil(mean / std::log(longest_step)), 1.0, 20.0));
+  }
+
+  int steps() const { return steps_; }
+
+  /// Gives the background the metric that comes after so many steps: after all, its own.
+  /// Log-Euclidean, as it interpolates between places.
+  void go_to(int step) {
+    const double share = static_cast<double>(step) / steps_;
+    runtime::parallel_for(executor_, to_.size(), [&](std::size_t v) {
+      Metric<Dim> between = share * to_[v];
+      between += (1 - share) * from_[v];
+      background_.log_metric(static_cast<VertexId>(v)) = step == steps_ ? to_[v] : between;
+    });
+  }
+
+ private:
+  static constexpr double longest_step = 3;  ///< of a size, as against that across
+
+  static Metric<Dim> mean_log_around(const Mesh<Dim>& mesh, VertexId v) {
+    Metric<Dim> sum;
+    const auto around = mesh.elements_of.of(v);
+    for (const ElementId element : around) {
+      std::array<Vector<Dim>, Dim + 1> corner;
+      for (std::size_t c = 0; c <= Dim; ++c)
+        corner[c] = mesh.site_of[mesh.corners_of[element][c]].position;
+      sum += logarithm(metric_of_element<Dim>(corner));
+    }
+    return 1 / static_cast<double>(std::max<std::size_t>(1, around.size())) * sum;
+  }
+
+  /// How much more one size changes than another, as a logarithm.
+  double log_stretch(std::size_t v) const {
+    Metric<Dim> change = to_[v];
+    change += -1.0 * from_[v];
+    const PrincipalAxes<Dim> axes = principal_axes(change);
+    const auto [least, most] = std::minmax_element(axes.value.begin(), axes.value.end());
+    return (*most - *least) / 2;
+  }
+
+  const runtime::Executor& executor_;
+  Background<Dim>& background_;
+  std::vector<Metric<Dim>> from_, to_;  // [vertex of the background], logarithms
+  int steps_ = 1;
+};
+
+}  // namespace ductile::meshadapt
