@@ -155,15 +155,20 @@ void Adapter<Dim>::run() {
   finish();
 }
 
+template <int Dim>
+std::size_t Adapter<Dim>::elements_below(double mean_ratio) const {
+  const double shape = shape_of_mean_ratio<Dim>(mean_ratio);
+  const auto is_below = [&](std::size_t e) -> std::size_t {
+    return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < shape;
+  };
+  return runtime::parallel_reduce(executor_, mesh_.element_slots(), std::size_t{0}, is_below,
+                                  std::plus<>());
+}
+
 /// Are most elements slivers in the metric?
 template <int Dim>
 bool Adapter<Dim>::is_far() const {
-  const double sliver = shape_of_mean_ratio<Dim>(Tuning<Dim>::far);
-  const auto is_sliver = [&](std::size_t e) -> std::size_t {
-    return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < sliver;
-  };
-  return share(runtime::parallel_reduce(executor_, mesh_.element_slots(), std::size_t{0}, is_sliver,
-                                        std::plus<>())) > 0.5;
+  return share(elements_below(Tuning<Dim>::far)) > 0.5;
 }
 
 /// Adapts to metrics on the way to one that is far, roughly, before what is done for any.
@@ -203,13 +208,7 @@ double Adapter<Dim>::share_to_change() {
   const double lengths = share(feasible_changes());
   if (lengths >= little) return lengths;
   const auto swaps = Swap<Dim>::improvements(executor_, mesh_, 0, Tuning<Dim>::swap_below);
-  const double poor = shape_of_mean_ratio<Dim>(0.3);
-  const auto is_poor = [&](std::size_t e) -> std::size_t {
-    return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < poor;
-  };
-  const std::size_t bad = runtime::parallel_reduce(executor_, mesh_.element_slots(), std::size_t{0},
-                                                   is_poor, std::plus<>());
-  return lengths + share(swaps.size() + bad);
+  return lengths + share(swaps.size() + elements_below(0.3));
 }
 
 /// About how many collapses and splits finishing would make, from a sample of those that lengths
