@@ -220,8 +220,19 @@ void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& spli
       split.entity = curve;
       split.kind.freedom = 1;
     }
+  split.in_layer = split.kind.freedom < Dim && std::all_of(shell.begin(), shell.end(), [&](auto e) {
+    return mesh_.shape_of[e] >= rules_.poor_shape || spans_layer(e);
+  });
   const std::int32_t reference = mesh_.reference_of[edge.a];
   split.reference = reference == mesh_.reference_of[edge.b] ? reference : 0;
+}
+
+/// Does an element reach from one side of a layer to the other? None of its corners is inside.
+template <int Dim>
+bool Refine<Dim>::spans_layer(ElementId element) const {
+  const Corners<Dim>& corners = mesh_.corners_of[element];
+  return std::none_of(corners.begin(), corners.end(),
+                      [&](VertexId v) { return mesh_.kind_of[v].freedom == Dim; });
 }
 
 // ---- Who refuses ----
@@ -396,7 +407,7 @@ bool Refine<Dim>::cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, con
     const double value = shape<Dim>(sites_of<Dim>(halves[half], points));
     after[half] = static_cast<float>(value);
     return value > 0 &&
-           value >= least_shape(std::min<double>(before, split.worst_around), split.length);
+           value >= least_shape(std::min<double>(before, split.worst_around), split);
   };
   std::size_t second = pieces.size();
   for (std::size_t first = 0; first < pieces.size(); ++first)
@@ -424,9 +435,10 @@ bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
 
 /// Shapes tell little of elements over which the metric changes a lot, as those of overlong edges.
 template <int Dim>
-double Refine<Dim>::least_shape(double before, double length) const {
-  if (before < rules_.poor_shape) return before;
-  const double excess = std::max(1.0, length / rules_.overlong_edge);
+double Refine<Dim>::least_shape(double before, const Split& split) const {
+  if (before < rules_.poor_shape)
+    return split.in_layer ? rules_.layer_split_keeps * before : before;
+  const double excess = std::max(1.0, split.length / rules_.overlong_edge);
   return std::min(rules_.split_keeps * before, rules_.accepted_shape) / (excess * excess);
 }
 

@@ -53,6 +53,7 @@ class Refine {
     std::uint32_t entity;  // patch or curve that the edge lies on, or 0
     std::int32_t reference;
     VertexKind kind;
+    bool in_layer;       // the edge lies on a side of a thin layer, if elements around it are poor
     float length;        // of the edge
     float worst_around;  // shape of the worst element around the edge
   };
@@ -83,6 +84,7 @@ class Refine {
   bool locate(const LongEdge& edge, const Shell& shell, Split& split) const;
   bool may_split(const LongEdge& edge, const Shell& shell) const;
   void classify(const LongEdge& edge, const Shell& shell, Split& split) const;
+  bool spans_layer(ElementId element) const;
 
   // ---- 2. What is refused: elements ask to, that would be cut into what the rules do not allow.
   // Without the edges refused they are cut otherwise, and look again, until none asks. ----
@@ -100,7 +102,7 @@ class Refine {
   bool cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const Split& split,
            const Points& points) const;
   bool keeps_distance(const Pieces<Dim>& pieces, std::size_t edge, const Points& points) const;
-  double least_shape(double before, double length) const;
+  double least_shape(double before, const Split& split) const;
 
   // ---- 3. New vertices and elements take numbers in order; each element is cut on its own: in
   // refine_write.cpp ----

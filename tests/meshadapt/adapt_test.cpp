@@ -174,6 +174,24 @@ TEST_P(Adapt, ComesToAMetricFarFromTheMesh) {
   expect_identical(adapted, adapt(Executor({.threads = 3}), mesh, metric));
 }
 
+/// All elements in the layer are slivers, whatever is done.
+TEST_P(Adapt, SplitsTheSidesOfAThinLayer) {
+  test::Grid grid = test::unit_grid(dimension(), dimension() == 2 ? 4 : 3);
+  grid.lines[dimension() - 1] = {0, 0.25, 0.49995, 0.50005, 0.75, 1};
+  grid.region = [layer_axis = dimension() - 1](const test::Cell& cell) {
+    return cell[layer_axis] == 2 ? 2 : 1;
+  };
+  const AnyMesh mesh = test::make_grid(grid);
+  const AnyField metric = constant_metric(mesh, dimension() == 2 ? 0.02 : 0.08);
+  const Executor executor({.threads = 2});
+  const AdaptedMesh result = adapt(executor, mesh, metric);
+  const auto faults = test::faults_of(executor, mesh, result);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  const MeshStatistics statistics = measure(executor, result.mesh, &result.metric);
+  EXPECT_GT(statistics.share_in_range(), dimension() == 2 ? 0.98 : 0.9);
+  EXPECT_LT(statistics.edge_length.max, dimension() == 2 ? 4 : 6);
+}
+
 TEST_P(Adapt, CoarsensABoxToLittleMoreThanItsCorners) {
   const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), dimension() == 2 ? 20 : 8));
   const Executor executor({.threads = 2});

@@ -12,7 +12,9 @@ struct Rules {
   double accepted_shape = 0.1;     ///< a collapse may not make elements worse than this ...
   double kept_shape = 1;           ///< ... or than this fraction of the worst before, if that is
                                    ///< less: far from the metric, good shapes are still to come
-  double poor_shape = 0.001;       ///< from elements this bad a split makes none that are worse
+  double poor_shape = 0.001;       ///< from elements this bad a split makes none that are worse ...
+  double layer_split_keeps = 0.5;  ///< ... or than this fraction, on the sides of layers that the
+                                   ///< elements span, where the layer is why they are bad
   double split_keeps = 0.3;        ///< a split may lower the worst shape to this fraction, if
                                    ///< that is less than accepted_shape ...
   double overlong_edge = 2;        ///< ... and of edges longer than this, to less by the square of
