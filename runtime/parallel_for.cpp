@@ -24,11 +24,8 @@ std::size_t chosen_grain(std::size_t n, int threads) {
 /// A loop inside another one, or too short to share. It keeps the number of the thread, so that
 /// per-thread data of the outer loop stay this thread's, unless its executor has no such thread.
 void run_alone(const Executor& executor, std::size_t n, RangeBody body, void* context) {
-  struct Restore {
-    int thread = detail::current_thread;
-    ~Restore() { detail::current_thread = thread; }
-  } const restore;
-  if (detail::current_thread >= executor.threads()) detail::current_thread = 0;
+  const int thread = detail::current_thread;
+  const TeamMember member(thread < executor.threads() ? thread : 0);
   body(context, 0, n);
 }
 

@@ -431,5 +431,40 @@ TEST(RunRoundsChecked, CatchesWhatDependsOnTheOrder) {
   EXPECT_EQ(right.log, all_items(20));
 }
 
+// ---- An operator by reservation whose items are void until they are woken ----
+
+/// A row of items, each of which may fire once the one before has.
+struct Fuse {
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  std::optional<Plan> plan(Vertex v) const {
+    if (fired[v] != 0 || (v > 0 && fired[v - 1] == 0)) return {};
+    return v;
+  }
+  void footprint(Vertex v, auto&& visit) const {
+    if (plan(v)) visit(v);
+  }
+  std::size_t resource_count() const { return fired.size(); }
+  void apply(const Plan& v, Commit<Fuse>& commit) {
+    fired[v] = 1;
+    if (wakes && v + 1 < fired.size()) commit.wake(v + 1);
+  }
+  void commit(std::uint32_t, const Update&) {}
+
+  bool wakes;
+  std::vector<std::uint8_t> fired = std::vector<std::uint8_t>(10);
+};
+
+TEST(RunRoundsChecked, CatchesAVoidItemThatNobodyWakes) {
+  const std::string message =
+      caught(ContractRule::woken_if_plannable, Fuse{.wakes = false}, all_items(10));
+  EXPECT_NE(message.find("item 1, round 1"), std::string::npos) << message;
+  Fuse right{.wakes = true};
+  run_rounds_checked(Executor({.threads = 1}), right, all_items(10));
+  EXPECT_EQ(std::count(right.fired.begin(), right.fired.end(), 1), 10);
+}
+
 }  // namespace
 }  // namespace ductile::runtime

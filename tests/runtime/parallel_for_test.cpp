@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
@@ -256,6 +257,36 @@ TEST(ExclusiveScan, AddsWhatComesBefore) {
       EXPECT_EQ(exclusive_scan(Executor({.threads = threads}), std::span(values)), total);
       EXPECT_EQ(values, expected);
     }
+}
+
+TEST(ParallelForBlocks, TakesBlocksLongerThanTheLoop) {
+  std::size_t sum = 0;
+  parallel_for_blocks(Executor({.threads = 2}), 10, ~std::size_t{0},
+                      [&](std::size_t, std::size_t begin, std::size_t end) { sum += end - begin; });
+  EXPECT_EQ(sum, 10U);
+}
+
+TEST(ParallelForNested, RunsInsideAShortLoopOnTheCallingThread) {
+  const Executor executor({.threads = 4}), single({.threads = 1});
+  const auto expect_alone = [&](std::size_t) {
+    const auto self = std::this_thread::get_id();
+    parallel_for(executor, 10000, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), self); },
+                 {.grain = 1});
+  };
+  parallel_for(executor, 1, expect_alone);
+  parallel_for(executor, 3, expect_alone, {.serial_below = 4});
+  parallel_for(single, 3, expect_alone);
+}
+
+TEST(ParallelReduce, TellsWhetherAll) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads});
+    for (const std::size_t odd_one : {0U, 70000U, 99999U, 100000U})
+      EXPECT_EQ(parallel_reduce(
+                    executor, 100000, true, [&](std::size_t i) { return i != odd_one; },
+                    std::logical_and<>()),
+                odd_one == 100000);
+  }
 }
 
 }  // namespace

@@ -86,11 +86,12 @@ void parallel_for(const Executor& executor, std::size_t n, Body&& body,
 template <class Body>
 void parallel_for_blocks(const Executor& executor, std::size_t n, std::size_t block_size,
                          Body&& body, const LoopOptions& options = {.grain = 1}) {
-  const std::size_t blocks = (n + block_size - 1) / block_size;
+  const std::size_t blocks = n / block_size + (n % block_size != 0);
   parallel_for(
       executor, blocks,
       [&](std::size_t block) {
-        body(block, block * block_size, std::min(n, (block + 1) * block_size));
+        const std::size_t begin = block * block_size;
+        body(block, begin, begin + std::min(n - begin, block_size));
       },
       options);
 }
@@ -102,16 +103,19 @@ template <class T, class Map, class Combine>
 T parallel_reduce(const Executor& executor, std::size_t n, T identity, Map&& map,
                   Combine&& combine) {
   constexpr std::size_t block_size = 2048;
-  std::vector<T> partial((n + block_size - 1) / block_size, identity);
+  struct Part {  // not T, as vectors of bool pack them, which threads may not write side by side
+    T value;
+  };
+  std::vector<Part> partial((n + block_size - 1) / block_size, Part{identity});
   parallel_for_blocks(executor, n, block_size,
                       [&](std::size_t block, std::size_t begin, std::size_t end) {
                         T sum = identity;
                         for (std::size_t i = begin; i < end; ++i)
                           sum = combine(std::move(sum), map(i));
-                        partial[block] = std::move(sum);
+                        partial[block].value = std::move(sum);
                       });
   T total = identity;
-  for (T& part : partial) total = combine(std::move(total), std::move(part));
+  for (Part& part : partial) total = combine(std::move(total), std::move(part.value));
   return total;
 }
 

@@ -79,17 +79,18 @@ class Batches {
   RoundsReport report;
 
   /// Runs a batch: tells planning(item) of those items for which is_here(item), and plans them;
-  /// new_commit() is what a plan is applied with.
-  void run(std::span<const Item> batch, auto&& is_here, auto&& planning, auto&& new_commit) {
+  /// new_commit() is what a plan is applied with; grown() is called when the operator has grown.
+  void run(std::span<const Item> batch, auto&& is_here, auto&& planning, auto&& new_commit,
+           auto&& grown) {
     if (batch.empty()) return;
     ++report.batches;
     if constexpr (ImmediateOperator<Op> && !Check::on) {
       plan_and_apply(batch, is_here, planning, new_commit);
     } else {
       plan_all(batch, is_here, planning);
-      if constexpr (Check::on) return apply_checked(batch, is_here, new_commit);
+      if constexpr (Check::on) return apply_checked(batch, is_here, new_commit, grown);
       const PhaseTimer timer(report.apply_seconds, executor, Phase::apply);
-      apply_plans(new_commit);
+      apply_plans(new_commit, grown);
     }
     const PhaseTimer timer(report.commit_seconds, executor, Phase::commit);
     report.committed += deferred_.commit(
@@ -206,8 +207,8 @@ class Batches {
       record_plan(item);
   }
 
-  void apply_plans(auto&& new_commit) {
-    if constexpr (kinds > 0) number_new_things();
+  void apply_plans(auto&& new_commit, auto&& grown) {
+    if constexpr (kinds > 0) number_new_things(), grown();
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
       Commit<Op> commit = new_commit();
       commit.next_ = first_of_[b];
@@ -224,15 +225,17 @@ class Batches {
     count_applied();
   }
 
-  void apply_checked(std::span<const Item> all, auto&& is_here, auto&& new_commit) {
+  void apply_checked(std::span<const Item> all, auto&& is_here, auto&& new_commit, auto&& grown) {
     std::vector<Item> batch;
     std::vector<std::optional<Plan>> plans;
     for (std::size_t i = 0; i < all.size(); ++i)
       if (is_here(all[i])) batch.push_back(all[i]), plans.push_back(std::move(plans_[i]));
+    std::vector<std::array<std::uint32_t, kinds>> first_of(batch.size());
+    if constexpr (kinds > 0) number_one_by_one(plans, first_of), grown();
     std::vector<Commit<Op>> commits(batch.size(), new_commit());
-    for (std::size_t i = 0; i < batch.size(); ++i) commits[i].source_ = i;
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      commits[i].source_ = i, commits[i].next_ = first_of[i];
     report.applied += batch.size() - std::count(plans.begin(), plans.end(), std::nullopt);
-    if constexpr (kinds > 0) number_one_by_one(plans, commits);
     check.run_batch(op, {batch, plans, commits}, deferred_, options.order);
   }
 
@@ -252,17 +255,17 @@ class Batches {
       for (std::size_t k = 0; k < kinds; ++k) first[k] += base[k];
   }
 
-  /// The same for the commits of single items.
+  /// The same for single items.
   void number_one_by_one(const std::vector<std::optional<Plan>>& plans,
-                         std::vector<Commit<Op>>& commits) {
+                         std::vector<std::array<std::uint32_t, kinds>>& first_of) {
     std::array<std::uint32_t, kinds> total{};
     for (std::size_t i = 0; i < plans.size(); ++i) {
-      commits[i].next_ = total;
+      first_of[i] = total;
       add_demand(plans[i], total);
     }
     const std::array<std::uint32_t, kinds> base = op.grow(total);
-    for (Commit<Op>& commit : commits)
-      for (std::size_t k = 0; k < kinds; ++k) commit.next_[k] += base[k];
+    for (auto& first : first_of)
+      for (std::size_t k = 0; k < kinds; ++k) first[k] += base[k];
   }
 
   void record_plan(const Item& item) {
@@ -304,7 +307,7 @@ void for_each_window(std::span<Item> work, std::size_t windows, auto&& run) {
 
 /// How many windows of at most `largest` items there are to be; 0: work is one part.
 inline std::size_t window_count(std::size_t items, std::size_t largest) {
-  return largest == 0 ? 1 : (items + largest - 1) / largest;
+  return largest == 0 ? 1 : items / largest + (items % largest != 0);
 }
 
 }  // namespace ductile::runtime::detail

@@ -89,8 +89,7 @@ class ColouredRounds {
 
   /// Returns the work of the next round.
   std::vector<Item> run(std::vector<Item> work) {
-    woken_at_.resize(executor_, op_.item_count(), 0);
-    turn_of_.resize(executor_, op_.item_count(), absent);
+    provide_items();
     if constexpr (TiledOperator<Op> && !Check::on) {
       run_in_tiles(std::move(work));
     } else {
@@ -107,6 +106,12 @@ class ColouredRounds {
   static constexpr LoopOptions copying{.grain = 512, .serial_below = 2048};
   static constexpr std::uint32_t absent = ConflictGraph<Op>::absent;
   static_assert(absent == Turns::absent);
+
+  /// New items of a growing operator may be woken, and conflict, in the round that makes them.
+  void provide_items() {
+    woken_at_.resize(executor_, op_.item_count(), 0);
+    turn_of_.resize(executor_, op_.item_count(), absent);
+  }
 
   void run_in_tiles(std::vector<Item> work) {
     if constexpr (SteadyTiledOperator<Op>)
@@ -182,7 +187,7 @@ class ColouredRounds {
       batches_.run(
           std::span(by_class_).subspan(begin, end - begin),
           [&](Item item) { return is_here(item); }, [&](Item item) { note_planned(item); },
-          [&] { return new_commit(); });
+          [&] { return new_commit(); }, [&] { provide_items(); });
       if constexpr (Check::on) check_waiting(end);
     }
     parallel_for(

@@ -91,6 +91,9 @@ class OperatorCheck {
     considered_.insert(considered_.end(), batch.begin(), batch.end());
   }
 
+  /// An item of a reserving operator that visits nothing, and so leaves the work.
+  void note_void(const Item& item) { considered_.push_back(item); }
+
   /// `woken`, ascending, come back in the next round.
   void end_round(const Op& op, const std::vector<Item>& woken) {
     if constexpr (requires { Op::forgoes_wakes; }) return;

@@ -82,7 +82,7 @@ class ReservingRounds {
     }
     batches_.run(
         std::span<const Item>(winners.items.get(), winners.count), all_are_here, [](const Item&) {},
-        [&] { return batches_.new_commit(window_); });
+        [&] { return batches_.new_commit(window_); }, [] {});
   }
 
   /// A later window has lower keys, so that reservations never have to be cleared but where there
@@ -129,6 +129,9 @@ class ReservingRounds {
           counts[b] = found;
         },
         by_block);
+    if constexpr (Check::on)  // they have had their turn
+      for (std::size_t i = 0; i < work.size(); ++i)
+        if (outcome_of_[i] == Outcome::gone) batches_.check.note_void(work[i]);
     Counts total{.left = rest.size()};
     for (Counts& count : counts)
       total = {total.run + std::exchange(count.run, total.run), total.lost + count.lost,
