@@ -193,7 +193,7 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::option
   if (job.vtu) {
     auto fields = meshadapt::vtu_fields(adapted.metric, "metric");
     if (field)
-      for (auto& carried : meshadapt::vtu_fields(*field, job.field_in->stem().string()))
+      for (auto& carried : meshadapt::vtu_fields(*field, as_utf8(job.field_in->stem().string())))
         fields.push_back(std::move(carried));
     meshadapt::write_vtu(outputs, *job.vtu, adapted.mesh, fields);
   }

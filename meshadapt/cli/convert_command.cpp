@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string>
@@ -19,6 +20,19 @@ constexpr std::array<Option, 2> options{{
      "GMF version to write, 1 to 4 (default: 2, more if the size needs it)"},
 }};
 
+/// Version 1 has numbers of 4 bytes in binary: what is rounded may move vertices onto each other.
+void warn_of_rounding(const std::vector<double>& values, const fs::path& to, int version,
+                      meshadapt::Warnings& warnings) {
+  const std::string ending = to.extension().string();
+  if (version != 1 || !ending.ends_with('b')) return;
+  const auto rounded = std::count_if(values.begin(), values.end(), [](double value) {
+    return static_cast<double>(static_cast<float>(value)) != value;
+  });
+  if (rounded > 0)
+    warnings.push_back(to.string() + ": version 1 holds 7 digits; " + std::to_string(rounded) +
+                       " numbers were rounded (--version-of-file 2 keeps them)");
+}
+
 bool holds_field(const fs::path& path) {
   return path.extension() == ".sol" || path.extension() == ".solb";
 }
@@ -29,11 +43,14 @@ bool holds_mesh(const fs::path& path) {
 void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arguments,
                   const meshadapt::GmfOptions& form, meshadapt::Warnings& warnings) {
   const meshadapt::AnyMesh mesh = meshadapt::read_mesh(from, &warnings);
-  if (holds_mesh(to)) return meshadapt::write_mesh(to, mesh, form);
+  if (holds_mesh(to)) {
+    warn_of_rounding(mesh.coordinates, to, form.version, warnings);
+    return meshadapt::write_mesh(to, mesh, form);
+  }
   std::vector<meshadapt::VtuField> fields;
   if (const auto path = arguments.text("-sol"))
-    fields = meshadapt::vtu_fields(meshadapt::read_field(*path, &warnings),
-                                   fs::path(*path).stem().string());
+    fields = meshadapt::vtu_fields(read_fields(*path, mesh, warnings),
+                                   as_utf8(fs::path(*path).stem().string()));
   meshadapt::write_vtu(to, mesh, fields);
 }
 
@@ -47,12 +64,20 @@ int run(const Arguments& arguments) {
     throw UsageError(to.string() + ": expected a name ending in " +
                      (field ? ".sol or .solb, as the input is a field"
                             : ".mesh, .meshb or .vtu, as the input is a mesh"));
+  const bool for_paraview = to.extension() == ".vtu";
+  if (!for_paraview && arguments.has("-sol"))
+    throw UsageError("option -sol: expected an output .vtu, found " + to.string() +
+                     "; convert the field by itself");
+  if (for_paraview && arguments.has("--version-of-file"))
+    throw UsageError("option --version-of-file: " + to.string() + " takes none");
   const meshadapt::GmfOptions form{.version =
                                        arguments.integer("--version-of-file", 1, 4).value_or(0)};
   meshadapt::Warnings warnings;
-  if (field)
-    meshadapt::write_field(to, meshadapt::read_field(from, &warnings), form);
-  else
+  if (field) {
+    const meshadapt::AnyField values = meshadapt::read_field(from, &warnings);
+    warn_of_rounding(values.values, to, form.version, warnings);
+    meshadapt::write_field(to, values, form);
+  } else
     convert_mesh(from, to, arguments, form, warnings);
   print_warnings(warnings);
   return done;

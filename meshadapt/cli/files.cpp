@@ -52,6 +52,31 @@ meshadapt::AnyField read_fields(const fs::path& path, const meshadapt::AnyMesh& 
   return field;
 }
 
+std::string as_utf8(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto byte = [&](std::size_t i) {
+      return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+    };
+    const unsigned first = byte(at);
+    const std::size_t length = first < 0x80                    ? 1
+                               : first >= 0xC2 && first < 0xE0 ? 2
+                               : first >= 0xE0 && first < 0xF0 ? 3
+                               : first >= 0xF0 && first < 0xF5 ? 4
+                                                               : 0;
+    bool good = length > 0;
+    for (std::size_t i = 1; i < length; ++i) good = good && byte(at + i) >> 6U == 2;
+    if (length > 2) {  // neither too long, nor a surrogate, nor beyond the last character
+      const unsigned second = byte(at + 1);
+      good = good && !(first == 0xE0 && second < 0xA0) && !(first == 0xED && second > 0x9F) &&
+             !(first == 0xF0 && second < 0x90) && !(first == 0xF4 && second > 0x8F);
+    }
+    result += good ? text.substr(at, length) : "?";
+    at += good ? length : 1;
+  }
+  return result;
+}
+
 std::string with_commas(std::size_t number) {
   std::string digits = std::to_string(number);
   for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");

@@ -32,6 +32,10 @@ meshadapt::AnyField read_metric(const std::filesystem::path& path, const meshada
 meshadapt::AnyField read_fields(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,
                                 meshadapt::Warnings& warnings);
 
+/// The text with a '?' for each byte that is not UTF-8, as a file's name may have: for what must
+/// be.
+std::string as_utf8(const std::string& text);
+
 /// 1234567 as "1,234,567".
 std::string with_commas(std::size_t number);
 

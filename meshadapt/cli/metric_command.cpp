@@ -131,6 +131,11 @@ void set_limits(Job& job, const Arguments& arguments) {
   bounds.smallest = arguments.positive("-hmin").value_or(0);
   bounds.largest = arguments.positive("-hmax").value_or(0);
   bounds.anisotropy = arguments.positive("--anisotropy").value_or(0);
+  for (const std::string_view name : {"-hmin", "-hmax"})  // as -hsiz of adapt
+    if (const auto size = arguments.positive(name); size && (*size < 1e-75 || *size > 1e75))
+      throw UsageError("option " + std::string(name) +
+                       ": expected a size from 1e-75 to 1e75, found '" + *arguments.text(name) +
+                       "'");
   if (bounds.largest > 0 && bounds.smallest > bounds.largest)
     throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
   if (bounds.anisotropy > 0 && bounds.anisotropy < 1)
@@ -258,10 +263,10 @@ void work(const Executor& executor, const Job& job, const AnyMesh& mesh,
           meshadapt::Warnings& warnings) {
   Work<Dim> work(executor, job, mesh, warnings);
   const AnyField metric = work.run();
+  const std::string summary = work.summary();  // which may find fault with the mesh: before writing
   print_warnings(warnings, job.verbosity);
   meshadapt::write_field(job.output, metric);
-  if (job.verbosity > 0)
-    std::printf("%s\nwritten: %s\n", work.summary().c_str(), job.output.c_str());
+  if (job.verbosity > 0) std::printf("%s\nwritten: %s\n", summary.c_str(), job.output.c_str());
 }
 
 int run(const Arguments& arguments) {

@@ -106,7 +106,7 @@ std::string to_json(const MeshStatistics& s) {
 
 std::string json_string(const std::string& text) {
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : as_utf8(text)) {
     if (c == '"' || c == '\\')
       quoted += std::string("\\") + c;
     else if (static_cast<unsigned char>(c) < 0x20)

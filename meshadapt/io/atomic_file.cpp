@@ -136,7 +136,8 @@ AtomicOutputs::~AtomicOutputs() = default;
 
 OutputFile& AtomicOutputs::stage(const fs::path& path) {
   expect_usable_name(path);
-  const fs::path target = resolve_links(path).lexically_normal();
+  // As it is: what /dev/stdout leads to, as "pipe:[123]", is no name that could be opened.
+  const fs::path target = is_device(path) ? path : resolve_links(path).lexically_normal();
   for (const auto& file : files_)
     if (file->path_ == target)
       throw InputError(path.string() + ": is the name of two outputs; give each its own");
@@ -166,8 +167,8 @@ void AtomicOutputs::commit() {
 
 void check_writable(const fs::path& path) {
   expect_usable_name(path);
+  if (is_device(path)) return;
   const fs::path target = resolve_links(path);
-  if (is_device(target)) return;
   std::error_code ignored;
   fs::remove(create_temporary(target), ignored);
 }

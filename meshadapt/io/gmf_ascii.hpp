@@ -33,8 +33,12 @@ class AsciiCursor {
   std::string_view word();
   /// The next word without taking it.
   std::string_view peek();
+  /// The first letter of what follows on this line; 0: nothing does.
+  char rest_of_line_begins_with() const;
+  /// Takes the rest of the line.
+  void skip_line();
   /// Whether text ends in the middle of a line, as where a file was cut.
-  bool ends_within_a_line() const { return end_ != begin_ && end_[-1] != '\n' && end_[-1] != '\r'; }
+  bool ends_within_a_line() const { return end_ != begin_ && !ends_line(end_[-1]); }
 
   // ---- Sections ----
   /// What is read next, for messages.
@@ -60,6 +64,7 @@ class AsciiCursor {
  private:
   void skip_space();
   bool at_word_end(const char* at) const { return at == end_ || is_space(*at) || *at == '#'; }
+  static bool ends_line(char c) { return c == '\n' || c == '\r'; }
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
   std::string where(const char* at) const;
   [[noreturn]] void fail_at(const char* at, const std::string& text) const;
@@ -74,6 +79,16 @@ class AsciiCursor {
   Place section_;
   std::string_view name_;
 };
+
+inline char AsciiCursor::rest_of_line_begins_with() const {
+  const char* at = at_;
+  while (at != end_ && !ends_line(*at) && is_space(*at)) ++at;
+  return at == end_ || ends_line(*at) || *at == '#' ? '\0' : *at;
+}
+
+inline void AsciiCursor::skip_line() {
+  while (at_ != end_ && !ends_line(*at_)) ++at_;
+}
 
 inline void AsciiCursor::skip_space() {
   while (at_ != end_) {

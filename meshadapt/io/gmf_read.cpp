@@ -40,6 +40,20 @@ void read_version(AsciiCursor& in) {
             "; write the file in one of them");
 }
 
+/// Goes past the lines of a section of text, which may have any words in them; a keyword alone, or
+/// before a number, is the next section.
+void skip_lines(AsciiCursor& in, std::uint64_t count) {
+  for (; count > 0 && !in.peek().empty(); --count) {
+    if (gmf::keyword_named(in.peek()) != Keyword::none) {
+      AsciiCursor ahead = in;
+      ahead.word();
+      const char next = ahead.rest_of_line_begins_with();
+      if (next == '\0' || (next >= '0' && next <= '9')) return;
+    }
+    in.skip_line();
+  }
+}
+
 /// Goes on to the next keyword; numbers on the way are not looked at.
 void skip_section(AsciiCursor& in, Keyword keyword) {
   for (;;) {
@@ -69,6 +83,7 @@ void read_section(AsciiCursor& in, SectionReader<AsciiCursor>& sections, const T
   const std::string where = in.where();
   const std::uint64_t count = gmf::has_count(keyword) ? sections.read_count(keyword) : 1;
   if (gmf::role_of(keyword) == Role::other_cells) sections.refuse_other_cells(keyword, count);
+  if (gmf::has_text(keyword)) skip_lines(in, count);
   skip_section(in, keyword);
   target.warn(where + left_out(keyword, count));
 }

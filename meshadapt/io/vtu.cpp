@@ -51,13 +51,22 @@ int component_at(Type type, int dimension, int row, int column) {
   return std::max(row, column) * (std::max(row, column) + 1) / 2 + std::min(row, column);
 }
 
+/// Of two arrays of one name, readers keep one.
+std::string unused_name(pugi::xml_node parent, const std::string& name) {
+  std::string result = name;
+  for (int i = 2; parent.find_child_by_attribute("Name", result.c_str()); ++i)
+    result = name + "_" + std::to_string(i);
+  return result;
+}
+
 void add_field(pugi::xml_node parent, const VtuField& field, const AnyMesh& mesh) {
   const auto stride = static_cast<std::size_t>(component_count(field.type, mesh.dimension));
   if (field.values.size() != stride * mesh.vertex_count())
     throw Error("field " + field.name + ": expected " +
                 std::to_string(stride * mesh.vertex_count()) + " values, found " +
                 std::to_string(field.values.size()));
-  if (field.type == Type::scalar) return add_array(parent, field.name, 1, field.values);
+  const std::string name = unused_name(parent, field.name);
+  if (field.type == Type::scalar) return add_array(parent, name, 1, field.values);
   const int rows = field.type == Type::vector ? 1 : 3;
   std::vector<double> wide;
   wide.reserve(mesh.vertex_count() * static_cast<std::size_t>(3 * rows));
@@ -68,7 +77,7 @@ void add_field(pugi::xml_node parent, const VtuField& field, const AnyMesh& mesh
         wide.push_back(from < 0 ? 0.0
                                 : field.values[vertex * stride + static_cast<std::size_t>(from)]);
       }
-  add_array(parent, field.name, 3 * rows, wide);
+  add_array(parent, name, 3 * rows, wide);
 }
 
 void add_points(pugi::xml_node piece, const AnyMesh& mesh) {

@@ -51,6 +51,14 @@ class MeshMaker {
   }
 
   void check_indices() const {
+    if (any_.coordinates.size() != Dim * any_.vertex_count())
+      fail("expected " + std::to_string(Dim) + " coordinates for each of the " +
+           std::to_string(any_.vertex_count()) + " vertices, found " +
+           std::to_string(any_.coordinates.size()) + " numbers");
+    if (any_.edges.reference.size() != any_.edges.size() ||
+        any_.triangles.reference.size() != any_.triangles.size() ||
+        any_.tetrahedra.reference.size() != any_.tetrahedra.size())
+      fail("expected a reference for each edge, triangle and tetrahedron");
     const auto& cells = elements_in<Dim>(any_);
     if (any_.dimension != Dim) fail("the mesh has the wrong dimension");
     if (cells.size() == 0)

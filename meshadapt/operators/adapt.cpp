@@ -1,9 +1,40 @@
 #include "ductile/meshadapt/adapt.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "mesh/first_bad.hpp"
 #include "operators/processor_level.hpp"
 
 namespace ductile::meshadapt {
+namespace {
+
+/// Of what metric_of checks that which costs nothing: rounding decides whether a thin metric is
+/// positive definite.
+void expect_numbers(const runtime::Executor& executor, const AnyField& metric) {
+  const std::size_t stride = stride_of(metric);
+  if (metric.values.size() != stride * metric.vertex_count)
+    throw InputError(metric.name + ": expected " + std::to_string(stride * metric.vertex_count) +
+                     " numbers, those of all tensors, found " +
+                     std::to_string(metric.values.size()));
+  const std::size_t bad = first_bad(executor, metric.vertex_count, [&](std::size_t v) {
+    const double* m = &metric.values[v * stride];
+    // Sizes from 1e-75 to 1e75 and their rounding, as metric_of has it.
+    const auto within = [](double x) { return x > 1e-151 && x < 1e151; };
+    const bool positive = within(m[0]) && within(m[2]) && (stride == 3 || within(m[5]));
+    return !positive || !std::all_of(m, m + stride, [](double x) { return std::isfinite(x); });
+  });
+  if (bad < metric.vertex_count)
+    throw InputError(
+        metric.name +
+        ": expected a positive definite tensor, of sizes from 1e-75 to 1e75, at vertex " +
+        std::to_string(bad + 1) + ", found one that is not; correct the metric there");
+}
+
+}  // namespace
 
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options) {
@@ -14,6 +45,7 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const 
   if (mesh.dimension != 2 && mesh.dimension != 3)
     throw InputError(mesh.name + ": expected dimension 2 or 3, found " +
                      std::to_string(mesh.dimension));
+  expect_numbers(executor, metric);
   return adapt_at(usable_levels().front(), executor, mesh, metric, options);
 }
 

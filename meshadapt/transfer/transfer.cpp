@@ -73,7 +73,8 @@ void expect_points(std::span<const double> coordinates, int dimension) {
                      " coordinates for each point, found " + std::to_string(coordinates.size()) +
                      " in all");
   for (const double x : coordinates)
-    if (!std::isfinite(x)) throw InputError("expected finite coordinates of points");
+    if (!(std::abs(x) <= 1e150))  // the square of a distance must be a number, too
+      throw InputError("expected coordinates of points from -1e150 to 1e150");
 }
 
 TransferredField transfer_any(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,

@@ -90,6 +90,15 @@ TEST(MetricCommand, MakesAMetricThatAdaptTakes) {
   }
 }
 
+TEST(MetricCommand, WritesNothingForAMeshItCannotMeasure) {
+  const Scene scene("waves2d");
+  scene.folder.write("bare.mesh", "MeshVersionFormatted 2\nDimension 2\nVertices 1\n0 0 0\nEnd\n");
+  scene.folder.write("bare.sol",
+                     "MeshVersionFormatted 2\nDimension 2\nSolAtVertices 1\n1 1\n0.5\nEnd\n");
+  EXPECT_EQ(scene.folder.run("metric bound bare.mesh bare.sol -o o.sol --hmax 1").status, 2);
+  EXPECT_FALSE(scene.folder.has("o.sol"));
+}
+
 TEST(MetricCommand, MakesAMetricForElementsOrAnError) {
   const Scene scene("waves2d");
   const std::string make = "metric make waves2d.mesh f.sol ";

@@ -136,5 +136,38 @@ TEST(Convert, GoesThereAndBack) {
   EXPECT_TRUE(contains(folder.read("a.vtu"), "UnstructuredGrid"));
 }
 
+TEST(Convert, RefusesWhatItWouldIgnore) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  folder.add_example("waves3d");
+  for (const char* words : {"convert waves2d.mesh a.meshb -sol waves2d.sol",
+                            "convert waves2d.sol a.solb -sol waves2d.sol",
+                            "convert waves2d.mesh a.vtu --version-of-file 3",
+                            "convert waves2d.mesh a.vtu -sol waves3d.sol"}) {
+    const Outcome outcome = folder.run(words);
+    EXPECT_EQ(outcome.status, 2) << words << ": " << outcome.err;
+  }
+  EXPECT_FALSE(folder.has("a.meshb") || folder.has("a.solb") || folder.has("a.vtu"));
+}
+
+TEST(Convert, SaysHowManyNumbersItRounds) {
+  const Folder folder;
+  folder.write("a.sol",
+               "MeshVersionFormatted 2\nDimension 2\nSolAtVertices 3\n1 1\n0.5 0.1 0.7\nEnd\n");
+  const Outcome rounded = folder.run("convert a.sol a.solb --version-of-file 1");
+  EXPECT_EQ(rounded.status, 0);
+  EXPECT_TRUE(contains(rounded.err, "2 numbers were rounded")) << rounded.err;
+  EXPECT_EQ(folder.run("convert a.sol b.solb").err, "");
+}
+
+TEST(Program, TakesAnyBytesInNames) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  ASSERT_EQ(folder.run("convert waves2d.mesh 'l\xe4.mesh'").status, 0);
+  const Outcome told = folder.run("info 'l\xe4.mesh' --json /dev/stdout | tail -n +1");
+  EXPECT_TRUE(contains(told.out, "l?.mesh")) << told.out << told.err;
+  EXPECT_EQ(folder.run("view 'l\xe4.mesh' -o a.svg").status, 0);
+}
+
 }  // namespace
 }  // namespace ductile::cli

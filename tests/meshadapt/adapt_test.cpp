@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <set>
 
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -297,6 +298,28 @@ TEST_P(Adapt, RefusesAMetricOfTheWrongShape) {
   AnyField metric = constant_metric(mesh, 0.1);
   --metric.vertex_count;
   EXPECT_THROW(adapt(Executor({.threads = 1}), mesh, metric), InputError);
+}
+
+TEST_P(Adapt, RefusesArraysThatDoNotFitAndValuesThatAreNoMetric) {
+  const AnyMesh mesh = rich_mesh();
+  const AnyField metric = constant_metric(mesh, 0.1);
+  const auto expect_refused = [](const AnyMesh& of, const AnyField& by) {
+    EXPECT_THROW(adapt(Executor({.threads = 2}), of, by), InputError);
+  };
+  for (const double value : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 1e200}) {
+    AnyField bad = metric;
+    bad.values[stride_of(metric) * 5] = value;
+    expect_refused(mesh, bad);
+  }
+  AnyField cut = metric;
+  cut.values.pop_back();
+  expect_refused(mesh, cut);
+  AnyMesh odd = mesh;
+  odd.vertex_reference.push_back(0);
+  expect_refused(odd, metric);
+  odd = mesh;
+  odd.triangles.reference.pop_back();
+  expect_refused(odd, metric);
 }
 
 }  // namespace

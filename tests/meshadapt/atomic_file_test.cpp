@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <string>
 
@@ -54,6 +55,21 @@ TEST(AtomicOutputs, KeepLinksAndPermissions) {
   EXPECT_TRUE(fs::is_symlink(folder / "link"));
   EXPECT_EQ(test::get_bytes(folder / "a"), "new");
   EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(AtomicOutputs, WriteToThePipeOfADescriptor) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const fs::path path = "/dev/fd/" + std::to_string(ends[1]);
+  EXPECT_NO_THROW(check_writable(path));
+  AtomicOutputs outputs;
+  outputs.stage(path).write("text");
+  outputs.commit();
+  std::array<char, 8> text{};
+  EXPECT_EQ(::read(ends[0], text.data(), text.size()), 4);
+  EXPECT_STREQ(text.data(), "text");
+  ::close(ends[0]);
+  ::close(ends[1]);
 }
 
 TEST(AtomicOutputs, TakeAnyLengthOfName) {

@@ -215,6 +215,16 @@ TEST_F(GmfErrors, ReportWhatIsLeftOut) {
   EXPECT_TRUE(warnings[2].starts_with("odd.mesh:18: BoundingBox is")) << warnings[2];
 }
 
+TEST_F(GmfErrors, TakeAnyWordsInSectionsOfText) {
+  for (const std::string more :
+       {"Comments 2\nmade of Triangles by hand\nThe End of it\nEnd\n",
+        "Comments 1\r\nThe End of it\r\nEnd\r\n", "Comments 1 \"Vertices and all\"\rEnd\r",
+        "ReferenceStrings\n1\n6 1 Vertices wall\nEnd\n", "Comments 2\none, not two\nEnd\n"}) {
+    const Warnings warnings = mesh_warnings(replaced(good_text, "End\n", more));
+    EXPECT_EQ(warnings.size(), 1U) << more;
+  }
+}
+
 TEST_F(GmfErrors, ReportAMissingEnd) {
   const Warnings warnings = mesh_warnings(replaced(good_text, "End\n", ""));
   ASSERT_EQ(warnings.size(), 1U);

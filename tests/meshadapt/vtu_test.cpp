@@ -164,6 +164,20 @@ TEST(Vtu, TakesFieldsApart) {
       EXPECT_EQ(parts[1].values[3 * vertex + i], field.values[6 * vertex + 1 + i]);
 }
 
+TEST(Vtu, GivesEachFieldANameOfItsOwn) {
+  const test::TemporaryFolder folder;
+  const AnyMesh mesh = test::random_mesh(2, 1, 1);
+  write_vtu(folder / "a.vtu", mesh,
+            {{"reference", Type::scalar, {1}}, {"h", Type::scalar, {2}}, {"h", Type::scalar, {3}}});
+  const Vtu file(folder / "a.vtu");
+  const auto value = [&](const char* name) {
+    return array_of<double>(file.piece.child("PointData"), name);
+  };
+  EXPECT_EQ(value("reference_2"), (std::vector<double>{1}));
+  EXPECT_EQ(value("h"), (std::vector<double>{2}));
+  EXPECT_EQ(value("h_2"), (std::vector<double>{3}));
+}
+
 TEST(Vtu, RefusesAFieldOfAnotherMesh) {
   const test::TemporaryFolder folder;
   const AnyMesh mesh = test::random_mesh(2, 4, 1);

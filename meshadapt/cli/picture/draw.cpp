@@ -60,6 +60,8 @@ Layout lay_out(const Scene& scene, int size) {
   }
   const double larger = std::max(widest, highest);
   layout.scale = larger > 0 ? layout.size / larger : 1;
+  if (!std::isfinite(layout.scale) || !std::isfinite(larger))
+    throw meshadapt::InputError("expected a mesh whose extent is from 1e-300 to 1e300, to draw it");
   layout.panel_width = std::max(widest * layout.scale, 0.35 * layout.size);
   layout.panel_height = std::max(highest * layout.scale, 1.0);
   const auto panels = static_cast<double>(scene.panels.size());
@@ -227,7 +229,7 @@ void draw_scene(cairo_t* pen, const Scene& scene, const Layout& layout, PictureF
   cairo_select_font_face(pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(pen, layout.text);
   cairo_set_source_rgb(pen, 0, 0, 0);
-  write(pen, layout.margin, layout.margin + 0.4 * layout.text, scene.caption);
+  write(pen, layout.margin, layout.margin + 0.4 * layout.text, as_utf8(scene.caption));
   const bool titled = scene.panels.size() > 1;
   const double top = layout.margin + (titled ? 2.2 : 1.0) * layout.text;
   for (std::size_t i = 0; i < scene.panels.size(); ++i) {
@@ -279,6 +281,7 @@ std::string draw_png(const Scene& scene, const Layout& layout) {
   expect_success(cairo_status(pen.get()));
   cairo_scale(pen.get(), zoom, zoom);
   draw_scene(pen.get(), scene, layout, PictureFormat::png);
+  expect_success(cairo_status(pen.get()));  // an error makes all that follows draw nothing
   cairo_surface_flush(large.get());
   const Surface small(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height),
                       cairo_surface_destroy);
