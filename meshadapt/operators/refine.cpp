@@ -220,9 +220,11 @@ void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& spli
       split.entity = curve;
       split.kind.freedom = 1;
     }
-  split.in_layer = split.kind.freedom < Dim && std::all_of(shell.begin(), shell.end(), [&](auto e) {
+  const auto is_fine_or_spans = [&](ElementId e) {
     return mesh_.shape_of[e] >= rules_.poor_shape || spans_layer(e);
-  });
+  };
+  split.in_layer =
+      split.kind.freedom < Dim && std::all_of(shell.begin(), shell.end(), is_fine_or_spans);
   const std::int32_t reference = mesh_.reference_of[edge.a];
   split.reference = reference == mesh_.reference_of[edge.b] ? reference : 0;
 }
@@ -406,8 +408,7 @@ bool Refine<Dim>::cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, con
   const auto is_fine = [&](std::size_t half, double before) {
     const double value = shape<Dim>(sites_of<Dim>(halves[half], points));
     after[half] = static_cast<float>(value);
-    return value > 0 &&
-           value >= least_shape(std::min<double>(before, split.worst_around), split);
+    return value > 0 && value >= least_shape(std::min<double>(before, split.worst_around), split);
   };
   std::size_t second = pieces.size();
   for (std::size_t first = 0; first < pieces.size(); ++first)
