@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "ductile/runtime/hash.hpp"
@@ -32,6 +34,16 @@ TYPED_TEST(ParallelSort, AgreesWithTheStandardOne) {
       EXPECT_EQ(sorted, expected) << n << " values, " << threads << " threads";
     }
   }
+}
+
+TEST(ParallelSort, SortsCharacters) {
+  std::u32string text(5000, U' ');
+  for (std::size_t i = 0; i < text.size(); ++i)
+    text[i] = static_cast<char32_t>(mix32(static_cast<std::uint32_t>(i)));
+  std::u32string expected = text;
+  std::sort(expected.begin(), expected.end());
+  parallel_sort(Executor({.threads = 2}), std::span(text));
+  EXPECT_EQ(text, expected);
 }
 
 TEST(ParallelSort, SortsNumbersThatAreAllThere) {

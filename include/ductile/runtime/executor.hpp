@@ -21,7 +21,7 @@ enum class Schedule {
   omp_dynamic,       ///< OpenMP's dynamic with the loop's grain
   omp_guided,        ///< OpenMP's guided with the loop's grain
   steal_by_signal,   ///< an idle thread interrupts the one with most work left, which gives half
-                     ///< away
+                     ///< away; nanosleep() and the like in a body may end early, with EINTR
   steal_by_atomics,  ///< an idle thread takes half of a victim's range by compare-and-swap
 };
 

@@ -86,8 +86,9 @@ struct InOrder {
 
 }  // namespace detail
 
-/// All vertices in this order; ties in ascending order. Repeated edges count as often as they
-/// occur, loops do not. smallest_last is serial. Throws std::bad_alloc and what the graph throws.
+/// All vertices in this order; ties in ascending order, those of smallest_last in an order that is
+/// the same in every run. Repeated edges count as often as they occur, loops do not. smallest_last
+/// is serial. Throws std::bad_alloc and what the graph throws.
 /// Thread safety: any thread.
 template <Graph G>
 std::vector<std::uint32_t> vertex_order(const Executor& executor, const G& graph,

@@ -3,6 +3,8 @@
 /// it: loops over fixed blocks, deterministic reductions, prefix sums, and per-thread storage.
 /// The first exception thrown in a body reaches the caller after all threads have joined. A loop
 /// started inside another loop runs on the calling thread alone.
+/// After fork() the child of a process that has run a loop runs loops on one thread only: with
+/// GCC's OpenMP, others wait for ever for threads that the child does not have.
 #pragma once
 
 #include <algorithm>

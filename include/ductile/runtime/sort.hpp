@@ -147,7 +147,8 @@ void sort_by_reference(const Executor& executor, std::span<T> values) {
 template <std::movable T>
 void parallel_sort(const Executor& executor, std::span<T> values) {
   if (sort_detail::is_sorted<T>(executor, values)) return;
-  if constexpr (std::unsigned_integral<T>) {
+  // Not bool and characters, of which there is no bit_width.
+  if constexpr (std::unsigned_integral<T> && requires(T value) { std::bit_width(value); }) {
     if (values.size() >= 1024) return sort_detail::radix_sort(executor, values, 0);
     std::sort(values.begin(), values.end());
   } else if constexpr (sort_detail::cheap_to_move<T>) {
