@@ -27,7 +27,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 22> options{{
+constexpr std::array<Option, 23> options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
@@ -38,6 +38,7 @@ constexpr std::array<Option, 22> options{{
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
     {"-nosurf", "", "leaves the boundary and interfaces as they are"},
+    {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
     {"-v", "N", "0 says nothing, 1 (default) sums up, 2 says more", "--verbose"},
     {"-m", "MB", "takes at most this much memory, in megabytes", "--memory"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
@@ -114,6 +115,7 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   adapt.swap = !arguments.has("-noswap");
   adapt.insert = !arguments.has("-noinsert");
   adapt.make.lock_boundary = arguments.has("-nosurf");
+  adapt.make.surface_tolerance = arguments.positive("-hausd").value_or(0);
   adapt.make.complete_boundary = arguments.has("--complete-boundary");
   if (const auto n = arguments.integer("--iterations", 1, 1000)) adapt.iterations = *n;
 }
@@ -170,7 +172,8 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
   adapt.progress = [&line](const meshadapt::AdaptProgress& progress) { line.show(progress); };
   AdaptedMesh adapted = meshadapt::adapt(executor, mesh, metric, adapt);
   auto faults = meshadapt::check_mesh(executor, adapted.mesh);
-  if (faults.empty()) faults = meshadapt::check_domain(mesh, adapted.mesh);
+  if (faults.empty())
+    faults = meshadapt::check_domain(mesh, adapted.mesh, job.adapt.make.surface_tolerance);
   if (!faults.empty())
     throw meshadapt::Error("the adapted mesh is not valid (" + faults.front() +
                            "); nothing was written; please report this with its input");

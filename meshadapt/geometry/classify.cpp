@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <unordered_map>
@@ -12,6 +14,7 @@
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "geometry/surface.hpp"
 
 namespace ductile::meshadapt {
 
@@ -58,11 +61,13 @@ template <int Dim>
 class Classifier {
  public:
   Classifier(const runtime::Executor& executor, Mesh<Dim>& mesh,
-             std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges)
+             std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges,
+             double surface_tolerance)
       : executor_(executor),
         mesh_(mesh),
         facets_(std::move(facets)),
-        tolerance_(flatness * extent(executor, mesh)) {
+        tolerance_(flatness * extent(executor, mesh)),
+        surface_tolerance_(surface_tolerance) {
     if constexpr (Dim == 3)
       for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
     sort_sides();
@@ -71,8 +76,10 @@ class Classifier {
 
   void run() {
     find_patches();
+    if (surface_tolerance_ > 0) join_patches();
     if constexpr (Dim == 3) find_curves();
     store_patches();
+    if (surface_tolerance_ > 0) keep_surface();
     classify_vertices();
   }
 
@@ -214,6 +221,60 @@ class Classifier {
     }
   }
 
+  // ---- Smooth patches: flat ones that turn little where they meet ----
+
+  void join_patches() {
+    std::vector<PatchId> joined(mesh_.patches.size());  // [patch], another of the same, or itself
+    std::iota(joined.begin(), joined.end(), 0);
+    const auto find = [&](PatchId p) {
+      while (joined[p] != p) p = joined[p] = joined[joined[p]];
+      return p;
+    };
+    for (const Side& side : sides_) {
+      const std::uint32_t f = side.facet, g = across_[f][side.number];
+      if (g == none || g < f || mesh_.patches[facets_[f].patch].required) continue;
+      const PatchId p = find(facets_[f].patch), q = find(facets_[g].patch);
+      if (p == q || !turns_little(facets_[f].corners, facets_[g].corners, side.key)) continue;
+      joined[std::max(p, q)] = std::min(p, q);
+      mesh_.patches[p].smooth = mesh_.patches[q].smooth = true;
+    }
+    for (TaggedFacet<Dim>& facet : facets_) facet.patch = find(facet.patch);
+  }
+
+  /// Does a smooth patch have an edge here, or in 2D a corner, that fades out elsewhere?
+  bool is_sharp(std::span<const Side> both) const {
+    const TaggedFacet<Dim>&f = facets_[both[0].facet], &g = facets_[both[1].facet];
+    return mesh_.patches[f.patch].smooth && !turns_little(f.corners, g.corners, both[0].key);
+  }
+
+  bool turns_little(const Facet<Dim>& f, const Facet<Dim>& g, Key key) const {
+    const Vector<Dim> u = away_from(f, key), v = away_from(g, key);
+    return dot(u, v) < -least_turn * norm(u) * norm(v);
+  }
+
+  /// Keeps what smooth patches and curves are like, and what their facets must not come close to.
+  void keep_surface() {
+    const auto is_smooth = [](const auto& patch) { return patch.smooth; };
+    if (std::none_of(mesh_.patches.begin(), mesh_.patches.end(), is_smooth) &&
+        std::none_of(mesh_.curves.begin(), mesh_.curves.end(), is_smooth))
+      return;
+    const auto points = [&](const auto& corners) {
+      std::array<Vector<Dim>, std::tuple_size_v<std::decay_t<decltype(corners)>>> result;
+      for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = mesh_.site_of[corners[i]].position;
+      return result;
+    };
+    std::vector<typename Sheets<Dim, Dim>::Part> facets;
+    for (const TaggedFacet<Dim>& f : facets_)
+      facets.push_back({points(f.corners), f.patch, f.other != none});
+    std::vector<typename Sheets<Dim, 2>::Part> edges;
+    for (const CurveEdge& e : curve_edges_)
+      if (mesh_.curves[e.curve].smooth)
+        edges.push_back({points(std::array{e.a, e.b}), e.curve, true});
+    mesh_.surface = std::make_shared<const Surface<Dim>>(std::move(facets), std::move(edges),
+                                                         surface_tolerance_);
+  }
+
   void store_patches() {
     runtime::parallel_for(executor_, facets_.size(), [&](std::size_t i) {
       const TaggedFacet<Dim>& f = facets_[i];
@@ -249,7 +310,8 @@ class Classifier {
         runtime::parallel_collect<Key>(executor_, sides_.size(), [&](std::size_t i, auto&& append) {
           if (!begins_run(i)) return;
           const auto both = run_at(i);
-          if (both.size() != 2 || facets_[both[0].facet].patch != facets_[both[1].facet].patch)
+          if (both.size() != 2 || facets_[both[0].facet].patch != facets_[both[1].facet].patch ||
+              is_sharp(both))
             append(both[0].key);
         });
     for (const auto& [key, edge] : listed_) keys.push_back(key);
@@ -284,16 +346,23 @@ class Classifier {
     direction *= 1 / norm(direction);
     curve_edges_[seed].curve = id;
     for (const VertexId start : {curve_edges_[seed].a, curve_edges_[seed].b}) {
-      const Vector<Dim> heading = (start == curve_edges_[seed].a ? -1.0 : 1.0) * direction;
+      Vector<Dim> heading = (start == curve_edges_[seed].a ? -1.0 : 1.0) * direction;
       VertexId v = start;
       for (std::uint32_t e = next_edge(seed, v); e != none; e = next_edge(e, v)) {
         CurveEdge& edge = curve_edges_[e];
         const VertexId end = edge.a == v ? edge.b : edge.a;
         const Vector<Dim> d = mesh_.site_of[end].position - origin;
         const Vector<Dim> step = mesh_.site_of[end].position - mesh_.site_of[v].position;
-        if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed]) || dot(step, heading) <= 0 ||
-            norm(d - dot(d, direction) * direction) > tolerance_)
+        const bool straight = norm(d - dot(d, direction) * direction) <= tolerance_;
+        const double along = dot(step, heading);
+        if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed])) break;
+        if (surface_tolerance_ > 0 && !edge.data.required) {
+          if (!(along > least_turn * norm(step))) break;
+          curve.smooth = curve.smooth || !straight;
+          heading = (1 / norm(step)) * step;
+        } else if (!straight || along <= 0) {
           break;
+        }
         edge.curve = id;
         v = end;
       }
@@ -351,7 +420,8 @@ class Classifier {
     if constexpr (Dim == 3) links = static_cast<std::uint32_t>(mesh_.links_of.of(v).size());
     if (patches.empty() && links == 0) {
       kind.freedom = Dim;
-    } else if (patches.size() == 1 && links == 0 && (Dim == 3 || facet_count == 2)) {
+    } else if (patches.size() == 1 && links == 0 &&
+               (Dim == 3 || (facet_count == 2 && !is_sharp(facets_at(v))))) {
       kind.freedom = Dim - 1;
       mesh_.entity_of[v] = patches[0];
     } else if constexpr (Dim == 3) {
@@ -383,8 +453,9 @@ class Classifier {
   const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
   std::vector<TaggedFacet<Dim>> facets_;
-  double tolerance_;
-  std::vector<Side> sides_;  // sorted
+  double tolerance_;          // of flatness
+  double surface_tolerance_;  // of what is not flat; 0 if nothing is to be smooth
+  std::vector<Side> sides_;   // sorted
   using Others = std::array<std::uint32_t, Dim>;
   runtime::FilledArray<Others> across_;         // [facet][side], the other facet or none
   std::unordered_map<Key, ListedEdge> listed_;  // 3D
@@ -396,13 +467,14 @@ class Classifier {
 
 template <int Dim>
 void classify(const runtime::Executor& executor, Mesh<Dim>& mesh,
-              std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges) {
-  Classifier<Dim>(executor, mesh, std::move(facets), edges).run();
+              std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges,
+              double surface_tolerance) {
+  Classifier<Dim>(executor, mesh, std::move(facets), edges, surface_tolerance).run();
 }
 
 template void classify(const runtime::Executor&, Mesh<2>&, std::vector<TaggedFacet<2>>,
-                       const std::vector<ListedEdge>&);
+                       const std::vector<ListedEdge>&, double);
 template void classify(const runtime::Executor&, Mesh<3>&, std::vector<TaggedFacet<3>>,
-                       const std::vector<ListedEdge>&);
+                       const std::vector<ListedEdge>&, double);
 
 }  // namespace ductile::meshadapt

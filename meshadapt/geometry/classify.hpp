@@ -1,6 +1,6 @@
 /// @file
-/// Classification of a new mesh's boundary: which facets form one flat patch, which edges one
-/// straight curve, and what every vertex may therefore do.
+/// Classification of a new mesh's boundary: which facets form one patch, which edges one
+/// curve, and what every vertex may therefore do.
 #pragma once
 
 #include <vector>
@@ -28,9 +28,11 @@ struct ListedEdge {
 
 /// Sets mesh.patches, curves, links_of, patches_of, kind_of.freedom and entity_of from the facets
 /// (and, in 3D, the listed edges). kind_of.corner and .required and the regions are already set.
+/// With a surface tolerance, patches and curves may be smooth, and mesh.surface is set if one is.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 void classify(const runtime::Executor& executor, Mesh<Dim>& mesh,
-              std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges);
+              std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges,
+              double surface_tolerance);
 
 }  // namespace ductile::meshadapt

@@ -96,7 +96,8 @@ void compare(const std::string& what, double now, double expected, double allowe
 
 }  // namespace
 
-std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after) {
+std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
+                                      double surface_tolerance) {
   const auto measure = [](const AnyMesh& mesh) {
     return mesh.dimension == 2 ? measures_2d(mesh) : measures_3d(mesh);
   };
@@ -106,13 +107,14 @@ std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& afte
   double total = 0;
   for (const auto& [reference, value] : old.facets) total += value;
   std::vector<std::string> faults;
-  compare("the domain measures ", now.domain, old.domain, 1e-9 * old.domain + slack * total,
-          faults);
+  compare("the domain measures ", now.domain, old.domain,
+          1e-9 * old.domain + (slack + surface_tolerance) * total, faults);
   // The rim of a patch of facets: two points in 2D, in 3D a line about as long as the mesh.
   const double rim = before.dimension == 2 ? 2 : 4 * extent;
   for (const auto& [reference, value] : old.facets)
     compare("facets of reference " + std::to_string(reference) + " measure ", now.facets[reference],
-            value, 1e-9 * total + slack * rim, faults);
+            value, 1e-9 * total + slack * rim + (surface_tolerance > 0 ? 0.5 : 0.0) * value,
+            faults);
   return faults;
 }
 

@@ -213,6 +213,8 @@ class StructureChecker {
     return 1e-9 * extent + 64 * std::numeric_limits<double>::epsilon() * largest;
   }
 
+  bool is_flat(PatchId id) const { return id != 0 && !mesh_.patches[id].smooth; }
+
   void check_flatness() {
     const double allowed = tolerance();
     std::vector<const Vector<Dim>*> origin(mesh_.patches.size(), nullptr);
@@ -222,7 +224,7 @@ class StructureChecker {
     no_facet(
         [&](ElementId e, int i) {
           const PatchId id = patch(e, i);
-          if (id == 0) return false;
+          if (!is_flat(id)) return false;
           for (const VertexId v : facet_of<Dim>(mesh_.corners_of[e], i))
             if (!(std::abs(dot(mesh_.site_of[v].position - *origin[id],
                                mesh_.patches[id].normal)) <= allowed))
@@ -255,14 +257,14 @@ class StructureChecker {
     const auto key = [&](ElementId e, int i) { return std::pair(patch(e, i), mesh_.region_of[e]); };
     for (ElementId e = 0; e < mesh_.element_slots(); ++e)
       for (int i = 0; mesh_.alive(e) && i <= Dim; ++i) {
-        if (patch(e, i) == 0 || inside_region(e, i)) continue;
+        if (!is_flat(patch(e, i)) || inside_region(e, i)) continue;
         double& most = largest[key(e, i)];
         if (std::abs(projection(e, i)) > std::abs(most)) most = projection(e, i);
       }
     const double allowed = std::pow(tolerance(), Dim - 1);
     no_facet(
         [&](ElementId e, int i) {
-          if (patch(e, i) == 0 || inside_region(e, i)) return false;
+          if (!is_flat(patch(e, i)) || inside_region(e, i)) return false;
           return projection(e, i) * std::copysign(1.0, largest.at(key(e, i))) < -allowed;
         },
         " has a facet that is folded over in its patch");
@@ -310,6 +312,7 @@ class StructureChecker {
     no_vertex(
         [&](VertexId v) {
           for (const CurveLink& link : mesh_.links_of.of(v)) {
+            if (mesh_.curves[link.curve].smooth) continue;
             const Vector<Dim> d = mesh_.site_of[link.to].position - mesh_.site_of[v].position;
             const Vector<3>& along = mesh_.curves[link.curve].direction;
             Vector<Dim> aside = d;

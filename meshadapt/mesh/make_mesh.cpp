@@ -41,7 +41,7 @@ class MeshMaker {
     find_neighbours();
     auto facets = listed_facets();
     add_unlisted_facets(facets);
-    classify(executor_, mesh_, std::move(facets), listed_edges());
+    classify(executor_, mesh_, std::move(facets), listed_edges(), options_.surface_tolerance);
     return std::move(mesh_);
   }
 

@@ -9,6 +9,7 @@
 #include <boost/container/static_vector.hpp>
 
 #include "ductile/meshadapt/mesh.hpp"
+#include "geometry/surface.hpp"
 
 namespace ductile::meshadapt {
 
@@ -164,14 +165,41 @@ PatchId patch_of_edge(const Mesh<Dim>& mesh, ElementId element, VertexId a, Vert
   return 0;
 }
 
-/// Do the element's facets on patches keep their turn if one of its corners moves? On a patch that
-/// is flat only up to rounding, positive volumes alone do not say so.
+/// Is there more to a boundary vertex than flat patches and straight curves?
+template <int Dim>
+bool on_smooth_curve(const Mesh<Dim>& mesh, VertexId vertex) {
+  return Dim == 3 && mesh.kind_of[vertex].freedom == 1 &&
+         mesh.curves[mesh.entity_of[vertex]].smooth;
+}
+
+/// Do the element's facets on smooth patches, and those that end at a smooth curve, stay close to
+/// what was there in the input if one of its corners moves?
+template <int Dim>
+bool keeps_surface(const Mesh<Dim>& mesh, ElementId element, VertexId vertex,
+                   const Vector<Dim>& position) {
+  if (!mesh.surface) return true;
+  const bool at_curve = on_smooth_curve(mesh, vertex);
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    const PatchId patch = mesh.patches_of[element][i];
+    if (patch == 0 || mesh.corners_of[element][i] == vertex) continue;
+    if (!mesh.patches[patch].smooth && !at_curve) continue;
+    const Facet<Dim> facet = facet_of<Dim>(mesh.corners_of[element], static_cast<int>(i));
+    std::array<Vector<Dim>, Dim> after;
+    for (std::size_t k = 0; k < Dim; ++k)
+      after[k] = facet[k] == vertex ? position : mesh.site_of[facet[k]].position;
+    if (!mesh.surface->facets.cover(after, patch)) return false;
+  }
+  return true;
+}
+
+/// Do the element's facets on flat patches keep their turn if one of its corners moves? On a patch
+/// that is flat only up to rounding, positive volumes alone do not say so.
 template <int Dim>
 bool keeps_facets_turned(const Mesh<Dim>& mesh, ElementId element, VertexId vertex,
                          const Vector<Dim>& position) {
   for (std::size_t i = 0; i <= Dim; ++i) {
     const PatchId patch = mesh.patches_of[element][i];
-    if (patch == 0 || mesh.corners_of[element][i] == vertex) continue;
+    if (patch == 0 || mesh.corners_of[element][i] == vertex || mesh.patches[patch].smooth) continue;
     const Facet<Dim> facet = facet_of<Dim>(mesh.corners_of[element], static_cast<int>(i));
     std::array<Vector<Dim>, Dim> before, after;
     for (std::size_t k = 0; k < Dim; ++k) {

@@ -43,7 +43,9 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   }
   for (const Candidate& choice : choices) {
     Plan plan{gone, choice.kept};
-    if (!keeps_edges_short(plan, ring, longest) || !keeps_shapes(plan, worst)) continue;
+    if (!keeps_edges_short(plan, ring, longest) || !keeps_shapes(plan, worst) ||
+        !keeps_surface(plan))
+      continue;
     plan.crowded = crowded_after(plan, ring);
     return plan;
   }
@@ -133,6 +135,23 @@ bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
       plan.shapes.push_back(static_cast<float>(shape));
   }
   return true;
+}
+
+/// Last, as it takes the longest.
+template <int Dim>
+bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
+  if (!mesh_.surface || mesh_.kind_of[plan.gone].freedom == Dim) return true;
+  const Vector<Dim>& kept = mesh_.site_of[plan.kept].position;
+  if (on_smooth_curve(mesh_, plan.gone))
+    for (const CurveLink& link : mesh_.links_of.of(plan.gone))
+      if (link.to != plan.kept &&
+          !mesh_.surface->edges.cover({mesh_.site_of[link.to].position, kept}, link.curve))
+        return false;
+  const auto ball = mesh_.elements_of.of(plan.gone);
+  return std::all_of(ball.begin(), ball.end(), [&](ElementId e) {
+    return contains(mesh_.corners_of[e], plan.kept) ||
+           meshadapt::keeps_surface(mesh_, e, plan.gone, kept);
+  });
 }
 
 /// Does this neighbour of the vertex that goes get a short edge to the one that is kept?

@@ -103,6 +103,20 @@ bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) co
   return true;
 }
 
+/// Do smooth patches and curves stay close to what they were if the vertex moves there?
+template <int Dim>
+bool Smooth<Dim>::keeps_surface(VertexId vertex, const Vector<Dim>& position) const {
+  if (!mesh_.surface) return true;
+  if (on_smooth_curve(mesh_, vertex))
+    for (const CurveLink& link : mesh_.links_of.of(vertex))
+      if (!mesh_.surface->edges.cover({mesh_.site_of[link.to].position, position}, link.curve))
+        return false;
+  const auto elements = mesh_.elements_of.of(vertex);
+  return std::all_of(elements.begin(), elements.end(), [&](ElementId e) {
+    return meshadapt::keeps_surface(mesh_, e, vertex, position);
+  });
+}
+
 /// Whether a place scores better than a bar; sets `result` to it. It is looked at first as if the
 /// metric were the same there as nearby, as that needs no search; and a place with positive volumes
 /// lies inside the domain.
@@ -120,21 +134,69 @@ bool Smooth<Dim>::place(const Ball<Dim>& ball, const Vector<Dim>& position, cons
     return mesh_.kind_of[ball.vertex()].freedom == Dim &&
            ball.is_certain(result.score.volume, position);
   };
-  return beats_bar(result.score) && (is_certain() || keeps_volumes(ball.vertex(), position));
+  return beats_bar(result.score) && (is_certain() || (keeps_volumes(ball.vertex(), position) &&
+                                                      keeps_surface(ball.vertex(), position)));
 }
 
-/// The part of a displacement that keeps the vertex on its patch or curve.
+/// Along a curve, where it is smooth between the next vertices on both sides.
+template <int Dim>
+Vector<Dim> Smooth<Dim>::tangent(VertexId vertex) const {
+  if constexpr (Dim == 3) {
+    const Curve& curve = mesh_.curves[mesh_.entity_of[vertex]];
+    if (!curve.smooth) return curve.direction;
+    const auto links = mesh_.links_of.of(vertex);
+    const Vector<3> along =
+        mesh_.site_of[links[1].to].position - mesh_.site_of[links[0].to].position;
+    const double length = norm(along);
+    return length > 0 ? (1 / length) * along : Vector<3>{};
+  }
+  return {};
+}
+
+/// Of a patch, where it is smooth the mean of the facets around the vertex.
+template <int Dim>
+Vector<Dim> Smooth<Dim>::normal(VertexId vertex) const {
+  const PatchId patch = mesh_.entity_of[vertex];
+  if (!mesh_.patches[patch].smooth) return mesh_.patches[patch].normal;
+  const std::uint32_t side = mesh_.region_of[mesh_.elements_of.of(vertex)[0]];
+  Vector<Dim> sum;
+  for (const ElementId e : mesh_.elements_of.of(vertex))
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      if (mesh_.patches_of[e][i] != patch || mesh_.corners_of[e][i] == vertex) continue;
+      const Facet<Dim> facet = facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i));
+      std::array<Vector<Dim>, Dim> p;
+      for (std::size_t k = 0; k < Dim; ++k) p[k] = mesh_.site_of[facet[k]].position;
+      sum += (mesh_.region_of[e] == side ? 1.0 : -1.0) * facet_normal(p);
+    }
+  const double length = norm(sum);
+  return length > 0 ? (1 / length) * sum : Vector<Dim>{};
+}
+
+/// The part of a displacement that keeps the vertex on its patch or curve, or along it.
 template <int Dim>
 Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) const {
   const int freedom = mesh_.kind_of[vertex].freedom;
   if (freedom == Dim) return displacement;
-  if constexpr (Dim == 3)
-    if (freedom == 1) {
-      const Vector<3>& along = mesh_.curves[mesh_.entity_of[vertex]].direction;
-      return dot(displacement, along) * along;
-    }
-  const Vector<Dim>& normal = mesh_.patches[mesh_.entity_of[vertex]].normal;
-  return displacement - dot(displacement, normal) * normal;
+  if (Dim == 3 && freedom == 1) {
+    const Vector<Dim> along = tangent(vertex);
+    return dot(displacement, along) * along;
+  }
+  const Vector<Dim> across = normal(vertex);
+  return displacement - dot(displacement, across) * across;
+}
+
+/// Where a step ends: if it follows a smooth patch or curve, at the closest point of what that was
+/// in the input.
+template <int Dim>
+std::optional<Vector<Dim>> Smooth<Dim>::stepped(VertexId vertex, const Vector<Dim>& from,
+                                                const Vector<Dim>& step) const {
+  const Vector<Dim> to = from + step;
+  const int freedom = mesh_.kind_of[vertex].freedom;
+  const std::uint32_t entity = mesh_.entity_of[vertex];
+  if (on_smooth_curve(mesh_, vertex)) return mesh_.surface->edges.closest(to, entity, norm(step));
+  if (freedom == Dim - 1 && mesh_.patches[entity].smooth)
+    return mesh_.surface->facets.closest(to, entity, norm(step));
+  return to;
 }
 
 /// Goes towards where the elements want it as far as their shapes get better.
@@ -146,8 +208,8 @@ bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, const Place& fro
   const Score bar{std::min(from.score.worst, shape_of_mean_ratio<Dim>(0.7)),
                   from.score.sum * (1 + 1e-4)};
   for (const double fraction : {1.0, 0.5, 0.25}) {
-    const Vector<Dim> position = from.site.position + fraction * step;
-    if (place(ball, position, from, bar, to)) return true;
+    const auto position = stepped(vertex, from.site.position, fraction * step);
+    if (position && place(ball, *position, from, bar, to)) return true;
   }
   return false;
 }
@@ -210,8 +272,8 @@ bool Smooth<Dim>::optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Plac
     for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
       // What is left of a direction that was nearly normal to its patch is rounding, still normal.
       const Vector<Dim> step = allowed(vertex, (reach / length) * direction);
-      const Vector<Dim> position = best.site.position + step;
-      if (!place(ball, position, best, {bar, 0}, trial)) continue;
+      const auto position = stepped(vertex, best.site.position, step);
+      if (!position || !place(ball, *position, best, {bar, 0}, trial)) continue;
       if (aim == Aim::mean && inverse_shapes(ball, trial.site) > most) continue;
       best = trial;
       better = moved = true;

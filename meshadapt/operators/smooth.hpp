@@ -84,9 +84,14 @@ class Smooth {
     BallShapes<Dim> shapes{};
   };
   bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
+  bool keeps_surface(VertexId vertex, const Vector<Dim>& position) const;
   bool place(const Ball<Dim>& ball, const Vector<Dim>& position, const Place& near,
              const Score& bar, Place& result) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
+  Vector<Dim> tangent(VertexId vertex) const;
+  Vector<Dim> normal(VertexId vertex) const;
+  std::optional<Vector<Dim>> stepped(VertexId vertex, const Vector<Dim>& from,
+                                     const Vector<Dim>& step) const;
   bool relax(VertexId vertex, const Ball<Dim>& ball, const Place& from, Place& to) const;
   bool optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const;
   Vector<Dim> ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim, const Place& at) const;

@@ -23,9 +23,12 @@ std::vector<std::string> check_mesh(const runtime::Executor& executor, const Any
 /// measure (area or volume) of the whole, and of the listed boundary facets and interfaces by
 /// reference (length or area). They agree to 1e-9 of the total and to what the boundary can go
 /// astray, in thin domains and far from the origin the greater of the two: 2e-10 of the extent and
-/// the rounding of coordinates. What adaptation must never change.
+/// the rounding of coordinates. What adaptation must never change. With a surface tolerance (see
+/// MakeMeshOptions) the whole may differ by as much as boundaries that far away make it, and
+/// boundaries only have to be there still.
 /// Linear in the meshes. Thread safety: any thread.
-std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after);
+std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
+                                      double surface_tolerance = 0);
 
 /// As above for a mesh that is being adapted, entities numbered from 0 as in memory. Checked as
 /// well: the lists of vertices agree with the corners of elements, shapes are up to date, facets

@@ -17,6 +17,10 @@ struct MakeMeshOptions {
   bool complete_boundary =
       false;                   ///< give unlisted boundary facets reference 0, do not refuse them
   bool lock_boundary = false;  ///< treat every boundary and interface facet as required
+  /// How far curved boundaries, interfaces and the curves between them may be from where they were,
+  /// a length; 0: they keep the facets they have. Curved is what turns by less than 45 degrees from
+  /// one facet to the next.
+  double surface_tolerance = 0;
 };
 
 /// Classifies vertices and finds patches and curves; metrics are left unset, hosts are the element

@@ -1,13 +1,14 @@
 /// @file
 /// Mesh<Dim>: a mesh while it is being adapted. Elements know their corners, vertices know their
 /// elements, and element neighbours are found by intersecting two such lists. Boundary facets and
-/// internal interfaces are not stored apart: an element's facet carries the number of the flat
+/// internal interfaces are not stored apart: an element's facet carries the number of the
 /// patch it lies on, so every change of a cavity carries its boundary along.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,28 +24,32 @@ namespace ductile::meshadapt {
 
 using runtime::GrowingArray;
 
-/// Number of a flat patch of facets or of a straight curve of edges; 0 is none.
+/// Number of a patch of facets or of a curve of edges; 0 is none.
 using PatchId = std::uint32_t;
 using CurveId = std::uint32_t;
 
 /// A maximal flat set of facets that share everything below: part of the boundary or of an
-/// interface between regions. In 2D, a straight chain of edges.
+/// interface between regions. In 2D, a straight chain of edges. A smooth one may bend, and be
+/// replaced by another close to it (MakeMeshOptions::surface_tolerance).
 template <int Dim>
 struct Patch {
-  Vector<Dim> normal;  ///< unit length
+  Vector<Dim> normal;  ///< unit length; of no use if smooth
   std::int32_t reference = 0;
   bool listed = true;     ///< was in the file, and is written
   bool required = false;  ///< its facets may not change
   bool ridge = false;     ///< 2D: its edges were listed as ridges
+  bool smooth = false;
 };
 
-/// A maximal straight chain of edges in 3D: between patches, or listed in the file.
+/// A maximal straight chain of edges in 3D: between patches, or listed in the file. A smooth one
+/// may bend.
 struct Curve {
-  Vector<3> direction;  ///< unit length
+  Vector<3> direction;  ///< unit length; of no use if smooth
   std::int32_t reference = 0;
   bool listed = false;
   bool required = false;
   bool ridge = false;
+  bool smooth = false;
 };
 
 /// One neighbour of a vertex along a curve.
@@ -59,8 +64,8 @@ template <int Dim>
 using Neighbours = GrowingArray<std::array<ElementId, Dim + 1>>;
 
 /// What a vertex may do. `freedom` is the dimension of the space it may move in: 0 never moves and
-/// is never removed (corner or required), 1 moves along a straight line, 2 in a flat patch or, in
-/// 2D, anywhere, 3 anywhere.
+/// is never removed (corner or required), 1 moves along a curve, 2 in a patch or, in 2D, anywhere,
+/// 3 anywhere.
 struct VertexKind {
   std::uint8_t freedom = 0;
   bool corner = false;    ///< listed as a corner
@@ -73,6 +78,10 @@ struct Region {
   std::int32_t reference = 0;
   bool required = false;
 };
+
+/// What smooth patches and curves were like in the input; see geometry/surface.hpp.
+template <int Dim>
+struct Surface;
 
 template <int Dim>
 struct Mesh {
@@ -99,6 +108,7 @@ struct Mesh {
   std::vector<Patch<Dim>> patches;
   std::vector<Curve> curves;
   std::vector<Region> regions;
+  std::shared_ptr<const Surface<Dim>> surface;  ///< null if no patch or curve is smooth
 
   std::size_t element_slots() const { return corners_of.size(); }
   std::size_t vertex_slots() const { return site_of.size(); }

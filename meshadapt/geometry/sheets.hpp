@@ -1,0 +1,67 @@
+/// @file
+/// Sheets: what curved patches, or curves, of a mesh looked like before it was adapted. Tells of a
+/// facet, or an edge, that stands for a part of one whether it is close enough to it all over.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "ductile/meshadapt/vector.hpp"
+
+namespace ductile::meshadapt {
+
+/// Facets that turn by less than this where they meet may be one smooth patch, edges one smooth
+/// curve: 45 degrees. What covers a new one may be turned against it by as much.
+inline constexpr double least_turn = 0.70710678118654752;  ///< its cosine
+
+/// `Corners` is 2 for edges, 3 for triangles.
+template <int Dim, std::size_t Corners>
+class Sheets {
+ public:
+  using Points = std::array<Vector<Dim>, Corners>;
+  /// A part of a sheet.
+  struct Part {
+    Points corner;
+    std::uint32_t sheet;  ///< the number of its patch or curve
+    bool two_sided;       ///< inside the domain, or an edge: which way it is turned means nothing
+  };
+
+  /// Throws std::bad_alloc. Linear in the parts but for a logarithm.
+  Sheets(std::vector<Part> parts, double tolerance);
+  ~Sheets();
+  Sheets(const Sheets&) = delete;
+  Sheets& operator=(const Sheets&) = delete;
+
+  /// Is every point of this simplex within the tolerance of the sheet, where it is turned by less
+  /// than 45 degrees against it? And does none come that close to a sheet that faces it from across
+  /// a gap? Says yes only if it is certain, which it is soon unless it is a close thing: the sheet
+  /// is taken for the graph of a function over the simplex, whose slope its parts bound. Thread
+  /// safety: any thread.
+  bool cover(const Points& simplex, std::uint32_t sheet) const;
+
+  /// The point of the sheet closest to a point, if there is one within this distance and the
+  /// tolerance.
+  /// Thread safety: any thread.
+  std::optional<Vector<Dim>> closest(const Vector<Dim>& point, std::uint32_t sheet,
+                                     double reach) const;
+
+  std::size_t bytes() const;
+
+ private:
+  struct Tree;
+  struct Search;
+
+  std::vector<Part> parts_;
+  std::vector<Vector<Dim>> direction_of_;  // [part], unit normal of a facet, else along the edge
+  double tolerance_;
+  std::unique_ptr<const Tree> tree_;
+};
+
+extern template class Sheets<2, 2>;
+extern template class Sheets<3, 2>;
+extern template class Sheets<3, 3>;
+
+}  // namespace ductile::meshadapt
