@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
@@ -116,6 +117,57 @@ TEST(MakeMesh, GivesEachFacetOfACurvedBoundaryItsOwnPatch) {
   const auto made = make<3>(any);
   EXPECT_EQ(made.mesh.patches.size(), 1 + any.triangles.size());
   EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{98, 0, 0, 27}));
+}
+
+// ---- Smooth patches and curves ----
+
+AnyMesh bent(int dimension, int n, double angle) {
+  AnyMesh any = test::make_grid(test::unit_grid(dimension, n));
+  test::bend(any, angle);
+  return any;
+}
+
+TEST(MakeMesh, JoinsFacetsThatTurnLittleIfCurvedBoundariesMayChange) {
+  const auto flat = make<2>(bent(2, 4, 1.5), {.surface_tolerance = 0.01});
+  EXPECT_EQ(vertices_by_freedom(flat.mesh), (std::array{4, 12, 9, 0}));
+  const auto solid = make<3>(bent(3, 4, 1.5), {.surface_tolerance = 0.01});
+  EXPECT_EQ(vertices_by_freedom(solid.mesh), (std::array{8, 36, 54, 27}));
+  const auto is_smooth = [](const auto& entity) { return entity.smooth; };
+  EXPECT_EQ(std::count_if(solid.mesh.curves.begin(), solid.mesh.curves.end(), is_smooth), 4);
+}
+
+TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
+  for (const double angle : {1.5 * 0.78, 1.5 * 0.79})  // two cells: 45 degrees are 0.785
+    for (const int dimension : {2, 3}) {
+      const AnyMesh any = bent(dimension, 2, 2 * angle / 1.5);
+      const auto fixed =
+          dimension == 2 ? vertices_by_freedom(make<2>(any, {.surface_tolerance = 0.01}).mesh)[0]
+                         : vertices_by_freedom(make<3>(any, {.surface_tolerance = 0.01}).mesh)[0];
+      const bool joined = angle < 1.5 * 0.785;
+      EXPECT_EQ(fixed, dimension == 2 ? (joined ? 4 : 6) : (joined ? 8 : 12));
+    }
+}
+
+/// A drop: a closed curve of edges that all turn little but in one corner.
+TEST(MakeMesh, ACornerOfASmoothPatchStays) {
+  constexpr int n = 24;
+  AnyMesh any;
+  any.dimension = 2;
+  any.vertex_reference.assign(n + 1, 0);
+  any.coordinates = {-0.5, 0};
+  for (int i = 0; i < n; ++i) {
+    const double at = 2 * std::numbers::pi * i / n;
+    const double width = std::sin(at / 2) * std::sin(at / 2);
+    any.coordinates.insert(any.coordinates.end(), {-std::cos(at) - 1, width * std::sin(at)});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t a = 1 + i, b = 1 + (i + 1) % n;
+    any.triangles.add({0, b, a}, 1);
+    any.edges.add({b, a}, 1);
+  }
+  const auto made = make<2>(any, {.surface_tolerance = 0.01});
+  EXPECT_EQ(made.mesh.kind_of[1].freedom, 0);
+  EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{1, n - 1, 1, 0}));
 }
 
 TEST(MakeMesh, RequiredEntitiesFixTheirVertices) {

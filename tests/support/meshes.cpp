@@ -322,6 +322,17 @@ void make_slivers(AnyMesh& mesh, Random& random, std::size_t count, double thick
     make_slivers_in<3>(mesh, random, count, thickness);
 }
 
+void bend(AnyMesh& mesh, double angle) {
+  const auto dimension = static_cast<std::size_t>(mesh.dimension);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    double& x = mesh.coordinates[v * dimension];
+    double& y = mesh.coordinates[v * dimension + 1];
+    const double radius = 0.5 + x, turn = angle * y;
+    x = radius * std::cos(turn);
+    y = radius * std::sin(turn);
+  }
+}
+
 void place(AnyMesh& mesh, Random& random, double scale, double offset) {
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
   const auto turn = [&](std::size_t a, std::size_t b, double angle) {

@@ -69,6 +69,11 @@ void jiggle(AnyMesh& mesh, Random& random, double amount);
 /// what is left of the distance. Every element keeps an exactly positive volume.
 void make_slivers(AnyMesh& mesh, Random& random, std::size_t count, double thickness);
 
+/// Bends the unit square or cube into an arc around the origin, from the x axis on: x becomes the
+/// distance from its axis, from 0.5 to 1.5, and y the angle, up to this one. References stay: 1 is
+/// the inside of the arc, 2 the outside, 3 and 4 its ends.
+void bend(AnyMesh& mesh, double angle);
+
 /// Turns the mesh by a random rotation, scales it and moves it.
 void place(AnyMesh& mesh, Random& random, double scale, double offset);
 

@@ -1,0 +1,259 @@
+/// @file
+/// Adapts meshes with curved boundaries that may change within a tolerance.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "operators/adapter.hpp"
+#include "support/bits.hpp"
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+
+/// An arc, flat at its ends and in 3D above and below.
+AnyMesh arc(int dimension, int n, double angle) {
+  test::Grid grid = test::unit_grid(dimension, n);
+  AnyMesh mesh = test::make_grid(grid);
+  test::bend(mesh, angle);
+  return mesh;
+}
+
+/// Least and greatest distance from the z axis of the facets with a reference, in their points.
+template <int Dim>
+std::array<double, 2> radii_in(const AnyMesh& mesh, std::int32_t reference) {
+  std::array<double, 2> radii{1e9, 0};
+  const auto& facets = test::facets<Dim>(mesh);
+  const auto look = [&](const Vector<Dim>& p) {
+    const double radius = std::hypot(p[0], p[1]);
+    radii = {std::min(radii[0], radius), std::max(radii[1], radius)};
+  };
+  constexpr int n = 12;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    if (facets.reference[f] != reference) continue;
+    const auto corner = [&](std::size_t i) {
+      return test::point<Dim>(mesh, facets.vertices[f][i]);
+    };
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j)
+        look((1.0 / n) * (i * corner(0) + j * corner(1) + (n - i - j) * corner(Dim - 1)));
+  }
+  return radii;
+}
+std::array<double, 2> radii(const AnyMesh& mesh, std::int32_t reference) {
+  return mesh.dimension == 2 ? radii_in<2>(mesh, reference) : radii_in<3>(mesh, reference);
+}
+
+std::size_t facets_on_arcs(const AnyMesh& mesh) {
+  const auto& references = mesh.dimension == 2 ? mesh.edges.reference : mesh.triangles.reference;
+  return static_cast<std::size_t>(
+      std::count_if(references.begin(), references.end(), [](int r) { return r == 1 || r == 2; }));
+}
+
+class CurvedBoundary : public testing::TestWithParam<int> {
+ protected:
+  int dimension() const { return GetParam(); }
+};
+INSTANTIATE_TEST_SUITE_P(Dimensions, CurvedBoundary, testing::Values(2, 3),
+                         [](const auto& at) { return std::to_string(at.param) + "D"; });
+
+TEST_P(CurvedBoundary, IsCoarsenedWithinTheTolerance) {
+  const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 60 : 14, 2);
+  const Executor executor({.threads = 2});
+  for (const double tolerance : {0.05, 0.02}) {
+    SCOPED_TRACE(tolerance);
+    AdaptOptions options;
+    options.make.surface_tolerance = tolerance;
+    const AnyField metric = constant_metric(mesh, dimension() == 2 ? 0.15 : 0.3);
+    const AdaptedMesh result = adapt(executor, mesh, metric, options);
+    EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
+    EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, tolerance)), "");
+    for (const int reference : {1, 2}) {
+      const auto before = radii(mesh, reference), after = radii(result.mesh, reference);
+      EXPECT_GE(after[0], before[0] - tolerance);
+      EXPECT_LE(after[1], before[1] + tolerance);
+    }
+    const MeshStatistics found = measure(executor, result.mesh, &result.metric);
+    EXPECT_GT(found.share_in_range(), 0.93);
+    EXPECT_GT(found.quality.min, 0.4);
+    const AdaptedMesh kept = adapt(executor, mesh, metric);
+    EXPECT_EQ(test::joined(test::faults_of(executor, mesh, kept)), "");
+    EXPECT_LT(facets_on_arcs(result.mesh), facets_on_arcs(kept.mesh));
+    EXPECT_LT(measure(executor, kept.mesh, &kept.metric).share_in_range(), 0.9);
+  }
+}
+
+TEST_P(CurvedBoundary, IsRefinedOnItsFacets) {
+  const AnyMesh mesh = arc(dimension(), 4, 1.5);
+  const Executor executor({.threads = 2});
+  AdaptOptions options;
+  options.make.surface_tolerance = 1e-3;
+  const AnyField metric = constant_metric(mesh, dimension() == 2 ? 0.02 : 0.08);
+  const AdaptedMesh result = adapt(executor, mesh, metric, options);
+  EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
+  EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, 1e-3)), "");
+  const MeshStatistics found = measure(executor, result.mesh, &result.metric);
+  EXPECT_GT(found.share_in_range(), 0.9);
+}
+
+/// But for rounding.
+TEST_P(CurvedBoundary, KeepsWhatIsFlat) {
+  const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 40 : 10, 1.5);
+  const Executor executor({.threads = 2});
+  AdaptOptions options;
+  options.make.surface_tolerance = 0.03;
+  const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 0.3), options);
+  const auto farthest = [&](const AnyMesh& of, std::size_t axis, std::int32_t reference) {
+    const auto size = static_cast<std::size_t>(of.dimension);
+    double most = 0;
+    const auto look = [&](const auto& facets) {
+      for (std::size_t f = 0; f < facets.size(); ++f)
+        for (const std::uint32_t v : facets.vertices[f])
+          if (facets.reference[f] == reference)
+            most = std::max(most, std::abs(of.coordinates[v * size + axis]));
+    };
+    dimension() == 2 ? look(of.edges) : look(of.triangles);
+    return most;
+  };
+  EXPECT_NEAR(farthest(result.mesh, 1, 3), 0, 1e-12) << "the end on the x axis";
+  if (dimension() == 3) {
+    EXPECT_NEAR(farthest(result.mesh, 2, 5), 0, 1e-12) << "underneath";
+  }
+  EXPECT_NEAR(farthest(result.mesh, 0, 3), 1.5, 1e-12) << "a corner";
+  EXPECT_GT(farthest(mesh, 0, 4), 0.1) << "the other end is oblique";
+  EXPECT_NEAR(farthest(result.mesh, 0, 4), farthest(mesh, 0, 4), 1e-12);
+}
+
+/// Two arcs, one around the other, that meet at one end only. Nothing may close the gap.
+TEST_P(CurvedBoundary, DoesNotCrossANarrowGap) {
+  test::Grid grid = test::unit_grid(dimension(), dimension() == 2 ? 24 : 10);
+  grid.lines[0] = {0, 0.2, 0.4, 0.41, 0.6, 0.8, 1};
+  grid.region = [](const test::Cell& cell) { return cell[0] == 2 && cell[1] != 0 ? 0 : 1; };
+  AnyMesh mesh = test::make_grid(grid);
+  // The walls of the gap get references of their own.
+  const auto in_gap = [&](const auto& vertices) {
+    const auto size = static_cast<std::size_t>(dimension());
+    return std::all_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) {
+      const double x = mesh.coordinates[v * size];
+      return x > 0.39 && x < 0.42;
+    });
+  };
+  const auto rename = [&](auto& facets) {
+    for (std::size_t f = 0; f < facets.size(); ++f)
+      if (in_gap(facets.vertices[f]) && facets.reference[f] <= 2) facets.reference[f] += 20;
+  };
+  dimension() == 2 ? rename(mesh.edges) : rename(mesh.triangles);
+  test::bend(mesh, 2.5);
+  const Executor executor({.threads = 2});
+  for (const double tolerance : {0.006, 0.02, 0.2}) {
+    SCOPED_TRACE(tolerance);
+    AdaptOptions options;
+    options.make.surface_tolerance = tolerance;
+    const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 0.4), options);
+    EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
+    EXPECT_LT(radii(result.mesh, 22)[1], radii(result.mesh, 21)[0]);
+  }
+}
+
+TEST_P(CurvedBoundary, GivesTheSameBytesAtEachThreadCount) {
+  const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 50 : 12, 2);
+  test::Random random(3);
+  AnyField metric = test::layer_field(mesh, random, 0.2);
+  test::scale_to(metric, mesh, dimension() == 2 ? 100 : 60);
+  AdaptOptions options;
+  options.make.surface_tolerance = 0.02;
+  const AdaptedMesh first = adapt(Executor({.threads = 1}), mesh, metric, options);
+  for (const int threads : {1, 2, 3, 4, 8}) {
+    const AdaptedMesh other = adapt(Executor({.threads = threads}), mesh, metric, options);
+    EXPECT_EQ(test::bits(first.mesh.coordinates), test::bits(other.mesh.coordinates));
+    EXPECT_EQ(first.mesh.edges.vertices, other.mesh.edges.vertices);
+    EXPECT_EQ(first.mesh.triangles.vertices, other.mesh.triangles.vertices);
+    EXPECT_EQ(first.mesh.tetrahedra.vertices, other.mesh.tetrahedra.vertices);
+  }
+}
+
+// ---- The data structure after each kernel ----
+
+/// A random arc of one region or two, rippled, listed ridges or none, with random metrics.
+struct RandomArc {
+  AnyMesh mesh;
+  AnyField metric;
+  AdaptOptions options;
+
+  explicit RandomArc(std::uint64_t seed) {
+    test::Random random(seed);
+    const int dimension = seed % 2 == 0 ? 2 : 3, n = dimension == 2 ? 16 : 6;
+    test::Grid grid = test::unit_grid(dimension, n);
+    if (test::chance(random, 0.3)) grid.region = test::two_halves(n);
+    if (test::chance(random, 0.2)) grid.region = test::with_hole(n);
+    mesh = test::make_grid(grid);
+    if (dimension == 3 && test::chance(random, 0.5)) test::list_ridges(mesh);
+    ripple(random);
+    test::bend(mesh, test::uniform(random, 0.5, 3));
+    test::jiggle(mesh, random, 0.2);
+    metric = test::wild_field(mesh, random, 1.5, test::uniform(random, 1, 6));
+    test::scale_to(metric, mesh, (dimension == 2 ? 200 : 100) * test::uniform(random, 0.01, 2));
+    options.make.surface_tolerance = std::pow(10, test::uniform(random, -3, 0));
+  }
+
+ private:
+  void ripple(test::Random& random) {
+    const auto size = static_cast<std::size_t>(mesh.dimension);
+    const double waves = test::uniform(random, 1, 9),
+                 amount = test::uniform(random, 0, 0.3) / waves;
+    for (std::size_t at = 0; at < mesh.coordinates.size(); at += size)
+      mesh.coordinates[at] += amount * std::sin(waves * mesh.coordinates[at + 1] + 1);
+  }
+};
+
+template <int Dim>
+void check_after_each_kernel(const Executor& executor, const RandomArc& random) {
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  Mesh<Dim> mesh = make_mesh<Dim>(executor, random.mesh, random.options.make, neighbours, warnings);
+  std::vector<Metric<Dim>> metric_of(random.mesh.vertex_count());
+  for (std::size_t v = 0; v < metric_of.size(); ++v)
+    std::copy_n(&random.metric.values[v * Metric<Dim>::size], Metric<Dim>::size,
+                metric_of[v].m.begin());
+  AdaptOptions options = random.options;
+  const Adapter<Dim>* driver = nullptr;
+  options.progress = [&](const AdaptProgress& progress) {
+    ASSERT_EQ(test::joined(check_mesh(executor, driver->mesh())), "") << "after " << progress.step;
+  };
+  Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours), metric_of);
+  driver = &adapter;
+  adapter.run();
+}
+
+TEST(CurvedBoundaries, EachKernelLeavesTheMeshSound) {
+  const char* trials = std::getenv("DUCTILE_TRIALS");
+  const std::uint64_t count = trials == nullptr ? 16 : std::strtoull(trials, nullptr, 10);
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomArc random(seed);
+    const Executor executor(
+        {.threads = static_cast<int>(1 + seed % 3), .deterministic = seed % 5 != 4});
+    if (random.mesh.dimension == 2)
+      check_after_each_kernel<2>(executor, random);
+    else
+      check_after_each_kernel<3>(executor, random);
+    const AdaptedMesh result = adapt(executor, random.mesh, random.metric, random.options);
+    EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
+    EXPECT_EQ(
+        test::joined(check_domain(random.mesh, result.mesh, random.options.make.surface_tolerance)),
+        "");
+  }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt

@@ -1,0 +1,202 @@
+#include "geometry/sheets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "geometry/distance.hpp"
+#include "support/meshes.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using test::uniform;
+using Triangle = std::array<Vector<3>, 3>;
+using Segment = std::array<Vector<2>, 2>;
+
+/// Points of a triangle, its corners and sides among them.
+std::vector<Vector<3>> samples(const Triangle& t, int n) {
+  std::vector<Vector<3>> points;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; i + j <= n; ++j)
+      points.push_back((1.0 / n) * (i * t[0] + j * t[1] + (n - i - j) * t[2]));
+  return points;
+}
+std::vector<Vector<2>> samples(const Segment& s, int n) {
+  std::vector<Vector<2>> points;
+  for (int i = 0; i <= n; ++i) points.push_back((1.0 / n) * (i * s[0] + (n - i) * s[1]));
+  return points;
+}
+
+template <class Parts, int Dim>
+double distance(const Parts& parts, const Vector<Dim>& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& part : parts)
+    least = std::min(least, norm(closest_point(part.corner, point) - point));
+  return least;
+}
+
+TEST(Distance, IsToTheClosestOfManyPointsOfATriangle) {
+  test::Random random(1);
+  for (int trial = 0; trial < 300; ++trial) {
+    Triangle t;
+    for (Vector<3>& corner : t)
+      for (double& x : corner.x) x = uniform(random, -1, 1);
+    Vector<3> p;
+    for (double& x : p.x) x = uniform(random, -2, 2);
+    double least = 9;
+    for (const Vector<3>& at : samples(t, 60)) least = std::min(least, norm(at - p));
+    const double found = norm(closest_point(t, p) - p);
+    EXPECT_LE(found, least * (1 + 1e-12));
+    EXPECT_GT(found, least - 0.06);
+  }
+}
+
+TEST(Distance, IsToAPointOrALineWhereThatIsAllThereIs) {
+  const Vector<3> a{{1, 2, 3}}, b{{3, 2, 3}}, p{{2, 5, 3}};
+  EXPECT_EQ(norm(closest_point(Triangle{a, b, b}, p) - p), 3);
+  EXPECT_EQ(closest_point(Triangle{a, a, a}, p), a);
+  EXPECT_EQ(closest_point(std::array{a, a}, p), a);
+}
+
+/// A wave over the unit square, or a part of a wavy line, as sheet 7.
+double height(double x, double y) { return 0.1 * std::sin(4 * x + 1) * std::cos(3 * y); }
+std::vector<Sheets<3, 3>::Part> wave(std::uint32_t sheet, double lift = 0, bool two_sided = false) {
+  constexpr int n = 20;
+  const auto at = [&](int i, int j) {
+    const double x = double(i) / n, y = double(j) / n;
+    return Vector<3>{{x, y, height(x, y) + lift}};
+  };
+  std::vector<Sheets<3, 3>::Part> parts;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      parts.push_back({{at(i, j), at(i + 1, j), at(i + 1, j + 1)}, sheet, two_sided});
+      parts.push_back({{at(i, j), at(i + 1, j + 1), at(i, j + 1)}, sheet, two_sided});
+    }
+  return parts;
+}
+std::vector<Sheets<2, 2>::Part> wavy_line(std::uint32_t sheet) {
+  constexpr int n = 40;
+  const auto at = [&](int i) {
+    const double x = 1 - double(i) / n;  // so that its normal points upwards
+    return Vector<2>{{x, height(x, 0)}};
+  };
+  std::vector<Sheets<2, 2>::Part> parts;
+  for (int i = 0; i < n; ++i) parts.push_back({{at(i), at(i + 1)}, sheet, false});
+  return parts;
+}
+
+/// What sheets say of a facet, and what samples of it do.
+template <class Sheets, class Parts, class Facet>
+void compare(const Sheets& sheets, const Parts& parts, const Facet& facet, double tolerance,
+             std::array<int, 2>& count) {
+  double most = 0;
+  for (const auto& p : samples(facet, 12)) most = std::max(most, distance(parts, p));
+  const bool covered = sheets.cover(facet, 7);
+  if (covered) {
+    EXPECT_LE(most, tolerance);
+  }
+  if (most < 0.5 * tolerance) {
+    EXPECT_TRUE(covered) << most / tolerance;
+  }
+  ++count[covered ? 1 : 0];
+}
+
+TEST(Sheets, CoverATriangleOnlyIfAllOfItIsClose) {
+  test::Random random(2);
+  const auto parts = wave(7);
+  std::array<int, 2> count{};
+  for (const double tolerance : {0.003, 0.01, 0.03}) {
+    const Sheets<3, 3> sheets(parts, tolerance);
+    for (int trial = 0; trial < 80; ++trial) {
+      const double size = uniform(random, 0.02, 0.5), x = uniform(random, 0, 1 - size),
+                   y = uniform(random, 0, 1 - size);
+      Triangle t{{{{x, y, 0}}, {{x + size, y, 0}}, {{x + size / 2, y + size, 0}}}};
+      for (Vector<3>& p : t) p[2] = height(p[0], p[1]) + uniform(random, -1, 1) * tolerance;
+      compare(sheets, parts, t, tolerance, count);
+    }
+  }
+  EXPECT_GT(count[0], 40);
+  EXPECT_GT(count[1], 40);
+}
+
+TEST(Sheets, CoverASegmentOnlyIfAllOfItIsClose) {
+  test::Random random(3);
+  const auto parts = wavy_line(7);
+  std::array<int, 2> count{};
+  for (const double tolerance : {0.003, 0.01, 0.03}) {
+    const Sheets<2, 2> sheets(parts, tolerance);
+    for (int trial = 0; trial < 80; ++trial) {
+      const double size = uniform(random, 0.02, 0.5), x = uniform(random, 0, 1 - size);
+      Segment s{{{{x + size, 0}}, {{x, 0}}}};
+      for (Vector<2>& p : s) p[1] = height(p[0], 0) + uniform(random, -1, 1) * tolerance;
+      compare(sheets, parts, s, tolerance, count);
+    }
+  }
+  EXPECT_GT(count[0], 40);
+  EXPECT_GT(count[1], 40);
+}
+
+Triangle upwards(double z) {
+  return {{{{0.2, 0.2, height(0.2, 0.2) + z}},
+           {{0.25, 0.2, height(0.25, 0.2) + z}},
+           {{0.2, 0.25, height(0.2, 0.25) + z}}}};
+}
+
+TEST(Sheets, CoverNoFacetOfAnotherSheet) {
+  const Sheets<3, 3> sheets(wave(7), 0.01);
+  EXPECT_TRUE(sheets.cover(upwards(0), 7));
+  EXPECT_FALSE(sheets.cover(upwards(0), 6));
+  EXPECT_FALSE(sheets.cover({}, 7)) << "of no size";
+}
+
+TEST(Sheets, CoverAFacetThatIsTurnedOnlyIfThatMeansNothing) {
+  const auto [a, b, c] = upwards(0);
+  EXPECT_FALSE((Sheets<3, 3>(wave(7), 0.01).cover({a, c, b}, 7)));
+  EXPECT_TRUE((Sheets<3, 3>(wave(7, 0, true), 0.01).cover({a, c, b}, 7)));
+}
+
+/// Two walls of a gap, the upper one turned downwards.
+TEST(Sheets, CoverNoFacetCloseToWhatFacesIt) {
+  for (const bool two_sided : {false, true}) {
+    auto parts = wave(7);
+    for (auto part : wave(8, 0.02, two_sided)) {
+      std::swap(part.corner[1], part.corner[2]);
+      parts.push_back(part);
+    }
+    const auto covered = [&](double tolerance, double z) {
+      return Sheets<3, 3>(parts, tolerance).cover(upwards(z), 7);
+    };
+    EXPECT_TRUE(covered(0.012, 0));
+    EXPECT_EQ(covered(0.012, 0.011), two_sided);
+    EXPECT_EQ(covered(0.05, 0), two_sided);
+  }
+}
+
+TEST(Sheets, FindTheClosestPointWithinReach) {
+  test::Random random(4);
+  const auto parts = wave(7);
+  const Sheets<3, 3> sheets(parts, 0.001);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Vector<3> p{{uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, -0.2, 0.2)}};
+    const double true_distance = distance(parts, p);
+    const auto found = sheets.closest(p, 7, 0.1);
+    ASSERT_EQ(found.has_value(), true_distance <= 0.101);
+    if (found) {
+      EXPECT_NEAR(norm(*found - p), true_distance, 1e-15);
+    }
+    EXPECT_FALSE(sheets.closest(p, 6, 0.1));
+  }
+}
+
+TEST(Sheets, OfNothingCoverNothing) {
+  const Sheets<3, 2> sheets({}, 1);
+  EXPECT_FALSE(sheets.cover({Vector<3>{{0, 0, 0}}, Vector<3>{{1, 0, 0}}}, 1));
+  EXPECT_FALSE(sheets.closest({}, 1, 10));
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
