@@ -19,26 +19,27 @@ Vector<Dim> closest_point(const std::array<Vector<Dim>, 2>& segment, const Vecto
 }
 
 /// The point of a triangle that is closest to a point: where it lies in the triangle's plane if
-/// that is inside, else the closest of the sides.
+/// that is inside, else the closest of the sides that this is beyond, as the way to the others
+/// leads over them.
 inline Vector<3> closest_point(const std::array<Vector<3>, 3>& triangle, const Vector<3>& point) {
-  const Vector<3> u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
-  const Vector<3> d = point - triangle[0], normal = cross(u, v);
+  const auto& [a, b, c] = triangle;
+  const Vector<3> u = b - a, v = c - a, d = point - a, normal = cross(u, v);
   const double area2 = dot(normal, normal);
-  if (area2 > 0) {
-    const double at_u = dot(cross(d, v), normal), at_v = dot(cross(u, d), normal);
-    if (at_u >= 0 && at_v >= 0 && at_u + at_v <= area2)
-      return triangle[0] + (at_u / area2) * u + (at_v / area2) * v;
-  }
-  Vector<3> best = triangle[0];
+  const double at_b = dot(cross(d, v), normal), at_c = dot(cross(u, d), normal);
+  const double at_a = area2 - at_b - at_c;  // weights, times the square of twice the area
+  if (area2 > 0 && at_a >= 0 && at_b >= 0 && at_c >= 0)
+    return a + (at_b / area2) * u + (at_c / area2) * v;
+  Vector<3> best = a;
   double least = dot(d, d);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector<3> at = closest_point(std::array{triangle[i], triangle[(i + 1) % 3]}, point);
+  const auto look_along = [&](const Vector<3>& from, const Vector<3>& to) {
+    const Vector<3> at = closest_point(std::array{from, to}, point);
     const double square = dot(point - at, point - at);
-    if (square < least) {
-      least = square;
-      best = at;
-    }
-  }
+    if (square < least) best = at;
+    least = std::min(least, square);
+  };
+  if (!(at_a > 0)) look_along(b, c);
+  if (!(at_b > 0)) look_along(c, a);
+  if (!(at_c > 0)) look_along(a, b);
   return best;
 }
 

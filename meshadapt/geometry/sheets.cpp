@@ -32,15 +32,9 @@ TreePoint<Dim> tree_point(const Vector<Dim>& v) {
 }
 
 template <int Dim>
-struct Bounds {
-  Vector<Dim> low, high;
-  bool meets(const Bounds& other) const {
-    for (int i = 0; i < Dim; ++i)
-      if (low[i] > other.high[i] || other.low[i] > high[i]) return false;
-    return true;
-  }
-  TreeBox<Dim> box() const { return {tree_point(low), tree_point(high)}; }
-};
+TreeBox<Dim> box_of(const Bounds<Dim>& bounds) {
+  return {tree_point(bounds.low), tree_point(bounds.high)};
+}
 
 /// Of some points, with a margin around them.
 template <int Dim, std::size_t N>
@@ -55,6 +49,20 @@ Bounds<Dim> bounds_of(const std::array<Vector<Dim>, N>& points, double margin) {
     bounds.high[i] += margin;
   }
   return bounds;
+}
+
+/// Around all corners, not the least one.
+template <int Dim>
+struct Ball {
+  Vector<Dim> centre;
+  double radius;
+};
+template <int Dim, std::size_t N>
+Ball<Dim> ball_around(const std::array<Vector<Dim>, N>& points) {
+  Ball<Dim> ball{{}, 0};
+  for (const Vector<Dim>& p : points) ball.centre += (1.0 / N) * p;
+  for (const Vector<Dim>& p : points) ball.radius = std::max(ball.radius, norm(p - ball.centre));
+  return ball;
 }
 
 /// Unit normal of a facet, or along an edge in 3D; 0 if it is too small to have one.
@@ -88,84 +96,122 @@ struct Sheets<Dim, Corners>::Tree {
   using Value = std::pair<TreeBox<Dim>, std::uint32_t>;
   using Structure = boost::geometry::index::rtree<Value, boost::geometry::index::quadratic<16>>;
 
-  explicit Tree(const std::vector<Part>& parts) {
+  explicit Tree(const std::vector<Shape>& shapes) {
     std::vector<Value> values;
-    values.reserve(parts.size());
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      values.emplace_back(bounds_of(parts[i].corner, 0).box(), static_cast<std::uint32_t>(i));
+    values.reserve(shapes.size());
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      values.emplace_back(box_of(shapes[i].bounds), static_cast<std::uint32_t>(i));
     structure = Structure(values);
   }
 
   void visit(const Bounds<Dim>& bounds, auto&& visit) const {
     structure.query(
-        boost::geometry::index::intersects(bounds.box()),
+        boost::geometry::index::intersects(box_of(bounds)),
         boost::make_function_output_iterator([&](const Value& value) { visit(value.second); }));
   }
 
   Structure structure;
 };
 
+/// Some parts, among which the closest to a point is looked for: first where it is likely, then
+/// wherever it may be.
+template <int Dim, std::size_t Corners>
+struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t, 96> {
+  Closest closest(const Sheets& sheets, const Vector<Dim>& point) const {
+    Closest best;
+    const auto square = [&](std::uint32_t part) {
+      const Vector<Dim> aside = sheets.shape_of_[part].centre - point;
+      return dot(aside, aside);
+    };
+    const auto look = [&](std::uint32_t part) {
+      const Vector<Dim> at = closest_point(sheets.parts_[part].corner, point);
+      const double distance = norm(at - point);
+      if (distance < best.distance) best = {distance, at};
+    };
+    if (this->empty()) return best;
+    look(*std::min_element(this->begin(), this->end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(square(a), a) < std::pair(square(b), b);
+    }));
+    for (const std::uint32_t part : *this) {
+      const double reach = best.distance + sheets.shape_of_[part].radius;
+      if (square(part) < reach * reach) look(part);
+    }
+    return best;
+  }
+};
+
 /// One question about a simplex, answered part by part.
 template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Search {
-  using Near = boost::container::small_vector<std::uint32_t, 128>;
-
   const Sheets& sheets;
-  std::uint32_t sheet;
   Vector<Dim> direction;
 
-  /// What is there to know around a part of the simplex.
-  struct View {
-    Near near;
-    double distance = std::numeric_limits<double>::infinity();  ///< from its centre
-    double turn = 1;                                            ///< cosine of the greatest
-    double gap = std::numeric_limits<double>::infinity();       ///< from there to what faces it
-  };
-
-  void look_at(std::uint32_t part, const Vector<Dim>& centre, View& view) const {
-    const Part& p = sheets.parts_[part];
-    double turn = dot(direction, sheets.direction_of_[part]);
-    if (p.two_sided) turn = std::abs(turn);
-    const bool covers = p.sheet == sheet && turn >= least_turn;
-    const bool faces =
-        !p.two_sided && turn < -0.1;  // not what is at a right angle but for rounding
-    if (!covers && !faces) return;
-    const Vector<Dim> aside = centre - closest_point(p.corner, centre);
-    double& distance = covers ? view.distance : view.gap;
-    distance = std::min(distance, norm(aside));
-    if (covers) view.turn = std::min(view.turn, turn);
+  double turn(std::uint32_t part) const {
+    const double cosine = dot(direction, sheets.shape_of_[part].direction);
+    return sheets.parts_[part].two_sided ? std::abs(cosine) : cosine;
   }
 
-  bool covered(const Points& simplex, const Near& around, int depth) const {
+  /// Of these parts, those that may be within the tolerance of what is inside the bounds.
+  Near inside(const Bounds<Dim>& bounds, const Near& parts) const {
+    Near near;
+    for (const std::uint32_t part : parts)
+      if (bounds.meets(sheets.shape_of_[part].bounds)) near.push_back(part);
+    return near;
+  }
+
+  /// How far a point is from where the simplex goes on to.
+  double aside(const Points& simplex, const Vector<Dim>& point) const {
+    const Vector<Dim> away = point - simplex[0];
+    const double along = dot(away, direction);
+    if constexpr (Corners == Dim)
+      return std::abs(along);
+    else
+      return norm(away - along * direction);
+  }
+
+  /// Bounds of how far the parts are from the simplex, measured at a right angle to it: their
+  /// corners, or, from what it is somewhere inside a ball, as they are turned against it.
+  double farthest(const Points& simplex, const Near& parts, double somewhere, double radius) const {
+    double most_aside = 0, least = 1;
+    for (const std::uint32_t part : parts) {
+      least = std::min(least, turn(part));
+      for (const Vector<Dim>& corner : sheets.parts_[part].corner)
+        most_aside = std::max(most_aside, aside(simplex, corner));
+    }
+    const double slope = std::sqrt(std::max(0.0, 1 - least * least)) / least;
+    return std::min(most_aside, somewhere / least + radius * slope);
+  }
+
+  /// `covering` are the parts that may, `facing` those that nothing may come close to.
+  bool covered(const Points& simplex, const Near& covering, const Near& facing, int depth) const {
     constexpr int deepest = 5;
     const double tolerance = sheets.tolerance_;
-    Vector<Dim> centre;
-    for (const Vector<Dim>& p : simplex) centre += (1.0 / Corners) * p;
-    double radius = 0;
-    for (const Vector<Dim>& p : simplex) radius = std::max(radius, norm(p - centre));
-    const Bounds<Dim> bounds = bounds_of(simplex, tolerance);
-    View view;
-    for (const std::uint32_t part : around) {
-      if (!bounds.meets(bounds_of(sheets.parts_[part].corner, 0))) continue;
-      view.near.push_back(part);
-      look_at(part, centre, view);
-    }
-    if (!(view.distance <= tolerance) || !(view.gap > tolerance)) return false;
-    const double slope = std::sqrt(std::max(0.0, 1 - view.turn * view.turn)) / view.turn;
-    if (view.distance / view.turn + radius * slope <= tolerance && view.gap > tolerance + radius)
+    const Ball<Dim> ball = ball_around(simplex);
+    const double distance = covering.closest(sheets, ball.centre).distance;
+    const double gap = facing.closest(sheets, ball.centre).distance;
+    if (!(distance <= tolerance) || !(gap > tolerance)) return false;
+    if (gap > tolerance + ball.radius &&
+        farthest(simplex, covering, distance, ball.radius) <= tolerance)
       return true;
     if (depth == deepest) return false;
     const auto parts = divided(simplex);
-    return std::all_of(parts.begin(), parts.end(),
-                       [&](const Points& part) { return covered(part, view.near, depth + 1); });
+    return std::all_of(parts.begin(), parts.end(), [&](const Points& part) {
+      const Bounds<Dim> bounds = bounds_of(part, tolerance);
+      return covered(part, inside(bounds, covering), inside(bounds, facing), depth + 1);
+    });
   }
 };
 
 template <int Dim, std::size_t Corners>
 Sheets<Dim, Corners>::Sheets(std::vector<Part> parts, double tolerance)
-    : parts_(std::move(parts)), tolerance_(tolerance), tree_(std::make_unique<Tree>(parts_)) {
-  direction_of_.reserve(parts_.size());
-  for (const Part& part : parts_) direction_of_.push_back(direction_of(part.corner));
+    : parts_(std::move(parts)), tolerance_(tolerance) {
+  shape_of_.reserve(parts_.size());
+  for (const Part& part : parts_) {
+    const auto [centre, radius] = ball_around(part.corner);
+    shape_of_.push_back(
+        {bounds_of(part.corner, 0), centre, direction_of(part.corner), radius * (1 + 1e-9)});
+  }
+  tree_ = std::make_unique<Tree>(shape_of_);
 }
 
 template <int Dim, std::size_t Corners>
@@ -173,32 +219,34 @@ Sheets<Dim, Corners>::~Sheets() = default;
 
 template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) const {
-  const Search search{*this, sheet, meshadapt::direction_of(simplex)};
-  typename Search::Near near;
-  tree_->visit(bounds_of(simplex, tolerance_), [&](std::uint32_t part) { near.push_back(part); });
-  return search.covered(simplex, near, 0);
+  const Search search{*this, direction_of(simplex)};
+  Near covering, facing;
+  tree_->visit(bounds_of(simplex, tolerance_), [&](std::uint32_t part) {
+    const double turn = search.turn(part);
+    if (parts_[part].sheet == sheet && turn >= least_turn) covering.push_back(part);
+    if (turn < -0.1) facing.push_back(part);  // not what is at a right angle but for rounding
+  });
+  // What is inside has elements on both sides, which keep it apart.
+  if (!covering.empty() && parts_[covering.front()].two_sided) facing.clear();
+  return search.covered(simplex, covering, facing, 0);
 }
 
 template <int Dim, std::size_t Corners>
 std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
                                                          std::uint32_t sheet, double reach) const {
   reach += tolerance_;
-  std::optional<Vector<Dim>> best;
-  std::pair least{reach, std::uint32_t{0}};  // of two as close, the first
+  Near near;
   tree_->visit(bounds_of(std::array{point}, reach), [&](std::uint32_t part) {
-    if (parts_[part].sheet != sheet) return;
-    const Vector<Dim> at = closest_point(parts_[part].corner, point);
-    const std::pair found{norm(point - at), part};
-    if (best ? !(found < least) : !(found.first <= reach)) return;
-    least = found;
-    best = at;
+    if (parts_[part].sheet == sheet) near.push_back(part);
   });
-  return best;
+  const Closest best = near.closest(*this, point);
+  if (best.distance <= reach) return best.point;
+  return {};
 }
 
 template <int Dim, std::size_t Corners>
 std::size_t Sheets<Dim, Corners>::bytes() const {
-  return parts_.capacity() * sizeof(Part) + direction_of_.capacity() * sizeof(Vector<Dim>) +
+  return parts_.capacity() * sizeof(Part) + shape_of_.capacity() * sizeof(Shape) +
          parts_.size() * sizeof(typename Tree::Value);
 }
 

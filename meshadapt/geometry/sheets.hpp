@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -16,6 +17,16 @@ namespace ductile::meshadapt {
 /// Facets that turn by less than this where they meet may be one smooth patch, edges one smooth
 /// curve: 45 degrees. What covers a new one may be turned against it by as much.
 inline constexpr double least_turn = 0.70710678118654752;  ///< its cosine
+
+template <int Dim>
+struct Bounds {
+  Vector<Dim> low, high;
+  bool meets(const Bounds& other) const {
+    for (int i = 0; i < Dim; ++i)
+      if (low[i] > other.high[i] || other.low[i] > high[i]) return false;
+    return true;
+  }
+};
 
 /// `Corners` is 2 for edges, 3 for triangles.
 template <int Dim, std::size_t Corners>
@@ -52,10 +63,21 @@ class Sheets {
 
  private:
   struct Tree;
+  struct Near;
   struct Search;
+  struct Shape {
+    Bounds<Dim> bounds;
+    Vector<Dim> centre;
+    Vector<Dim> direction;  // unit normal of a facet, else along the edge
+    double radius;          // of a ball around the centre
+  };
+  struct Closest {
+    double distance = std::numeric_limits<double>::infinity();
+    Vector<Dim> point;
+  };
 
   std::vector<Part> parts_;
-  std::vector<Vector<Dim>> direction_of_;  // [part], unit normal of a facet, else along the edge
+  std::vector<Shape> shape_of_;  // [part]
   double tolerance_;
   std::unique_ptr<const Tree> tree_;
 };
