@@ -346,7 +346,8 @@ class Classifier {
     direction *= 1 / norm(direction);
     curve_edges_[seed].curve = id;
     for (const VertexId start : {curve_edges_[seed].a, curve_edges_[seed].b}) {
-      Vector<Dim> heading = (start == curve_edges_[seed].a ? -1.0 : 1.0) * direction;
+      const Vector<Dim> towards = (start == curve_edges_[seed].a ? -1.0 : 1.0) * direction;
+      Vector<Dim> heading = towards;
       VertexId v = start;
       for (std::uint32_t e = next_edge(seed, v); e != none; e = next_edge(e, v)) {
         CurveEdge& edge = curve_edges_[e];
@@ -357,7 +358,8 @@ class Classifier {
         const double along = dot(step, heading);
         if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed])) break;
         if (surface_tolerance_ > 0 && !edge.data.required) {
-          if (!(along > least_turn * norm(step))) break;
+          // By no more than 60 degrees in all, so that a closed curve keeps three ends.
+          if (!(along > least_turn * norm(step)) || !(dot(step, towards) > 0.5 * norm(step))) break;
           curve.smooth = curve.smooth || !straight;
           heading = (1 / norm(step)) * step;
         } else if (!straight || along <= 0) {

@@ -126,7 +126,7 @@ struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t
     const auto look = [&](std::uint32_t part) {
       const Vector<Dim> at = closest_point(sheets.parts_[part].corner, point);
       const double distance = norm(at - point);
-      if (distance < best.distance) best = {distance, at};
+      if (distance < best.distance) best = {distance, at, part};
     };
     if (this->empty()) return best;
     look(*std::min_element(this->begin(), this->end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -149,6 +149,22 @@ struct Sheets<Dim, Corners>::Search {
   double turn(std::uint32_t part) const {
     const double cosine = dot(direction, sheets.shape_of_[part].direction);
     return sheets.parts_[part].two_sided ? std::abs(cosine) : cosine;
+  }
+
+  /// Is there a gap between the sheet and this part, which faces it? Not where they are joined, nor
+  /// where the domain is between them. Looks where they are closest, near a point.
+  bool is_across_gap(std::uint32_t part, const Near& covering, const Vector<Dim>& point) const {
+    const Points& corner = sheets.parts_[part].corner;
+    Vector<Dim> there = closest_point(corner, point);
+    Closest here;
+    for (int step = 0; step < 3; ++step) {
+      here = covering.closest(sheets, there);
+      there = closest_point(corner, here.point);
+    }
+    const Vector<Dim> gap = there - here.point;
+    const double width = norm(gap);
+    return width > 1e-6 * sheets.tolerance_ &&
+           dot(gap, sheets.shape_of_[here.part].direction) > 0.1 * width;
   }
 
   /// Of these parts, those that may be within the tolerance of what is inside the bounds.
@@ -190,8 +206,11 @@ struct Sheets<Dim, Corners>::Search {
     const double distance = covering.closest(sheets, ball.centre).distance;
     const double gap = facing.closest(sheets, ball.centre).distance;
     if (!(distance <= tolerance) || !(gap > tolerance)) return false;
+    // Where a sheet ends, at less than 45 degrees to what is next, the closest point is not the one
+    // at a right angle.
+    constexpr double at_ends = 0.92;  // the cosine of half of that
     if (gap > tolerance + ball.radius &&
-        farthest(simplex, covering, distance, ball.radius) <= tolerance)
+        farthest(simplex, covering, distance, ball.radius) <= at_ends * tolerance)
       return true;
     if (depth == deepest) return false;
     const auto parts = divided(simplex);
@@ -224,10 +243,16 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   tree_->visit(bounds_of(simplex, tolerance_), [&](std::uint32_t part) {
     const double turn = search.turn(part);
     if (parts_[part].sheet == sheet && turn >= least_turn) covering.push_back(part);
-    if (turn < -0.1) facing.push_back(part);  // not what is at a right angle but for rounding
+    if (turn < -0.01) facing.push_back(part);  // not what is at a right angle, nearly
   });
+  if (covering.empty()) return false;
   // What is inside has elements on both sides, which keep it apart.
-  if (!covering.empty() && parts_[covering.front()].two_sided) facing.clear();
+  if (parts_[covering.front()].two_sided) facing.clear();
+  const Vector<Dim> centre = ball_around(simplex).centre;
+  const auto is_joined = [&](std::uint32_t part) {
+    return !search.is_across_gap(part, covering, centre);
+  };
+  facing.erase(std::remove_if(facing.begin(), facing.end(), is_joined), facing.end());
   return search.covered(simplex, covering, facing, 0);
 }
 

@@ -47,10 +47,9 @@ class Sheets {
   Sheets& operator=(const Sheets&) = delete;
 
   /// Is every point of this simplex within the tolerance of the sheet, where it is turned by less
-  /// than 45 degrees against it? And does none come that close to a sheet that faces it from across
+  /// than 45 degrees against it? And does none come that close to what faces the sheet from across
   /// a gap? Says yes only if it is certain, which it is soon unless it is a close thing: the sheet
-  /// is taken for the graph of a function over the simplex, whose slope its parts bound. Thread
-  /// safety: any thread.
+  /// is taken for the graph of a function over the simplex. Thread safety: any thread.
   bool cover(const Points& simplex, std::uint32_t sheet) const;
 
   /// The point of the sheet closest to a point, if there is one within this distance and the
@@ -74,6 +73,7 @@ class Sheets {
   struct Closest {
     double distance = std::numeric_limits<double>::infinity();
     Vector<Dim> point;
+    std::uint32_t part = 0;
   };
 
   std::vector<Part> parts_;

@@ -111,10 +111,13 @@ std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& afte
           1e-9 * old.domain + (slack + surface_tolerance) * total, faults);
   // The rim of a patch of facets: two points in 2D, in 3D a line about as long as the mesh.
   const double rim = before.dimension == 2 ? 2 : 4 * extent;
-  for (const auto& [reference, value] : old.facets)
-    compare("facets of reference " + std::to_string(reference) + " measure ", now.facets[reference],
-            value, 1e-9 * total + slack * rim + (surface_tolerance > 0 ? 0.5 : 0.0) * value,
-            faults);
+  for (const auto& [reference, value] : old.facets) {
+    const std::string what = "facets of reference " + std::to_string(reference);
+    if (surface_tolerance == 0)
+      compare(what + " measure ", now.facets[reference], value, 1e-9 * total + slack * rim, faults);
+    else if (!(now.facets[reference] > 0))
+      faults.push_back(what + " are gone");
+  }
   return faults;
 }
 

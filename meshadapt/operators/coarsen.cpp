@@ -85,12 +85,31 @@ bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
     const int at_kept = corner_of(mesh_.corners_of[e], plan.kept);
     if (at_kept >= 0 && mesh_.patches_of[e][static_cast<std::size_t>(at_kept)] != 0) return false;
   }
-  if (Dim == 3 && freedom == 1) return mesh_.curve_of(plan.gone, plan.kept) != 0;
+  if (Dim == 3 && freedom == 1)
+    return mesh_.curve_of(plan.gone, plan.kept) != 0 && keeps_patches(plan);
   for (const ElementId e : mesh_.elements_of.of(plan.gone))
     if (contains(mesh_.corners_of[e], plan.kept) &&
         patch_of_edge(mesh_, e, plan.gone, plan.kept) == mesh_.entity_of[plan.gone])
       return true;
   return false;
+}
+
+/// Between the ends of two smooth curves there may be a last triangle of a patch.
+template <int Dim>
+bool Coarsen<Dim>::keeps_patches(const Plan& plan) const {
+  if (!on_smooth_curve(mesh_, plan.gone) || mesh_.kind_of[plan.kept].freedom != 0) return true;
+  for (const CurveLink& link : mesh_.links_of.of(plan.gone)) {
+    if (link.to == plan.kept || mesh_.kind_of[link.to].freedom != 0) continue;
+    for (const ElementId e : mesh_.elements_of.of(plan.gone)) {
+      const Corners<Dim>& corners = mesh_.corners_of[e];
+      if (!contains(corners, plan.kept) || !contains(corners, link.to)) continue;
+      for (std::size_t i = 0; i <= Dim; ++i)
+        if (mesh_.patches_of[e][i] != 0 && corners[i] != plan.gone && corners[i] != plan.kept &&
+            corners[i] != link.to)
+          return false;
+    }
+  }
+  return true;
 }
 
 /// Where edges are too long already, new ones may be as long as the longest of them, nearly. The

@@ -78,6 +78,7 @@ class Coarsen {
 
   // ---- Rules: each one reason to refuse a collapse, named for what it protects ----
   bool keeps_geometry(const Plan& plan) const;
+  bool keeps_patches(const Plan& plan) const;
   double longest_allowed(const Ring& ring) const;
   bool keeps_edges_short(const Plan& plan, const Ring& ring, double longest) const;
   bool keeps_shapes(Plan& plan, double worst_before) const;

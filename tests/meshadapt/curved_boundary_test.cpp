@@ -182,6 +182,22 @@ TEST_P(CurvedBoundary, GivesTheSameBytesAtEachThreadCount) {
   }
 }
 
+TEST(CurvedBoundaries, ALidSmallerThanTheToleranceStays) {
+  const Executor executor({.threads = 2});
+  for (const double lid : {0.5, 0.02, 1e-4}) {
+    SCOPED_TRACE(lid);
+    const AnyMesh mesh = test::truncated_cone(6, lid);
+    for (const bool move : {true, false}) {
+      AdaptOptions options{.move = move};
+      options.make.surface_tolerance = 0.05;
+      const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 5), options);
+      EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
+      EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, 0.05)), "");
+      EXPECT_LT(result.mesh.triangles.size(), mesh.triangles.size() / 2);
+    }
+  }
+}
+
 // ---- The data structure after each kernel ----
 
 /// A random arc of one region or two, rippled, listed ridges or none, with random metrics.

@@ -128,9 +128,9 @@ AnyMesh bent(int dimension, int n, double angle) {
 }
 
 TEST(MakeMesh, JoinsFacetsThatTurnLittleIfCurvedBoundariesMayChange) {
-  const auto flat = make<2>(bent(2, 4, 1.5), {.surface_tolerance = 0.01});
+  const auto flat = make<2>(bent(2, 4, 1), {.surface_tolerance = 0.01});
   EXPECT_EQ(vertices_by_freedom(flat.mesh), (std::array{4, 12, 9, 0}));
-  const auto solid = make<3>(bent(3, 4, 1.5), {.surface_tolerance = 0.01});
+  const auto solid = make<3>(bent(3, 4, 1), {.surface_tolerance = 0.01});
   EXPECT_EQ(vertices_by_freedom(solid.mesh), (std::array{8, 36, 54, 27}));
   const auto is_smooth = [](const auto& entity) { return entity.smooth; };
   EXPECT_EQ(std::count_if(solid.mesh.curves.begin(), solid.mesh.curves.end(), is_smooth), 4);
@@ -146,6 +146,15 @@ TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
       const bool joined = angle < 1.5 * 0.785;
       EXPECT_EQ(fixed, dimension == 2 ? (joined ? 4 : 6) : (joined ? 8 : 12));
     }
+}
+
+/// At the rims of its lid and its base.
+TEST(MakeMesh, ClosedCurvesKeepThreeVertices) {
+  const auto made = make<3>(test::truncated_cone(6, 0.5), {.surface_tolerance = 0.01});
+  const auto count = vertices_by_freedom(made.mesh);
+  EXPECT_GE(count[0], 6);
+  EXPECT_LE(count[0], 12);
+  EXPECT_EQ(count[0] + count[1], 2 * 24);
 }
 
 /// A drop: a closed curve of edges that all turn little but in one corner.

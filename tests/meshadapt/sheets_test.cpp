@@ -176,6 +176,23 @@ TEST(Sheets, CoverNoFacetCloseToWhatFacesIt) {
   }
 }
 
+/// A wall and something thin, of 4 degrees: a needle that points at it, or, where the domain is
+/// between, the other side of a plate.
+TEST(Sheets, CoverNoFacetCloseToATip) {
+  const Vector<2> left{{0, 0}}, right{{1, 0}};
+  const Segment wall{right, left};  // faces upwards
+  const auto covered = [&](const std::vector<Segment>& others, double tolerance) {
+    std::vector<Sheets<2, 2>::Part> parts{{wall, 7, false}};
+    for (const Segment& other : others) parts.push_back({other, 8, false});
+    return Sheets<2, 2>(parts, tolerance).cover(wall, 7);
+  };
+  const Vector<2> tip{{0.9, 0.02}}, a{{0.88, 0.6}}, b{{0.92, 0.6}};
+  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.015));
+  EXPECT_FALSE(covered({{a, tip}, {tip, b}}, 0.03));
+  const Vector<2> under_left{{0, -0.02}};
+  EXPECT_TRUE(covered({{under_left, right}}, 0.1)) << "of a wedge, joined at its tip";
+}
+
 TEST(Sheets, FindTheClosestPointWithinReach) {
   test::Random random(4);
   const auto parts = wave(7);

@@ -333,6 +333,24 @@ void bend(AnyMesh& mesh, double angle) {
   }
 }
 
+AnyMesh truncated_cone(int n, double lid) {
+  AnyMesh mesh = make_grid(unit_grid(3, n));
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += 3) {
+    double& x = mesh.coordinates[at];
+    double& y = mesh.coordinates[at + 1];
+    x = 2 * x - 1;
+    y = 2 * y - 1;
+    const double from_axis = std::hypot(x, y);  // squares become circles
+    double scale = 1 + (lid - 1) * mesh.coordinates[at + 2];
+    if (from_axis > 0) scale *= std::max(std::abs(x), std::abs(y)) / from_axis;
+    x *= scale;
+    y *= scale;
+  }
+  for (std::int32_t& reference : mesh.triangles.reference)
+    reference = reference > 4 ? reference : 1;
+  return mesh;
+}
+
 void place(AnyMesh& mesh, Random& random, double scale, double offset) {
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
   const auto turn = [&](std::size_t a, std::size_t b, double angle) {

@@ -74,6 +74,10 @@ void make_slivers(AnyMesh& mesh, Random& random, std::size_t count, double thick
 /// the inside of the arc, 2 the outside, 3 and 4 its ends.
 void bend(AnyMesh& mesh, double angle);
 
+/// Of height 1, with n cells along each axis; its base has radius 1, its lid this one. References
+/// are 1 around it, 5 underneath and 6 above.
+AnyMesh truncated_cone(int n, double lid);
+
 /// Turns the mesh by a random rotation, scales it and moves it.
 void place(AnyMesh& mesh, Random& random, double scale, double offset);
 
