@@ -215,10 +215,12 @@ int run(const Arguments& arguments) {
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);
   adapted.mesh.name = job.output.string();
   const auto carried = carry_field(executor, job, {mesh, field}, adapted.mesh);
-  const AdaptSummary summary = summarise(executor, mesh, metric, adapted,
-                                         {.before = job.json || job.verbosity > 1,
-                                          .after = job.json || job.verbosity > 0,
-                                          .expects_lengths = job.adapt.insert});
+  const AdaptSummary summary = summarise(
+      executor, mesh, metric, adapted,
+      {.before = job.json || job.verbosity > 1,
+       .after = job.json || job.verbosity > 0,
+       .expects_lengths = job.adapt.insert,
+       .keeps_surface = job.adapt.make.surface_tolerance == 0 && !job.adapt.make.lock_boundary});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   print_warnings(warnings, job.verbosity);
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string());

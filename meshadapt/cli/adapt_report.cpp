@@ -91,6 +91,21 @@ std::string advice_on_lengths(const meshadapt::MeshStatistics& statistics) {
          " (ductile metric bound --anisotropy)";
 }
 
+/// Of a mesh that cannot be as coarse as its metric, since vertices are fixed, how it can; else
+/// nothing.
+std::string advice_on_surface(const meshadapt::MeshStatistics& statistics,
+                              const AdaptReport& report) {
+  constexpr double many = 0.1;
+  constexpr std::size_t more_than_corners = 32;
+  const double share = static_cast<double>(statistics.edges_short) /
+                       static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
+  if (share < many || report.fixed_vertices < more_than_corners) return {};
+  return std::to_string(std::lround(100 * share)) +
+         " % of the edges are shorter than asked for; if they are on curved boundaries, -hausd X "
+         "lets"
+         " these be up to X from where they are";
+}
+
 }  // namespace
 
 AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
@@ -106,6 +121,10 @@ AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
   if (options.after) summary.after.statistics = measure(executor, after.mesh, &after.metric);
   if (options.expects_lengths && summary.after.statistics)
     if (std::string advice = advice_on_lengths(*summary.after.statistics); !advice.empty())
+      summary.report.warnings.push_back(std::move(advice));
+  if (options.expects_lengths && options.keeps_surface && summary.after.statistics)
+    if (std::string advice = advice_on_surface(*summary.after.statistics, after.report);
+        !advice.empty())
       summary.report.warnings.push_back(std::move(advice));
   return summary;
 }

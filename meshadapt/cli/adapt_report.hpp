@@ -29,6 +29,7 @@ struct AdaptSummary {
 struct SummaryOptions {
   bool before = true, after = true;  ///< which meshes to measure
   bool expects_lengths = true;       ///< a warning is added if too many edges are too long
+  bool keeps_surface = false;        ///< ... or too short, which curved boundaries may be why
 };
 
 AdaptSummary summarise(const runtime::Executor& executor, const meshadapt::AnyMesh& before,

@@ -53,16 +53,17 @@ Bounds<Dim> bounds_of(const std::array<Vector<Dim>, N>& points, double margin) {
 
 /// Around all corners, not the least one.
 template <int Dim>
-struct Ball {
+struct Sphere {
   Vector<Dim> centre;
   double radius;
 };
 template <int Dim, std::size_t N>
-Ball<Dim> ball_around(const std::array<Vector<Dim>, N>& points) {
-  Ball<Dim> ball{{}, 0};
-  for (const Vector<Dim>& p : points) ball.centre += (1.0 / N) * p;
-  for (const Vector<Dim>& p : points) ball.radius = std::max(ball.radius, norm(p - ball.centre));
-  return ball;
+Sphere<Dim> sphere_around(const std::array<Vector<Dim>, N>& points) {
+  Sphere<Dim> sphere{{}, 0};
+  for (const Vector<Dim>& p : points) sphere.centre += (1.0 / N) * p;
+  for (const Vector<Dim>& p : points)
+    sphere.radius = std::max(sphere.radius, norm(p - sphere.centre));
+  return sphere;
 }
 
 /// Unit normal of a facet, or along an edge in 3D; 0 if it is too small to have one.
@@ -145,6 +146,7 @@ template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Search {
   const Sheets& sheets;
   Vector<Dim> direction;
+  double tolerance;
 
   double turn(std::uint32_t part) const {
     const double cosine = dot(direction, sheets.shape_of_[part].direction);
@@ -163,7 +165,7 @@ struct Sheets<Dim, Corners>::Search {
     }
     const Vector<Dim> gap = there - here.point;
     const double width = norm(gap);
-    return width > 1e-6 * sheets.tolerance_ &&
+    return width > 1e-6 * tolerance &&
            dot(gap, sheets.shape_of_[here.part].direction) > 0.1 * width;
   }
 
@@ -186,7 +188,7 @@ struct Sheets<Dim, Corners>::Search {
   }
 
   /// Bounds of how far the parts are from the simplex, measured at a right angle to it: their
-  /// corners, or, from what it is somewhere inside a ball, as they are turned against it.
+  /// corners, or, from what it is somewhere inside a sphere, as they are turned against it.
   double farthest(const Points& simplex, const Near& parts, double somewhere, double radius) const {
     double most_aside = 0, least = 1;
     for (const std::uint32_t part : parts) {
@@ -201,16 +203,19 @@ struct Sheets<Dim, Corners>::Search {
   /// `covering` are the parts that may, `facing` those that nothing may come close to.
   bool covered(const Points& simplex, const Near& covering, const Near& facing, int depth) const {
     constexpr int deepest = 5;
-    const double tolerance = sheets.tolerance_;
-    const Ball<Dim> ball = ball_around(simplex);
-    const double distance = covering.closest(sheets, ball.centre).distance;
-    const double gap = facing.closest(sheets, ball.centre).distance;
+    const Sphere<Dim> sphere = sphere_around(simplex);
+    const double distance = covering.closest(sheets, sphere.centre).distance;
+    const double gap = facing.closest(sheets, sphere.centre).distance;
     if (!(distance <= tolerance) || !(gap > tolerance)) return false;
     // Where a sheet ends, at less than 45 degrees to what is next, the closest point is not the one
     // at a right angle.
     constexpr double at_ends = 0.92;  // the cosine of half of that
-    if (gap > tolerance + ball.radius &&
-        farthest(simplex, covering, distance, ball.radius) <= at_ends * tolerance)
+    const auto is_close = [&](const Vector<Dim>& corner) {
+      return covering.closest(sheets, corner).distance <= tolerance;
+    };
+    if (!std::all_of(simplex.begin(), simplex.end(), is_close)) return false;
+    if (gap > tolerance + sphere.radius &&
+        farthest(simplex, covering, distance, sphere.radius) <= at_ends * tolerance)
       return true;
     if (depth == deepest) return false;
     const auto parts = divided(simplex);
@@ -226,7 +231,7 @@ Sheets<Dim, Corners>::Sheets(std::vector<Part> parts, double tolerance)
     : parts_(std::move(parts)), tolerance_(tolerance) {
   shape_of_.reserve(parts_.size());
   for (const Part& part : parts_) {
-    const auto [centre, radius] = ball_around(part.corner);
+    const auto [centre, radius] = sphere_around(part.corner);
     shape_of_.push_back(
         {bounds_of(part.corner, 0), centre, direction_of(part.corner), radius * (1 + 1e-9)});
   }
@@ -238,9 +243,11 @@ Sheets<Dim, Corners>::~Sheets() = default;
 
 template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) const {
-  const Search search{*this, direction_of(simplex)};
+  const Sphere<Dim> sphere = sphere_around(simplex);
+  // What is farther away than that is turned by more than 45 degrees somewhere.
+  const Search search{*this, direction_of(simplex), std::min(tolerance_, 0.5 * sphere.radius)};
   Near covering, facing;
-  tree_->visit(bounds_of(simplex, tolerance_), [&](std::uint32_t part) {
+  tree_->visit(bounds_of(simplex, search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);
     if (parts_[part].sheet == sheet && turn >= least_turn) covering.push_back(part);
     if (turn < -0.01) facing.push_back(part);  // not what is at a right angle, nearly
@@ -248,24 +255,28 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   if (covering.empty()) return false;
   // What is inside has elements on both sides, which keep it apart.
   if (parts_[covering.front()].two_sided) facing.clear();
-  const Vector<Dim> centre = ball_around(simplex).centre;
   const auto is_joined = [&](std::uint32_t part) {
-    return !search.is_across_gap(part, covering, centre);
+    return !search.is_across_gap(part, covering, sphere.centre);
   };
   facing.erase(std::remove_if(facing.begin(), facing.end(), is_joined), facing.end());
   return search.covered(simplex, covering, facing, 0);
 }
 
+/// Looks nearby first, as it is likely there and the tolerance may be large.
 template <int Dim, std::size_t Corners>
 std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
                                                          std::uint32_t sheet, double reach) const {
-  reach += tolerance_;
-  Near near;
-  tree_->visit(bounds_of(std::array{point}, reach), [&](std::uint32_t part) {
-    if (parts_[part].sheet == sheet) near.push_back(part);
-  });
-  const Closest best = near.closest(*this, point);
-  if (best.distance <= reach) return best.point;
+  const double most = reach + tolerance_;
+  for (bool last = false; !last; reach *= 4) {
+    last = !(reach > 0 && reach < most);
+    const double within = last ? most : reach;
+    Near near;
+    tree_->visit(bounds_of(std::array{point}, within), [&](std::uint32_t part) {
+      if (parts_[part].sheet == sheet) near.push_back(part);
+    });
+    const Closest best = near.closest(*this, point);
+    if (best.distance <= within) return best.point;
+  }
   return {};
 }
 

@@ -46,10 +46,11 @@ class Sheets {
   Sheets(const Sheets&) = delete;
   Sheets& operator=(const Sheets&) = delete;
 
-  /// Is every point of this simplex within the tolerance of the sheet, where it is turned by less
-  /// than 45 degrees against it? And does none come that close to what faces the sheet from across
-  /// a gap? Says yes only if it is certain, which it is soon unless it is a close thing: the sheet
-  /// is taken for the graph of a function over the simplex. Thread safety: any thread.
+  /// Is every point of this simplex within the tolerance of the sheet, and half the radius of the
+  /// simplex, where it is turned by less than 45 degrees against it? And does none come that close
+  /// to what faces the sheet from across a gap? Says yes only if it is certain, which it is soon
+  /// unless it is a close thing: the sheet is taken for the graph of a function over the simplex.
+  /// Thread safety: any thread.
   bool cover(const Points& simplex, std::uint32_t sheet) const;
 
   /// The point of the sheet closest to a point, if there is one within this distance and the
@@ -68,7 +69,7 @@ class Sheets {
     Bounds<Dim> bounds;
     Vector<Dim> centre;
     Vector<Dim> direction;  // unit normal of a facet, else along the edge
-    double radius;          // of a ball around the centre
+    double radius;          // of a sphere around the centre
   };
   struct Closest {
     double distance = std::numeric_limits<double>::infinity();

@@ -3,6 +3,7 @@
 /// another.
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <utility>
 
 #include "ductile/meshadapt/metric_operations.hpp"
@@ -42,6 +43,15 @@ std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const Any
 }
 
 template <int Dim>
+std::size_t fixed_vertices(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
+  const auto is_fixed = [&](std::size_t v) {
+    return std::size_t{mesh.kind_of[v].freedom == 0 && mesh.vertex_alive(static_cast<VertexId>(v))};
+  };
+  return runtime::parallel_reduce(executor, mesh.vertex_slots(), std::size_t{0}, is_fixed,
+                                  std::plus<>());
+}
+
+template <int Dim>
 AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
                      const AdaptOptions& options) {
   const auto start = std::chrono::steady_clock::now();
@@ -52,6 +62,7 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
+  const std::size_t fixed = fixed_vertices(executor, mesh);
   auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
   Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
                        std::exchange(metric_of, {}));
@@ -61,6 +72,7 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   auto [adapted, metric_on_it] = take_apart(executor, adapter.take_mesh());
   AdaptedMesh result{std::move(adapted), std::move(metric_on_it), adapter.report()};
   result.report.warnings = std::move(warnings);
+  result.report.fixed_vertices = fixed;
   result.report.total_seconds = seconds();
   return result;
 }

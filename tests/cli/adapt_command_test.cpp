@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "adapt_report.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "program.hpp"
@@ -109,6 +111,26 @@ TEST(AdaptSummary, WarnsOfEdgesThatAreTooLong) {
   EXPECT_TRUE(contains(warnings_for(1e-3, true).front(), "100 % of the edges are longer"));
   EXPECT_TRUE(warnings_for(1e-3, false).empty());
   EXPECT_TRUE(warnings_for(1e3, true).empty());
+}
+
+TEST(AdaptCommand, CoarsensACurvedBoundaryIfToldTo) {
+  const Folder folder;
+  meshadapt::AnyMesh mesh = meshadapt::rectangle_mesh({1, 1}, {40, 40});
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += 2) {
+    const double radius = 1 + mesh.coordinates[at], angle = mesh.coordinates[at + 1];
+    mesh.coordinates[at] = radius * std::cos(angle);
+    mesh.coordinates[at + 1] = radius * std::sin(angle);
+  }
+  meshadapt::write_mesh(folder.path() / "arc.mesh", mesh);
+  const Outcome kept = folder.run("adapt arc.mesh -hsiz 0.3");
+  EXPECT_EQ(kept.status, 0);
+  EXPECT_TRUE(contains(kept.err, "-hausd")) << kept.err;
+  const Outcome coarsened = folder.run("adapt arc.mesh -hsiz 0.3 -hausd 0.01 -o coarse.mesh");
+  EXPECT_EQ(coarsened.status, 0);
+  EXPECT_FALSE(contains(coarsened.err, "-hausd")) << coarsened.err;
+  EXPECT_LT(meshadapt::read_mesh(folder.path() / "coarse.mesh").edges.size(),
+            meshadapt::read_mesh(folder.path() / "arc.o.mesh").edges.size() / 3);
+  EXPECT_EQ(folder.run("adapt arc.mesh -hsiz 0.3 -hausd 0").status, 2);
 }
 
 TEST(AdaptCommand, RefusesSizesThatNoMetricCanHave) {

@@ -53,6 +53,9 @@ struct AdaptReport {
   bool converged = false;
   KernelReport coarsen, refine, swap, smooth;
   double setup_seconds = 0, renumber_seconds = 0, total_seconds = 0;
+  /// Vertices of the input that could not leave their place: corners, and those of curved
+  /// boundaries that keep their facets.
+  std::size_t fixed_vertices = 0;
   std::vector<std::string> warnings;
   /// What the kernels were compiled for: "as built", "x86-64-v3" or "x86-64-v4". The library may
   /// hold them for several processors and uses the best that this one can run.
