@@ -85,6 +85,7 @@ std::vector<Sheets<2, 2>::Part> wavy_line(std::uint32_t sheet) {
     return Vector<2>{{x, height(x, 0)}};
   };
   std::vector<Sheets<2, 2>::Part> parts;
+  parts.reserve(n);
   for (int i = 0; i < n; ++i) parts.push_back({{at(i), at(i + 1)}, sheet, false});
   return parts;
 }
