@@ -101,9 +101,8 @@ std::string advice_on_surface(const meshadapt::MeshStatistics& statistics,
                        static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
   if (share < many || report.fixed_vertices < more_than_corners) return {};
   return std::to_string(std::lround(100 * share)) +
-         " % of the edges are shorter than asked for; if they are on curved boundaries, -hausd X "
-         "lets"
-         " these be up to X from where they are";
+         " % of the edges are shorter than asked for; if they are on curved boundaries, -hausd X"
+         " lets these be up to X from where they are";
 }
 
 }  // namespace

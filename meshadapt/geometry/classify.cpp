@@ -265,8 +265,10 @@ class Classifier {
       return result;
     };
     std::vector<typename Sheets<Dim, Dim>::Part> facets;
-    for (const TaggedFacet<Dim>& f : facets_)
-      facets.push_back({points(f.corners), f.patch, f.other != none});
+    facets.reserve(facets_.size());
+    for (const TaggedFacet<Dim>& f : facets_)  // outwards, however the file has them
+      facets.push_back(
+          {points(facet_of<Dim>(mesh_.corners_of[f.element], f.facet)), f.patch, f.other != none});
     std::vector<typename Sheets<Dim, 2>::Part> edges;
     for (const CurveEdge& e : curve_edges_)
       if (mesh_.curves[e.curve].smooth)

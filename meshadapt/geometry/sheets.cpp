@@ -32,23 +32,20 @@ TreePoint<Dim> tree_point(const Vector<Dim>& v) {
 }
 
 template <int Dim>
-TreeBox<Dim> box_of(const Bounds<Dim>& bounds) {
-  return {tree_point(bounds.low), tree_point(bounds.high)};
+TreeBox<Dim> tree_box(const Box<Dim>& box) {
+  return {tree_point(box.low), tree_point(box.high)};
 }
 
 /// Of some points, with a margin around them.
 template <int Dim, std::size_t N>
-Bounds<Dim> bounds_of(const std::array<Vector<Dim>, N>& points, double margin) {
-  Bounds<Dim> bounds{points[0], points[0]};
+Box<Dim> box_around(const std::array<Vector<Dim>, N>& points, double margin) {
+  auto box = Box<Dim>::empty();
+  for (const Vector<Dim>& p : points) box = join(box, {p, p});
   for (int i = 0; i < Dim; ++i) {
-    for (const Vector<Dim>& p : points) {
-      bounds.low[i] = std::min(bounds.low[i], p[i]);
-      bounds.high[i] = std::max(bounds.high[i], p[i]);
-    }
-    bounds.low[i] -= margin;
-    bounds.high[i] += margin;
+    box.low[i] -= margin;
+    box.high[i] += margin;
   }
-  return bounds;
+  return box;
 }
 
 /// Around all corners, not the least one.
@@ -101,13 +98,13 @@ struct Sheets<Dim, Corners>::Tree {
     std::vector<Value> values;
     values.reserve(shapes.size());
     for (std::size_t i = 0; i < shapes.size(); ++i)
-      values.emplace_back(box_of(shapes[i].bounds), static_cast<std::uint32_t>(i));
+      values.emplace_back(tree_box(shapes[i].box), static_cast<std::uint32_t>(i));
     structure = Structure(values);
   }
 
-  void visit(const Bounds<Dim>& bounds, auto&& visit) const {
+  void visit(const Box<Dim>& box, auto&& visit) const {
     structure.query(
-        boost::geometry::index::intersects(box_of(bounds)),
+        boost::geometry::index::intersects(tree_box(box)),
         boost::make_function_output_iterator([&](const Value& value) { visit(value.second); }));
   }
 
@@ -169,11 +166,11 @@ struct Sheets<Dim, Corners>::Search {
            dot(gap, sheets.shape_of_[here.part].direction) > 0.1 * width;
   }
 
-  /// Of these parts, those that may be within the tolerance of what is inside the bounds.
-  Near inside(const Bounds<Dim>& bounds, const Near& parts) const {
+  /// Of these parts, those that may be within the tolerance of what is inside the box.
+  Near inside(const Box<Dim>& box, const Near& parts) const {
     Near near;
     for (const std::uint32_t part : parts)
-      if (bounds.meets(sheets.shape_of_[part].bounds)) near.push_back(part);
+      if (meet(box, sheets.shape_of_[part].box)) near.push_back(part);
     return near;
   }
 
@@ -220,8 +217,8 @@ struct Sheets<Dim, Corners>::Search {
     if (depth == deepest) return false;
     const auto parts = divided(simplex);
     return std::all_of(parts.begin(), parts.end(), [&](const Points& part) {
-      const Bounds<Dim> bounds = bounds_of(part, tolerance);
-      return covered(part, inside(bounds, covering), inside(bounds, facing), depth + 1);
+      const Box<Dim> box = box_around(part, tolerance);
+      return covered(part, inside(box, covering), inside(box, facing), depth + 1);
     });
   }
 };
@@ -233,7 +230,7 @@ Sheets<Dim, Corners>::Sheets(std::vector<Part> parts, double tolerance)
   for (const Part& part : parts_) {
     const auto [centre, radius] = sphere_around(part.corner);
     shape_of_.push_back(
-        {bounds_of(part.corner, 0), centre, direction_of(part.corner), radius * (1 + 1e-9)});
+        {box_around(part.corner, 0), centre, direction_of(part.corner), radius * (1 + 1e-9)});
   }
   tree_ = std::make_unique<Tree>(shape_of_);
 }
@@ -247,7 +244,7 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   // What is farther away than that is turned by more than 45 degrees somewhere.
   const Search search{*this, direction_of(simplex), std::min(tolerance_, 0.5 * sphere.radius)};
   Near covering, facing;
-  tree_->visit(bounds_of(simplex, search.tolerance), [&](std::uint32_t part) {
+  tree_->visit(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);
     if (parts_[part].sheet == sheet && turn >= least_turn) covering.push_back(part);
     if (turn < -0.01) facing.push_back(part);  // not what is at a right angle, nearly
@@ -271,19 +268,13 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
     last = !(reach > 0 && reach < most);
     const double within = last ? most : reach;
     Near near;
-    tree_->visit(bounds_of(std::array{point}, within), [&](std::uint32_t part) {
+    tree_->visit(box_around(std::array{point}, within), [&](std::uint32_t part) {
       if (parts_[part].sheet == sheet) near.push_back(part);
     });
     const Closest best = near.closest(*this, point);
     if (best.distance <= within) return best.point;
   }
   return {};
-}
-
-template <int Dim, std::size_t Corners>
-std::size_t Sheets<Dim, Corners>::bytes() const {
-  return parts_.capacity() * sizeof(Part) + shape_of_.capacity() * sizeof(Shape) +
-         parts_.size() * sizeof(typename Tree::Value);
 }
 
 template class Sheets<2, 2>;

@@ -11,22 +11,13 @@
 #include <vector>
 
 #include "ductile/meshadapt/vector.hpp"
+#include "mesh/hilbert.hpp"
 
 namespace ductile::meshadapt {
 
 /// Facets that turn by less than this where they meet may be one smooth patch, edges one smooth
 /// curve: 45 degrees. What covers a new one may be turned against it by as much.
 inline constexpr double least_turn = 0.70710678118654752;  ///< its cosine
-
-template <int Dim>
-struct Bounds {
-  Vector<Dim> low, high;
-  bool meets(const Bounds& other) const {
-    for (int i = 0; i < Dim; ++i)
-      if (low[i] > other.high[i] || other.low[i] > high[i]) return false;
-    return true;
-  }
-};
 
 /// `Corners` is 2 for edges, 3 for triangles.
 template <int Dim, std::size_t Corners>
@@ -37,7 +28,9 @@ class Sheets {
   struct Part {
     Points corner;
     std::uint32_t sheet;  ///< the number of its patch or curve
-    bool two_sided;       ///< inside the domain, or an edge: which way it is turned means nothing
+    /// It is inside the domain, or an edge, and which way it is turned means nothing. Other facets
+    /// are turned outwards.
+    bool two_sided;
   };
 
   /// Throws std::bad_alloc. Linear in the parts but for a logarithm.
@@ -59,14 +52,12 @@ class Sheets {
   std::optional<Vector<Dim>> closest(const Vector<Dim>& point, std::uint32_t sheet,
                                      double reach) const;
 
-  std::size_t bytes() const;
-
  private:
   struct Tree;
   struct Near;
   struct Search;
   struct Shape {
-    Bounds<Dim> bounds;
+    Box<Dim> box;
     Vector<Dim> centre;
     Vector<Dim> direction;  // unit normal of a facet, else along the edge
     double radius;          // of a sphere around the centre

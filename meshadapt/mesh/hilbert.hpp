@@ -33,6 +33,13 @@ struct Box {
     }
     return a;
   }
+
+  /// Do they have a point in common?
+  friend bool meet(const Box& a, const Box& b) {
+    for (int i = 0; i < Dim; ++i)
+      if (a.low[i] > b.high[i] || b.low[i] > a.high[i]) return false;
+    return true;
+  }
 };
 
 /// Position along the Hilbert curve of a cell given by `bits` bits an axis (Skilling, AIP Conf.

@@ -165,7 +165,7 @@ PatchId patch_of_edge(const Mesh<Dim>& mesh, ElementId element, VertexId a, Vert
   return 0;
 }
 
-/// Is there more to a boundary vertex than flat patches and straight curves?
+/// May the vertex only move along a curve that bends?
 template <int Dim>
 bool on_smooth_curve(const Mesh<Dim>& mesh, VertexId vertex) {
   return Dim == 3 && mesh.kind_of[vertex].freedom == 1 &&

@@ -93,6 +93,22 @@ TEST_P(CurvedBoundary, IsCoarsenedWithinTheTolerance) {
   }
 }
 
+TEST_P(CurvedBoundary, MayBeListedInAnyDirection) {
+  const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 40 : 8, 1.5);
+  AnyMesh turned = mesh;
+  for (std::size_t f = 0; f < turned.edges.size(); f += 2)
+    std::swap(turned.edges.vertices[f][0], turned.edges.vertices[f][1]);
+  if (dimension() == 3)
+    for (std::size_t f = 0; f < turned.triangles.size(); f += 2)
+      std::swap(turned.triangles.vertices[f][0], turned.triangles.vertices[f][1]);
+  AdaptOptions options;
+  options.make.surface_tolerance = 0.03;
+  const Executor executor({.threads = 1});
+  const AnyField metric = constant_metric(mesh, 0.4);
+  EXPECT_EQ(test::bits(adapt(executor, mesh, metric, options).mesh.coordinates),
+            test::bits(adapt(executor, turned, metric, options).mesh.coordinates));
+}
+
 TEST_P(CurvedBoundary, IsRefinedOnItsFacets) {
   const AnyMesh mesh = arc(dimension(), 4, 1.5);
   const Executor executor({.threads = 2});
