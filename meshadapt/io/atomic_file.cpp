@@ -1,5 +1,7 @@
 #include "ductile/meshadapt/atomic_file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -52,31 +54,57 @@ void expect_usable_name(const fs::path& path) {
                      "; change its permissions or choose another name");
 }
 
-/// A new file beside `path`, created so that no two writers share one.
-fs::path create_temporary(const fs::path& path) {
+/// The name of a new file beside `path`. create(name) makes it, or says no and why in errno; not if
+/// there is one, so that no two writers share one.
+template <class Create>
+fs::path create_beside(const fs::path& path, const Create& create) {
   const std::string stem =
       path.filename().string().substr(0, 200) + ".ductile-tmp-" + std::to_string(::getpid()) + "-";
   for (int number = 0;; ++number) {
     fs::path temporary = folder_of(path) / (stem + std::to_string(number));
-    if (std::FILE* file = std::fopen(temporary.c_str(), "wbx")) {
-      std::fclose(file);
-      return temporary;
-    }
+    if (create(temporary)) return temporary;
     if (errno != EEXIST || number > 10000)
       throw InputError(path.string() + ": cannot create a file in folder " +
                        folder_of(path).string() + ", " + reason(errno) + "; choose another folder");
   }
 }
 
+fs::path create_temporary(const fs::path& path) {
+  return create_beside(path, [](const fs::path& name) {
+    std::FILE* const file = std::fopen(name.c_str(), "wbx");
+    return file != nullptr && std::fclose(file) == 0;
+  });
+}
+
+/// Where the system has a name for what is open.
+std::string name_of_descriptor(int descriptor) {
+  return "/proc/self/fd/" + std::to_string(descriptor);
+}
+
+/// A file without a name, of which nothing is left if the process ends; null where there is no such
+/// thing, or none that could get a name.
+std::FILE* open_unnamed(const fs::path& folder) {
+#ifdef O_TMPFILE
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0) return nullptr;
+  if (::access(name_of_descriptor(descriptor).c_str(), F_OK) == 0)
+    if (std::FILE* const file = ::fdopen(descriptor, "wb")) return file;
+  ::close(descriptor);
+#endif
+  return nullptr;
+}
+
 }  // namespace
 
 // ---- One file ----
 
-OutputFile::OutputFile(fs::path path, fs::path temporary)
-    : path_(std::move(path)),
-      temporary_(std::move(temporary)),
-      buffer_(std::make_unique_for_overwrite<char[]>(buffer_size)),
-      file_(std::fopen(temporary_.c_str(), "wb")) {
+OutputFile::OutputFile(fs::path path)
+    : path_(std::move(path)), buffer_(std::make_unique_for_overwrite<char[]>(buffer_size)) {
+  if (is_device(path_))
+    temporary_ = path_;
+  else if (file_ = open_unnamed(folder_of(path_)); !file_)
+    temporary_ = create_temporary(path_);
+  if (!file_) file_ = std::fopen(temporary_.c_str(), "wb");
   if (!file_) {
     const std::string why = reason(errno);
     discard();
@@ -86,7 +114,7 @@ OutputFile::OutputFile(fs::path path, fs::path temporary)
   std::error_code ignored;  // keeping the old file's permissions is a courtesy
   const fs::file_status old = fs::status(path_, ignored);
   if (!writes_directly() && fs::exists(old))
-    fs::permissions(temporary_, old.permissions(), ignored);
+    (void)::fchmod(::fileno(file_), static_cast<mode_t>(old.permissions()));
 }
 
 OutputFile::~OutputFile() { discard(); }
@@ -119,14 +147,22 @@ void OutputFile::close() {
   if (!file_) return;
   if (broken_) fail("finish");
   flush();
+  if (temporary_.empty()) take_name();
   errno = 0;
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("close");
+}
+
+void OutputFile::take_name() {
+  const std::string open = name_of_descriptor(::fileno(file_));
+  temporary_ = create_beside(path_, [&](const fs::path& name) {
+    return ::linkat(AT_FDCWD, open.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  });
 }
 
 void OutputFile::discard() noexcept {
   if (file_) std::fclose(std::exchange(file_, nullptr));
   std::error_code ignored;
-  if (!done_ && !writes_directly()) fs::remove(temporary_, ignored);
+  if (!done_ && !writes_directly() && !temporary_.empty()) fs::remove(temporary_, ignored);
 }
 
 // ---- Several files ----
@@ -141,12 +177,7 @@ OutputFile& AtomicOutputs::stage(const fs::path& path) {
   for (const auto& file : files_)
     if (file->path_ == target)
       throw InputError(path.string() + ": is the name of two outputs; give each its own");
-  if (is_device(target)) {
-    files_.push_back(std::make_unique<OutputFile>(target, target));
-  } else {
-    const fs::path temporary = create_temporary(target);
-    files_.push_back(std::make_unique<OutputFile>(target, temporary));
-  }
+  files_.push_back(std::make_unique<OutputFile>(target));
   return *files_.back();
 }
 

@@ -1,5 +1,6 @@
 #include "ductile/meshadapt/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -38,7 +39,6 @@ TEST(AtomicOutputs, LeaveNothingWithoutCommit) {
     AtomicOutputs outputs;
     outputs.stage(folder / "a").write("new");
     outputs.stage(folder / "b").write("new");
-    EXPECT_EQ(folder.file_count(), 3U);
   }
   EXPECT_EQ(test::get_bytes(folder / "a"), "old");
   EXPECT_EQ(folder.file_count(), 1U);
@@ -176,6 +176,16 @@ TEST(AtomicOutputs, NeverCommitAFileWithAGap) {
   EXPECT_FALSE(fs::exists(folder / "a"));
 }
 
+bool has_unnamed_files(const fs::path& folder) {
+#ifdef O_TMPFILE
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor >= 0) ::close(descriptor);
+  return descriptor >= 0 && fs::exists("/proc/self/fd");
+#else
+  return false;
+#endif
+}
+
 TEST(AtomicOutputs, SurviveAnInterrupt) {
   const test::TemporaryFolder folder;
   test::put_bytes(folder / "a", "old");
@@ -186,7 +196,7 @@ TEST(AtomicOutputs, SurviveAnInterrupt) {
   };
   EXPECT_EXIT(interrupted(), testing::KilledBySignal(SIGTERM), "");
   EXPECT_EQ(test::get_bytes(folder / "a"), "old");
-  ASSERT_EQ(folder.file_count(), 2U);
+  EXPECT_EQ(folder.file_count(), has_unnamed_files(folder / "") ? 1U : 2U);
   for (const auto& entry : fs::directory_iterator(folder / "")) {
     const std::string name = entry.path().filename().string();
     EXPECT_TRUE(name == "a" || name.starts_with("a.ductile-tmp-")) << name;

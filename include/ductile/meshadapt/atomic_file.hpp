@@ -1,9 +1,9 @@
 /// @file
-/// AtomicOutputs: output files that appear whole or not at all. Each one is written to a temporary
-/// beside its place, `NAME.ductile-tmp-PID-N`; commit() renames all of them when every byte of
-/// every one is on its way to disk. Until then, and after an error or an interrupt, the files that
-/// were there before are untouched. What is no regular file (/dev/null, a pipe) is written
-/// directly.
+/// AtomicOutputs: output files that appear whole or not at all. Each one has no name while it is
+/// written, or, where the file system has no such files, a temporary one beside its place,
+/// `NAME.ductile-tmp-PID-N`; commit() gives all of them their names when every byte of every one is
+/// on its way to disk. Until then, and after an error or an interrupt, the files that were there
+/// before are untouched. What is no regular file (/dev/null, a pipe) is written directly.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ namespace ductile::meshadapt {
 /// Thread safety: one thread.
 class OutputFile {
  public:
-  /// Use AtomicOutputs::stage. Opens `temporary` for writing; errors name `path`.
-  OutputFile(std::filesystem::path path, std::filesystem::path temporary);
+  /// Use AtomicOutputs::stage. Opens a file that is to be at `path`, which errors name.
+  explicit OutputFile(std::filesystem::path path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -46,12 +46,13 @@ class OutputFile {
   friend class AtomicOutputs;
   void flush();
   void close();
+  void take_name();
   void discard() noexcept;
   [[noreturn]] void fail(const char* action) const;
   bool writes_directly() const { return temporary_ == path_; }
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path temporary_;  ///< empty while the file has no name
   std::unique_ptr<char[]> buffer_;
   std::size_t used_ = 0;
   std::size_t flushed_ = 0;
@@ -70,11 +71,11 @@ class AtomicOutputs {
   AtomicOutputs(const AtomicOutputs&) = delete;
   AtomicOutputs& operator=(const AtomicOutputs&) = delete;
 
-  /// Opens a temporary for `path`, valid until commit(). A symbolic link is followed: the file that
+  /// Opens an output for `path`, valid until commit(). A symbolic link is followed: the file that
   /// it names is replaced. Throws InputError where check_writable would, or when `path` is staged.
   OutputFile& stage(const std::filesystem::path& path);
 
-  /// Closes every file, then renames every temporary to its place. Throws Error: if a file could
+  /// Closes every file, then moves each to its place. Throws Error: if a file could
   /// not be written to its end, nothing was renamed; if a rename fails, the text names what is in
   /// place already.
   void commit();
