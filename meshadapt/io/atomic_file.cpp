@@ -83,7 +83,7 @@ std::string name_of_descriptor(int descriptor) {
 
 /// A file without a name, of which nothing is left if the process ends; null where there is no such
 /// thing, or none that could get a name.
-std::FILE* open_unnamed(const fs::path& folder) {
+std::FILE* open_unnamed([[maybe_unused]] const fs::path& folder) {
 #ifdef O_TMPFILE
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   if (descriptor < 0) return nullptr;

@@ -176,7 +176,7 @@ TEST(AtomicOutputs, NeverCommitAFileWithAGap) {
   EXPECT_FALSE(fs::exists(folder / "a"));
 }
 
-bool has_unnamed_files(const fs::path& folder) {
+bool has_unnamed_files([[maybe_unused]] const fs::path& folder) {
 #ifdef O_TMPFILE
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   if (descriptor >= 0) ::close(descriptor);
