@@ -199,7 +199,7 @@ struct Sheets<Dim, Corners>::Search {
 
   /// `covering` are the parts that may, `facing` those that nothing may come close to.
   bool covered(const Points& simplex, const Near& covering, const Near& facing, int depth) const {
-    constexpr int deepest = 5;
+    constexpr int deepest = 4;
     const Sphere<Dim> sphere = sphere_around(simplex);
     const double distance = covering.closest(sheets, sphere.centre).distance;
     const double gap = facing.closest(sheets, sphere.centre).distance;
@@ -207,13 +207,11 @@ struct Sheets<Dim, Corners>::Search {
     // Where a sheet ends, at less than 45 degrees to what is next, the closest point is not the one
     // at a right angle.
     constexpr double at_ends = 0.92;  // the cosine of half of that
-    const auto is_close = [&](const Vector<Dim>& corner) {
-      return covering.closest(sheets, corner).distance <= tolerance;
-    };
-    if (!std::all_of(simplex.begin(), simplex.end(), is_close)) return false;
     if (gap > tolerance + sphere.radius &&
         farthest(simplex, covering, distance, sphere.radius) <= at_ends * tolerance)
-      return true;
+      return std::all_of(simplex.begin(), simplex.end(), [&](const Vector<Dim>& corner) {
+        return covering.closest(sheets, corner).distance <= tolerance;
+      });
     if (depth == deepest) return false;
     const auto parts = divided(simplex);
     return std::all_of(parts.begin(), parts.end(), [&](const Points& part) {

@@ -172,7 +172,7 @@ TEST(Sheets, CoverNoFacetCloseToWhatFacesIt) {
       return Sheets<3, 3>(parts, tolerance).cover(upwards(z), 7);
     };
     EXPECT_TRUE(covered(0.012, 0));
-    EXPECT_EQ(covered(0.012, 0.011), two_sided);
+    EXPECT_EQ(covered(0.012, 0.0095), two_sided);
     EXPECT_EQ(covered(0.05, 0), two_sided);
   }
 }
