@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
+#include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
+#include "support/meshes.hpp"
+#include "support/metrics.hpp"
 #include "support/preserved.hpp"
 #include "support/random_case.hpp"
 
@@ -56,6 +60,49 @@ TEST(Adapter, EachKernelLeavesTheMeshSound) {
       check_after_each_kernel<2>(executor, random);
     else
       check_after_each_kernel<3>(executor, random);
+  }
+}
+
+/// A random arc of one region or two, rippled, with listed ridges or none, and random metrics; what
+/// is curved may change.
+test::RandomCase random_arc(std::uint64_t seed) {
+  test::Random random(seed);
+  const int dimension = seed % 2 == 0 ? 2 : 3, n = dimension == 2 ? 16 : 6;
+  test::Grid grid = test::unit_grid(dimension, n);
+  if (test::chance(random, 0.3)) grid.region = test::two_halves(n);
+  if (test::chance(random, 0.2)) grid.region = test::with_hole(n);
+  test::RandomCase arc{.mesh = test::make_grid(grid), .metric = {}, .options = {}, .what = "arc"};
+  if (dimension == 3 && test::chance(random, 0.5)) test::list_ridges(arc.mesh);
+  const double waves = test::uniform(random, 1, 9), amount = test::uniform(random, 0, 0.3) / waves;
+  auto& coordinates = arc.mesh.coordinates;
+  for (std::size_t at = 0; at < coordinates.size(); at += static_cast<std::size_t>(dimension))
+    coordinates[at] += amount * std::sin(waves * coordinates[at + 1] + 1);
+  test::bend(arc.mesh, test::uniform(random, 0.5, 3));
+  test::jiggle(arc.mesh, random, 0.2);
+  arc.metric = test::wild_field(arc.mesh, random, 1.5, test::uniform(random, 1, 6));
+  test::scale_to(arc.metric, arc.mesh,
+                 (dimension == 2 ? 200 : 100) * test::uniform(random, 0.01, 2));
+  arc.options.make.surface_tolerance = std::pow(10, test::uniform(random, -3, 0));
+  return arc;
+}
+
+TEST(Adapter, EachKernelLeavesCurvedBoundariesSound) {
+  const char* trials = std::getenv("DUCTILE_TRIALS");
+  const std::uint64_t count = trials == nullptr ? 16 : std::strtoull(trials, nullptr, 10);
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    SCOPED_TRACE(seed);
+    const test::RandomCase random = random_arc(seed);
+    const Executor executor(
+        {.threads = static_cast<int>(1 + seed % 3), .deterministic = seed % 5 != 4});
+    if (random.mesh.dimension == 2)
+      check_after_each_kernel<2>(executor, random);
+    else
+      check_after_each_kernel<3>(executor, random);
+    const AdaptedMesh result = adapt(executor, random.mesh, random.metric, random.options);
+    EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
+    EXPECT_EQ(
+        test::joined(check_domain(random.mesh, result.mesh, random.options.make.surface_tolerance)),
+        "");
   }
 }
 

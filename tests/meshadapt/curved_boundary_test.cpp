@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/statistics.hpp"
-#include "operators/adapter.hpp"
 #include "support/bits.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
@@ -211,79 +209,6 @@ TEST(CurvedBoundaries, ALidSmallerThanTheToleranceStays) {
       EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, 0.05)), "");
       EXPECT_LT(result.mesh.triangles.size(), mesh.triangles.size() / 2);
     }
-  }
-}
-
-// ---- The data structure after each kernel ----
-
-/// A random arc of one region or two, rippled, listed ridges or none, with random metrics.
-struct RandomArc {
-  AnyMesh mesh;
-  AnyField metric;
-  AdaptOptions options;
-
-  explicit RandomArc(std::uint64_t seed) {
-    test::Random random(seed);
-    const int dimension = seed % 2 == 0 ? 2 : 3, n = dimension == 2 ? 16 : 6;
-    test::Grid grid = test::unit_grid(dimension, n);
-    if (test::chance(random, 0.3)) grid.region = test::two_halves(n);
-    if (test::chance(random, 0.2)) grid.region = test::with_hole(n);
-    mesh = test::make_grid(grid);
-    if (dimension == 3 && test::chance(random, 0.5)) test::list_ridges(mesh);
-    ripple(random);
-    test::bend(mesh, test::uniform(random, 0.5, 3));
-    test::jiggle(mesh, random, 0.2);
-    metric = test::wild_field(mesh, random, 1.5, test::uniform(random, 1, 6));
-    test::scale_to(metric, mesh, (dimension == 2 ? 200 : 100) * test::uniform(random, 0.01, 2));
-    options.make.surface_tolerance = std::pow(10, test::uniform(random, -3, 0));
-  }
-
- private:
-  void ripple(test::Random& random) {
-    const auto size = static_cast<std::size_t>(mesh.dimension);
-    const double waves = test::uniform(random, 1, 9),
-                 amount = test::uniform(random, 0, 0.3) / waves;
-    for (std::size_t at = 0; at < mesh.coordinates.size(); at += size)
-      mesh.coordinates[at] += amount * std::sin(waves * mesh.coordinates[at + 1] + 1);
-  }
-};
-
-template <int Dim>
-void check_after_each_kernel(const Executor& executor, const RandomArc& random) {
-  Neighbours<Dim> neighbours;
-  std::vector<std::string> warnings;
-  Mesh<Dim> mesh = make_mesh<Dim>(executor, random.mesh, random.options.make, neighbours, warnings);
-  std::vector<Metric<Dim>> metric_of(random.mesh.vertex_count());
-  for (std::size_t v = 0; v < metric_of.size(); ++v)
-    std::copy_n(&random.metric.values[v * Metric<Dim>::size], Metric<Dim>::size,
-                metric_of[v].m.begin());
-  AdaptOptions options = random.options;
-  const Adapter<Dim>* driver = nullptr;
-  options.progress = [&](const AdaptProgress& progress) {
-    ASSERT_EQ(test::joined(check_mesh(executor, driver->mesh())), "") << "after " << progress.step;
-  };
-  Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours), metric_of);
-  driver = &adapter;
-  adapter.run();
-}
-
-TEST(CurvedBoundaries, EachKernelLeavesTheMeshSound) {
-  const char* trials = std::getenv("DUCTILE_TRIALS");
-  const std::uint64_t count = trials == nullptr ? 16 : std::strtoull(trials, nullptr, 10);
-  for (std::uint64_t seed = 0; seed < count; ++seed) {
-    SCOPED_TRACE(seed);
-    const RandomArc random(seed);
-    const Executor executor(
-        {.threads = static_cast<int>(1 + seed % 3), .deterministic = seed % 5 != 4});
-    if (random.mesh.dimension == 2)
-      check_after_each_kernel<2>(executor, random);
-    else
-      check_after_each_kernel<3>(executor, random);
-    const AdaptedMesh result = adapt(executor, random.mesh, random.metric, random.options);
-    EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
-    EXPECT_EQ(
-        test::joined(check_domain(random.mesh, result.mesh, random.options.make.surface_tolerance)),
-        "");
   }
 }
 
