@@ -6,41 +6,19 @@
 #include <utility>
 
 #include <boost/container/small_vector.hpp>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
-#include <boost/iterator/function_output_iterator.hpp>
 
 #include "ductile/meshadapt/simplex.hpp"
+#include "geometry/box_index.hpp"
 #include "geometry/distance.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
 
-template <int Dim>
-using TreePoint = boost::geometry::model::point<double, Dim, boost::geometry::cs::cartesian>;
-template <int Dim>
-using TreeBox = boost::geometry::model::box<TreePoint<Dim>>;
-
-template <int Dim>
-TreePoint<Dim> tree_point(const Vector<Dim>& v) {
-  if constexpr (Dim == 2)
-    return {v[0], v[1]};
-  else
-    return {v[0], v[1], v[2]};
-}
-
-template <int Dim>
-TreeBox<Dim> tree_box(const Box<Dim>& box) {
-  return {tree_point(box.low), tree_point(box.high)};
-}
-
 /// Of some points, with a margin around them.
 template <int Dim, std::size_t N>
 Box<Dim> box_around(const std::array<Vector<Dim>, N>& points, double margin) {
-  auto box = Box<Dim>::empty();
-  for (const Vector<Dim>& p : points) box = join(box, {p, p});
+  auto box = box_around(points);
   for (int i = 0; i < Dim; ++i) {
     box.low[i] -= margin;
     box.high[i] += margin;
@@ -90,25 +68,8 @@ auto divided(const std::array<Vector<3>, 3>& p) {
 }  // namespace
 
 template <int Dim, std::size_t Corners>
-struct Sheets<Dim, Corners>::Tree {
-  using Value = std::pair<TreeBox<Dim>, std::uint32_t>;
-  using Structure = boost::geometry::index::rtree<Value, boost::geometry::index::quadratic<16>>;
-
-  explicit Tree(const std::vector<Shape>& shapes) {
-    std::vector<Value> values;
-    values.reserve(shapes.size());
-    for (std::size_t i = 0; i < shapes.size(); ++i)
-      values.emplace_back(tree_box(shapes[i].box), static_cast<std::uint32_t>(i));
-    structure = Structure(values);
-  }
-
-  void visit(const Box<Dim>& box, auto&& visit) const {
-    structure.query(
-        boost::geometry::index::intersects(tree_box(box)),
-        boost::make_function_output_iterator([&](const Value& value) { visit(value.second); }));
-  }
-
-  Structure structure;
+struct Sheets<Dim, Corners>::Tree : BoxIndex<Dim> {
+  using BoxIndex<Dim>::BoxIndex;
 };
 
 /// Some parts, among which the closest to a point is looked for: first where it is likely, then
@@ -228,9 +189,9 @@ Sheets<Dim, Corners>::Sheets(std::vector<Part> parts, double tolerance)
   for (const Part& part : parts_) {
     const auto [centre, radius] = sphere_around(part.corner);
     shape_of_.push_back(
-        {box_around(part.corner, 0), centre, direction_of(part.corner), radius * (1 + 1e-9)});
+        {box_around(part.corner), centre, direction_of(part.corner), radius * (1 + 1e-9)});
   }
-  tree_ = std::make_unique<Tree>(shape_of_);
+  tree_ = std::make_unique<Tree>(parts_.size(), [&](std::size_t i) { return shape_of_[i].box; });
 }
 
 template <int Dim, std::size_t Corners>
@@ -242,7 +203,7 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   // What is farther away than that is turned by more than 45 degrees somewhere.
   const Search search{*this, direction_of(simplex), std::min(tolerance_, 0.5 * sphere.radius)};
   Near covering, facing;
-  tree_->visit(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
+  tree_->each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);
     if (parts_[part].sheet == sheet && turn >= least_turn) covering.push_back(part);
     if (turn < -0.01) facing.push_back(part);  // not what is at a right angle, nearly
@@ -266,7 +227,7 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
     last = !(reach > 0 && reach < most);
     const double within = last ? most : reach;
     Near near;
-    tree_->visit(box_around(std::array{point}, within), [&](std::uint32_t part) {
+    tree_->each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
       if (parts_[part].sheet == sheet) near.push_back(part);
     });
     const Closest best = near.closest(*this, point);

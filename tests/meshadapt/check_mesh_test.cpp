@@ -233,5 +233,48 @@ TEST(CheckDomain, AllowsForRoundingFarFromTheOriginAndInThinDomains) {
   }
 }
 
+/// A tetrahedron, or in 2D a triangle, of height 1 over a flat base, and another like it on top,
+/// whose tip points down and reaches this far into the first.
+AnyMesh two_with_tips(int dimension, double depth) {
+  AnyMesh mesh;
+  mesh.dimension = dimension;
+  if (dimension == 2) {
+    mesh.coordinates = {0, 0, 1, 0, 0.5, 1, 0, 2, 0.5, 1 - depth, 1, 2};
+    mesh.triangles = {{{0, 1, 2}, {3, 4, 5}}, {0, 0}};
+    mesh.edges = {{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}}, std::vector(6, 0)};
+  } else {
+    mesh.coordinates = {0,   0,    0, 1,   0, 0, 0,  1,   0, 0.25, 0.25, 1,
+                        0.6, -0.5, 2, 0.5, 1, 2, -1, 0.3, 2, 0.25, 0.25, 1 - depth};
+    mesh.tetrahedra = {{{0, 1, 2, 3}, {4, 6, 5, 7}}, {0, 0}};
+    mesh.triangles.vertices = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3},
+                               {4, 5, 6}, {4, 7, 5}, {5, 7, 6}, {6, 7, 4}};
+    mesh.triangles.reference.assign(8, 0);
+  }
+  mesh.vertex_reference.assign(mesh.coordinates.size() / static_cast<std::size_t>(dimension), 0);
+  return mesh;
+}
+
+TEST(CheckBoundary, FindsFacetsThatCross) {
+  for (const int dimension : {2, 3}) {
+    EXPECT_EQ(test::joined(check_mesh(executor, two_with_tips(dimension, 1e-9))), "");
+    EXPECT_EQ(test::joined(check_boundary(executor, two_with_tips(dimension, -1e-9))), "");
+    EXPECT_EQ(test::joined(check_boundary(executor, two_with_tips(dimension, 0))), "") << "touches";
+    const auto found = test::joined(check_boundary(executor, two_with_tips(dimension, 1e-9)));
+    EXPECT_NE(found.find(dimension == 2 ? "edge 2 crosses edge 5" : "triangle 2 crosses triangle"),
+              std::string::npos)
+        << found;
+  }
+}
+
+TEST(CheckBoundary, FindsMeshesThatOverlapThemselves) {
+  for (const int dimension : {2, 3})
+    for (const double angle : {1.0, 6.2, 6.4, 7.0}) {
+      AnyMesh mesh = box(dimension);
+      test::bend(mesh, angle);
+      EXPECT_EQ(test::joined(check_mesh(executor, mesh)), "");
+      EXPECT_EQ(check_boundary(executor, mesh).empty(), angle < 6.3) << angle;
+    }
+}
+
 }  // namespace
 }  // namespace ductile::meshadapt
