@@ -10,6 +10,7 @@
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/box_index.hpp"
 #include "geometry/distance.hpp"
+#include "geometry/prism.hpp"
 
 namespace ductile::meshadapt {
 
@@ -158,21 +159,48 @@ struct Sheets<Dim, Corners>::Search {
     return std::min(most_aside, somewhere / least + radius * slope);
   }
 
+  /// Whether each point of the simplex has one of the parts above or below; if so how far away at
+  /// most, and where that is so.
+  struct Graph {
+    bool whole;
+    double most_aside;
+    Vector<Dim> where;
+  };
+  Graph graph_over(const Points& simplex, const Near& parts) const {
+    const Prism<Dim, Corners> prism(simplex);
+    Graph graph{false, 0, simplex[0]};
+    double share = 0;
+    for (const std::uint32_t part : parts) {
+      const auto inside = prism.inside(sheets.parts_[part].corner);
+      share += prism.share(inside);
+      for (const auto& place : inside) {
+        const double here = aside(simplex, place.point);
+        if (here > graph.most_aside) graph = {false, here, prism.below(place)};
+      }
+    }
+    graph.whole = std::abs(share - 1) < 1e-9;
+    return graph;
+  }
+
   /// `covering` are the parts that may, `facing` those that nothing may come close to.
   bool covered(const Points& simplex, const Near& covering, const Near& facing, int depth) const {
-    constexpr int deepest = 4;
+    constexpr int deepest = 3;
     const Sphere<Dim> sphere = sphere_around(simplex);
     const double distance = covering.closest(sheets, sphere.centre).distance;
     const double gap = facing.closest(sheets, sphere.centre).distance;
     if (!(distance <= tolerance) || !(gap > tolerance)) return false;
-    // Where a sheet ends, at less than 45 degrees to what is next, the closest point is not the one
-    // at a right angle.
-    constexpr double at_ends = 0.92;  // the cosine of half of that
-    if (gap > tolerance + sphere.radius &&
-        farthest(simplex, covering, distance, sphere.radius) <= at_ends * tolerance)
-      return std::all_of(simplex.begin(), simplex.end(), [&](const Vector<Dim>& corner) {
-        return covering.closest(sheets, corner).distance <= tolerance;
-      });
+    if (gap > tolerance + sphere.radius) {
+      const Graph graph = graph_over(simplex, covering);
+      if (graph.whole && graph.most_aside <= tolerance) return true;
+      if (graph.whole && covering.closest(sheets, graph.where).distance > tolerance) return false;
+      // Where a sheet ends, at less than 45 degrees to what is next, the closest point is not the
+      // one at a right angle.
+      constexpr double at_ends = 0.92;  // the cosine of half of that
+      if (farthest(simplex, covering, distance, sphere.radius) <= at_ends * tolerance)
+        return std::all_of(simplex.begin(), simplex.end(), [&](const Vector<Dim>& corner) {
+          return covering.closest(sheets, corner).distance <= tolerance;
+        });
+    }
     if (depth == deepest) return false;
     const auto parts = divided(simplex);
     return std::all_of(parts.begin(), parts.end(), [&](const Points& part) {

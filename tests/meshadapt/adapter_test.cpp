@@ -103,8 +103,8 @@ TEST(Adapter, EachKernelLeavesCurvedBoundariesSound) {
     EXPECT_EQ(
         test::joined(check_domain(random.mesh, result.mesh, random.options.make.surface_tolerance)),
         "");
-    if (check_boundary(executor, random.mesh).empty())
-      EXPECT_EQ(test::joined(check_boundary(executor, result.mesh)), "");
+    EXPECT_TRUE(!check_boundary(executor, random.mesh).empty() ||
+                check_boundary(executor, result.mesh).empty());
   }
 }
 
