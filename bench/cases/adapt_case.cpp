@@ -6,9 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "cases/curved_mesh.hpp"
 #include "cases/formulas.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 
 namespace ductile::bench {
@@ -22,7 +24,7 @@ namespace {
 /// of the last case needs a mesh that knows where the layer is, so it starts from one adapted to a
 /// hundredth of the complexity.
 constexpr double layer_coarser = 100;
-constexpr std::array<CaseInfo, 8> cases{{
+constexpr std::array<CaseInfo, 10> cases{{
     {"psi2d", 2, 238157, 1, true, "waves and a front; 20,000 to about 520,000 triangles"},
     {"psi3d", 3, 24748.7, 1, true, "the same along z; 750,000 to about 280,000 tetrahedra"},
     {"uni2d", 2, 10000, 1, true, "edges of 0.01; 2,048 to about 24,000 triangles"},
@@ -32,6 +34,10 @@ constexpr std::array<CaseInfo, 8> cases{{
     {"cube-linear", 3, 4651.7, 5, false, "a plane layer in a cube, 1 : 100; 162 tetrahedra"},
     {"layer3d", 3, 100000, 1, false,
      "a curved layer, 1 : 100; about 14,000 to 1,000,000 tetrahedra"},
+    {"ring2d", 2, 1870, 1, true,
+     "edges of 0.02 in a sector of a ring; 20,000 to about 4,400 triangles"},
+    {"dome3d", 3, 982, 1, true,
+     "edges of 0.1 in a sector of a hollow ball; 96,000 to about 9,000 tetrahedra"},
 }};
 
 /// Along an axis.
@@ -40,7 +46,16 @@ int start_cells(std::string_view name) {
   if (name == "psi3d") return 50;
   if (name == "uni3d") return 10;
   if (name == "cube-linear") return 3;
+  if (name == "ring2d") return 200;
+  if (name == "dome3d") return 40;
   return name == "layer3d" ? 6 : 32;
+}
+
+/// How far curved boundaries may go astray: about what the edges asked for are from an arc that
+/// they are chords of, twice that where it bends most.
+double surface_tolerance(std::string_view name) {
+  if (name == "ring2d") return 2e-4;
+  return name == "dome3d" ? 5e-3 : 0;
 }
 
 struct SizedName {
@@ -76,6 +91,7 @@ template <>
 Formula<2> formula_of(const runtime::Executor& executor, const CaseInfo& info, double factor) {
   if (info.name == "psi2d") return psi_metric<2>(executor, factor * info.complexity);
   if (info.name == "uni2d") return scaled(uniform_metric<2>(0.01), factor);
+  if (info.name == "ring2d") return scaled(uniform_metric<2>(0.02), factor);
   return scaled(Formula<2>(info.name == "ani2d_circle" ? circle_metric : boundary_metric), factor);
 }
 
@@ -84,15 +100,14 @@ Formula<3> formula_of(const runtime::Executor& executor, const CaseInfo& info, d
   if (info.name == "psi3d") return psi_metric<3>(executor, factor * info.complexity);
   if (info.name == "layer3d") return curved_layer_metric(executor, factor * info.complexity);
   const double growth = std::pow(factor, 2.0 / 3);
+  if (info.name == "dome3d") return scaled(uniform_metric<3>(0.1), growth);
   return scaled(info.name == "uni3d" ? uniform_metric<3>(0.05) : Formula<3>(cube_linear_metric),
                 growth);
 }
 
 AnyMesh regular_mesh(int dimension, int cells) {
-  AnyMesh mesh = dimension == 2 ? meshadapt::rectangle_mesh({1, 1}, {cells, cells})
-                                : meshadapt::box_mesh({1, 1, 1}, {cells, cells, cells});
-  mesh.name = "start";
-  return mesh;
+  return dimension == 2 ? meshadapt::rectangle_mesh({1, 1}, {cells, cells})
+                        : meshadapt::box_mesh({1, 1, 1}, {cells, cells, cells});
 }
 
 /// The start mesh adapted to a hundredth of the complexity. On one thread: it is a small one.
@@ -102,22 +117,23 @@ AnyMesh layer_mesh(AnyMesh mesh, const Formula<Dim>& formula) {
   const Formula<Dim> coarse = scaled(formula, std::pow(layer_coarser, -2.0 / Dim));
   for (int call = 0; call < 5; ++call)
     mesh = adapt(alone, mesh, sampled_metric<Dim>(alone, mesh, coarse)).mesh;
-  mesh.name = "start";
   return mesh;
 }
 
 template <int Dim>
 AdaptCase make_case_in(const runtime::Executor& executor, const CaseInfo& info, double factor) {
   const Formula<Dim> formula = formula_of<Dim>(executor, info, factor);
-  const int cells =
-      static_cast<int>(std::lround(start_cells(info.name) * std::pow(factor, 1.0 / Dim)));
+  const double growth = std::pow(factor, 1.0 / Dim);
+  const int cells = std::max(2, static_cast<int>(std::lround(start_cells(info.name) * growth)));
   AdaptCase made;
   made.dimension = Dim;
   made.complexity = factor * info.complexity;
   made.calls = info.calls;
   made.has_peers = info.has_peers;
-  made.start = regular_mesh(Dim, std::max(2, cells));
+  made.surface_tolerance = surface_tolerance(info.name) / (growth * growth);
+  made.start = made.surface_tolerance > 0 ? curved_mesh(Dim, cells) : regular_mesh(Dim, cells);
   if (info.name == "layer3d") made.start = layer_mesh<Dim>(made.start, formula);
+  made.start.name = "start";
   made.metric_on = [formula](const runtime::Executor& on, const AnyMesh& mesh) {
     return sampled_metric<Dim>(on, mesh, formula);
   };
@@ -136,6 +152,13 @@ AdaptCase make_case(const runtime::Executor& given, const std::string& name) {
                                        : make_case_in<3>(executor, info, sized.factor);
   made.name = name;
   return made;
+}
+
+bool is_sound(const runtime::Executor& executor, const AdaptCase& adapt_case, const AnyMesh& mesh) {
+  const double tolerance = adapt_case.surface_tolerance;
+  return check_mesh(executor, mesh).empty() &&
+         check_domain(adapt_case.start, mesh, tolerance).empty() &&
+         (tolerance == 0 || check_boundary(executor, mesh).empty());
 }
 
 std::string times(const std::string& name, double factor) {

@@ -32,6 +32,7 @@ struct AdaptCase {
   double complexity = 0;
   int calls = 1;
   bool has_peers = false;
+  double surface_tolerance = 0;  ///< of MakeMeshOptions
   meshadapt::AnyMesh start;
   /// The formula at the vertices of a mesh: one symmetric field.
   std::function<meshadapt::AnyField(const runtime::Executor&, const meshadapt::AnyMesh&)> metric_on;
@@ -42,6 +43,11 @@ struct AdaptCase {
 /// InputError for an unknown name or a factor that is no positive number.
 /// Thread safety: one caller; runs on the executor.
 AdaptCase make_case(const runtime::Executor& executor, const std::string& name);
+
+/// Whether this is a valid mesh of the domain that the case starts from, boundaries within the
+/// tolerance. Thread safety: one caller; runs on the executor.
+bool is_sound(const runtime::Executor& executor, const AdaptCase& adapt_case,
+              const meshadapt::AnyMesh& mesh);
 
 /// The name with a factor (or another factor, the two multiplied).
 std::string times(const std::string& name, double factor);

@@ -2,8 +2,6 @@
 
 #include <chrono>
 
-#include "cases/unit_box.hpp"
-#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
@@ -53,7 +51,7 @@ ProgramRun run(const AdaptCase& made, const std::vector<std::string>& words,
   const auto statistics = measure(executor, mesh, &metric);
   result.elements = element_count(mesh);
   result.figures = {statistics.share_in_range(), statistics.quality.mean, statistics.quality.min,
-                    check_mesh(executor, mesh).empty() && fills_unit_box(mesh)};
+                    is_sound(executor, made, mesh)};
   return result;
 }
 
@@ -73,11 +71,14 @@ std::vector<Pair> run_pairs(const AdaptCase& made, const fs::path& mmg,
     write_mesh(mesh, made.start);
     write_field(metric, made.metric_on(executor, made.start));
   }
-  const std::vector<std::string> ductile_words{
+  std::vector<std::string> ductile_words{
       DUCTILE_PROGRAM, "adapt", mesh,          "-sol", metric, "-o", ours,
       "--threads",     "1",     "--no-metric", "-v",   "0"};
-  const std::vector<std::string> mmg_words{mmg,    "-in",    mesh, "-sol", metric, "-out",
-                                           theirs, "-hgrad", "-1", "-v",   "0"};
+  std::vector<std::string> mmg_words{mmg,    "-in",    mesh, "-sol", metric, "-out",
+                                     theirs, "-hgrad", "-1", "-v",   "0"};
+  if (made.surface_tolerance > 0)
+    for (auto* words : {&ductile_words, &mmg_words})
+      words->insert(words->end(), {"-hausd", std::to_string(made.surface_tolerance)});
   std::vector<Pair> pairs;
   const auto clock = std::chrono::steady_clock::now();
   const auto seconds = [&] {

@@ -4,8 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include "cases/unit_box.hpp"
-#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/runtime/recording.hpp"
 
@@ -100,8 +98,13 @@ AdaptedMesh Sampler::adapt_on(const Executor& executor) const {
   return result;
 }
 
+meshadapt::AdaptOptions Sampler::options() const {
+  return {.make = {.surface_tolerance = case_.surface_tolerance}};
+}
+
 double Sampler::first_call_alone() const {
-  return adapt(Executor({.threads = 1}), case_.start, start_metric_).report.total_seconds;
+  return adapt(Executor({.threads = 1}), case_.start, start_metric_, options())
+      .report.total_seconds;
 }
 
 /// The metric of the next call is evaluated while no clock runs.
@@ -115,7 +118,7 @@ Sample Sampler::timed(const Executor& executor, AdaptedMesh& result) const {
     if (!first) metric = case_.metric_on(judges_, last);
     const double processor = processor_seconds();
     const auto clock = std::chrono::steady_clock::now();
-    result = adapt(executor, first ? case_.start : last, first ? start_metric_ : metric);
+    result = adapt(executor, first ? case_.start : last, first ? start_metric_ : metric, options());
     sample.wall_seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     sample.processor_seconds += processor_seconds() - processor;
@@ -129,7 +132,7 @@ MeshFigures Sampler::judge(const AdaptedMesh& result) const {
   const auto metric = case_.calls == 1 ? result.metric : case_.metric_on(judges_, result.mesh);
   const auto statistics = measure(judges_, result.mesh, &metric);
   return {statistics.share_in_range(), statistics.quality.mean, statistics.quality.min,
-          check_mesh(judges_, result.mesh).empty() && fills_unit_box(result.mesh)};
+          is_sound(judges_, case_, result.mesh)};
 }
 
 Sample Sampler::take(const RunSettings& settings, int repetition) {

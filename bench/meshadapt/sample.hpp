@@ -74,6 +74,7 @@ class Sampler {
   meshadapt::AdaptedMesh adapt_on(const runtime::Executor& executor) const;
 
  private:
+  meshadapt::AdaptOptions options() const;
   Sample timed(const runtime::Executor& executor, meshadapt::AdaptedMesh& result) const;
   MeshFigures judge(const meshadapt::AdaptedMesh& result) const;
 

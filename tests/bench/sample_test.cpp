@@ -16,7 +16,8 @@ class Sampling : public testing::TestWithParam<const char*> {
   AdaptCase made_ = make_case(runtime::Executor({.threads = 1}), GetParam());
   Sampler sampler_{made_};
 };
-INSTANTIATE_TEST_SUITE_P(Cases, Sampling, testing::Values("uni2d@0.05", "uni3d@0.02"));
+INSTANTIATE_TEST_SUITE_P(Cases, Sampling,
+                         testing::Values("uni2d@0.05", "uni3d@0.02", "ring2d@0.05", "dome3d@0.03"));
 
 TEST_P(Sampling, PartsSumUpToTheWhole) {
   const Sample sample = sampler_.take({2, true}, 0);
