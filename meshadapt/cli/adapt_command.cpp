@@ -27,7 +27,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 23> options{{
+constexpr std::array<Option, 24> options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
@@ -39,6 +39,8 @@ constexpr std::array<Option, 23> options{{
     {"-noinsert", "", "splits and collapses no edge"},
     {"-nosurf", "", "leaves the boundary and interfaces as they are"},
     {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
+    {"-ar", "DEG",
+     "with -hausd, edges that turn by DEG degrees are ridges, which stay (default: 45)"},
     {"-v", "N", "0 says nothing, 1 (default) sums up, 2 says more", "--verbose"},
     {"-m", "MB", "takes at most this much memory, in megabytes", "--memory"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
@@ -116,6 +118,12 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   adapt.insert = !arguments.has("-noinsert");
   adapt.make.lock_boundary = arguments.has("-nosurf");
   adapt.make.surface_tolerance = arguments.positive("-hausd").value_or(0);
+  adapt.make.ridge_angle = arguments.positive("-ar").value_or(adapt.make.ridge_angle);
+  if (arguments.has("-ar") && adapt.make.surface_tolerance == 0)
+    throw UsageError("option -ar: expected -hausd with it, without which all edges stay");
+  if (adapt.make.ridge_angle >= 90)
+    throw UsageError("option -ar: expected an angle of less than 90 degrees, found '" +
+                     *arguments.text("-ar") + "'");
   adapt.make.complete_boundary = arguments.has("--complete-boundary");
   if (const auto n = arguments.integer("--iterations", 1, 1000)) adapt.iterations = *n;
 }

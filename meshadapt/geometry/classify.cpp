@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -62,12 +63,13 @@ class Classifier {
  public:
   Classifier(const runtime::Executor& executor, Mesh<Dim>& mesh,
              std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges,
-             double surface_tolerance)
+             const MakeMeshOptions& options)
       : executor_(executor),
         mesh_(mesh),
         facets_(std::move(facets)),
         tolerance_(flatness * extent(executor, mesh)),
-        surface_tolerance_(surface_tolerance) {
+        surface_tolerance_(options.surface_tolerance),
+        least_turn_(std::cos(options.ridge_angle * std::numbers::pi / 180)) {
     if constexpr (Dim == 3)
       for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
     sort_sides();
@@ -249,7 +251,7 @@ class Classifier {
 
   bool turns_little(const Facet<Dim>& f, const Facet<Dim>& g, Key key) const {
     const Vector<Dim> u = away_from(f, key), v = away_from(g, key);
-    return dot(u, v) < -least_turn * norm(u) * norm(v);
+    return dot(u, v) < -least_turn_ * norm(u) * norm(v);
   }
 
   /// Keeps what smooth patches and curves are like, and what their facets must not come close to.
@@ -361,7 +363,8 @@ class Classifier {
         if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed])) break;
         if (surface_tolerance_ > 0 && !edge.data.required) {
           // By no more than 60 degrees in all, so that a closed curve keeps three ends.
-          if (!(along > least_turn * norm(step)) || !(dot(step, towards) > 0.5 * norm(step))) break;
+          if (!(along > least_turn_ * norm(step)) || !(dot(step, towards) > 0.5 * norm(step)))
+            break;
           curve.smooth = curve.smooth || !straight;
           heading = (1 / norm(step)) * step;
         } else if (!straight || along <= 0) {
@@ -459,6 +462,7 @@ class Classifier {
   std::vector<TaggedFacet<Dim>> facets_;
   double tolerance_;          // of flatness
   double surface_tolerance_;  // of what is not flat; 0 if nothing is to be smooth
+  double least_turn_;         // cosine of the angle from which on edges are ridges
   std::vector<Side> sides_;   // sorted
   using Others = std::array<std::uint32_t, Dim>;
   runtime::FilledArray<Others> across_;         // [facet][side], the other facet or none
@@ -472,13 +476,13 @@ class Classifier {
 template <int Dim>
 void classify(const runtime::Executor& executor, Mesh<Dim>& mesh,
               std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges,
-              double surface_tolerance) {
-  Classifier<Dim>(executor, mesh, std::move(facets), edges, surface_tolerance).run();
+              const MakeMeshOptions& options) {
+  Classifier<Dim>(executor, mesh, std::move(facets), edges, options).run();
 }
 
 template void classify(const runtime::Executor&, Mesh<2>&, std::vector<TaggedFacet<2>>,
-                       const std::vector<ListedEdge>&, double);
+                       const std::vector<ListedEdge>&, const MakeMeshOptions&);
 template void classify(const runtime::Executor&, Mesh<3>&, std::vector<TaggedFacet<3>>,
-                       const std::vector<ListedEdge>&, double);
+                       const std::vector<ListedEdge>&, const MakeMeshOptions&);
 
 }  // namespace ductile::meshadapt

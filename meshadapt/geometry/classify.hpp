@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 
 namespace ductile::meshadapt {
@@ -28,11 +29,11 @@ struct ListedEdge {
 
 /// Sets mesh.patches, curves, links_of, patches_of, kind_of.freedom and entity_of from the facets
 /// (and, in 3D, the listed edges). kind_of.corner and .required and the regions are already set.
-/// With a surface tolerance, patches and curves may be smooth, and mesh.surface is set if one is.
+/// With options.surface_tolerance patches and curves may be smooth; mesh.surface is set if one is.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 void classify(const runtime::Executor& executor, Mesh<Dim>& mesh,
               std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges,
-              double surface_tolerance);
+              const MakeMeshOptions& options);
 
 }  // namespace ductile::meshadapt

@@ -228,7 +228,8 @@ Sheets<Dim, Corners>::~Sheets() = default;
 template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) const {
   const Sphere<Dim> sphere = sphere_around(simplex);
-  // What is farther away than that is turned by more than 45 degrees somewhere.
+  constexpr double least_turn = 0.70710678118654752;  // the cosine of 45 degrees
+  // What is farther away than that is turned by more somewhere.
   const Search search{*this, direction_of(simplex), std::min(tolerance_, 0.5 * sphere.radius)};
   Near covering, facing;
   tree_->each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {

@@ -15,10 +15,6 @@
 
 namespace ductile::meshadapt {
 
-/// Facets that turn by less than this where they meet may be one smooth patch, edges one smooth
-/// curve: 45 degrees. What covers a new one may be turned against it by as much.
-inline constexpr double least_turn = 0.70710678118654752;  ///< its cosine
-
 /// `Corners` is 2 for edges, 3 for triangles.
 template <int Dim, std::size_t Corners>
 class Sheets {

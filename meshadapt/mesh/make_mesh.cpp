@@ -33,6 +33,7 @@ class MeshMaker {
         warnings_(warnings) {}
 
   Mesh<Dim> make() {
+    check_options();
     check_indices();
     fill();
     orient();
@@ -41,11 +42,21 @@ class MeshMaker {
     find_neighbours();
     auto facets = listed_facets();
     add_unlisted_facets(facets);
-    classify(executor_, mesh_, std::move(facets), listed_edges(), options_.surface_tolerance);
+    classify(executor_, mesh_, std::move(facets), listed_edges(), options_);
     return std::move(mesh_);
   }
 
  private:
+  void check_options() const {
+    const double tolerance = options_.surface_tolerance, angle = options_.ridge_angle;
+    if (!(tolerance >= 0 && std::isfinite(tolerance)))
+      throw InputError("expected a surface tolerance of 0 or more, found " +
+                       std::to_string(tolerance));
+    if (!(angle > 0 && angle < 90))
+      throw InputError("expected a ridge angle between 0 and 90 degrees, found " +
+                       std::to_string(angle));
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(any_.name + ": " + what);
   }

@@ -130,7 +130,11 @@ TEST(AdaptCommand, CoarsensACurvedBoundaryIfToldTo) {
   EXPECT_FALSE(contains(coarsened.err, "-hausd")) << coarsened.err;
   EXPECT_LT(meshadapt::read_mesh(folder.path() / "coarse.mesh").edges.size(),
             meshadapt::read_mesh(folder.path() / "arc.o.mesh").edges.size() / 3);
-  EXPECT_EQ(folder.run("adapt arc.mesh -hsiz 0.3 -hausd 0").status, 2);
+  EXPECT_EQ(folder.run("adapt arc.mesh -hsiz 0.3 -hausd 0.01 -ar 1 -o ridges.mesh").status, 0);
+  EXPECT_EQ(meshadapt::read_mesh(folder.path() / "ridges.mesh").edges.size(),
+            meshadapt::read_mesh(folder.path() / "arc.o.mesh").edges.size());
+  for (const char* wrong : {"-hausd 0", "-hausd 0.01 -ar 90", "-hausd 0.01 -ar 0", "-ar 30"})
+    EXPECT_EQ(folder.run(std::string("adapt arc.mesh -hsiz 0.3 ") + wrong).status, 2) << wrong;
 }
 
 TEST(AdaptCommand, RefusesSizesThatNoMetricCanHave) {

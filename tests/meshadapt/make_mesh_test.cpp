@@ -148,6 +148,23 @@ TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
     }
 }
 
+TEST(MakeMesh, TellsRidgesByTheAngleGiven) {
+  const AnyMesh flat = bent(2, 4, 1.3), solid = bent(3, 4, 1.3);  // by 18.6 degrees a cell
+  for (const double angle : {18.0, 19.0, 89.0}) {
+    const MakeMeshOptions options{.surface_tolerance = 0.01, .ridge_angle = angle};
+    const bool joined = angle > 18.6;
+    EXPECT_EQ(vertices_by_freedom(make<2>(flat, options).mesh)[0], joined ? 4 : 10);
+    EXPECT_EQ(vertices_by_freedom(make<3>(solid, options).mesh)[0], joined ? 8 : 20);
+  }
+}
+
+TEST(MakeMesh, RefusesTolerancesAndAnglesThatAreNone) {
+  for (const double tolerance : {-0.1, std::nan(""), double{INFINITY}})
+    EXPECT_THROW(make<2>(square(2), {.surface_tolerance = tolerance}), InputError) << tolerance;
+  for (const double angle : {-1.0, 0.0, 90.0, 180.0, std::nan("")})
+    EXPECT_THROW(make<2>(square(2), {.ridge_angle = angle}), InputError) << angle;
+}
+
 /// At the rims of its lid and its base.
 TEST(MakeMesh, ClosedCurvesKeepThreeVertices) {
   const auto made = make<3>(test::truncated_cone(6, 0.5), {.surface_tolerance = 0.01});

@@ -18,15 +18,18 @@ struct MakeMeshOptions {
       false;                   ///< give unlisted boundary facets reference 0, do not refuse them
   bool lock_boundary = false;  ///< treat every boundary and interface facet as required
   /// How far curved boundaries, interfaces and the curves between them may be from where they were,
-  /// a length; 0: they keep the facets they have. Curved is what turns by less than 45 degrees from
-  /// one facet to the next.
+  /// a length; 0: they keep the facets they have.
   double surface_tolerance = 0;
+  /// Facets, or edges of a curve, that turn by as many degrees where they meet meet at a ridge, or
+  /// a corner, which stays. Those that turn by less are curved. More than 0, less than 90.
+  double ridge_angle = 45;
 };
 
 /// Classifies vertices and finds patches and curves; metrics are left unset, hosts are the element
 /// numbers themselves. Vertices and elements keep their numbers. `neighbours` receives the element
 /// neighbours. Warnings (reoriented, unused vertices) are appended. Throws InputError naming the
-/// entity, numbered from 1 as in the file. Thread safety: one caller; runs on the executor.
+/// entity, numbered from 1 as in the file, or an option that is out of range. Thread safety: one
+/// caller; runs on the executor.
 template <int Dim>
 Mesh<Dim> make_mesh(const runtime::Executor& executor, const AnyMesh& any,
                     const MakeMeshOptions& options, Neighbours<Dim>& neighbours,
