@@ -100,6 +100,14 @@ struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t
   }
 };
 
+/// The parts around a simplex that matter.
+template <int Dim, std::size_t Corners>
+struct Sheets<Dim, Corners>::Around {
+  Near covering;  // of its sheet, turned little against it
+  Near steep;     // of its sheet, turned too much
+  Near facing;    // what it must not come close to, across a gap
+};
+
 /// One question about a simplex, answered part by part.
 template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Search {
@@ -133,6 +141,26 @@ struct Sheets<Dim, Corners>::Search {
     Near near;
     for (const std::uint32_t part : parts)
       if (meet(box, sheets.shape_of_[part].box)) near.push_back(part);
+    return near;
+  }
+  Around inside(const Box<Dim>& box, const Around& around) const {
+    return {inside(box, around.covering), inside(box, around.steep), inside(box, around.facing)};
+  }
+
+  /// Of these parts, those that may be within a distance of the simplex.
+  Near close_to(const Points& simplex, double distance, const Near& parts) const {
+    Near near = inside(box_around(simplex, distance), parts);
+    const auto is_beyond = [&](std::uint32_t part) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (const Vector<Dim>& corner : sheets.parts_[part].corner) {
+        const double height = dot(corner - simplex[0], direction);
+        low = std::min(low, height);
+        high = std::max(high, height);
+      }
+      return low > distance || high < -distance;
+    };
+    if constexpr (Corners == Dim)
+      near.erase(std::remove_if(near.begin(), near.end(), is_beyond), near.end());
     return near;
   }
 
@@ -182,30 +210,51 @@ struct Sheets<Dim, Corners>::Search {
     return graph;
   }
 
-  /// `covering` are the parts that may, `facing` those that nothing may come close to.
-  bool covered(const Points& simplex, const Near& covering, const Near& facing, int depth) const {
+  /// Whether what is this far from its sheet, and from what faces it across a gap, cannot meet what
+  /// becomes of that: this would have to be within the tolerance of it, and closer to it than here.
+  bool keeps_apart(double distance, double gap) const {
+    return gap > tolerance || distance <= 0.5 * gap;
+  }
+
+  bool is_below(const Points& simplex, const Near& parts) const {
+    const Prism<Dim, Corners> prism(simplex);
+    return std::any_of(parts.begin(), parts.end(), [&](std::uint32_t part) {
+      return prism.share(prism.inside(sheets.parts_[part].corner)) > 1e-9;
+    });
+  }
+
+  /// How close what is across a gap may be for it to matter.
+  double reach(const Graph& graph) const {
+    return graph.whole ? std::min(tolerance, 2 * graph.most_aside) : tolerance;
+  }
+
+  bool covered(const Points& simplex, const Graph& graph, const Around& around, int depth) const {
     constexpr int deepest = 3;
+    const Near facing = close_to(simplex, reach(graph), around.facing);
+    if (graph.whole && graph.most_aside <= tolerance && facing.empty()) return true;
+    const Near& covering = around.covering;
     const Sphere<Dim> sphere = sphere_around(simplex);
     const double distance = covering.closest(sheets, sphere.centre).distance;
     const double gap = facing.closest(sheets, sphere.centre).distance;
-    if (!(distance <= tolerance) || !(gap > tolerance)) return false;
-    if (gap > tolerance + sphere.radius) {
-      const Graph graph = graph_over(simplex, covering);
-      if (graph.whole && graph.most_aside <= tolerance) return true;
-      if (graph.whole && covering.closest(sheets, graph.where).distance > tolerance) return false;
-      // Where a sheet ends, at less than 45 degrees to what is next, the closest point is not the
-      // one at a right angle.
-      constexpr double at_ends = 0.92;  // the cosine of half of that
-      if (farthest(simplex, covering, distance, sphere.radius) <= at_ends * tolerance)
-        return std::all_of(simplex.begin(), simplex.end(), [&](const Vector<Dim>& corner) {
-          return covering.closest(sheets, corner).distance <= tolerance;
-        });
+    if (!(distance <= tolerance) || !keeps_apart(distance, gap)) return false;
+    const double least_gap = gap - sphere.radius;
+    if (graph.whole) {
+      if (graph.most_aside <= tolerance && keeps_apart(graph.most_aside, least_gap)) return true;
+      if (covering.closest(sheets, graph.where).distance > tolerance) return false;
     }
+    // Where a sheet ends, at less than 45 degrees to what is next, the closest point is not the one
+    // at a right angle.
+    constexpr double at_ends = 0.92;  // the cosine of half of that
+    if (least_gap > tolerance && !is_below(simplex, around.steep) &&
+        farthest(simplex, covering, distance, sphere.radius) <= at_ends * tolerance)
+      return std::all_of(simplex.begin(), simplex.end(), [&](const Vector<Dim>& corner) {
+        return covering.closest(sheets, corner).distance <= tolerance;
+      });
     if (depth == deepest) return false;
     const auto parts = divided(simplex);
     return std::all_of(parts.begin(), parts.end(), [&](const Points& part) {
-      const Box<Dim> box = box_around(part, tolerance);
-      return covered(part, inside(box, covering), inside(box, facing), depth + 1);
+      const Around within = inside(box_around(part, tolerance), around);
+      return covered(part, graph_over(part, within.covering), within, depth + 1);
     });
   }
 };
@@ -231,20 +280,23 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   constexpr double least_turn = 0.70710678118654752;  // the cosine of 45 degrees
   // What is farther away than that is turned by more somewhere.
   const Search search{*this, direction_of(simplex), std::min(tolerance_, 0.5 * sphere.radius)};
-  Near covering, facing;
+  Around around;
   tree_->each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);
-    if (parts_[part].sheet == sheet && turn >= least_turn) covering.push_back(part);
-    if (turn < -0.01) facing.push_back(part);  // not what is at a right angle, nearly
+    if (parts_[part].sheet == sheet && turn > 0)
+      (turn >= least_turn ? around.covering : around.steep).push_back(part);
+    if (turn < -0.01) around.facing.push_back(part);  // not what is at a right angle, nearly
   });
-  if (covering.empty()) return false;
+  if (around.covering.empty()) return false;
+  const auto graph = search.graph_over(simplex, around.covering);
   // What is inside has elements on both sides, which keep it apart.
-  if (parts_[covering.front()].two_sided) facing.clear();
+  if (parts_[around.covering.front()].two_sided) around.facing.clear();
+  Near& facing = around.facing = search.close_to(simplex, search.reach(graph), around.facing);
   const auto is_joined = [&](std::uint32_t part) {
-    return !search.is_across_gap(part, covering, sphere.centre);
+    return !search.is_across_gap(part, around.covering, sphere.centre);
   };
   facing.erase(std::remove_if(facing.begin(), facing.end(), is_joined), facing.end());
-  return search.covered(simplex, covering, facing, 0);
+  return search.covered(simplex, graph, around, 0);
 }
 
 /// Looks nearby first, as it is likely there and the tolerance may be large.

@@ -51,6 +51,7 @@ class Sheets {
  private:
   struct Tree;
   struct Near;
+  struct Around;
   struct Search;
   struct Shape {
     Box<Dim> box;

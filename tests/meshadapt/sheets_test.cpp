@@ -161,7 +161,7 @@ TEST(Sheets, CoverAFacetThatIsTurnedOnlyIfThatMeansNothing) {
 }
 
 /// Two walls of a gap, the upper one turned downwards.
-TEST(Sheets, CoverNoFacetCloseToWhatFacesIt) {
+TEST(Sheets, CoverNoFacetThatMightMeetWhatFacesIt) {
   for (const bool two_sided : {false, true}) {
     auto parts = wave(7);
     for (auto part : wave(8, 0.02, two_sided)) {
@@ -173,25 +173,30 @@ TEST(Sheets, CoverNoFacetCloseToWhatFacesIt) {
     };
     EXPECT_TRUE(covered(0.012, 0));
     EXPECT_EQ(covered(0.012, 0.0095), two_sided);
-    EXPECT_EQ(covered(0.05, 0), two_sided);
+    EXPECT_TRUE(covered(0.05, 0)) << "no closer than before";
+    EXPECT_TRUE(covered(0.05, 0.005)) << "half as far as there is left, at most";
+    EXPECT_EQ(covered(0.05, 0.008), two_sided);
   }
 }
 
 /// A wall and something thin, of 4 degrees: a needle that points at it, or, where the domain is
 /// between, the other side of a plate.
-TEST(Sheets, CoverNoFacetCloseToATip) {
+TEST(Sheets, CoverNoFacetThatMightMeetATip) {
   const Vector<2> left{{0, 0}}, right{{1, 0}};
   const Segment wall{right, left};  // faces upwards
-  const auto covered = [&](const std::vector<Segment>& others, double tolerance) {
+  const auto covered = [&](const std::vector<Segment>& others, double tolerance, double height) {
     std::vector<Sheets<2, 2>::Part> parts{{wall, 7, false}};
     for (const Segment& other : others) parts.push_back({other, 8, false});
-    return Sheets<2, 2>(parts, tolerance).cover(wall, 7);
+    const Vector<2> up{{0, height}};
+    return Sheets<2, 2>(parts, tolerance).cover({right + up, left + up}, 7);
   };
   const Vector<2> tip{{0.9, 0.02}}, a{{0.88, 0.6}}, b{{0.92, 0.6}};
-  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.015));
-  EXPECT_FALSE(covered({{a, tip}, {tip, b}}, 0.03));
+  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.01, 0.008)) << "farther than the tolerance";
+  EXPECT_FALSE(covered({{a, tip}, {tip, b}}, 0.03, 0.008));
+  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.03, 0.006));
+  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.03, 0));
   const Vector<2> under_left{{0, -0.02}};
-  EXPECT_TRUE(covered({{under_left, right}}, 0.1)) << "of a wedge, joined at its tip";
+  EXPECT_TRUE(covered({{under_left, right}}, 0.1, 0)) << "of a wedge, joined at its tip";
 }
 
 TEST(Sheets, FindTheClosestPointWithinReach) {
