@@ -120,8 +120,8 @@ struct Sheets<Dim, Corners>::Search {
     return sheets.parts_[part].two_sided ? std::abs(cosine) : cosine;
   }
 
-  /// Is there a gap between the sheet and this part, which faces it? Not where they are joined, nor
-  /// where the domain is between them. Looks where they are closest, near a point.
+  /// Is there a gap between the sheet and this part, which faces it, or a part of the domain? Not
+  /// where they are joined. Looks where they are closest, near a point.
   bool is_across_gap(std::uint32_t part, const Near& covering, const Vector<Dim>& point) const {
     const Points& corner = sheets.parts_[part].corner;
     Vector<Dim> there = closest_point(corner, point);
@@ -133,7 +133,20 @@ struct Sheets<Dim, Corners>::Search {
     const Vector<Dim> gap = there - here.point;
     const double width = norm(gap);
     return width > 1e-6 * tolerance &&
-           dot(gap, sheets.shape_of_[here.part].direction) > 0.1 * width;
+           std::abs(dot(gap, sheets.shape_of_[here.part].direction)) > 0.1 * width;
+  }
+
+  bool has_corner_of(std::uint32_t part, const Near& others) const {
+    const auto has = [&](const Points& corners, const Vector<Dim>& point) {
+      return std::any_of(corners.begin(), corners.end(),
+                         [&](const Vector<Dim>& corner) { return corner.x == point.x; });
+    };
+    return std::any_of(others.begin(), others.end(), [&](std::uint32_t other) {
+      const Points& corners = sheets.parts_[other].corner;
+      return std::any_of(corners.begin(), corners.end(), [&](const Vector<Dim>& corner) {
+        return has(sheets.parts_[part].corner, corner);
+      });
+    });
   }
 
   /// Of these parts, those that may be within the tolerance of what is inside the box.
@@ -293,7 +306,8 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   if (parts_[around.covering.front()].two_sided) around.facing.clear();
   Near& facing = around.facing = search.close_to(simplex, search.reach(graph), around.facing);
   const auto is_joined = [&](std::uint32_t part) {
-    return !search.is_across_gap(part, around.covering, sphere.centre);
+    return search.has_corner_of(part, around.covering) ||
+           !search.is_across_gap(part, around.covering, sphere.centre);
   };
   facing.erase(std::remove_if(facing.begin(), facing.end(), is_joined), facing.end());
   return search.covered(simplex, graph, around, 0);
