@@ -160,6 +160,15 @@ TEST(Convert, SaysHowManyNumbersItRounds) {
   EXPECT_EQ(folder.run("convert a.sol b.solb").err, "");
 }
 
+TEST(Program, WritesToAStandardOutputThatIsAFileBesideWhatItSays) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const Outcome told = folder.run("info waves2d.mesh --json /dev/stdout");
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_TRUE(contains(told.out, "valid: it can be adapted")) << told.out;
+  EXPECT_TRUE(contains(told.out, "\"statistics\"")) << told.out;
+}
+
 TEST(Program, TakesAnyBytesInNames) {
   const Folder folder;
   folder.add_example("waves2d");
