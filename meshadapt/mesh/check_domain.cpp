@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/vector.hpp"
+#include "mesh/array_lengths.hpp"
 
 namespace ductile::meshadapt {
 
@@ -98,6 +100,13 @@ void compare(const std::string& what, double now, double expected, double allowe
 
 std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
                                       double surface_tolerance) {
+  for (const AnyMesh* mesh : {&before, &after}) {
+    expect_coordinates(*mesh);
+    expect_references(*mesh);
+  }
+  if (after.dimension != before.dimension)
+    throw InputError(after.name + ": expected dimension " + std::to_string(before.dimension) +
+                     ", that of " + before.name + ", found " + std::to_string(after.dimension));
   const auto measure = [](const AnyMesh& mesh) {
     return mesh.dimension == 2 ? measures_2d(mesh) : measures_3d(mesh);
   };

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "ductile/meshadapt/make_mesh.hpp"
+#include "io_support.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
@@ -210,6 +211,26 @@ TEST(CheckDomain, FindsNothingWhereThereIsNothing) {
   AnyMesh nothing;
   nothing.dimension = 2;
   EXPECT_EQ(test::joined(check_domain(nothing, nothing)), "");
+}
+
+TEST(CheckDomain, RefusesArraysThatDoNotFit) {
+  AnyMesh mesh = box(2);
+  mesh.name = "a.mesh";
+  const auto complaint = [&](const AnyMesh& other) {
+    const auto at_second = test::complaint([&] { check_domain(mesh, other); });
+    if (other.dimension == 2)
+      EXPECT_EQ(test::complaint([&] { check_domain(other, mesh); }), at_second);
+    return at_second;
+  };
+  AnyMesh other = mesh;
+  other.coordinates.pop_back();
+  EXPECT_EQ(complaint(other),
+            "a.mesh: expected 2 coordinates for each of the 25 vertices, found 49 numbers");
+  other = mesh;
+  other.triangles.reference.pop_back();
+  EXPECT_EQ(complaint(other),
+            "a.mesh: expected a reference for each of the 32 triangles, found 31");
+  EXPECT_EQ(complaint(box(3)), "test: expected dimension 2, that of a.mesh, found 3");
 }
 
 TEST(CheckDomain, AllowsForRoundingFarFromTheOriginAndInThinDomains) {

@@ -25,7 +25,8 @@ std::vector<std::string> check_mesh(const runtime::Executor& executor, const Any
 /// astray, in thin domains and far from the origin the greater of the two: 2e-10 of the extent and
 /// the rounding of coordinates. What adaptation must never change. With a surface tolerance (see
 /// MakeMeshOptions) the whole may differ by as much as boundaries that far away make it, and
-/// boundaries only have to be there still.
+/// boundaries only have to be there still. Throws InputError unless both meshes are of one
+/// dimension and have all coordinates and references.
 /// Linear in the meshes. Thread safety: any thread.
 std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
                                       double surface_tolerance = 0);
