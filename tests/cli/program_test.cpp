@@ -103,6 +103,21 @@ TEST(Info, SaysWhyAMeshIsNotValid) {
   EXPECT_TRUE(contains(outcome.out, "not valid")) << outcome.out;
 }
 
+TEST(Info, SaysWhatAdaptSaysOfLengthsBeyondReason) {
+  const Folder folder;
+  for (const char* length : {"1e80", "1e-80"}) {
+    const std::string l = length;
+    folder.write("a.mesh", "MeshVersionFormatted 2\nDimension 2\nVertices\n3\n0 0 0\n" + l +
+                               " 0 0\n0 " + l +
+                               " 0\nEdges\n3\n1 2 1\n2 3 1\n3 1 1\nTriangles\n1\n1 2 3 1\nEnd\n");
+    const Outcome told = folder.run("info a.mesh"), refused = folder.run("adapt a.mesh");
+    EXPECT_EQ(told.status, 2) << told.out;
+    EXPECT_TRUE(contains(told.out, "not valid: a.mesh: expected edges of lengths")) << told.out;
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(contains(refused.err, "a.mesh: expected edges of lengths")) << refused.err;
+  }
+}
+
 TEST(Info, RefusesTheMetricOfAnotherMesh) {
   const Folder folder;
   folder.add_example("waves2d");
