@@ -4,6 +4,7 @@
 #include <string>
 
 #include "command.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
@@ -29,20 +30,24 @@ struct Validity {
   meshadapt::Warnings warnings;
 };
 
+/// As `adapt` does, which takes the sizes that the mesh has where there is no metric. Any metric
+/// was checked as it was read.
 template <int Dim>
-Validity check_in(const Executor& executor, const AnyMesh& mesh) {
+Validity check_in(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   Validity validity;
   try {
     meshadapt::Neighbours<Dim> neighbours;
     meshadapt::make_mesh<Dim>(executor, mesh, {}, neighbours, validity.warnings);
+    if (metric == nullptr) meshadapt::implied_metric(mesh);
   } catch (const meshadapt::InputError& error) {
     validity.reason = error.what();
   }
   return validity;
 }
 
-Validity check(const Executor& executor, const AnyMesh& mesh) {
-  return mesh.dimension == 2 ? check_in<2>(executor, mesh) : check_in<3>(executor, mesh);
+Validity check(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
+  return mesh.dimension == 2 ? check_in<2>(executor, mesh, metric)
+                             : check_in<3>(executor, mesh, metric);
 }
 
 template <class References>
@@ -101,14 +106,15 @@ int run(const Arguments& arguments) {
   if (const auto path = arguments.text("-sol")) metric = read_metric(*path, mesh, warnings);
   const bool has_elements =
       !(mesh.dimension == 2 ? mesh.triangles.reference.empty() : mesh.tetrahedra.reference.empty());
+  const AnyField* const given = metric ? &*metric : nullptr;
   print_counts(mesh);
-  const Validity validity = check(executor, mesh);
+  const Validity validity = check(executor, mesh, given);
   warnings.insert(warnings.end(), validity.warnings.begin(), validity.warnings.end());
   std::printf("  %s\n", validity.reason.empty() ? "valid: it can be adapted"
                                                 : ("not valid: " + validity.reason).c_str());
   std::string statistics = "null";
   if (has_elements) {
-    const auto measured = meshadapt::measure(executor, mesh, metric ? &*metric : nullptr);
+    const auto measured = meshadapt::measure(executor, mesh, given);
     std::printf("%s", to_text(measured).c_str());
     statistics = to_json(measured);
   }

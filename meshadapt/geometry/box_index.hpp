@@ -16,14 +16,6 @@
 
 namespace ductile::meshadapt {
 
-/// The box around some points.
-template <int Dim, std::size_t N>
-Box<Dim> box_around(const std::array<Vector<Dim>, N>& points) {
-  auto box = Box<Dim>::empty();
-  for (const Vector<Dim>& p : points) box = join(box, {p, p});
-  return box;
-}
-
 template <int Dim>
 class BoxIndex {
  public:

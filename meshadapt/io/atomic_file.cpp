@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -22,15 +24,49 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+constexpr int most_links = 40;
+
+/// Where a symbolic link leads, if `path` is one.
+std::optional<fs::path> target_of(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return std::nullopt;
+  const fs::path target = fs::read_symlink(path, error);
+  if (error) return std::nullopt;
+  return target.is_absolute() ? target : folder_of(path) / target;
+}
+
 /// The file that a chain of symbolic links ends in, which need not exist.
 fs::path resolve_links(fs::path path) {
-  std::error_code error;
-  for (int step = 0; step < 40 && fs::is_symlink(path, error); ++step) {
-    const fs::path target = fs::read_symlink(path, error);
-    if (error) break;
-    path = target.is_absolute() ? target : folder_of(path) / target;
+  for (int step = 0; step < most_links; ++step) {
+    auto target = target_of(path);
+    if (!target) break;
+    path = *std::move(target);
   }
   return path;
+}
+
+bool lists_descriptors(const fs::path& folder) {
+  std::error_code error;
+  const fs::path place = fs::canonical(folder, error);
+  if (error) return false;
+  return place == fs::canonical("/dev/fd", error) || place == fs::canonical("/proc/self/fd", error);
+}
+
+/// What is open under a name that stands for it, as /dev/stdout and /proc/self/fd/3 do. Such a name
+/// may lead on to a regular file, which others write, too.
+std::optional<int> descriptor_of(fs::path path) {
+  for (int step = 0; step < most_links; ++step) {
+    const std::string name = path.filename().string();
+    int number = -1;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error == std::errc() && end == name.data() + name.size() && number >= 0 &&
+        lists_descriptors(folder_of(path)))
+      return ::fcntl(number, F_GETFL) < 0 ? std::nullopt : std::optional(number);
+    auto target = target_of(path);
+    if (!target) break;
+    path = *std::move(target);
+  }
+  return std::nullopt;
 }
 
 /// Devices and pipes: there is no old content to keep, and nothing may take their name.
@@ -38,6 +74,10 @@ bool is_device(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+bool is_written_directly(const fs::path& path) {
+  return is_device(path) || descriptor_of(path).has_value();
 }
 
 void expect_usable_name(const fs::path& path) {
@@ -49,6 +89,11 @@ void expect_usable_name(const fs::path& path) {
   if (!fs::is_directory(folder_of(path), error))
     throw InputError(name + ": cannot write, there is no folder " + folder_of(path).string() +
                      "; create it first");
+  if (const auto descriptor = descriptor_of(path)) {
+    if ((::fcntl(*descriptor, F_GETFL) & O_ACCMODE) == O_RDONLY)
+      throw InputError(name + ": cannot write, it is open for reading only; choose another name");
+    return;
+  }
   if (fs::exists(path, error) && ::access(path.c_str(), W_OK) != 0)
     throw InputError(name + ": cannot write, " + reason(errno) +
                      "; change its permissions or choose another name");
@@ -94,17 +139,28 @@ std::FILE* open_unnamed([[maybe_unused]] const fs::path& folder) {
   return nullptr;
 }
 
+/// Opened anew, a regular file would lose what is in it, and a socket could not be.
+std::FILE* open_directly(const fs::path& path) {
+  const auto descriptor = descriptor_of(path);
+  if (!descriptor) return std::fopen(path.c_str(), "wb");
+  const int copy = ::fcntl(*descriptor, F_DUPFD_CLOEXEC, 0);
+  if (copy < 0) return nullptr;
+  std::FILE* const file = ::fdopen(copy, "wb");
+  if (!file) ::close(copy);
+  return file;
+}
+
 }  // namespace
 
 // ---- One file ----
 
 OutputFile::OutputFile(fs::path path)
     : path_(std::move(path)), buffer_(std::make_unique_for_overwrite<char[]>(buffer_size)) {
-  if (is_device(path_))
+  if (is_written_directly(path_))
     temporary_ = path_;
   else if (file_ = open_unnamed(folder_of(path_)); !file_)
     temporary_ = create_temporary(path_);
-  if (!file_) file_ = std::fopen(temporary_.c_str(), "wb");
+  if (!file_) file_ = open_directly(temporary_);
   if (!file_) {
     const std::string why = reason(errno);
     discard();
@@ -173,7 +229,7 @@ AtomicOutputs::~AtomicOutputs() = default;
 OutputFile& AtomicOutputs::stage(const fs::path& path) {
   expect_usable_name(path);
   // As it is: what /dev/stdout leads to, as "pipe:[123]", is no name that could be opened.
-  const fs::path target = is_device(path) ? path : resolve_links(path).lexically_normal();
+  const fs::path target = is_written_directly(path) ? path : resolve_links(path).lexically_normal();
   for (const auto& file : files_)
     if (file->path_ == target)
       throw InputError(path.string() + ": is the name of two outputs; give each its own");
@@ -198,7 +254,7 @@ void AtomicOutputs::commit() {
 
 void check_writable(const fs::path& path) {
   expect_usable_name(path);
-  if (is_device(path)) return;
+  if (is_written_directly(path)) return;
   const fs::path target = resolve_links(path);
   std::error_code ignored;
   fs::remove(create_temporary(target), ignored);

@@ -13,10 +13,6 @@ namespace {
 
 using Type = AnyField::Type;
 
-// Sizes within these bounds can be squared, inverted and cubed without leaving the range of double.
-constexpr double smallest_size = 1e-75;
-constexpr double largest_size = 1e75;
-
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);

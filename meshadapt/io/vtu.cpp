@@ -128,7 +128,10 @@ void add_piece(pugi::xml_node grid, const AnyMesh& mesh, const std::vector<VtuFi
 
 std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name) {
   std::vector<VtuField> fields;
-  const std::size_t stride = stride_of(field);
+  const std::size_t stride = stride_of(field), expected = stride * field.vertex_count;
+  if (field.values.size() != expected)
+    throw InputError(field.name + ": expected " + std::to_string(expected) + " values, found " +
+                     std::to_string(field.values.size()));
   std::size_t first = 0;
   for (const Type type : field.types) {
     const auto count = static_cast<std::size_t>(component_count(type, field.dimension));

@@ -23,13 +23,6 @@ struct Keyed {
 };
 
 template <int Dim>
-Box<Dim> box_of(const std::array<Vector<Dim>, Dim + 1>& corner) {
-  auto box = Box<Dim>::empty();
-  for (const Vector<Dim>& p : corner) box = join(box, {p, p});
-  return box;
-}
-
-template <int Dim>
 double squared_distance(const Box<Dim>& box, const Vector<Dim>& point) {
   double sum = 0;
   for (int i = 0; i < Dim; ++i) {
@@ -98,11 +91,11 @@ template <int Dim>
 BoxTree<Dim>::BoxTree(const Executor& executor, const Simplices<Dim>& mesh) : mesh_(mesh) {
   const auto all = runtime::parallel_reduce(
       executor, mesh.corners_of.size(), Box<Dim>::empty(),
-      [&](std::size_t e) { return box_of<Dim>(mesh.points(static_cast<ElementId>(e))); },
+      [&](std::size_t e) { return box_around(mesh.points(static_cast<ElementId>(e))); },
       [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
   std::vector<Keyed> keyed(mesh.corners_of.size());
   runtime::parallel_for(executor, keyed.size(), [&](std::size_t e) {
-    const Box<Dim> box = box_of<Dim>(mesh.points(static_cast<ElementId>(e)));
+    const Box<Dim> box = box_around(mesh.points(static_cast<ElementId>(e)));
     keyed[e] = {hilbert_key(0.5 * (box.low + box.high), all), static_cast<ElementId>(e)};
   });
   runtime::parallel_sort(executor, std::span(keyed));
@@ -110,7 +103,7 @@ BoxTree<Dim>::BoxTree(const Executor& executor, const Simplices<Dim>& mesh) : me
   boxes_of_.emplace_back(keyed.size());
   runtime::parallel_for(executor, keyed.size(), [&](std::size_t i) {
     order_[i] = keyed[i].element;
-    boxes_of_[0][i] = box_of<Dim>(mesh.points(keyed[i].element));
+    boxes_of_[0][i] = box_around(mesh.points(keyed[i].element));
   });
   while (boxes_of_.back().size() > 1) {
     const std::vector<Box<Dim>>& below = boxes_of_.back();

@@ -1,62 +1,112 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/meshadapt/vector.hpp"
+#include "ductile/runtime/hash.hpp"
+#include "mesh/array_lengths.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
 
-/// Measures by reference: of listed facets; that of all elements stands beside them.
+/// Adds up measure_of(i) by reference, for each row of equal ones at once.
+template <class MeasureOf>
+std::map<std::int32_t, double> sums(const std::vector<std::int32_t>& reference_of,
+                                    MeasureOf measure_of) {
+  std::map<std::int32_t, double> sum_of;
+  for (std::size_t i = 0; i < reference_of.size();) {
+    const std::int32_t reference = reference_of[i];
+    double sum = 0;
+    for (; i < reference_of.size() && reference_of[i] == reference; ++i) sum += measure_of(i);
+    sum_of[reference] += sum;
+  }
+  return sum_of;
+}
+
+double total(const std::map<std::int32_t, double>& sum_of) {
+  double total = 0;
+  for (const auto& [reference, sum] : sum_of) total += sum;
+  return total;
+}
+
+/// Number by number: what is copied as a whole goes through memory, and takes twice as long.
+template <int Dim, std::size_t N>
+std::array<Vector<Dim>, N> points(const AnyMesh& mesh,
+                                  const std::array<std::uint32_t, N>& corners) {
+  std::array<Vector<Dim>, N> at;
+  for (std::size_t i = 0; i < N; ++i)
+    for (std::size_t k = 0; k < Dim; ++k)
+      at[i].x[k] = mesh.coordinates[corners[i] * std::size_t{Dim} + k];
+  return at;
+}
+
+template <int Dim>
+double facet_measure(const AnyMesh& mesh, const Facet<Dim>& facet) {
+  return norm(facet_normal(points<Dim>(mesh, facet))) / (Dim == 2 ? 1 : 2);
+}
+
+/// By reference: of the elements, and of the facets that are listed.
 struct Measures {
-  double domain = 0;
-  std::map<std::int32_t, double> facets;
+  std::map<std::int32_t, double> regions, facets;
 };
 
 template <int Dim>
-Vector<Dim> point(const AnyMesh& mesh, std::uint32_t vertex) {
-  Vector<Dim> result;
-  for (int i = 0; i < Dim; ++i)
-    result[i] =
-        mesh.coordinates[static_cast<std::size_t>(vertex) * Dim + static_cast<std::size_t>(i)];
-  return result;
+Measures measures(const AnyMesh& mesh) {
+  const auto& elements = elements_in<Dim>(mesh);
+  const auto& facets = facets_in<Dim>(mesh);
+  return {sums(elements.reference,
+               [&](std::size_t e) {
+                 const auto corners = points<Dim>(mesh, elements.vertices[e]);
+                 return std::abs(plain_determinant(corners)) / (Dim == 2 ? 2 : 6);
+               }),
+          sums(facets.reference,
+               [&](std::size_t f) { return facet_measure<Dim>(mesh, facets.vertices[f]); })};
 }
 
-Measures measures_2d(const AnyMesh& mesh) {
-  Measures sum;
-  for (const auto& t : mesh.triangles.vertices) {
-    const Vector<2> a = point<2>(mesh, t[0]);
-    const Vector<2> u = point<2>(mesh, t[1]) - a, v = point<2>(mesh, t[2]) - a;
-    sum.domain += std::abs(u[0] * v[1] - u[1] * v[0]) / 2;
-  }
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
-    const auto& [a, b] = mesh.edges.vertices[i];
-    const Vector<2> along = point<2>(mesh, b) - point<2>(mesh, a);
-    sum.facets[mesh.edges.reference[i]] += std::sqrt(dot(along, along));
-  }
-  return sum;
-}
-
-Measures measures_3d(const AnyMesh& mesh) {
-  Measures sum;
-  for (const auto& t : mesh.tetrahedra.vertices) {
-    const Vector<3> a = point<3>(mesh, t[0]);
-    const Vector<3> normal = cross(point<3>(mesh, t[1]) - a, point<3>(mesh, t[2]) - a);
-    sum.domain += std::abs(dot(normal, point<3>(mesh, t[3]) - a)) / 6;
-  }
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& t = mesh.triangles.vertices[i];
-    const Vector<3> a = point<3>(mesh, t[0]);
-    const Vector<3> normal = cross(point<3>(mesh, t[1]) - a, point<3>(mesh, t[2]) - a);
-    sum.facets[mesh.triangles.reference[i]] += std::sqrt(dot(normal, normal)) / 2;
-  }
-  return sum;
+/// Of each region, by reference, interfaces to others included. Facets between two elements of one
+/// region cancel each other in a sum of hashes, so that hardly any others are left to sort.
+template <int Dim>
+std::map<std::int32_t, double> boundary_measures(const AnyMesh& mesh) {
+  using Side = std::pair<Facet<Dim>, std::int32_t>;  // corners, ascending, and the reference
+  const auto& elements = elements_in<Dim>(mesh);
+  const auto for_each_side = [&](auto visit) {
+    for (std::size_t e = 0; e < elements.size(); ++e)
+      for (int i = 0; i <= Dim; ++i) {
+        Facet<Dim> facet = facet_of<Dim>(elements.vertices[e], i);
+        std::sort(facet.begin(), facet.end());
+        visit(Side{facet, elements.reference[e]});
+      }
+  };
+  std::vector<std::uint64_t> hashes_at(mesh.vertex_count());  // [lowest corner]
+  for_each_side([&](const Side& side) {
+    auto hash = static_cast<std::uint64_t>(side.second);
+    for (const VertexId v : side.first) hash = runtime::mix64(hash ^ v);
+    hashes_at[side.first[0]] ^= hash;
+  });
+  std::vector<Side> sides;
+  for_each_side([&](const Side& side) {
+    if (hashes_at[side.first[0]] != 0) sides.push_back(side);
+  });
+  std::sort(sides.begin(), sides.end());
+  std::map<std::int32_t, double> sum_of;
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    if (i + 1 < sides.size() && sides[i] == sides[i + 1])
+      ++i;
+    else
+      sum_of[sides[i].second] += facet_measure<Dim>(mesh, sides[i].first);
+  return sum_of;
 }
 
 /// How far a mesh reaches, and how far its boundary may go astray: what counts as flat is so by
@@ -95,33 +145,71 @@ void compare(const std::string& what, double now, double expected, double allowe
   faults.push_back(text.str());
 }
 
-}  // namespace
+/// By how much anything may differ, and how much more for each unit of a boundary that may move.
+struct Allowance {
+  double always, surface_tolerance;
+};
 
-std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
-                                      double surface_tolerance) {
-  const auto measure = [](const AnyMesh& mesh) {
-    return mesh.dimension == 2 ? measures_2d(mesh) : measures_3d(mesh);
-  };
-  const Measures old = measure(before);
-  Measures now = measure(after);
-  const auto [extent, slack] = before.dimension == 2 ? scale_of<2>(before) : scale_of<3>(before);
-  // All of the boundary, of which `before` may not list everything.
-  const auto sum = [](double all, const auto& facets) { return all + facets.second; };
-  const double total = std::max(std::accumulate(old.facets.begin(), old.facets.end(), 0.0, sum),
-                                std::accumulate(now.facets.begin(), now.facets.end(), 0.0, sum));
+template <int Dim>
+void compare_regions(const AnyMesh& before, const Measures& old, Measures& now,
+                     const Allowance& allowance, std::vector<std::string>& faults) {
+  const bool is_domain = old.regions.size() == 1 && now.regions.size() == 1 &&
+                         old.regions.begin()->first == now.regions.begin()->first;
+  if (is_domain) return;
+  std::map<std::int32_t, double> boundary_of;
+  if (allowance.surface_tolerance > 0) boundary_of = boundary_measures<Dim>(before);
+  std::map<std::int32_t, double> expected = old.regions;
+  for (const auto& [reference, value] : now.regions) expected.try_emplace(reference, 0.0);
+  for (const auto& [reference, value] : expected) {
+    const std::string what = "elements of reference " + std::to_string(reference);
+    if (value > 0 && !(now.regions[reference] > 0))
+      faults.push_back(what + " are gone");
+    else
+      compare(what + " measure ", now.regions[reference], value,
+              allowance.always + allowance.surface_tolerance * boundary_of[reference], faults);
+  }
+}
+
+template <int Dim>
+std::vector<std::string> check(const AnyMesh& before, const AnyMesh& after,
+                               double surface_tolerance) {
+  const Measures old = measures<Dim>(before);
+  Measures now = measures<Dim>(after);
+  const double domain = total(old.regions);
+  // What was not listed before may be listed by now, see MakeMeshOptions::complete_boundary.
+  const double boundary = std::max(total(old.facets), total(now.facets));
+  const auto [extent, slack] = scale_of<Dim>(before);
   std::vector<std::string> faults;
-  compare("the domain measures ", now.domain, old.domain,
-          1e-9 * old.domain + (slack + surface_tolerance) * total, faults);
+  const double allowed = 1e-9 * domain + slack * boundary;
+  compare("the domain measures ", total(now.regions), domain,
+          allowed + surface_tolerance * boundary, faults);
+  compare_regions<Dim>(before, old, now, {allowed, surface_tolerance}, faults);
   // The rim of a patch of facets: two points in 2D, in 3D a line about as long as the mesh.
-  const double rim = before.dimension == 2 ? 2 : 4 * extent;
+  const double rim = Dim == 2 ? 2 : 4 * extent;
   for (const auto& [reference, value] : old.facets) {
     const std::string what = "facets of reference " + std::to_string(reference);
     if (surface_tolerance == 0)
-      compare(what + " measure ", now.facets[reference], value, 1e-9 * total + slack * rim, faults);
+      compare(what + " measure ", now.facets[reference], value, 1e-9 * boundary + slack * rim,
+              faults);
     else if (!(now.facets[reference] > 0))
       faults.push_back(what + " are gone");
   }
   return faults;
+}
+
+}  // namespace
+
+std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
+                                      double surface_tolerance) {
+  for (const AnyMesh* mesh : {&before, &after}) {
+    expect_coordinates(*mesh);
+    expect_references(*mesh);
+  }
+  if (after.dimension != before.dimension)
+    throw InputError(after.name + ": expected dimension " + std::to_string(before.dimension) +
+                     ", that of " + before.name + ", found " + std::to_string(after.dimension));
+  return before.dimension == 2 ? check<2>(before, after, surface_tolerance)
+                               : check<3>(before, after, surface_tolerance);
 }
 
 }  // namespace ductile::meshadapt

@@ -7,6 +7,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
 
 namespace ductile::meshadapt {
@@ -41,10 +42,7 @@ class FixedMeshMaker {
     if (any_.dimension != Dim)
       fail("expected dimension " + std::to_string(Dim) + ", found " +
            std::to_string(any_.dimension));
-    if (any_.coordinates.size() != any_.vertex_count() * Dim)
-      fail("expected " + std::to_string(Dim) + " coordinates for each of the " +
-           std::to_string(any_.vertex_count()) + " vertices, found " +
-           std::to_string(any_.coordinates.size()) + " numbers");
+    expect_coordinates(any_);
     if (elements.empty())
       fail(std::string("expected ") + (Dim == 2 ? "triangles" : "tetrahedra") + ", found none");
     if (any_.vertex_count() >= none || elements.size() >= none / 4)

@@ -42,6 +42,14 @@ struct Box {
   }
 };
 
+/// The box around some points.
+template <int Dim, std::size_t N>
+Box<Dim> box_around(const std::array<Vector<Dim>, N>& points) {
+  auto box = Box<Dim>::empty();
+  for (const Vector<Dim>& p : points) box = join(box, {p, p});
+  return box;
+}
+
 /// Position along the Hilbert curve of a cell given by `bits` bits an axis (Skilling, AIP Conf.
 /// Proc. 707, 2004): coordinates are transposed in place, then interleaved.
 template <std::size_t Dim>

@@ -11,6 +11,7 @@
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/classify.hpp"
+#include "mesh/array_lengths.hpp"
 #include "mesh/facet_key.hpp"
 #include "mesh/first_bad.hpp"
 
@@ -62,14 +63,8 @@ class MeshMaker {
   }
 
   void check_indices() const {
-    if (any_.coordinates.size() != Dim * any_.vertex_count())
-      fail("expected " + std::to_string(Dim) + " coordinates for each of the " +
-           std::to_string(any_.vertex_count()) + " vertices, found " +
-           std::to_string(any_.coordinates.size()) + " numbers");
-    if (any_.edges.reference.size() != any_.edges.size() ||
-        any_.triangles.reference.size() != any_.triangles.size() ||
-        any_.tetrahedra.reference.size() != any_.tetrahedra.size())
-      fail("expected a reference for each edge, triangle and tetrahedron");
+    expect_coordinates(any_);
+    expect_references(any_);
     const auto& cells = elements_in<Dim>(any_);
     if (any_.dimension != Dim) fail("the mesh has the wrong dimension");
     if (cells.size() == 0)

@@ -6,10 +6,13 @@
 #include <numbers>
 #include <span>
 
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/array_lengths.hpp"
 #include "mesh/grouping.hpp"
 #include "mesh/numbering.hpp"
 
@@ -195,10 +198,22 @@ MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const A
   return result;
 }
 
+void expect_lengths(const AnyMesh& mesh, const AnyField* metric) {
+  expect_coordinates(mesh);
+  if (metric == nullptr) return;
+  expect_field_of(*metric, mesh);
+  if (metric->types != std::vector{AnyField::Type::symmetric})
+    throw InputError(metric->name + ": expected a metric, one field of symmetric tensors, found " +
+                     (metric->types.size() == 1
+                          ? "one of another type"
+                          : std::to_string(metric->types.size()) + " fields"));
+}
+
 }  // namespace
 
 std::vector<double> element_qualities(const Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric) {
+  expect_lengths(mesh, metric);
   if (mesh.dimension == 2)
     return qualities<2>(executor, make_sites<2>(executor, mesh, metric),
                         elements_in<2>(mesh).vertices);
@@ -207,6 +222,7 @@ std::vector<double> element_qualities(const Executor& executor, const AnyMesh& m
 }
 
 MeshStatistics measure(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
+  expect_lengths(mesh, metric);
   return mesh.dimension == 2 ? measure_in<2>(executor, mesh, metric)
                              : measure_in<3>(executor, mesh, metric);
 }

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 #include <vector>
 
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -62,6 +65,18 @@ void add_cells(LogLengths& logs, const AnyMesh& mesh, const Cells<Corners>& cell
   }
 }
 
+void expect_sizes(const AnyMesh& mesh, const std::vector<double>& size_of) {
+  const auto bad = std::find_if(size_of.begin(), size_of.end(), [](double size) {
+    return !(size >= smallest_size && size <= largest_size);
+  });
+  if (bad == size_of.end()) return;
+  std::ostringstream found;
+  found << *bad;
+  throw InputError(mesh.name + ": expected edges of lengths from 1e-75 to 1e75, found " +
+                   found.str() + " at vertex " + std::to_string(bad - size_of.begin() + 1) +
+                   "; scale the mesh");
+}
+
 template <int Dim>
 AnyField implied_tensors_in(const runtime::Executor& executor, const AnyMesh& any) {
   const auto mesh = make_fixed_mesh<Dim>(executor, any);
@@ -101,6 +116,7 @@ AnyField implied_metric(const AnyMesh& mesh) {
   std::vector<double> size_of(mesh.vertex_count(), overall);
   for (std::size_t v = 0; v < size_of.size(); ++v)
     if (logs.count[v] > 0) size_of[v] = std::exp(logs.sum[v] / logs.count[v]);
+  expect_sizes(mesh, size_of);
   return isotropic_field(mesh, size_of);
 }
 

@@ -201,6 +201,20 @@ TEST(AdaptCommand, SaysNothingOfProgressInAPipe) {
   EXPECT_FALSE(contains(outcome.out, "\033"));
 }
 
+TEST(AdaptCommand, MovesBoundariesThatWereNotListed) {
+  const Folder folder;
+  std::string vertices = "17\n0 0 0\n", triangles = "16\n";
+  for (int i = 0; i < 16; ++i) {
+    const double angle = std::acos(-1.0) / 8 * i;
+    vertices += std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+    triangles += "1 " + std::to_string(2 + i) + " " + std::to_string(2 + (i + 1) % 16) + " 1\n";
+  }
+  folder.write("a.mesh", "MeshVersionFormatted 2\nDimension 2\nVertices\n" + vertices +
+                             "Triangles\n" + triangles + "End\n");
+  const Outcome outcome = folder.run("adapt a.mesh -hsiz 0.7 -hausd 0.1 --complete-boundary");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 TEST(AdaptCommand, LeavesOldOutputWhenTheInputIsWrong) {
   const Folder folder;
   folder.add_example("waves2d");

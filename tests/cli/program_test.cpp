@@ -103,6 +103,21 @@ TEST(Info, SaysWhyAMeshIsNotValid) {
   EXPECT_TRUE(contains(outcome.out, "not valid")) << outcome.out;
 }
 
+TEST(Info, SaysWhatAdaptSaysOfLengthsBeyondReason) {
+  const Folder folder;
+  for (const char* length : {"1e80", "1e-80"}) {
+    const std::string l = length;
+    folder.write("a.mesh", "MeshVersionFormatted 2\nDimension 2\nVertices\n3\n0 0 0\n" + l +
+                               " 0 0\n0 " + l +
+                               " 0\nEdges\n3\n1 2 1\n2 3 1\n3 1 1\nTriangles\n1\n1 2 3 1\nEnd\n");
+    const Outcome told = folder.run("info a.mesh"), refused = folder.run("adapt a.mesh");
+    EXPECT_EQ(told.status, 2) << told.out;
+    EXPECT_TRUE(contains(told.out, "not valid: a.mesh: expected edges of lengths")) << told.out;
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(contains(refused.err, "a.mesh: expected edges of lengths")) << refused.err;
+  }
+}
+
 TEST(Info, RefusesTheMetricOfAnotherMesh) {
   const Folder folder;
   folder.add_example("waves2d");
@@ -158,6 +173,15 @@ TEST(Convert, SaysHowManyNumbersItRounds) {
   EXPECT_EQ(rounded.status, 0);
   EXPECT_TRUE(contains(rounded.err, "2 numbers were rounded")) << rounded.err;
   EXPECT_EQ(folder.run("convert a.sol b.solb").err, "");
+}
+
+TEST(Program, WritesToAStandardOutputThatIsAFileBesideWhatItSays) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const Outcome told = folder.run("info waves2d.mesh --json /dev/stdout");
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_TRUE(contains(told.out, "valid: it can be adapted")) << told.out;
+  EXPECT_TRUE(contains(told.out, "\"statistics\"")) << told.out;
 }
 
 TEST(Program, TakesAnyBytesInNames) {

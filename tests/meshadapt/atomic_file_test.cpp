@@ -72,6 +72,39 @@ TEST(AtomicOutputs, WriteToThePipeOfADescriptor) {
   ::close(ends[1]);
 }
 
+TEST(AtomicOutputs, WriteOnInTheFileOfADescriptor) {
+  const test::TemporaryFolder folder;
+  const int descriptor = ::open((folder / "a").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  ASSERT_GE(descriptor, 0);
+  const std::string number = std::to_string(descriptor);
+  EXPECT_EQ(::write(descriptor, "before ", 7), 7);
+  fs::create_symlink("/proc/self/fd/" + number, folder / "link");
+  for (const fs::path& path :
+       {fs::path("/dev/fd/" + number), fs::path("/proc/self/fd/" + number), folder / "link"}) {
+    EXPECT_NO_THROW(check_writable(path));
+    AtomicOutputs outputs;
+    outputs.stage(path).write("text ");
+    outputs.commit();
+  }
+  EXPECT_EQ(::write(descriptor, "after", 5), 5);
+  ::close(descriptor);
+  EXPECT_EQ(test::get_bytes(folder / "a"), "before text text text after");
+  EXPECT_EQ(folder.file_count(), 2U);
+}
+
+TEST(AtomicOutputs, RefuseADescriptorThatIsRead) {
+  const test::TemporaryFolder folder;
+  test::put_bytes(folder / "a", "old");
+  const int descriptor = ::open((folder / "a").c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_GE(descriptor, 0);
+  const fs::path path = "/dev/fd/" + std::to_string(descriptor);
+  EXPECT_NE(test::complaint([&] { check_writable(path); }).find("for reading only"),
+            std::string::npos);
+  ::close(descriptor);
+  EXPECT_THROW(check_writable(path), InputError);
+  EXPECT_EQ(test::get_bytes(folder / "a"), "old");
+}
+
 TEST(AtomicOutputs, TakeAnyLengthOfName) {
   const test::TemporaryFolder folder;
   const std::string name(255, 'n');

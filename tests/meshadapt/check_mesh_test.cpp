@@ -7,6 +7,7 @@
 #include <random>
 
 #include "ductile/meshadapt/make_mesh.hpp"
+#include "io_support.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
@@ -206,10 +207,62 @@ TEST(CheckDomain, FindsWhatLeftItsPlace) {
   }
 }
 
+TEST(CheckDomain, FindsRegionsThatChanged) {
+  for (const int dimension : {2, 3}) {
+    const AnyMesh before = box(dimension);
+    const auto swap_reference = [&](std::size_t e) {
+      AnyMesh after = before;
+      auto& reference_of = dimension == 2 ? after.triangles.reference : after.tetrahedra.reference;
+      reference_of[e] = reference_of[e] == 1 ? 2 : 1;
+      return after;
+    };
+    const AnyMesh after = swap_reference(0);
+    const std::string found = test::joined(check_domain(before, after));
+    EXPECT_NE(found.find("elements of reference 1 measure 0.4"), std::string::npos) << found;
+    EXPECT_NE(found.find("elements of reference 2 measure 0.5"), std::string::npos) << found;
+    // An element is 1/32 of the square, 1/384 of the cube; half of it has a boundary of 3 or 4.
+    const double element = dimension == 2 ? 1.0 / 32 : 1.0 / 384, boundary = dimension == 2 ? 3 : 4;
+    EXPECT_NE(test::joined(check_domain(before, after, 0.99 * element / boundary)), "");
+    EXPECT_EQ(test::joined(check_domain(before, after, 1.01 * element / boundary)), "");
+  }
+}
+
+TEST(CheckDomain, FindsRegionsThatAreGoneOrNew) {
+  const AnyMesh before = box(2);
+  AnyMesh after = before;
+  std::replace(after.triangles.reference.begin(), after.triangles.reference.end(), 2, 7);
+  for (const double tolerance : {0.0, 0.1}) {
+    const std::string found = test::joined(check_domain(before, after, tolerance));
+    EXPECT_NE(found.find("elements of reference 2 are gone"), std::string::npos) << found;
+    EXPECT_NE(found.find("elements of reference 7 measure 0.5, expected 0"), std::string::npos)
+        << found;
+  }
+}
+
 TEST(CheckDomain, FindsNothingWhereThereIsNothing) {
   AnyMesh nothing;
   nothing.dimension = 2;
   EXPECT_EQ(test::joined(check_domain(nothing, nothing)), "");
+}
+
+TEST(CheckDomain, RefusesArraysThatDoNotFit) {
+  AnyMesh mesh = box(2);
+  mesh.name = "a.mesh";
+  const auto complaint = [&](const AnyMesh& other) {
+    const auto at_second = test::complaint([&] { check_domain(mesh, other); });
+    if (other.dimension == 2)
+      EXPECT_EQ(test::complaint([&] { check_domain(other, mesh); }), at_second);
+    return at_second;
+  };
+  AnyMesh other = mesh;
+  other.coordinates.pop_back();
+  EXPECT_EQ(complaint(other),
+            "a.mesh: expected 2 coordinates for each of the 25 vertices, found 49 numbers");
+  other = mesh;
+  other.triangles.reference.pop_back();
+  EXPECT_EQ(complaint(other),
+            "a.mesh: expected a reference for each of the 32 triangles, found 31");
+  EXPECT_EQ(complaint(box(3)), "test: expected dimension 2, that of a.mesh, found 3");
 }
 
 TEST(CheckDomain, AllowsForRoundingFarFromTheOriginAndInThinDomains) {

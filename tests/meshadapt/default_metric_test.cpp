@@ -54,6 +54,12 @@ TYPED_TEST(DefaultMetricIn, KeepsTheStretchOfTheMesh) {
   EXPECT_LT(measure(executor, any, &alike).share_in_range(), 0.5);
 }
 
+TYPED_TEST(DefaultMetricIn, RefusesLengthsBeyondReason) {
+  AnyMesh any = test::make_grid(test::unit_grid(TypeParam::value, 1));
+  for (double& x : any.coordinates) x *= 1e80;
+  EXPECT_THROW(implied_metric(any), InputError);
+}
+
 /// Rotated, so that what is thin is along no axis, and rounding shows.
 TYPED_TEST(DefaultMetricIn, OfElementsAsFlatAsRoundingIsAMetric) {
   constexpr int Dim = TypeParam::value;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/default_metric.hpp"
+#include "io_support.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt {
@@ -97,6 +98,28 @@ TEST(Statistics, EdgeLengthIsTheLogarithmicMeanOfBothEnds) {
   const MeshStatistics s = measure(executor, mesh, &metric);
   // The edge from (0, 0), where it is 1 long, to (1, 0), where it is 4 long.
   EXPECT_NEAR(s.edge_length.max, 3 / std::log(4.0), 1e-12);
+}
+
+TEST(Statistics, RefuseArraysThatDoNotFit) {
+  const Executor executor({.threads = 1});
+  AnyMesh mesh = grid(2);
+  const auto complaint = [&](const AnyField* metric) {
+    auto of_qualities = test::complaint([&] { element_qualities(executor, mesh, metric); });
+    EXPECT_EQ(test::complaint([&] { measure(executor, mesh, metric); }), of_qualities);
+    return of_qualities;
+  };
+  AnyField metric = constant_metric(mesh, 1);
+  metric.name = "a.sol";
+  metric.values.pop_back();
+  EXPECT_NE(complaint(&metric).find("a.sol: expected numbers"), std::string::npos);
+  EXPECT_NE(complaint(&metric).find("27 of them, found 26"), std::string::npos);
+  metric = constant_metric(grid(1), 1);
+  EXPECT_NE(complaint(&metric).find("expected 9 values"), std::string::npos);
+  EXPECT_NE(complaint(&metric).find("found 4"), std::string::npos);
+  metric = {2, 9, {AnyField::Type::scalar}, std::vector<double>(9, 1.0), "h.sol"};
+  EXPECT_NE(complaint(&metric).find("symmetric tensors, found one of another"), std::string::npos);
+  mesh.coordinates.pop_back();
+  EXPECT_NE(complaint(nullptr).find("each of the 9 vertices, found 17"), std::string::npos);
 }
 
 TEST(Statistics, AreTheSameAtEachThreadCount) {

@@ -164,6 +164,13 @@ TEST(Vtu, TakesFieldsApart) {
       EXPECT_EQ(parts[1].values[3 * vertex + i], field.values[6 * vertex + 1 + i]);
 }
 
+TEST(Vtu, TakesNoFieldApartThatLacksValues) {
+  AnyField field = test::random_field(2, 3, {Type::scalar, Type::vector}, 1);
+  field.name = "u.sol";
+  field.values.pop_back();
+  EXPECT_EQ(test::complaint([&] { vtu_fields(field, "u"); }), "u.sol: expected 9 values, found 8");
+}
+
 TEST(Vtu, GivesEachFieldANameOfItsOwn) {
   const test::TemporaryFolder folder;
   const AnyMesh mesh = test::random_mesh(2, 1, 1);

@@ -163,6 +163,17 @@ TEST(RunRoundsChecked, CatchesNumbersOutOfRange) {
   EXPECT_NE(message.find("item 5, round 1: conflicts() visits 400"), std::string::npos) << message;
 }
 
+TEST(RunRoundsChecked, CatchesWorkThatIsOutOfRangeOrTwiceThere) {
+  const std::string beyond = caught(ContractRule::numbers_in_range, Bypass(10, {}), {3, 10});
+  EXPECT_NE(beyond.find("item 10, round 1: it is in the work, but item_count() is 10"),
+            std::string::npos)
+      << beyond;
+  const std::string twice = caught(ContractRule::items_once, Bypass(10, {}), {3, 5, 3});
+  EXPECT_NE(twice.find("item 3, round 1: it is in the work twice, at places 0 and 2"),
+            std::string::npos)
+      << twice;
+}
+
 TEST(RunRoundsChecked, CatchesPlansThatDoMoreThanRead) {
   const std::string message =
       caught(ContractRule::plan_only_reads, Bypass(10, {.plans_only_read = false}), {Vertex{7}});

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <numeric>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -200,6 +203,28 @@ TEST(Colouring, FindsAllClashesOfSpeculation) {
           EXPECT_TRUE(is_proper(executor, graph.view(), colour(executor, graph.view(), method)))
               << graph.name << ", threads " << threads;
       }
+}
+
+/// Two threads begin in the same clique, each with its half of the vertices, and wait for each
+/// other there, if not for long, so that what they colour first clashes.
+TEST(Colouring, TakesNoMoreColoursWhereVerticesAreTheirOwnNeighbours) {
+  const std::uint32_t clique = 50, cliques = 200;
+  std::array<std::atomic<bool>, 2> has_begun;
+  const auto graph = callback_graph(clique * cliques, [&](std::uint32_t v, auto&& visit) {
+    const std::uint32_t half = clique * cliques / 2;
+    if (v % half == 0) {
+      has_begun[v / half] = true;
+      for (int turn = 0; turn < 100000 && !has_begun[1 - v / half]; ++turn)
+        std::this_thread::yield();
+    }
+    for (std::uint32_t u = v % cliques; u < clique * cliques; u += cliques) visit(u);
+  });
+  const Executor executor({.threads = 2});
+  for (const ColouringMethod method : {ColouringMethod::detect_again, ColouringMethod::two_phase})
+    for (int run = 0; run < 5; ++run) {
+      for (auto& begun : has_begun) begun = false;
+      EXPECT_EQ(colour(executor, graph, method).count, clique) << static_cast<int>(method);
+    }
 }
 
 /// Many vertices hide their colours here, and clash: a sixteenth of the neighbours are coloured at

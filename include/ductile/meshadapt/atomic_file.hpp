@@ -3,7 +3,8 @@
 /// written, or, where the file system has no such files, a temporary one beside its place,
 /// `NAME.ductile-tmp-PID-N`; commit() gives all of them their names when every byte of every one is
 /// on its way to disk. Until then, and after an error or an interrupt, the files that were there
-/// before are untouched. What is no regular file (/dev/null, a pipe) is written directly.
+/// before are untouched. What is no regular file (/dev/null, a pipe) is written directly, and so is
+/// what a name such as /dev/stdout or /dev/fd/3 stands for, where it is a regular file, too.
 #pragma once
 
 #include <cstddef>

@@ -20,12 +20,13 @@ namespace ductile::meshadapt {
 std::vector<std::string> check_mesh(const runtime::Executor& executor, const AnyMesh& mesh);
 
 /// How the domain of `after` differs from that of `before`, a line each; empty if it does not: the
-/// measure (area or volume) of the whole, and of the listed boundary facets and interfaces by
-/// reference (length or area). They agree to 1e-9 of the total and to what the boundary can go
-/// astray, in thin domains and far from the origin the greater of the two: 2e-10 of the extent and
-/// the rounding of coordinates. What adaptation must never change. With a surface tolerance (see
-/// MakeMeshOptions) the whole may differ by as much as boundaries that far away make it, and
-/// boundaries only have to be there still.
+/// measure (area or volume) of the whole, of the elements of each reference, and of the listed
+/// boundary facets and interfaces by reference (length or area). They agree to 1e-9 of the total
+/// and to what the boundary can go astray, in thin domains and far from the origin the greater of
+/// the two: 2e-10 of the extent and the rounding of coordinates. What adaptation must never change.
+/// With a surface tolerance (see MakeMeshOptions) the whole, and each region, may differ by as much
+/// as boundaries that far away make it, and boundaries only have to be there still. Throws
+/// InputError unless both meshes are of one dimension and have all coordinates and references.
 /// Linear in the meshes. Thread safety: any thread.
 std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
                                       double surface_tolerance = 0);

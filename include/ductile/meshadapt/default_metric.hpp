@@ -13,7 +13,8 @@ namespace ductile::meshadapt {
 AnyField constant_metric(const AnyMesh& mesh, double size);
 
 /// Asks at each vertex for the geometric mean of the lengths of its edges, in every direction; a
-/// vertex without any gets the mean of the whole mesh. Thread safety: any thread.
+/// vertex without any gets the mean of the whole mesh. Throws InputError for lengths beyond the
+/// sizes that a metric may ask for. Thread safety: any thread.
 AnyField implied_metric(const AnyMesh& mesh);
 
 /// The metric that the mesh is adapted to already, stretched as it is: for each element there is

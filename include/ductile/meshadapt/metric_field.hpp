@@ -13,6 +13,11 @@
 
 namespace ductile::meshadapt {
 
+/// Sizes within these bounds can be squared, inverted and cubed without leaving the range of
+/// double.
+inline constexpr double smallest_size = 1e-75;
+inline constexpr double largest_size = 1e75;
+
 /// The longest size that a metric may ask for at a vertex, over the shortest.
 inline constexpr double largest_anisotropy = 1e8;
 

@@ -43,13 +43,15 @@ struct MeshStatistics {
 };
 
 /// Measures the triangles of a mesh of dimension 2, the tetrahedra of one of dimension 3. `metric`
-/// is one symmetric tensor per vertex (see metric_of), or null for Euclidean figures.
+/// is one symmetric tensor per vertex (see metric_of), or null for Euclidean figures. Throws
+/// InputError unless the mesh has all coordinates, and the metric a tensor for each vertex.
 /// Thread safety: one thread; runs on the executor.
 MeshStatistics measure(const runtime::Executor& executor, const AnyMesh& mesh,
                        const AnyField* metric);
 
 /// Quality of each element, [element]: the mean ratio in the metric of its corner of largest
-/// determinant; where several corners have that determinant, their mean.
+/// determinant; where several corners have that determinant, their mean. Throws as above.
+/// Thread safety: one thread; runs on the executor.
 std::vector<double> element_qualities(const runtime::Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric);
 

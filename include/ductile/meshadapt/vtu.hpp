@@ -22,6 +22,7 @@ struct VtuField {
 };
 
 /// The fields of an AnyField apart: "NAME", or "NAME_1", "NAME_2", ... if there are several.
+/// Throws InputError unless there are values for all vertices. Thread safety: any thread.
 std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name);
 
 /// Writes the mesh and fields of its dimension at its vertices. The file appears whole or not at

@@ -12,7 +12,8 @@ namespace ductile::runtime {
 
 enum class ContractRule : std::uint8_t {
   plan_only_reads,         ///< plan() twice gives the same
-  numbers_in_range,        ///< conflicts() below item_count(), footprint() below resource_count()
+  items_once,              ///< items that are to be coloured are in the work once
+  numbers_in_range,        ///< items, conflicts() < item_count(), footprint() < resource_count()
   conflicts_symmetric,     ///< whom an item conflicts with conflicts with it
   touches_announced,       ///< what runs beside an item does not change its plan
   order_free,              ///< the order in which a batch is applied does not show

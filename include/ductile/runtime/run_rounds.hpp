@@ -17,7 +17,8 @@
 
 namespace ductile::runtime {
 
-/// Applies `op` to `work` and to whatever it wakes, until nothing is left. With a deterministic
+/// Applies `op` to `work` and to whatever it wakes, until nothing is left. A coloured operator's
+/// work has each item once. With a deterministic
 /// executor the result does not depend on threads or timing, provided that the operator keeps its
 /// contract. Throws what the operator throws; the operator's data are then not to be used.
 /// Thread safety: one caller; runs on the executor.

@@ -132,12 +132,24 @@ class OperatorCheck {
     conflicts_.clear();
     plans_.clear();
     for (std::size_t i = 0; i < work.size(); ++i) {
+      expect_new(op, work[i], i);
       place_of_[work[i]] = static_cast<std::uint32_t>(i);
       conflicts_.push_back(conflicts_of(op, work[i]));
       plans_.push_back(op.plan(work[i]));
     }
     for (std::size_t i = 0; i < work.size(); ++i)
       for (const std::uint32_t other : conflicts_[i]) expect_symmetric(op, work[i], i, other);
+  }
+
+  /// Among those of the round that have their places already.
+  void expect_new(const Op& op, Item item, std::size_t i) const {
+    if (item >= op.item_count())
+      refuse(ContractRule::numbers_in_range, item, i,
+             "it is in the work, but item_count() is " + std::to_string(op.item_count()));
+    if (place_of_[item] != absent)
+      refuse(ContractRule::items_once, item, i,
+             "it is in the work twice, at places " + std::to_string(place_of_[item]) + " and " +
+                 std::to_string(i));
   }
 
   void expect_symmetric(const Op& op, Item item, std::size_t i, std::uint32_t other) const {

@@ -131,6 +131,13 @@ bool clashes(const G& graph, std::uint32_t v, const Colours<Width>& colours, Riv
   return clash != 0;
 }
 
+/// Colours v anew, which has no colour meanwhile: it may be its own neighbour.
+template <class Width, Graph G>
+void colour_again(const G& graph, std::uint32_t v, const Colours<Width>& colours) {
+  colours.set(v, Colours<Width>::waiting);
+  colours.set(v, least_free(graph, v, colours));
+}
+
 /// The scheme of Catalyurek et al.: colour, barrier, find the clashes, barrier.
 struct TwoPhase {
   static constexpr std::uint32_t marks = 2 * speculative_marks;
@@ -152,8 +159,7 @@ struct TwoPhase {
       clashing.collect();
       list = clashing.take();
       parallel_for(
-          executor, list.size(),
-          [&](std::size_t i) { colours.set(list[i], least_free(graph, list[i], colours)); },
+          executor, list.size(), [&](std::size_t i) { colour_again(graph, list[i], colours); },
           speculative_loop);
     }
   }
@@ -177,7 +183,7 @@ struct DetectAgain {
             const std::uint32_t v = list[i];
             prefetch_after(graph, {list.size(), list.data()}, i);
             if (!clashes(graph, v, colours, rivals)) return;
-            colours.set(v, least_free(graph, v, colours));
+            colour_again(graph, v, colours);
             recoloured.append(v);
           },
           speculative_loop);

@@ -1,0 +1,16 @@
+/// @file
+/// Whether the arrays of a mesh that a caller made have the lengths that belong together, to be
+/// asked before anything is looked up in them; indices are another matter.
+#pragma once
+
+#include "ductile/meshadapt/any_mesh.hpp"
+
+namespace ductile::meshadapt {
+
+/// Throws InputError unless the mesh is of dimension 2 or 3 and has all coordinates.
+void expect_coordinates(const AnyMesh& mesh);
+
+/// Throws InputError unless there is a reference for each edge, triangle and tetrahedron.
+void expect_references(const AnyMesh& mesh);
+
+}  // namespace ductile::meshadapt
