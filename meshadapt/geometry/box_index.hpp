@@ -12,7 +12,7 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
 
-#include "mesh/hilbert.hpp"
+#include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
 

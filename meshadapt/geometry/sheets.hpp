@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/vector.hpp"
-#include "mesh/hilbert.hpp"
+#include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
 

@@ -11,44 +11,9 @@
 #include <utility>
 
 #include "ductile/meshadapt/vector.hpp"
+#include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
-
-template <int Dim>
-struct Box {
-  Vector<Dim> low, high;
-
-  /// Contains nothing.
-  static Box empty() {
-    Box box;
-    box.low.x.fill(std::numeric_limits<double>::infinity());
-    box.high.x.fill(-std::numeric_limits<double>::infinity());
-    return box;
-  }
-
-  friend Box join(Box a, const Box& b) {
-    for (int i = 0; i < Dim; ++i) {
-      a.low[i] = std::min(a.low[i], b.low[i]);
-      a.high[i] = std::max(a.high[i], b.high[i]);
-    }
-    return a;
-  }
-
-  /// Do they have a point in common?
-  friend bool meet(const Box& a, const Box& b) {
-    for (int i = 0; i < Dim; ++i)
-      if (a.low[i] > b.high[i] || b.low[i] > a.high[i]) return false;
-    return true;
-  }
-};
-
-/// The box around some points.
-template <int Dim, std::size_t N>
-Box<Dim> box_around(const std::array<Vector<Dim>, N>& points) {
-  auto box = Box<Dim>::empty();
-  for (const Vector<Dim>& p : points) box = join(box, {p, p});
-  return box;
-}
 
 /// Position along the Hilbert curve of a cell given by `bits` bits an axis (Skilling, AIP Conf.
 /// Proc. 707, 2004): coordinates are transposed in place, then interleaved.

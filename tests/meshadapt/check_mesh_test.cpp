@@ -250,8 +250,9 @@ TEST(CheckDomain, RefusesArraysThatDoNotFit) {
   mesh.name = "a.mesh";
   const auto complaint = [&](const AnyMesh& other) {
     const auto at_second = test::complaint([&] { check_domain(mesh, other); });
-    if (other.dimension == 2)
+    if (other.dimension == 2) {
       EXPECT_EQ(test::complaint([&] { check_domain(other, mesh); }), at_second);
+    }
     return at_second;
   };
   AnyMesh other = mesh;
