@@ -28,7 +28,8 @@ using meshadapt::AnyMesh;
 using runtime::Executor;
 
 constexpr std::array<Option, 24> options{{
-    {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)"},
+    {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
+     "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
     {"-hmin", "X", "asks for no edge shorter than X"},

@@ -74,6 +74,18 @@ TEST(AdaptCommand, FailsCleanlyWhenMemoryRunsOut) {
 }
 #endif
 
+TEST(AdaptCommand, TakesTheMetricByEitherOfMmgsNames) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  std::filesystem::rename(folder.path() / "waves2d.sol", folder.path() / "m.sol");
+  for (const std::string name : {"-sol", "-met"}) {
+    const Outcome outcome =
+        folder.run("adapt waves2d.mesh " + name + " m.sol -o a" + name + ".mesh");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+  EXPECT_EQ(folder.read("a-sol.mesh"), folder.read("a-met.mesh"));
+}
+
 TEST(AdaptCommand, AdaptsToOneSizeAndToTheSizesThatThereAre) {
   const Folder folder;
   folder.add_example("waves2d");
