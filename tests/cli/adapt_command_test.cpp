@@ -181,6 +181,20 @@ TEST(AdaptCommand, RefusesSizesThatNoMetricCanHave) {
   }
 }
 
+TEST(AdaptCommand, LeavesOutEdgesOfNoElementAsInfoSays) {
+  const Folder folder;
+  meshadapt::AnyMesh mesh = meshadapt::box_mesh({1, 1, 1}, {2, 2, 2});
+  mesh.edges.add({0, 26}, 7);
+  meshadapt::write_mesh(folder.path() / "box.mesh", mesh);
+  for (const char* command : {"info box.mesh", "adapt box.mesh -hsiz 0.5"}) {
+    const Outcome outcome = folder.run(command);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "1 of 1 listed edges belong to no tetrahedron"))
+        << outcome.err;
+  }
+  EXPECT_EQ(meshadapt::read_mesh(folder.path() / "box.o.mesh").edges.size(), 0U);
+}
+
 /// Writes u.sol, a scalar x + y and a vector, at the vertices of a mesh there.
 void add_field(const Folder& folder, const std::string& mesh_name) {
   const auto mesh = meshadapt::read_mesh(folder.path() / mesh_name);
