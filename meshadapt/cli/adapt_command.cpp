@@ -28,7 +28,8 @@ using meshadapt::AnyMesh;
 using runtime::Executor;
 
 constexpr std::array<Option, 24> options{{
-    {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)"},
+    {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
+     "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
     {"-hmin", "X", "asks for no edge shorter than X"},
@@ -237,7 +238,8 @@ int run(const Arguments& arguments) {
       {.before = job.json || job.verbosity > 1,
        .after = job.json || job.verbosity > 0,
        .expects_lengths = job.adapt.insert,
-       .keeps_surface = job.adapt.make.surface_tolerance == 0 && !job.adapt.make.lock_boundary});
+       .keeps_surface = job.adapt.make.surface_tolerance == 0 && !job.adapt.make.lock_boundary,
+       .surface_tolerance = job.adapt.make.surface_tolerance});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   print_warnings(warnings, job.verbosity);
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 #include "files.hpp"
 #include "report.hpp"
@@ -79,14 +80,22 @@ std::string json_of(const KernelReport& kernel) {
          ", \"rounds\": " + std::to_string(kernel.rounds) + "}";
 }
 
+double share_of_edges(const meshadapt::MeshStatistics& statistics, std::size_t count) {
+  return static_cast<double>(count) /
+         static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
+}
+
+std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+constexpr double many_short = 0.1;
+
 /// Of a mesh that is far from its metric, what to do; else nothing.
 std::string advice_on_lengths(const meshadapt::MeshStatistics& statistics) {
   constexpr double many = 0.25;
-  const double share = static_cast<double>(statistics.edges_long) /
-                       static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
+  const double share = share_of_edges(statistics, statistics.edges_long);
   if (share < many) return {};
-  return std::to_string(std::lround(100 * share)) +
-         " % of the edges are longer than asked for: the metric is too far from the mesh; adapt the"
+  return percent(share) +
+         " of the edges are longer than asked for: the metric is too far from the mesh; adapt the"
          " result again, or first to a metric whose sizes differ less between directions"
          " (ductile metric bound --anisotropy)";
 }
@@ -95,14 +104,43 @@ std::string advice_on_lengths(const meshadapt::MeshStatistics& statistics) {
 /// nothing.
 std::string advice_on_surface(const meshadapt::MeshStatistics& statistics,
                               const AdaptReport& report) {
-  constexpr double many = 0.1;
   constexpr std::size_t more_than_corners = 32;
-  const double share = static_cast<double>(statistics.edges_short) /
-                       static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
-  if (share < many || report.fixed_vertices < more_than_corners) return {};
-  return std::to_string(std::lround(100 * share)) +
-         " % of the edges are shorter than asked for; if they are on curved boundaries, -hausd X"
+  const double share = share_of_edges(statistics, statistics.edges_short);
+  if (share < many_short || report.fixed_vertices < more_than_corners) return {};
+  return percent(share) +
+         " of the edges are shorter than asked for; if they are on curved boundaries, -hausd X"
          " lets these be up to X from where they are";
+}
+
+/// Of a mesh that cannot be as coarse as its metric, since curved boundaries may not be far from
+/// where they were, how it can; else nothing. They are why if edges are short on them above all.
+std::string advice_on_tolerance(const meshadapt::MeshStatistics& statistics,
+                                const AdaptReport& report, double tolerance) {
+  constexpr std::size_t more_than_few = 32;
+  constexpr double in_part = 0.25;
+  const double share = share_of_edges(statistics, statistics.edges_short);
+  const auto here = static_cast<double>(report.curved_edges_short);
+  if (share < many_short || report.curved_edges_short < more_than_few ||
+      here < in_part * static_cast<double>(statistics.edges_short) ||
+      here < share * static_cast<double>(report.curved_edges))
+    return {};
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%g", tolerance);
+  return percent(share) +
+         " of the edges are shorter than asked for: curved boundaries have to stay within " +
+         text.data() + " (-hausd) of where they were; a larger one, or smaller sizes there, would" +
+         " help";
+}
+
+/// What is to be said of lengths.
+std::vector<std::string> advice(const meshadapt::MeshStatistics& statistics,
+                                const AdaptReport& report, const SummaryOptions& options) {
+  std::vector<std::string> all{advice_on_lengths(statistics)};
+  if (options.keeps_surface) all.push_back(advice_on_surface(statistics, report));
+  if (options.surface_tolerance > 0)
+    all.push_back(advice_on_tolerance(statistics, report, options.surface_tolerance));
+  std::erase(all, "");
+  return all;
 }
 
 }  // namespace
@@ -119,12 +157,8 @@ AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
   if (options.before) summary.before.statistics = measure(executor, before, &metric);
   if (options.after) summary.after.statistics = measure(executor, after.mesh, &after.metric);
   if (options.expects_lengths && summary.after.statistics)
-    if (std::string advice = advice_on_lengths(*summary.after.statistics); !advice.empty())
-      summary.report.warnings.push_back(std::move(advice));
-  if (options.expects_lengths && options.keeps_surface && summary.after.statistics)
-    if (std::string advice = advice_on_surface(*summary.after.statistics, after.report);
-        !advice.empty())
-      summary.report.warnings.push_back(std::move(advice));
+    for (std::string& said : advice(*summary.after.statistics, after.report, options))
+      summary.report.warnings.push_back(std::move(said));
   return summary;
 }
 

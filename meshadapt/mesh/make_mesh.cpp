@@ -392,22 +392,33 @@ class MeshMaker {
          "--complete-boundary to give unlisted ones reference 0");
   }
 
-  std::vector<ListedEdge> listed_edges() const {
+  /// Edges that belong to no element, as construction lines do, are left out.
+  std::vector<ListedEdge> listed_edges() {
     std::vector<ListedEdge> edges;
     if constexpr (Dim == 3) {
       const auto required = marked(any_.edges.size(), any_.required_edges, "edge");
       const auto ridge = marked(any_.edges.size(), any_.ridges, "edge");
+      std::size_t first_loose = no_index;
+      std::vector<ElementId> shell;
       for (std::size_t i = 0; i < any_.edges.size(); ++i) {
         const auto [a, b] = any_.edges.vertices[i];
-        edges.push_back({a, b, any_.edges.reference[i], required[i], ridge[i]});
-        std::vector<ElementId> shell;
         shell_of(mesh_, a, b, shell);
-        if (shell.empty())
-          fail(entity("edge", i) +
-               " is not an edge of any tetrahedron; remove it or repair the mesh");
+        if (!shell.empty())
+          edges.push_back({a, b, any_.edges.reference[i], required[i], ridge[i]});
+        else if (first_loose == no_index)
+          first_loose = i;
       }
+      report_loose_edges(any_.edges.size() - edges.size(), first_loose);
     }
     return edges;
+  }
+
+  void report_loose_edges(std::size_t count, std::size_t first) {
+    if (count == 0) return;
+    warnings_.push_back(any_.name + ": " + std::to_string(count) + " of " +
+                        std::to_string(any_.edges.size()) +
+                        " listed edges belong to no tetrahedron and are left out; the first is " +
+                        entity("edge", first));
   }
 
   const Executor& executor_;

@@ -55,7 +55,8 @@ std::array<const Site<Dim>*, Dim + 1> corners_of(const std::vector<Site<Dim>>& s
   return corner;
 }
 
-/// Mean ratio in the metric of the densest corner, the mean over them where several are.
+/// Mean ratio in the metric of the densest corner, the mean over them where several are. That of an
+/// ideal element is 1 but for rounding, and not shown to be more.
 template <int Dim>
 double quality_of(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   const double measure = signed_measure<Dim>(corner);
@@ -71,7 +72,7 @@ double quality_of(const std::array<const Site<Dim>*, Dim + 1>& corner) {
     sum += squares > 0 ? ideal / squares : 0;  // all corners may be one point
     ++ties;
   }
-  return std::copysign(sum / ties, measure);
+  return std::copysign(std::min(sum / ties, 1.0), measure);
 }
 
 /// For each vertex, those of a higher number to which an edge leads.

@@ -3,8 +3,10 @@
 /// another.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/make_vector.hpp"
@@ -51,6 +53,44 @@ std::size_t fixed_vertices(const runtime::Executor& executor, const Mesh<Dim>& m
                                   std::plus<>());
 }
 
+/// The vertices of a higher number to which edges of smooth patches lead from v.
+template <int Dim>
+void find_curved_edges_up(const Mesh<Dim>& mesh, VertexId v, std::vector<VertexId>& higher) {
+  higher.clear();
+  for (const ElementId e : mesh.elements_of.of(v))
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      if (!mesh.patches[mesh.patches_of[e][i]].smooth || mesh.corners_of[e][i] == v) continue;
+      for (const VertexId w : facet_of<Dim>(mesh.corners_of[e], static_cast<int>(i)))
+        if (w > v) higher.push_back(w);
+    }
+  std::sort(higher.begin(), higher.end());
+  higher.erase(std::unique(higher.begin(), higher.end()), higher.end());
+}
+
+template <int Dim>
+void count_curved_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                        AdaptReport& report) {
+  if (!mesh.surface) return;
+  struct Count {
+    std::size_t all = 0, shorter = 0;
+  };
+  runtime::PerThread<std::vector<VertexId>> higher(executor);
+  const auto count_at = [&](std::size_t v) {
+    const auto from = static_cast<VertexId>(v);
+    std::vector<VertexId>& ends = higher.mine();
+    find_curved_edges_up(mesh, from, ends);
+    const auto is_short = [&](VertexId to) { return mesh.length(from, to) < std::sqrt(0.5); };
+    const auto shorter = std::count_if(ends.begin(), ends.end(), is_short);
+    return Count{ends.size(), static_cast<std::size_t>(shorter)};
+  };
+  const Count total = runtime::parallel_reduce(executor, mesh.vertex_slots(), Count{}, count_at,
+                                               [](const Count& a, const Count& b) {
+                                                 return Count{a.all + b.all, a.shorter + b.shorter};
+                                               });
+  report.curved_edges = total.all;
+  report.curved_edges_short = total.shorter;
+}
+
 template <int Dim>
 AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
                      const AdaptOptions& options) {
@@ -69,7 +109,9 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   adapter.report().setup_seconds = seconds();
   if (auto* recording = executor.recording()) recording->begin_section("other");
   adapter.run();
-  auto [adapted, metric_on_it] = take_apart(executor, adapter.take_mesh());
+  mesh = adapter.take_mesh();
+  count_curved_edges(executor, mesh, adapter.report());
+  auto [adapted, metric_on_it] = take_apart(executor, std::move(mesh));
   AdaptedMesh result{std::move(adapted), std::move(metric_on_it), adapter.report()};
   result.report.warnings = std::move(warnings);
   result.report.fixed_vertices = fixed;

@@ -74,6 +74,18 @@ TEST(AdaptCommand, FailsCleanlyWhenMemoryRunsOut) {
 }
 #endif
 
+TEST(AdaptCommand, TakesTheMetricByEitherOfMmgsNames) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  std::filesystem::rename(folder.path() / "waves2d.sol", folder.path() / "m.sol");
+  for (const std::string name : {"-sol", "-met"}) {
+    const Outcome outcome =
+        folder.run("adapt waves2d.mesh " + name + " m.sol -o a" + name + ".mesh");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+  EXPECT_EQ(folder.read("a-sol.mesh"), folder.read("a-met.mesh"));
+}
+
 TEST(AdaptCommand, AdaptsToOneSizeAndToTheSizesThatThereAre) {
   const Folder folder;
   folder.add_example("waves2d");
@@ -113,8 +125,8 @@ TEST(AdaptSummary, WarnsOfEdgesThatAreTooLong) {
   EXPECT_TRUE(warnings_for(1e3, true).empty());
 }
 
-TEST(AdaptCommand, CoarsensACurvedBoundaryIfToldTo) {
-  const Folder folder;
+/// Writes arc.mesh, with radii from 1 to 2.
+void add_arc(const Folder& folder) {
   meshadapt::AnyMesh mesh = meshadapt::rectangle_mesh({1, 1}, {40, 40});
   for (std::size_t at = 0; at < mesh.coordinates.size(); at += 2) {
     const double radius = 1 + mesh.coordinates[at], angle = mesh.coordinates[at + 1];
@@ -122,6 +134,28 @@ TEST(AdaptCommand, CoarsensACurvedBoundaryIfToldTo) {
     mesh.coordinates[at + 1] = radius * std::sin(angle);
   }
   meshadapt::write_mesh(folder.path() / "arc.mesh", mesh);
+}
+
+TEST(AdaptCommand, SaysWhereTheToleranceKeepsEdgesShort) {
+  const Folder folder;
+  add_arc(folder);
+  const auto said = [&](const std::string& options) {
+    const Outcome outcome = folder.run("adapt arc.mesh --no-metric " + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.err;
+  };
+  const std::string binding = said("-hsiz 0.4 -hausd 0.0001");
+  EXPECT_TRUE(contains(binding, "% of the edges are shorter than asked for")) << binding;
+  EXPECT_TRUE(contains(binding, "within 0.0001 (-hausd)")) << binding;
+  EXPECT_EQ(said("-hsiz 0.4 -hausd 0.05"), "");
+  EXPECT_EQ(said("-hsiz 0.01 -hausd 0.0001"), "");
+  EXPECT_EQ(said("-hsiz 0.4 -hausd 0.0001 -noinsert"), "");
+  EXPECT_EQ(said("-hsiz 0.4 -hausd 0.0001 -nosurf"), "");
+}
+
+TEST(AdaptCommand, CoarsensACurvedBoundaryIfToldTo) {
+  const Folder folder;
+  add_arc(folder);
   const Outcome kept = folder.run("adapt arc.mesh -hsiz 0.3");
   EXPECT_EQ(kept.status, 0);
   EXPECT_TRUE(contains(kept.err, "-hausd")) << kept.err;
@@ -145,6 +179,20 @@ TEST(AdaptCommand, RefusesSizesThatNoMetricCanHave) {
     EXPECT_EQ(outcome.status, 2);
     EXPECT_TRUE(contains(outcome.err, "1e-75 to 1e75")) << outcome.err;
   }
+}
+
+TEST(AdaptCommand, LeavesOutEdgesOfNoElementAsInfoSays) {
+  const Folder folder;
+  meshadapt::AnyMesh mesh = meshadapt::box_mesh({1, 1, 1}, {2, 2, 2});
+  mesh.edges.add({0, 26}, 7);
+  meshadapt::write_mesh(folder.path() / "box.mesh", mesh);
+  for (const char* command : {"info box.mesh", "adapt box.mesh -hsiz 0.5"}) {
+    const Outcome outcome = folder.run(command);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "1 of 1 listed edges belong to no tetrahedron"))
+        << outcome.err;
+  }
+  EXPECT_EQ(meshadapt::read_mesh(folder.path() / "box.o.mesh").edges.size(), 0U);
 }
 
 /// Writes u.sol, a scalar x + y and a vector, at the vertices of a mesh there.

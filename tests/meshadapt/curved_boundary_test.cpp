@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <set>
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -88,6 +91,35 @@ TEST_P(CurvedBoundary, IsCoarsenedWithinTheTolerance) {
     EXPECT_EQ(test::joined(test::faults_of(executor, mesh, kept)), "");
     EXPECT_LT(facets_on_arcs(result.mesh), facets_on_arcs(kept.mesh));
     EXPECT_LT(measure(executor, kept.mesh, &kept.metric).share_in_range(), 0.9);
+  }
+}
+
+std::set<std::array<std::uint32_t, 2>> edges_on_arcs(const AnyMesh& mesh) {
+  std::set<std::array<std::uint32_t, 2>> edges;
+  const auto add = [&](const auto& facets) {
+    for (std::size_t f = 0; f < facets.size(); ++f)
+      for (const std::uint32_t a : facets.vertices[f])
+        for (const std::uint32_t b : facets.vertices[f])
+          if (a < b && (facets.reference[f] == 1 || facets.reference[f] == 2)) edges.insert({a, b});
+  };
+  mesh.dimension == 2 ? add(mesh.edges) : add(mesh.triangles);
+  return edges;
+}
+
+TEST_P(CurvedBoundary, IsReportedByItsEdges) {
+  const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 40 : 8, 2);
+  const Executor executor({.threads = 2});
+  AdaptOptions options;
+  for (const double tolerance : {0.0, 1e-4}) {
+    options.make.surface_tolerance = tolerance;
+    for (const double size : {1e-9, 1e9}) {  // in which all edges are long, or short
+      options.iterations = 1;
+      options.insert = false;
+      const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, size), options);
+      const std::size_t count = tolerance > 0 ? edges_on_arcs(result.mesh).size() : 0;
+      EXPECT_EQ(result.report.curved_edges, count);
+      EXPECT_EQ(result.report.curved_edges_short, size > 1 ? count : 0);
+    }
   }
 }
 

@@ -343,6 +343,33 @@ TEST(MakeMesh, RefusesOrCompletesAnUnlistedBoundary) {
   }
 }
 
+/// As some mesh generators write construction lines, with end points that nothing else has.
+TEST(MakeMesh, LeavesOutEdgesOfNoTetrahedron) {
+  AnyMesh any = cube(2);
+  test::list_ridges(any);
+  any.required_edges = {2, 5};
+  AnyMesh loose = any;
+  loose.name = "loose.mesh";
+  loose.coordinates.insert(loose.coordinates.end(), {5, 5, 5});
+  loose.vertex_reference.push_back(0);
+  for (const std::array<std::uint32_t, 2> corners : {std::array{0U, 26U}, {0U, 27U}}) {
+    loose.edges.vertices.insert(loose.edges.vertices.begin() + 1, corners);
+    loose.edges.reference.insert(loose.edges.reference.begin() + 1, 9);
+  }
+  for (auto* list : {&loose.ridges, &loose.required_edges}) {
+    for (std::uint32_t& edge : *list) edge += edge < 1 ? 0 : 2;
+    list->insert(list->begin() + 1, {1, 2});
+  }
+  const auto made = make<3>(loose);
+  ASSERT_EQ(made.warnings.size(), 2U);
+  EXPECT_EQ(made.warnings[1], "loose.mesh: 2 of " + std::to_string(loose.edges.size()) +
+                                  " listed edges belong to no tetrahedron and are left out;"
+                                  " the first is edge 2");
+  const Executor executor({.threads = 2});
+  EXPECT_EQ(take_apart(executor, make<3>(loose).mesh).mesh,
+            take_apart(executor, make<3>(any).mesh).mesh);
+}
+
 TEST(MakeMesh, RefusesIndicesAndNumbersThatAreNone) {
   AnyMesh any = square(2);
   any.triangles.vertices[5][1] = 100;

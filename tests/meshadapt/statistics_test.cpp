@@ -60,6 +60,27 @@ TEST(Statistics, TheRegularElementIsIdeal) {
   EXPECT_FALSE(s.in_metric);
 }
 
+/// Whatever rounding makes of ideal elements, of many sizes and directions.
+TEST(Statistics, NothingIsBetterThanIdeal) {
+  const Executor executor({.threads = 1});
+  test::Random random(5);
+  for (int trial = 0; trial < 200; ++trial) {
+    AnyMesh flat;
+    flat.dimension = 2;
+    flat.coordinates = {0, 0, 1, 0, 0.5, std::sqrt(3.0) / 2};
+    flat.vertex_reference = {0, 0, 0};
+    flat.triangles.add({0, 1, 2}, 1);
+    AnyMesh solid = one_tetrahedron(std::sqrt(2.0 / 3));
+    for (AnyMesh* mesh : {&flat, &solid}) {
+      test::place(*mesh, random, test::uniform(random, 0.1, 1), 0);
+      const Distribution quality = measure(executor, *mesh, nullptr).quality;
+      EXPECT_LE(quality.max, 1);
+      EXPECT_EQ(quality.above, 0U);
+      EXPECT_EQ(quality.histogram[9], 1U);
+    }
+  }
+}
+
 TEST(Statistics, AnInvertedElementIsNegativeAndAFlatOneZero) {
   const Executor executor({.threads = 1});
   EXPECT_NEAR(measure(executor, one_tetrahedron(-std::sqrt(2.0 / 3)), nullptr).quality.min, -1,

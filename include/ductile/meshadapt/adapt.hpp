@@ -56,6 +56,9 @@ struct AdaptReport {
   /// Vertices of the input that could not leave their place: corners, and those of curved
   /// boundaries that keep their facets.
   std::size_t fixed_vertices = 0;
+  /// Edges of the adapted mesh on curved boundaries that may change
+  /// (MakeMeshOptions::surface_tolerance), and those of them that are shorter than 1/sqrt 2.
+  std::size_t curved_edges = 0, curved_edges_short = 0;
   std::vector<std::string> warnings;
   /// What the kernels were compiled for: "as built", "x86-64-v3" or "x86-64-v4". The library may
   /// hold them for several processors and uses the best that this one can run.

@@ -27,9 +27,9 @@ struct MakeMeshOptions {
 
 /// Classifies vertices and finds patches and curves; metrics are left unset, hosts are the element
 /// numbers themselves. Vertices and elements keep their numbers. `neighbours` receives the element
-/// neighbours. Warnings (reoriented, unused vertices) are appended. Throws InputError naming the
-/// entity, numbered from 1 as in the file, or an option that is out of range. Thread safety: one
-/// caller; runs on the executor.
+/// neighbours. Warnings (reoriented, unused vertices and edges) are appended. Throws InputError
+/// naming the entity, numbered from 1 as in the file, or an option that is out of range. Thread
+/// safety: one caller; runs on the executor.
 template <int Dim>
 Mesh<Dim> make_mesh(const runtime::Executor& executor, const AnyMesh& any,
                     const MakeMeshOptions& options, Neighbours<Dim>& neighbours,
