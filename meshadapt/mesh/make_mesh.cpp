@@ -62,6 +62,20 @@ class MeshMaker {
     throw InputError(any_.name + ": " + what);
   }
 
+  /// The squares of volumes must be numbers, too.
+  void check_scale() const {
+    constexpr double largest = 1e50, smallest = 1e-50;
+    const auto& x = any_.coordinates;
+    const std::size_t far =
+        first_bad(executor_, x.size(), [&](std::size_t i) { return std::abs(x[i]) > largest; });
+    if (far != no_index)
+      fail(entity("vertex", far / Dim) + " has a coordinate beyond 1e50; scale the mesh");
+    const double extent = runtime::parallel_reduce(
+        executor_, x.size(), 0.0, [&](std::size_t i) { return std::abs(x[i] - x[i % Dim]); },
+        [](double a, double b) { return std::max(a, b); });
+    if (extent < smallest) fail("the mesh is smaller than 1e-50; scale it");
+  }
+
   void check_indices() const {
     expect_coordinates(any_);
     expect_references(any_);
@@ -77,6 +91,7 @@ class MeshMaker {
                   [&](std::size_t i) { return !std::isfinite(any_.coordinates[i]); });
     if (bad_vertex != no_index)
       fail(entity("vertex", bad_vertex / Dim) + " has a coordinate that is not a finite number");
+    check_scale();
     check_cells(cells, element_name<Dim>());
     check_cells(facets_in<Dim>(any_), facet_name<Dim>());
     if constexpr (Dim == 3) check_cells(any_.edges, "edge");

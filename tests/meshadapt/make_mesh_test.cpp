@@ -380,6 +380,11 @@ TEST(MakeMesh, RefusesIndicesAndNumbersThatAreNone) {
   any = square(2);
   any.coordinates[7] = std::nan("");
   EXPECT_COMPLAINT(any, "vertex 4 has a coordinate that is not a finite number");
+  any.coordinates[7] = -1e51;
+  EXPECT_COMPLAINT(any, "vertex 4 has a coordinate beyond 1e50");
+  any = square(2);
+  for (double& x : any.coordinates) x *= 1e-51;
+  EXPECT_COMPLAINT(any, "the mesh is smaller than 1e-50");
   any = square(2);
   any.required_vertices = {9};
   EXPECT_COMPLAINT(any, "names vertex 10");
