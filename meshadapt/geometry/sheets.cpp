@@ -105,7 +105,7 @@ template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Around {
   Near covering;  // of its sheet, turned little against it
   Near steep;     // of its sheet, turned too much
-  Near facing;    // what it must not come close to, across a gap
+  Near facing;    // what it must not meet, across a gap or a thin part of the domain
 };
 
 /// One question about a simplex, answered part by part.
@@ -136,6 +136,7 @@ struct Sheets<Dim, Corners>::Search {
            std::abs(dot(gap, sheets.shape_of_[here.part].direction)) > 0.1 * width;
   }
 
+  /// Does the part share a corner with one of the others?
   bool has_corner_of(std::uint32_t part, const Near& others) const {
     const auto has = [&](const Points& corners, const Vector<Dim>& point) {
       return std::any_of(corners.begin(), corners.end(),
@@ -229,6 +230,7 @@ struct Sheets<Dim, Corners>::Search {
     return gap > tolerance || distance <= 0.5 * gap;
   }
 
+  /// Is the simplex below any of the parts, or above?
   bool is_below(const Points& simplex, const Near& parts) const {
     const Prism<Dim, Corners> prism(simplex);
     return std::any_of(parts.begin(), parts.end(), [&](std::uint32_t part) {
@@ -241,6 +243,8 @@ struct Sheets<Dim, Corners>::Search {
     return graph.whole ? std::min(tolerance, 2 * graph.most_aside) : tolerance;
   }
 
+  /// Whether all of the simplex, over which there is this graph, may be where it is: certainly if
+  /// so, but not always if not.
   bool covered(const Points& simplex, const Graph& graph, const Around& around, int depth) const {
     constexpr int deepest = 3;
     const Near facing = close_to(simplex, reach(graph), around.facing);

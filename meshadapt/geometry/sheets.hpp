@@ -36,9 +36,10 @@ class Sheets {
   Sheets& operator=(const Sheets&) = delete;
 
   /// Is every point of this simplex within the tolerance of the sheet, and half the radius of the
-  /// simplex, where it is turned by less than 45 degrees against it? And does none come that close
-  /// to what faces the sheet from across a gap? Says yes only if it is certain, which it is soon
-  /// unless it is a close thing: the sheet is taken for the graph of a function over the simplex.
+  /// simplex, where it is turned by less than 45 degrees against it? And is none that close to what
+  /// faces the sheet, across a gap or a thin part of the domain, unless it is twice as close to the
+  /// sheet? Says yes only if it is certain; where the sheet is the graph of a function over the
+  /// simplex, and nothing faces it closely, it always is.
   /// Thread safety: any thread.
   bool cover(const Points& simplex, std::uint32_t sheet) const;
 
