@@ -128,8 +128,9 @@ std::string advice_on_tolerance(const meshadapt::MeshStatistics& statistics,
   std::snprintf(text.data(), text.size(), "%g", tolerance);
   return percent(share) +
          " of the edges are shorter than asked for: curved boundaries have to stay within " +
-         text.data() + " (-hausd) of where they were; a larger one, or smaller sizes there, would" +
-         " help";
+         text.data() +
+         " (-hausd) of where they were; a larger one would help, and -hgrad X lets"
+         " sizes grow gently from there";
 }
 
 /// What is to be said of lengths.

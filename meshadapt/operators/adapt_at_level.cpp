@@ -12,6 +12,7 @@
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
+#include "geometry/curvature.hpp"
 #include "operators/adapter.hpp"
 #include "operators/processor_level.hpp"
 
@@ -35,6 +36,7 @@ std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const Any
   const SizeBounds bounds{options.smallest_size, options.largest_size};
   bound_sizes(executor, metric_of, bounds);
   if (options.gradation > 0) {
+    if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.surface_tolerance, metric_of);
     const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
     if (!report.converged)
       warnings.push_back(field.name + ": sizes still grow faster than asked for in places, after " +

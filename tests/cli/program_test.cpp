@@ -106,12 +106,13 @@ TEST(Info, SaysWhyAMeshIsNotValid) {
 
 TEST(Info, SaysWhatAdaptSaysOfLengthsBeyondReason) {
   const Folder folder;
-  for (const auto& [l, reason] :
+  for (const auto& [length, reason] :
        std::map<std::string, std::string>{{"1e60", "a.mesh: vertex 2 has a coordinate beyond 1e50"},
                                           {"1e-60", "a.mesh: the mesh is smaller than 1e-50"}}) {
-    folder.write("a.mesh", "MeshVersionFormatted 2\nDimension 2\nVertices\n3\n0 0 0\n" + l +
-                               " 0 0\n0 " + l +
-                               " 0\nEdges\n3\n1 2 1\n2 3 1\n3 1 1\nTriangles\n1\n1 2 3 1\nEnd\n");
+    std::string text = "MeshVersionFormatted 2\nDimension 2\nVertices\n3\n0 0 0\n";
+    text.append(length).append(" 0 0\n0 ").append(length).append(" 0\n");
+    text += "Edges\n3\n1 2 1\n2 3 1\n3 1 1\nTriangles\n1\n1 2 3 1\nEnd\n";
+    folder.write("a.mesh", text);
     const Outcome told = folder.run("info a.mesh"), refused = folder.run("adapt a.mesh");
     EXPECT_EQ(told.status, 2) << told.out;
     EXPECT_TRUE(contains(told.out, "not valid: " + reason)) << told.out;

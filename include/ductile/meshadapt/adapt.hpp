@@ -29,7 +29,8 @@ struct AdaptOptions {
   double smallest_size = 0;  ///< no edge length below this is asked for; 0: no bound
   double largest_size = 0;   ///< no edge length above this is asked for; 0: no bound
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
-                             ///< limit_gradation); 0 or less: as given. Mmg's default is 1.3
+                             ///< limit_gradation), from what make.surface_tolerance allows on
+                             ///< curved boundaries; 0 or less: as given. Mmg's default is 1.3
   bool thorough = false;     ///< better shapes and lengths for more time (docs/performance.md)
   bool move = true;          ///< smooth vertices
   bool swap = true;          ///< swap edges and faces
