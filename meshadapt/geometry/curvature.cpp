@@ -12,9 +12,12 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// Adds weight * v v'.
+/// Adds weight * v v' of the unit vector in a direction; nothing if there is none.
 template <int Dim>
-void add_square(Metric<Dim>& sum, double weight, const Vector<Dim>& v) {
+void add_square(Metric<Dim>& sum, double weight, const Vector<Dim>& direction) {
+  const double length = norm(direction);
+  if (!(length > 0)) return;
+  const Vector<Dim> v = (1 / length) * direction;
   std::size_t at = 0;
   for (int j = 0; j < Dim; ++j)
     for (int i = 0; i <= j; ++i) sum.m[at++] += weight * v[i] * v[j];
@@ -28,8 +31,10 @@ Metric<Dim> absolute(const Metric<Dim>& tensor) {
   return compose(axes);
 }
 
+/// 0 if one of them has no direction.
 double angle_between(const auto& u, const auto& v) {
-  return std::acos(std::clamp(dot(u, v) / (norm(u) * norm(v)), -1.0, 1.0));
+  const double lengths = norm(u) * norm(v);
+  return lengths > 0 ? std::acos(std::clamp(dot(u, v) / lengths, -1.0, 1.0)) : 0;
 }
 
 /// The facets of one smooth patch around a vertex, by their other corners.
@@ -94,7 +99,7 @@ class VertexCurvature {
     edges_.push_back(after);
     Metric<2> result;
     const double turn = angle_between(-1.0 * before, after);
-    add_square(result, 2 * turn / (norm(before) + norm(after)) / dot(along, along), along);
+    add_square(result, 2 * turn / (norm(before) + norm(after)), along);
     return result;
   }
 
@@ -120,11 +125,12 @@ class VertexCurvature {
         const VertexId beyond = fan.facets[g][fan.facets[g][0] == shared ? 1 : 0];
         const double turn =
             std::copysign(angle_between(normals[f], normals[g]), dot(to(beyond), normals[f]));
-        add_square(total, turn * norm(edge) / 2 / dot(across, across), across);
+        add_square(total, turn * norm(edge) / 2, across);
         edges_.push_back(edge);
       }
     }
-    return 3 / area * total;
+    if (area > 0) total *= 3 / area;
+    return total;
   }
 
   static VertexId shared_by(const std::array<VertexId, 2>& f, const std::array<VertexId, 2>& g) {

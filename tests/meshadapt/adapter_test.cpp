@@ -83,6 +83,7 @@ test::RandomCase random_arc(std::uint64_t seed) {
   test::scale_to(arc.metric, arc.mesh,
                  (dimension == 2 ? 200 : 100) * test::uniform(random, 0.01, 2));
   arc.options.make.surface_tolerance = std::pow(10, test::uniform(random, -3, 0));
+  if (test::chance(random, 0.3)) arc.options.gradation = test::uniform(random, 1.2, 3);
   return arc;
 }
 
