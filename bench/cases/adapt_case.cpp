@@ -37,7 +37,7 @@ constexpr std::array<CaseInfo, 10> cases{{
     {"ring2d", 2, 1870, 1, true,
      "edges of 0.02 in a sector of a ring; 20,000 to about 4,400 triangles"},
     {"dome3d", 3, 982, 1, true,
-     "edges of 0.1 in a sector of a hollow ball; 96,000 to about 9,000 tetrahedra"},
+     "edges of 0.1 in a sector of a hollow ball; 96,000 to about 9,600 tetrahedra"},
 }};
 
 /// Along an axis.
@@ -51,8 +51,8 @@ int start_cells(std::string_view name) {
   return name == "layer3d" ? 6 : 32;
 }
 
-/// How far curved boundaries may go astray: about what the edges asked for are from an arc that
-/// they are chords of, twice that where it bends most.
+/// How far curved boundaries may go astray: twice as far as chords as long as asked for are from
+/// the arc that bends most.
 double surface_tolerance(std::string_view name) {
   if (name == "ring2d") return 2e-4;
   return name == "dome3d" ? 5e-3 : 0;

@@ -1,6 +1,7 @@
 #include "peer.hpp"
 
 #include <chrono>
+#include <sstream>
 
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -76,9 +77,12 @@ std::vector<Pair> run_pairs(const AdaptCase& made, const fs::path& mmg,
       "--threads",     "1",     "--no-metric", "-v",   "0"};
   std::vector<std::string> mmg_words{mmg,    "-in",    mesh, "-sol", metric, "-out",
                                      theirs, "-hgrad", "-1", "-v",   "0"};
-  if (made.surface_tolerance > 0)
+  if (made.surface_tolerance > 0) {
+    std::ostringstream tolerance;  // however small
+    tolerance << made.surface_tolerance;
     for (auto* words : {&ductile_words, &mmg_words})
-      words->insert(words->end(), {"-hausd", std::to_string(made.surface_tolerance)});
+      words->insert(words->end(), {"-hausd", tolerance.str()});
+  }
   std::vector<Pair> pairs;
   const auto clock = std::chrono::steady_clock::now();
   const auto seconds = [&] {

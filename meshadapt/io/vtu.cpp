@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "ductile/meshadapt/error.hpp"
+#include "mesh/array_lengths.hpp"
 #include "vtk_array.hpp"
 
 namespace ductile::meshadapt {
@@ -128,10 +129,8 @@ void add_piece(pugi::xml_node grid, const AnyMesh& mesh, const std::vector<VtuFi
 
 std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name) {
   std::vector<VtuField> fields;
-  const std::size_t stride = stride_of(field), expected = stride * field.vertex_count;
-  if (field.values.size() != expected)
-    throw InputError(field.name + ": expected " + std::to_string(expected) + " values, found " +
-                     std::to_string(field.values.size()));
+  expect_values(field);
+  const std::size_t stride = stride_of(field);
   std::size_t first = 0;
   for (const Type type : field.types) {
     const auto count = static_cast<std::size_t>(component_count(type, field.dimension));

@@ -33,4 +33,11 @@ void expect_references(const AnyMesh& mesh) {
   expect_references_of(mesh, mesh.tetrahedra, "tetrahedra");
 }
 
+void expect_values(const AnyField& field) {
+  const std::size_t expected = field.vertex_count * stride_of(field);
+  if (field.values.size() != expected)
+    throw InputError(field.name + ": expected " + std::to_string(expected) + " values, found " +
+                     std::to_string(field.values.size()));
+}
+
 }  // namespace ductile::meshadapt

@@ -1,6 +1,6 @@
 /// @file
-/// Whether the arrays of a mesh that a caller made have the lengths that belong together, to be
-/// asked before anything is looked up in them; indices are another matter.
+/// Whether the arrays of a mesh or of fields that a caller made have the lengths that belong
+/// together, to be asked before anything is looked up in them; indices are another matter.
 #pragma once
 
 #include "ductile/meshadapt/any_mesh.hpp"
@@ -12,5 +12,8 @@ void expect_coordinates(const AnyMesh& mesh);
 
 /// Throws InputError unless there is a reference for each edge, triangle and tetrahedron.
 void expect_references(const AnyMesh& mesh);
+
+/// Throws InputError unless the fields have as many values as they should.
+void expect_values(const AnyField& field);
 
 }  // namespace ductile::meshadapt

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ductile/meshadapt/error.hpp"
+#include "mesh/array_lengths.hpp"
 
 namespace ductile::meshadapt {
 
@@ -22,13 +23,6 @@ std::size_t first_component(const AnyField& field, std::size_t index, AnyField::
   return first;
 }
 
-void expect_all_values(const AnyField& field) {
-  const std::size_t expected = field.vertex_count * stride_of(field);
-  if (field.values.size() != expected)
-    throw InputError(field.name + ": expected " + std::to_string(expected) + " values, found " +
-                     std::to_string(field.values.size()));
-}
-
 }  // namespace
 
 AnyField scalar_field(int dimension, std::vector<double> value_of, const std::string& name) {
@@ -46,8 +40,8 @@ AnyField vector_field(const std::vector<Vector<Dim>>& vector_of, const std::stri
 }
 
 AnyField joined(const AnyField& first, const AnyField& second) {
-  expect_all_values(first);
-  expect_all_values(second);
+  expect_values(first);
+  expect_values(second);
   if (first.dimension != second.dimension || first.vertex_count != second.vertex_count)
     throw InputError(second.name + ": expected a field of dimension " +
                      std::to_string(first.dimension) + " with " +
@@ -67,7 +61,7 @@ AnyField joined(const AnyField& first, const AnyField& second) {
 }
 
 std::vector<double> scalars_of(const AnyField& field, std::size_t index) {
-  expect_all_values(field);
+  expect_values(field);
   const std::size_t first = first_component(field, index, AnyField::Type::scalar);
   const std::size_t stride = stride_of(field);
   std::vector<double> value_of(field.vertex_count);
@@ -80,7 +74,7 @@ std::vector<Vector<Dim>> vectors_of(const AnyField& field, std::size_t index) {
   if (field.dimension != Dim)
     throw InputError(field.name + ": expected dimension " + std::to_string(Dim) + ", found " +
                      std::to_string(field.dimension));
-  expect_all_values(field);
+  expect_values(field);
   const std::size_t first = first_component(field, index, AnyField::Type::vector);
   const std::size_t stride = stride_of(field);
   std::vector<Vector<Dim>> vector_of(field.vertex_count);
