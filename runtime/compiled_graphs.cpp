@@ -12,6 +12,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime {
 
@@ -21,7 +22,7 @@ namespace {
 
 /// Of the pairs that have one colour, those that are outranked; ascending.
 template <class Word>
-std::vector<std::uint32_t> losers(const Executor& executor, const BlindPairs& blind,
+UnsetVector<std::uint32_t> losers(const Executor& executor, const BlindPairs& blind,
                                   std::span<const Word> colour_of) {
   std::vector<std::span<const std::pair<std::uint32_t, std::uint32_t>>> parts;
   for (std::size_t t = 0; t < blind.size(); ++t)
@@ -39,8 +40,7 @@ std::vector<std::uint32_t> losers(const Executor& executor, const BlindPairs& bl
 
 /// What colour_by_priority() does, one after the other.
 template <class Width, CompiledGraph G>
-void colour_few_by_priority(const G& graph, std::vector<std::uint32_t> few,
-                            Colours<Width> colours) {
+void colour_few_by_priority(const G& graph, std::span<std::uint32_t> few, Colours<Width> colours) {
   for (const std::uint32_t v : few) colours.set(v, Colours<Width>::waiting);
   std::sort(few.begin(), few.end(), outranks);
   for (const std::uint32_t v : few) colours.set(v, least_free(graph, v, colours));
@@ -52,9 +52,9 @@ template <std::unsigned_integral Word, CompiledGraph G>
 void repair(const Executor& executor, const G& graph, const BlindPairs& blind,
             std::span<Word> colour_of) {
   constexpr std::size_t few = 64;
-  std::vector<std::uint32_t> lost = losers<Word>(executor, blind, colour_of);
+  UnsetVector<std::uint32_t> lost = losers<Word>(executor, blind, colour_of);
   const Colours<Words<Word, 0>> colours(colour_of);
-  if (lost.size() <= few) return colour_few_by_priority(graph, std::move(lost), colours);
+  if (lost.size() <= few) return colour_few_by_priority(graph, std::span(lost), colours);
   colour_by_priority(executor, graph, lost, colours, outranks);
 }
 

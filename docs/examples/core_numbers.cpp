@@ -5,6 +5,7 @@
 /// losses of a shell's neighbours are deferred, and who falls to k joins the worklist.
 
 #include <cstdio>
+#include <span>
 #include <vector>
 
 #include <boost/graph/adjacency_list.hpp>
@@ -39,7 +40,7 @@ class Peeling {
   runtime::RoundsReport run() {
     runtime::RoundsReport report;
     for (std::uint32_t k = 0; report.applied < core_of.size(); ++k) {
-      for (std::vector<Vertex> shell = vertices_of_degree(k); !shell.empty();) {
+      for (runtime::UnsetVector<Vertex> shell = vertices_of_degree(k); !shell.empty();) {
         ++report.rounds;
         report.planned += shell.size();
         report.applied += shell.size();
@@ -57,7 +58,7 @@ class Peeling {
   struct Loss {};
 
   /// None that was peeled: those have kept the degree at which they were, less than k.
-  std::vector<Vertex> vertices_of_degree(std::uint32_t k) const {
+  runtime::UnsetVector<Vertex> vertices_of_degree(std::uint32_t k) const {
     return runtime::parallel_collect<Vertex>(executor_, degree_of_.size(),
                                              [&](std::size_t v, auto&& append) {
                                                if (degree_of_[v] == k)
@@ -67,7 +68,7 @@ class Peeling {
 
   /// Takes vertices of degree k away. Degrees are read while they are taken, and change only when
   /// losses are committed; they stop at k, so a vertex falls to it once.
-  void peel(const std::vector<Vertex>& shell, std::uint32_t k) {
+  void peel(std::span<const Vertex> shell, std::uint32_t k) {
     runtime::parallel_for(executor_, shell.size(), [&](std::size_t i) {
       core_of[shell[i]] = k;
       graph_.for_each_neighbour(shell[i], [&](Vertex other) {

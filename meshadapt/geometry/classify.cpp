@@ -12,9 +12,9 @@
 
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/filled_array.hpp"
-#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 #include "geometry/surface.hpp"
 
 namespace ductile::meshadapt {
@@ -97,7 +97,7 @@ class Classifier {
   };
 
   void sort_sides() {
-    runtime::resize_empty(executor_, sides_, Dim * facets_.size());
+    sides_ = runtime::make_unset_vector<Side>(executor_, Dim * facets_.size());
     runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
       std::uint8_t number = 0;
       each_side<Dim>(facets_[f].corners, [&](Key key) {
@@ -153,7 +153,7 @@ class Classifier {
   void find_patches() {
     mesh_.patches.assign(1, {});
     using Seed = std::pair<double, std::uint32_t>;
-    auto order = runtime::make_vector<Seed>(executor_, facets_.size());
+    auto order = runtime::make_unset_vector<Seed>(executor_, facets_.size());
     runtime::parallel_for(executor_, order.size(), [&](std::size_t f) {
       order[f] = {-norm(normal_of<Dim>(mesh_, facets_[f].corners)), static_cast<std::uint32_t>(f)};
     });
@@ -388,7 +388,8 @@ class Classifier {
   // ---- Vertices ----
 
   void classify_vertices() {
-    const std::vector<std::uint64_t> corners = corners_with_patches();  // vertex, then patch
+    const runtime::UnsetVector<std::uint64_t> corners =
+        corners_with_patches();  // vertex, then patch
     const auto vertex_at = [&](std::size_t i) { return static_cast<VertexId>(corners[i] >> 32U); };
     std::vector<std::uint32_t> first_of(mesh_.vertex_slots(), none);  // [vertex], among corners
     runtime::parallel_for(executor_, corners.size(), [&](std::size_t i) {
@@ -408,8 +409,8 @@ class Classifier {
   }
 
   /// The corners of all facets, each with its facet's patch, sorted.
-  std::vector<std::uint64_t> corners_with_patches() const {
-    auto corners = runtime::make_vector<std::uint64_t>(executor_, Dim * facets_.size());
+  runtime::UnsetVector<std::uint64_t> corners_with_patches() const {
+    auto corners = runtime::make_unset_vector<std::uint64_t>(executor_, Dim * facets_.size());
     runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
       for (std::size_t i = 0; i < Dim; ++i)
         corners[Dim * f + i] = std::uint64_t{facets_[f].corners[i]} << 32U | facets_[f].patch;
@@ -460,10 +461,10 @@ class Classifier {
   const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
   std::vector<TaggedFacet<Dim>> facets_;
-  double tolerance_;          // of flatness
-  double surface_tolerance_;  // of what is not flat; 0 if nothing is to be smooth
-  double least_turn_;         // cosine of the angle from which on edges are ridges
-  std::vector<Side> sides_;   // sorted
+  double tolerance_;                  // of flatness
+  double surface_tolerance_;          // of what is not flat; 0 if nothing is to be smooth
+  double least_turn_;                 // cosine of the angle from which on edges are ridges
+  runtime::UnsetVector<Side> sides_;  // sorted
   using Others = std::array<std::uint32_t, Dim>;
   runtime::FilledArray<Others> across_;         // [facet][side], the other facet or none
   std::unordered_map<Key, ListedEdge> listed_;  // 3D

@@ -10,6 +10,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 #include "geometry/classify.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/facet_key.hpp"
@@ -364,7 +365,7 @@ class MeshMaker {
   }
 
   /// Elements, and which of their facets is on the boundary or an interface and has no patch yet.
-  std::vector<std::pair<ElementId, int>> unlisted_facets() const {
+  runtime::UnsetVector<std::pair<ElementId, int>> unlisted_facets() const {
     return runtime::parallel_collect<std::pair<ElementId, int>>(
         executor_, mesh_.element_slots(), [&](std::size_t e, auto&& append) {
           for (std::size_t i = 0; i <= Dim; ++i) {

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/grouping.hpp"
@@ -91,18 +90,9 @@ runtime::FilledArray<std::uint8_t> mark_changed(const Executor& executor, const 
       if (mesh.alive(changed[i]))
         for (const VertexId v : mesh.corners_of[changed[i]]) runtime::atomic_set(marked[v]);
   };
-  runtime::parallel_for_blocks(executor, mesh.element_slots(), stretch, mark, {});
+  runtime::parallel_for_blocks(executor, mesh.element_slots(), stretch, mark,
+                               {.serial_below = 2048 / stretch});
   return marked;
-}
-
-template <int Dim>
-std::vector<VertexId> vertices_changed(const Executor& executor, const Mesh<Dim>& mesh,
-                                       std::uint32_t after) {
-  const auto marked = mark_changed(executor, mesh, after);
-  return runtime::parallel_collect<VertexId>(executor, marked.size(),
-                                             [&](std::size_t v, auto&& append) {
-                                               if (marked[v]) append(static_cast<VertexId>(v));
-                                             });
 }
 
 template <int Dim>
@@ -121,8 +111,6 @@ template runtime::FilledArray<std::uint8_t> mark_changed(const Executor&, const 
                                                          std::uint32_t);
 template runtime::FilledArray<std::uint8_t> mark_changed(const Executor&, const Mesh<3>&,
                                                          std::uint32_t);
-template std::vector<VertexId> vertices_changed(const Executor&, const Mesh<2>&, std::uint32_t);
-template std::vector<VertexId> vertices_changed(const Executor&, const Mesh<3>&, std::uint32_t);
 template void update_shapes(const Executor&, Mesh<2>&);
 template void update_shapes(const Executor&, Mesh<3>&);
 

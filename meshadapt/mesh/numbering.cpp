@@ -57,11 +57,11 @@ class KeyedWords {
 /// are gone.
 std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> words,
                            std::uint64_t gone) {
-  const auto living = runtime::parallel_collect<std::uint64_t>(executor, words.size(),
-                                                               [&](std::size_t i, auto&& append) {
-                                                                 if (words[i] != gone)
-                                                                   append(words[i]);
-                                                               });
+  const auto find = [&](std::size_t i, auto&& append) {
+    if (words[i] != gone) append(words[i]);
+  };
+  const auto living = runtime::parallel_collect<std::uint64_t>(
+      executor, words.size(), find, runtime::few_nanoseconds.serial_below);
   return std::to_address(std::copy(living.begin(), living.end(), words.begin()));
 }
 

@@ -68,11 +68,13 @@ class Permutation {
     const std::tuple moved{reinterpret_cast<T*>(take(order_.size() * sizeof(T)))...};
     std::apply(
         [&](T* const... to) {
-          parallel_for(executor_, order_.size(), [&](std::size_t i) {
-            (std::construct_at(to + i, value_at(order_[i])), ...);
-          });
-          parallel_for(executor_, order_.size(),
-                       [&](std::size_t i) { ((value_at(i) = to[i]), ...); });
+          parallel_for(
+              executor_, order_.size(),
+              [&](std::size_t i) { (std::construct_at(to + i, value_at(order_[i])), ...); },
+              runtime::few_nanoseconds);
+          parallel_for(
+              executor_, order_.size(), [&](std::size_t i) { ((value_at(i) = to[i]), ...); },
+              runtime::few_nanoseconds);
         },
         moved);
   }

@@ -131,8 +131,9 @@ double length_of(const Site<Dim>& a, const Site<Dim>& b) {
 
 /// Of every edge once.
 template <int Dim>
-std::vector<double> edge_lengths(const Executor& executor, const std::vector<Site<Dim>>& site_of,
-                                 const std::vector<Corners<Dim>>& elements) {
+runtime::UnsetVector<double> edge_lengths(const Executor& executor,
+                                          const std::vector<Site<Dim>>& site_of,
+                                          const std::vector<Corners<Dim>>& elements) {
   const HigherNeighbours<Dim> neighbours(executor, elements, site_of.size());
   runtime::PerThread<std::vector<VertexId>> found(executor);
   return runtime::parallel_collect<double>(executor, site_of.size(),
@@ -168,8 +169,7 @@ double complexity_of(const Executor& executor, const std::vector<Site<Dim>>& sit
       [](double a, double b) { return a + b; });
 }
 
-std::size_t count_if_below(const Executor& executor, const std::vector<double>& values,
-                           double bound) {
+std::size_t count_if_below(const Executor& executor, std::span<const double> values, double bound) {
   return runtime::parallel_reduce(
       executor, values.size(), std::size_t{0},
       [&](std::size_t i) { return std::size_t{values[i] < bound}; },
@@ -180,7 +180,7 @@ template <int Dim>
 MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   const auto& elements = elements_in<Dim>(mesh).vertices;
   const std::vector<Site<Dim>> site_of = make_sites<Dim>(executor, mesh, metric);
-  std::vector<double> lengths = edge_lengths<Dim>(executor, site_of, elements);
+  const runtime::UnsetVector<double> lengths = edge_lengths<Dim>(executor, site_of, elements);
 
   MeshStatistics result;
   result.in_metric = metric != nullptr;

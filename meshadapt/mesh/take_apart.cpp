@@ -27,9 +27,11 @@ namespace {
 /// The numbers below n that something holds of, in order.
 template <class Holds>
 std::vector<std::uint32_t> numbers_of(const Executor& executor, std::size_t n, Holds&& holds) {
-  return parallel_collect<std::uint32_t>(executor, n, [&](std::size_t i, auto&& append) {
-    if (holds(i)) append(static_cast<std::uint32_t>(i));
-  });
+  const auto found =
+      parallel_collect<std::uint32_t>(executor, n, [&](std::size_t i, auto&& append) {
+        if (holds(i)) append(static_cast<std::uint32_t>(i));
+      });
+  return {found.begin(), found.end()};
 }
 
 /// The mesh's edges along curves, and which of them are ridges or required. A vertex is called by

@@ -177,7 +177,7 @@ class Gradation {
 
   GradationReport run() {
     GradationReport report;
-    std::vector<VertexId> active = changed_;
+    runtime::UnsetVector<VertexId> active(changed_.begin(), changed_.end());
     while (!active.empty() && report.sweeps < options_.sweeps) {
       sweep(active);
       ++report.sweeps;
@@ -198,7 +198,7 @@ class Gradation {
   };
 
   /// Finds the new metrics from the old ones, then puts them in place.
-  void sweep(const std::vector<VertexId>& active) {
+  void sweep(std::span<const VertexId> active) {
     const auto raised = runtime::parallel_collect<Raised>(
         executor_, active.size(), [&](std::size_t i, auto&& append) {
           Metric<Dim> metric = metric_of_[active[i]];
@@ -247,7 +247,7 @@ class Gradation {
     return {found.begin(), std::unique(found.begin(), found.end())};
   }
 
-  std::vector<VertexId> woken() {
+  runtime::UnsetVector<VertexId> woken() {
     runtime::parallel_for(executor_, changed_.size(),
                           [&](std::size_t i) {
                             for (const VertexId neighbour : neighbours(changed_[i]))

@@ -8,16 +8,18 @@
 namespace ductile::meshadapt {
 
 template <int Dim>
-std::vector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& executor,
-                                                     const Mesh<Dim>& mesh, EdgeSurvey<Dim>& survey,
-                                                     double short_edge, std::uint32_t after) {
+runtime::UnsetVector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& executor,
+                                                              const Mesh<Dim>& mesh,
+                                                              EdgeSurvey<Dim>& survey,
+                                                              double short_edge,
+                                                              std::uint32_t after) {
   const auto marked = mark_changed(executor, mesh, after);
   const auto crowded = mark_ends_of_short_edges(executor, mesh, survey, marked, short_edge);
-  return runtime::parallel_collect<VertexId>(executor, mesh.vertex_slots(),
-                                             [&](std::size_t v, auto&& append) {
-                                               if (crowded[v] && mesh.kind_of[v].freedom != 0)
-                                                 append(static_cast<VertexId>(v));
-                                             });
+  const auto find = [&](std::size_t v, auto&& append) {
+    if (crowded[v] && mesh.kind_of[v].freedom != 0) append(static_cast<VertexId>(v));
+  };
+  return runtime::parallel_collect<VertexId>(executor, mesh.vertex_slots(), find,
+                                             runtime::few_nanoseconds.serial_below);
 }
 
 template <int Dim>

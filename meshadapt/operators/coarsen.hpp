@@ -7,6 +7,7 @@
 
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_survey.hpp"
 
@@ -44,9 +45,10 @@ class Coarsen {
 
   /// The vertices with an edge shorter than `short_edge` that could go, next to elements changed
   /// after an epoch.
-  static std::vector<VertexId> crowded_vertices(const runtime::Executor& executor,
-                                                const Mesh<Dim>& mesh, EdgeSurvey<Dim>& survey,
-                                                double short_edge, std::uint32_t after);
+  static runtime::UnsetVector<VertexId> crowded_vertices(const runtime::Executor& executor,
+                                                         const Mesh<Dim>& mesh,
+                                                         EdgeSurvey<Dim>& survey, double short_edge,
+                                                         std::uint32_t after);
 
   // ---- Plan: the shortest edge that no rule refuses. Reads only. ----
   std::optional<Plan> plan(VertexId gone) const;

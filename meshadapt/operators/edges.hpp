@@ -13,6 +13,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_survey.hpp"
 
@@ -87,8 +88,9 @@ inline bool stands_for(const Mesh<3>& mesh, ElementId element, std::size_t edge,
 /// epoch is not later than when the survey was last used.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
-std::vector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                 EdgeSurvey<Dim>& survey, double limit, std::uint32_t after) {
+runtime::UnsetVector<LongEdge> long_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                          EdgeSurvey<Dim>& survey, double limit,
+                                          std::uint32_t after) {
   survey.renew(executor, mesh, [&](ElementId e) { return mesh.changed_at[e] > after; });
   constexpr std::size_t stretch = EdgeSurvey<Dim>::stretch;
   const auto find = [&](std::size_t i, auto&& append) {

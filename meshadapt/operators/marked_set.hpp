@@ -20,20 +20,26 @@ class MarkedSet {
   /// Thread safety: one caller; runs on the executor.
   MarkedSet(const runtime::Executor& executor, std::span<const std::uint8_t> marks)
       : words_(executor, (marks.size() + word - 1) / word), place_(executor, words_.size()) {
-    runtime::parallel_for(executor, words_.size(), [&](std::size_t w) {
-      const auto part = marks.subspan(w * word, std::min(word, marks.size() - w * word));
-      std::uint64_t bits = 0;
-      for (std::size_t i = 0; i < part.size(); ++i) bits |= std::uint64_t{part[i] != 0} << i;
-      words_[w] = bits;
-      place_[w] = static_cast<std::uint32_t>(std::popcount(bits));
-    });
+    runtime::parallel_for(
+        executor, words_.size(),
+        [&](std::size_t w) {
+          const auto part = marks.subspan(w * word, std::min(word, marks.size() - w * word));
+          std::uint64_t bits = 0;
+          for (std::size_t i = 0; i < part.size(); ++i) bits |= std::uint64_t{part[i] != 0} << i;
+          words_[w] = bits;
+          place_[w] = static_cast<std::uint32_t>(std::popcount(bits));
+        },
+        by_word);
     members_.resize(executor, runtime::exclusive_scan<std::uint32_t>(executor, place_), 0);
-    runtime::parallel_for(executor, words_.size(), [&](std::size_t w) {
-      std::uint32_t at = place_[w];
-      for (std::uint64_t left = words_[w]; left != 0; left &= left - 1)
-        members_[at++] = static_cast<std::uint32_t>(w * word) +
-                         static_cast<std::uint32_t>(std::countr_zero(left));
-    });
+    runtime::parallel_for(
+        executor, words_.size(),
+        [&](std::size_t w) {
+          std::uint32_t at = place_[w];
+          for (std::uint64_t left = words_[w]; left != 0; left &= left - 1)
+            members_[at++] = static_cast<std::uint32_t>(w * word) +
+                             static_cast<std::uint32_t>(std::countr_zero(left));
+        },
+        by_word);
   }
 
   std::size_t size() const { return members_.size(); }
@@ -48,6 +54,7 @@ class MarkedSet {
 
  private:
   static constexpr std::size_t word = 64;
+  static constexpr runtime::LoopOptions by_word{.grain = 16, .serial_below = 64};
   runtime::FilledArray<std::uint64_t> words_;    // a bit for each mark
   runtime::FilledArray<std::uint32_t> place_;    // [word], of its first member
   runtime::FilledArray<std::uint32_t> members_;  // in order

@@ -17,6 +17,7 @@
 
 namespace ductile::meshadapt {
 
+using runtime::few_nanoseconds;
 using runtime::FilledArray;
 using runtime::parallel_for;
 using runtime::Phase;
@@ -26,6 +27,8 @@ namespace {
 
 /// Elements around edges that are noted together.
 constexpr std::size_t together = 32;
+/// Edges whose elements are looked at before other threads would have begun.
+constexpr std::size_t few_to_look_at = 16;
 
 /// Where along a-b its two halves have the same metric length, the size varying geometrically.
 template <int Dim>
@@ -67,7 +70,7 @@ bool Refine<Dim>::splits(const LongEdge& edge) const {
 }
 
 template <int Dim>
-runtime::RoundsReport Refine<Dim>::run(std::vector<LongEdge> edges) {
+runtime::RoundsReport Refine<Dim>::run(runtime::UnsetVector<LongEdge> edges) {
   edges_ = std::move(edges);
   report_.planned = edges_.size();
   if (edges_.empty()) return report_;
@@ -134,7 +137,9 @@ void Refine<Dim>::plan() {
     throw std::length_error("more elements around long edges than 32-bit numbers can count");
   elements_ = MarkedSet(executor_, is_cut);
   cuts_ = runtime::make_unset<Cuts>(executor_, elements_.size());
-  parallel_for(executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); });
+  parallel_for(
+      executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); },
+      few_nanoseconds);
   around_begin_ = FilledArray<std::uint32_t>(executor_, edges_.size());
   const auto note = [this](std::size_t, std::size_t begin, std::size_t end) {
     note_splits(begin, end);
@@ -255,16 +260,19 @@ template <int Dim>
 /// known which of those before it are.
 template <int Dim>
 void Refine<Dim>::refuse() {
-  parallel_for(executor_, elements_.size(), [&](std::size_t place) {
+  const auto look_ahead = [&](std::size_t place) {
     prefetch_points_after(place);
     look(place);
-  });
+  };
+  parallel_for(executor_, elements_.size(), look_ahead);
   for (auto refused = take_refused(); !refused.empty(); refused = take_refused())
-    parallel_for(executor_, refused.size(), [&](std::size_t i) {
-      visit_cuts(refused[i], [&](std::size_t place) {
-        if (first_refused_of(cuts_[place], refused[i])) look(place);
-      });
-    });
+    parallel_for(executor_, refused.size(),
+                 [&](std::size_t i) {
+                   visit_cuts(refused[i], [&](std::size_t place) {
+                     if (first_refused_of(cuts_[place], refused[i])) look(place);
+                   });
+                 },
+                 {.serial_below = few_to_look_at});
   report_.rounds = round_;
   around_ = {};
   around_begin_ = {};
@@ -272,20 +280,26 @@ void Refine<Dim>::refuse() {
 
 /// Refuses what elements ask to, but where that may still change; returns the edges refused.
 template <int Dim>
-std::vector<std::uint32_t> Refine<Dim>::take_refused() {
+runtime::UnsetVector<std::uint32_t> Refine<Dim>::take_refused() {
   ++round_;
-  const auto asked = runtime::parallel_collect<std::uint32_t>(
-      executor_, edges_.size(), [&](std::size_t i, auto&& append) {
-        const auto number = static_cast<std::uint32_t>(i);
-        if (asked_[i] != 0 && is_split(number)) append(number);
-      });
+  using runtime::parallel_collect;
+  const auto find_asked = [&](std::size_t i, auto&& append) {
+    const auto number = static_cast<std::uint32_t>(i);
+    if (asked_[i] != 0 && is_split(number)) append(number);
+  };
+  const auto asked = parallel_collect<std::uint32_t>(executor_, edges_.size(), find_asked,
+                                                     few_nanoseconds.serial_below);
   parallel_for(executor_, asked.size(),
-               [&](std::size_t i) { asked_[asked[i]] = is_asked(asked[i]); });
-  auto refused = runtime::parallel_collect<std::uint32_t>(
-      executor_, asked.size(), [&](std::size_t i, auto&& append) {
-        if (asked_[asked[i]] != 0 && goes_first(asked[i])) append(asked[i]);
-      });
-  parallel_for(executor_, refused.size(), [&](std::size_t i) { refused_in_[refused[i]] = round_; });
+               [&](std::size_t i) { asked_[asked[i]] = is_asked(asked[i]); },
+               {.serial_below = few_to_look_at});
+  const auto find_first = [&](std::size_t i, auto&& append) {
+    if (asked_[asked[i]] != 0 && goes_first(asked[i])) append(asked[i]);
+  };
+  auto refused =
+      parallel_collect<std::uint32_t>(executor_, asked.size(), find_first, few_to_look_at);
+  parallel_for(
+      executor_, refused.size(), [&](std::size_t i) { refused_in_[refused[i]] = round_; },
+      few_nanoseconds);
   return refused;
 }
 

@@ -14,6 +14,7 @@
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edges.hpp"
 #include "operators/marked_set.hpp"
@@ -37,7 +38,7 @@ class Refine {
   /// May be called once. Rounds and conflicts of the report are those of refusals.
   /// Thread safety: one caller; runs on the executor. Throws std::length_error if the mesh would
   /// get more elements than there are numbers, or if there are more around the edges.
-  runtime::RoundsReport run(std::vector<LongEdge> edges);
+  runtime::RoundsReport run(runtime::UnsetVector<LongEdge> edges);
 
   /// Whether elements_of does not know what run() has made.
   bool lists_are_stale() const { return lists_are_stale_; }
@@ -89,7 +90,7 @@ class Refine {
   // ---- 2. What is refused: elements ask to, that would be cut into what the rules do not allow.
   // Without the edges refused they are cut otherwise, and look again, until none asks. ----
   void refuse();
-  std::vector<std::uint32_t> take_refused();
+  runtime::UnsetVector<std::uint32_t> take_refused();
   bool is_asked(std::uint32_t number) const;
   bool goes_first(std::uint32_t number) const;
   void visit_cuts(std::uint32_t number, auto&& visit) const;
@@ -125,13 +126,13 @@ class Refine {
   Rules rules_;
   runtime::RoundsReport report_;
 
-  std::vector<LongEdge> edges_;
+  runtime::UnsetVector<LongEdge> edges_;
   GrowingArray<Split> splits_;                      // [edge]
   runtime::FilledArray<std::uint32_t> refused_in_;  // [edge], the round, or 0
   runtime::FilledArray<std::uint8_t> asked_;  // [edge], an element asks to refuse it, or did once
   std::uint32_t round_ = 0;
-  MarkedSet elements_;          // those that are cut
-  std::vector<Around> around_;  // by edge, until it is known which are refused
+  MarkedSet elements_;                   // those that are cut
+  runtime::UnsetVector<Around> around_;  // by edge, until it is known which are refused
   runtime::FilledArray<std::uint32_t>
       around_begin_;              // [edge], in around_; of no use if it was not located
   std::unique_ptr<Cuts[]> cuts_;  // [place in elements_]

@@ -12,6 +12,7 @@
 
 namespace ductile::meshadapt {
 
+using runtime::few_nanoseconds;
 using runtime::FilledArray;
 using runtime::parallel_for;
 using runtime::Phase;
@@ -24,10 +25,13 @@ template <int Dim>
 void Refine<Dim>::number() {
   place_of_ = FilledArray<std::uint32_t>(executor_, edges_.size());
   first_piece_ = FilledArray<std::uint32_t>(executor_, elements_.size());
-  parallel_for(executor_, edges_.size(),
-               [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); });
-  parallel_for(executor_, elements_.size(),
-               [&](std::size_t i) { first_piece_[i] = cuts_[i].pieces - 1; });
+  parallel_for(
+      executor_, edges_.size(),
+      [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); },
+      few_nanoseconds);
+  parallel_for(
+      executor_, elements_.size(), [&](std::size_t i) { first_piece_[i] = cuts_[i].pieces - 1; },
+      few_nanoseconds);
   first_vertex_ = static_cast<VertexId>(mesh_.vertex_slots());
   first_element_ = static_cast<ElementId>(mesh_.element_slots());
   report_.applied = runtime::exclusive_scan<std::uint32_t>(executor_, place_of_);
@@ -51,12 +55,13 @@ void Refine<Dim>::grow() {
     const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
     const std::size_t end_of_vertices = first_vertex_ + report_.applied;
     mesh_.grow(executor_, end_of_vertices, first_element_);
-    parallel_for(executor_, edges_.size(), [&](std::size_t i) {
+    const auto write = [&](std::size_t i) {
       const auto number = static_cast<std::uint32_t>(i);
       if (!is_split(number)) return;
       write_vertex(number);
       if constexpr (Dim == 3) write_links(number, defer);
-    });
+    };
+    parallel_for(executor_, edges_.size(), write, {.serial_below = 64});
     splits_.release(executor_);  // before elements take their memory
     mesh_.grow(executor_, end_of_vertices, end_of_elements_);
     parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });

@@ -31,34 +31,35 @@ Vector<Dim> shortest_in_hull(const Vectors& gradients) {
   return x;
 }
 
+template <int Dim>
+runtime::UnsetVector<VertexId> movable_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                          const runtime::FilledArray<std::uint8_t>& marked) {
+  const auto find = [&](std::size_t v, auto&& append) {
+    if (marked[v] != 0 && mesh.kind_of[v].freedom != 0) append(static_cast<VertexId>(v));
+  };
+  return runtime::parallel_collect<VertexId>(executor, marked.size(), find,
+                                             runtime::few_nanoseconds.serial_below);
+}
+
 }  // namespace
 
 template <int Dim>
-std::vector<VertexId> Smooth<Dim>::movable_vertices(const runtime::Executor& executor,
-                                                    const Mesh<Dim>& mesh, std::uint32_t after) {
-  const auto changed = vertices_changed(executor, mesh, after);
-  return runtime::parallel_collect<VertexId>(executor, changed.size(),
-                                             [&](std::size_t i, auto&& append) {
-                                               if (mesh.kind_of[changed[i]].freedom != 0)
-                                                 append(changed[i]);
-                                             });
+runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices(const runtime::Executor& executor,
+                                                             const Mesh<Dim>& mesh,
+                                                             std::uint32_t after) {
+  return movable_of(executor, mesh, mark_changed(executor, mesh, after));
 }
 
 template <int Dim>
-std::vector<VertexId> Smooth<Dim>::movable_vertices_of_poor(const runtime::Executor& executor,
-                                                            const Mesh<Dim>& mesh,
-                                                            double mean_ratio) {
+runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices_of_poor(
+    const runtime::Executor& executor, const Mesh<Dim>& mesh, double mean_ratio) {
   const double bound = shape_of_mean_ratio<Dim>(mean_ratio);
   runtime::FilledArray<std::uint8_t> marked(executor, mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     if (mesh.shape_of[e] >= bound || !mesh.alive(static_cast<ElementId>(e))) return;
     for (const VertexId v : mesh.corners_of[e]) runtime::atomic_set(marked[v]);
   });
-  return runtime::parallel_collect<VertexId>(executor, marked.size(),
-                                             [&](std::size_t v, auto&& append) {
-                                               if (marked[v] != 0 && mesh.kind_of[v].freedom != 0)
-                                                 append(static_cast<VertexId>(v));
-                                             });
+  return movable_of(executor, mesh, marked);
 }
 
 template <int Dim>

@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 #include "operators/ball.hpp"
 
 namespace ductile::meshadapt {
@@ -49,11 +50,13 @@ class Smooth {
       : mesh_(mesh), background_(background), options_(options) {}
 
   /// All vertices that may move, next to elements changed after an epoch.
-  static std::vector<VertexId> movable_vertices(const runtime::Executor& executor,
-                                                const Mesh<Dim>& mesh, std::uint32_t after);
+  static runtime::UnsetVector<VertexId> movable_vertices(const runtime::Executor& executor,
+                                                         const Mesh<Dim>& mesh,
+                                                         std::uint32_t after);
   /// All vertices that may move, next to elements of a mean ratio below a bound.
-  static std::vector<VertexId> movable_vertices_of_poor(const runtime::Executor& executor,
-                                                        const Mesh<Dim>& mesh, double mean_ratio);
+  static runtime::UnsetVector<VertexId> movable_vertices_of_poor(const runtime::Executor& executor,
+                                                                 const Mesh<Dim>& mesh,
+                                                                 double mean_ratio);
 
   // ---- Plan: a better place, if there is one. Reads only. ----
   std::optional<Plan> plan(VertexId vertex) const;

@@ -10,6 +10,7 @@
 
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 
 namespace ductile::meshadapt {
@@ -35,8 +36,9 @@ class Swap {
   /// Edges and faces of elements changed after an epoch whose swap would be an improvement now,
   /// where the worst mean ratio is below a bound. Only such as are likely to be worth a swap are
   /// looked at: in 2D edges opposite to a wide angle, in 3D long edges and large faces.
-  static std::vector<Swappable> improvements(const runtime::Executor& executor, Mesh<Dim>& mesh,
-                                             std::uint32_t after, double below);
+  static runtime::UnsetVector<Swappable> improvements(const runtime::Executor& executor,
+                                                      Mesh<Dim>& mesh, std::uint32_t after,
+                                                      double below);
 
   /// New elements are worth it if the worst of them is better than this.
   static double bar(double worst_before) { return worst_before * 1.02 + 1e-4; }

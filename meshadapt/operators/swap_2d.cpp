@@ -157,8 +157,9 @@ class FlipSearch {
 /// mean ratio is 0.87 at most. If neither it nor the triangle across its longest edge has changed,
 /// nothing is new; that is so where less than two of its corners are next to a change.
 template <>
-std::vector<Swappable> Swap<2>::improvements(const runtime::Executor& executor, Mesh<2>& mesh,
-                                             std::uint32_t after, double below) {
+runtime::UnsetVector<Swappable> Swap<2>::improvements(const runtime::Executor& executor,
+                                                      Mesh<2>& mesh, std::uint32_t after,
+                                                      double below) {
   constexpr std::size_t stretch = FlipSearch::stretch;
   const FlipSearch search(executor, mesh, after, below);
   const std::size_t elements = mesh.element_slots();

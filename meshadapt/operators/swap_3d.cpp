@@ -348,8 +348,9 @@ std::optional<Swappable> face_to_pierce(const Mesh<3>& mesh, ElementId element,
 }  // namespace
 
 template <>
-std::vector<Swappable> Swap<3>::improvements(const runtime::Executor& executor, Mesh<3>& mesh,
-                                             std::uint32_t after, double below) {
+runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& executor,
+                                                      Mesh<3>& mesh, std::uint32_t after,
+                                                      double below) {
   const auto good_enough = static_cast<float>(shape_of_mean_ratio<3>(below));
   const auto poor = [&](ElementId e) { return mesh.shape_of[e] < good_enough; };
   const double flat = std::min<double>(good_enough, shape_of_mean_ratio<3>(0.5));

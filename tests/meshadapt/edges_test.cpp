@@ -35,7 +35,7 @@ std::set<Edge> edges_changed(const Mesh<Dim>& mesh, std::uint32_t after) {
   return edges;
 }
 
-std::set<Edge> ends_of(const std::vector<LongEdge>& edges) {
+std::set<Edge> ends_of(std::span<const LongEdge> edges) {
   std::set<Edge> ends;
   for (const LongEdge& edge : edges) ends.emplace(edge.a, edge.b);
   EXPECT_EQ(ends.size(), edges.size()) << "some were found twice";
@@ -56,7 +56,7 @@ TYPED_TEST(EdgesIn, AreFoundOnceNextToAnyChanges) {
   for (auto& site : mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
   for (const double share : {1.0, 0.3, 0.01, 0.0}) {
     for (std::uint32_t& epoch : mesh.changed_at) epoch = test::chance(random, share) ? 3 : 2;
-    std::vector<LongEdge> first;
+    runtime::UnsetVector<LongEdge> first;
     for (const int threads : {1, 2, 8}) {
       EdgeSurvey<Dim> survey;
       const auto found = long_edges(Executor({.threads = threads}), mesh, survey, 0, 2);

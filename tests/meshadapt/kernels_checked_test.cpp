@@ -55,7 +55,8 @@ struct Case {
 };
 
 template <class Op, int Dim>
-void expect_sound(Mesh<Dim>& mesh, Op&& op, std::vector<typename std::decay_t<Op>::Item> work,
+void expect_sound(Mesh<Dim>& mesh, Op&& op,
+                  runtime::UnsetVector<typename std::decay_t<Op>::Item> work,
                   const runtime::RoundsOptions& options = {}) {
   try {
     const auto report = runtime::run_rounds_checked(executor, op, std::move(work), options);

@@ -96,7 +96,7 @@ template <int Dim>
 struct Refined {
   Mesh<Dim> mesh;
   std::size_t vertices_before;
-  std::vector<LongEdge> edges;
+  runtime::UnsetVector<LongEdge> edges;
   runtime::RoundsReport report;
   std::unique_ptr<Background<Dim>> background;
 

@@ -39,7 +39,7 @@ Mesh<Dim> mesh_of(std::initializer_list<Vector<Dim>> points,
 }
 
 template <int Dim>
-std::vector<Swappable> improvements(Mesh<Dim>& mesh, std::uint32_t after = 0) {
+runtime::UnsetVector<Swappable> improvements(Mesh<Dim>& mesh, std::uint32_t after = 0) {
   return Swap<Dim>::improvements(executor, mesh, after, 0.9);
 }
 

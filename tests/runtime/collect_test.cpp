@@ -18,7 +18,7 @@ std::uint32_t finds(std::size_t i) { return mix32(static_cast<std::uint32_t>(i))
 TEST(ParallelCollect, KeepsTheOrderOfIndicesOnAnyNumberOfThreads) {
   for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{17}, std::size_t{100000}})
     for (const int threads : test::thread_counts) {
-      std::vector<std::size_t> expected;
+      UnsetVector<std::size_t> expected;
       for (std::size_t i = 0; i < n; ++i) expected.insert(expected.end(), finds(i), i);
       const auto all = parallel_collect<std::size_t>(Executor({.threads = threads}), n,
                                                      [](std::size_t i, auto&& append) {

@@ -173,11 +173,6 @@ template <int Dim>
 runtime::FilledArray<std::uint8_t> mark_changed(const runtime::Executor& executor,
                                                 const Mesh<Dim>& mesh, std::uint32_t after);
 
-/// Those vertices, in order.
-template <int Dim>
-std::vector<VertexId> vertices_changed(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                       std::uint32_t after);
-
 /// Starts to bring a vertex's site into the cache. Inlined always: GCC 12 leaves out calls of
 /// functions that only prefetch.
 template <int Dim>

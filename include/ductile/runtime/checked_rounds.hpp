@@ -27,10 +27,11 @@ namespace ductile::runtime {
 /// As run_rounds(), for items that can be copied. Plans every waiting item after every batch.
 /// Throws ContractBroken, and what the operator throws; the operator's data are then not to be
 /// used. Thread safety: one caller.
-template <class Op>
+template <class Op, class Work = std::vector<typename Op::Item>>
 requires(ColouredOperator<Op> || ReservingOperator<Op>) &&
-    std::copyable<typename Op::Item> RoundsReport
-    run_rounds_checked(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
+    std::copyable<typename Op::Item>&& std::same_as<typename Work::value_type,
+                                                    typename Op::Item> RoundsReport
+    run_rounds_checked(const Executor& executor, Op& op, Work work,
                        const RoundsOptions& options = {}) {
   const Executor alone({.threads = 1, .deterministic = executor.deterministic()});
   return detail::run_all_rounds<Op, detail::OperatorCheck<Op>>(alone, op, std::move(work), options);

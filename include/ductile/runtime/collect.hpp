@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime {
 
@@ -27,14 +27,15 @@ struct Finds {
 }  // namespace detail
 
 /// Calls find(i, append) for i in [0, n); append(item) adds an item to the result. Items of a lower
-/// i come first. Item is default-constructible and movable. Thread safety: one caller; runs on the
-/// executor.
+/// i come first. Item is default-constructible and movable. Fewer than `serial_below` indices are
+/// looked at by the caller alone. Thread safety: one caller; runs on the executor.
 template <class Item, class Find>
-std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find) {
-  if (executor.threads() == 1) {  // which finds them in order
-    std::vector<Item> all;
+UnsetVector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find,
+                                   std::size_t serial_below = 0) {
+  if (executor.threads() == 1 || n < serial_below) {  // which finds them in order
+    UnsetVector<Item> all;
     const auto append = [&](Item item) { all.push_back(std::move(item)); };
-    parallel_for(executor, n, [&](std::size_t i) { find(i, append); });
+    parallel_for(executor, n, [&](std::size_t i) { find(i, append); }, {.serial_below = n + 1});
     return all;
   }
   const std::size_t block_size = std::clamp<std::size_t>(n / 2048, 4, 1024);
@@ -53,13 +54,15 @@ std::vector<Item> parallel_collect(const Executor& executor, std::size_t n, Find
   std::size_t total = 0;
   for (std::size_t b = 0; b < blocks; ++b)
     finds_of[b].place = std::exchange(total, total + finds_of[b].count);
-  auto all = make_vector<Item>(executor, total);
+  auto all = make_unset_vector<Item>(executor, total);
   const auto put = [&](std::size_t b) {
     const detail::Finds& finds = finds_of[b];
     Item* const first = found[finds.thread].data() + finds.begin;
     std::move(first, first + finds.count, all.data() + finds.place);
   };
-  parallel_for(executor, blocks, put, {.grain = 16, .serial_below = 64});
+  // Few finds are moved before other threads would have begun.
+  parallel_for(executor, blocks, put,
+               {.grain = 16, .serial_below = total < 2048 ? blocks + 1 : 64});
   return all;
 }
 

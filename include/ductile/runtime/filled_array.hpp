@@ -54,7 +54,7 @@ class FilledArray {
 
  private:
   static constexpr std::size_t pages = std::max<std::size_t>(1, 32768 / sizeof(T));
-  static constexpr LoopOptions by_pages{.grain = pages, .serial_below = 2 * pages};
+  static constexpr LoopOptions by_pages{.grain = pages, .serial_below = 4 * pages};
 
   void swap(FilledArray& other) {
     std::swap(values_, other.values_);

@@ -7,6 +7,7 @@
 /// from its members.
 #pragma once
 
+#include <concepts>
 #include <utility>
 #include <vector>
 
@@ -17,15 +18,15 @@
 
 namespace ductile::runtime {
 
-/// Applies `op` to `work` and to whatever it wakes, until nothing is left. A coloured operator's
-/// work has each item once. With a deterministic
-/// executor the result does not depend on threads or timing, provided that the operator keeps its
-/// contract. Throws what the operator throws; the operator's data are then not to be used.
-/// Thread safety: one caller; runs on the executor.
-template <class Op>
-requires ColouredOperator<Op> || ReservingOperator<Op> RoundsReport
-run_rounds(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
-           const RoundsOptions& options = {}) {
+/// Applies `op` to `work`, a vector of items, and to whatever it wakes, until nothing is left. A
+/// coloured operator's work has each item once. With a deterministic executor the result does not
+/// depend on threads or timing, provided that the operator keeps its contract. Throws what the
+/// operator throws; the operator's data are then not to be used. Thread safety: one caller; runs on
+/// the executor.
+template <class Op, class Work = std::vector<typename Op::Item>>
+requires(ColouredOperator<Op> || ReservingOperator<Op>) &&
+    std::same_as<typename Work::value_type, typename Op::Item> RoundsReport
+    run_rounds(const Executor& executor, Op& op, Work work, const RoundsOptions& options = {}) {
   return detail::run_all_rounds(executor, op, std::move(work), options);
 }
 

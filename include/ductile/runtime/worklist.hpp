@@ -25,6 +25,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime {
 
@@ -75,7 +76,7 @@ class Worklist {
   bool empty() const { return size_ == 0; }
 
   /// Moves the collected items out and leaves the list empty. Thread safety: one thread.
-  std::vector<T> take();
+  UnsetVector<T> take();
 
   /// Forgets all items and keeps the memory. Thread safety: one thread.
   void clear();
@@ -153,9 +154,16 @@ void Worklist<T>::collect() {
 }
 
 template <WorkItem T>
-std::vector<T> Worklist<T>::take() {
+UnsetVector<T> Worklist<T>::take() {
   const std::span<T> all = mutable_items();
-  std::vector<T> taken(std::make_move_iterator(all.begin()), std::make_move_iterator(all.end()));
+  UnsetVector<T> taken;
+  if constexpr (std::is_trivially_copyable_v<T>) {
+    taken = make_unset_vector<T>(executor_, all.size());
+    parallel_for(
+        executor_, all.size(), [&](std::size_t i) { taken[i] = all[i]; }, few_nanoseconds);
+  } else {
+    taken.assign(std::make_move_iterator(all.begin()), std::make_move_iterator(all.end()));
+  }
   clear();
   return taken;
 }

@@ -108,7 +108,7 @@ class Batches {
   }
 
   /// The items woken since the last call, each once, in order.
-  std::vector<Item> take_woken() {
+  UnsetVector<Item> take_woken() {
     const PhaseTimer timer(report.wake_seconds, executor, Phase::wake);
     woken_.collect();
     report.woken += woken_.size();

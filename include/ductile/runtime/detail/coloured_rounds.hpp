@@ -23,6 +23,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -88,22 +89,22 @@ class ColouredRounds {
   explicit ColouredRounds(Batches<Op, Check>& batches) : batches_(batches) {}
 
   /// Returns the work of the next round.
-  std::vector<Item> run(std::vector<Item> work) {
+  UnsetVector<Item> run(auto work) {
     provide_items();
     if constexpr (TiledOperator<Op> && !Check::on) {
       run_in_tiles(std::move(work));
     } else {
       run_by_classes(work);
     }
-    const std::vector<Item> woken = batches_.take_woken();
+    const UnsetVector<Item> woken = batches_.take_woken();
     // Who was woken and planned after that has been considered again.
-    return parallel_collect<Item>(executor_, woken.size(), [&](std::size_t i, auto&& append) {
+    const auto find = [&](std::size_t i, auto&& append) {
       if (woken_at_[woken[i]] != 0) append(woken[i]);
-    });
+    };
+    return parallel_collect<Item>(executor_, woken.size(), find, few_nanoseconds.serial_below);
   }
 
  private:
-  static constexpr LoopOptions copying{.grain = 512, .serial_below = 2048};
   static constexpr std::uint32_t absent = ConflictGraph<Op>::absent;
   static_assert(absent == Turns::absent);
 
@@ -113,24 +114,31 @@ class ColouredRounds {
     turn_of_.resize(executor_, op_.item_count(), absent);
   }
 
-  void run_in_tiles(std::vector<Item> work) {
-    if constexpr (SteadyTiledOperator<Op>)
-      if (!Tiles<Op>::are_few(work.size(), op_.item_count())) work = run_tiles(std::move(work));
-    while (!work.empty()) work = run_surveyed(work);
+  void run_in_tiles(auto work) {
+    UnsetVector<Item> left = run_first_tiles(std::move(work));
+    while (!left.empty()) left = run_surveyed(left);
   }
 
   /// Returns the items that are left.
-  std::vector<Item> run_tiles(std::vector<Item> work) {
+  UnsetVector<Item> run_first_tiles(auto work) {
+    if constexpr (SteadyTiledOperator<Op>)
+      if (!Tiles<Op>::are_few(work.size(), op_.item_count())) return run_tiles(work);
+    return run_surveyed(work);
+  }
+
+  /// Sorts the work. Returns the items that are left.
+  UnsetVector<Item> run_tiles(std::span<Item> work) {
     RoundsReport& report = batches_.report;
     const PhaseTimer timer(report.plan_seconds, executor_, Phase::plan);
     ++window_;
-    parallel_sort(executor_, std::span(work));  // which mostly is in order
+    parallel_sort(executor_, work);  // which mostly is in order
     Tiles<Op> tiles(executor_, op_, work);
     tiles.run([&] { return new_commit(); }, [&](Item item) { note_planned(item); });
     const FilledArray<std::uint8_t>& is_left = tiles.left();
-    auto left = parallel_collect<Item>(executor_, work.size(), [&](std::size_t i, auto&& append) {
+    const auto find = [&](std::size_t i, auto&& append) {
       if (is_left[i] != 0) append(work[i]);
-    });
+    };
+    auto left = parallel_collect<Item>(executor_, work.size(), find, few_nanoseconds.serial_below);
     ++report.batches;
     report.planned += work.size() - left.size();
     report.applied += tiles.applied();
@@ -139,7 +147,7 @@ class ColouredRounds {
 
   /// Returns the items that are to run in the same round yet. Where conflicts change, those that
   /// are late wait for the next round, as all that are woken do.
-  std::vector<Item> run_surveyed(std::span<const Item> all) {
+  UnsetVector<Item> run_surveyed(std::span<const Item> all) {
     constexpr bool stays = requires { Op::keeps_conflicts; };
     const std::span<const Item> work =
         all.first(std::min<std::size_t>(all.size(), Turns::most_items));
@@ -161,10 +169,11 @@ class ColouredRounds {
     report.planned += planned;
     report.applied += applied;
     if (!stays) report.dropped += work.size() - planned;
-    return parallel_collect<Item>(executor_, all.size(), [&](std::size_t i, auto&& append) {
+    const auto find_left = [&](std::size_t i, auto&& append) {
       turn_of_[all[i]] = absent;
       if (i >= work.size() || (stays && tiles->is_late(i))) append(all[i]);
-    });
+    };
+    return parallel_collect<Item>(executor_, all.size(), find_left, few_nanoseconds.serial_below);
   }
 
   /// Goes over the work window by window, so that what one window's classes touch stays in cache.
@@ -191,7 +200,8 @@ class ColouredRounds {
       if constexpr (Check::on) check_waiting(end);
     }
     parallel_for(
-        executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; }, copying);
+        executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = absent; },
+        few_nanoseconds);
   }
 
   /// Sets by_class_ to the work sorted into classes of items that do not conflict, and turn_of_ to
@@ -199,7 +209,7 @@ class ColouredRounds {
   std::vector<std::size_t> sort_by_class(std::span<const Item> work) {
     parallel_for(
         executor_, work.size(),
-        [&](std::size_t i) { turn_of_[work[i]] = static_cast<std::uint32_t>(i); }, copying);
+        [&](std::size_t i) { turn_of_[work[i]] = static_cast<std::uint32_t>(i); }, few_nanoseconds);
     const ConflictGraph<Op> graph(op_, work, turn_of_.data());
     const Colouring colouring = colour_conflicts(executor_, graph);
     ColourClasses classes = colour_classes(executor_, colouring);
@@ -208,7 +218,7 @@ class ColouredRounds {
       by_class_[i] = work[classes.vertices[i]];
       turn_of_[work[i]] = colouring.colour_of[i];
     };
-    parallel_for(executor_, work.size(), place, copying);
+    parallel_for(executor_, work.size(), place, few_nanoseconds);
     return std::move(classes.begin);
   }
 
@@ -246,7 +256,7 @@ class ColouredRounds {
   FilledArray<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
   FilledArray<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its class;
                                          // or its turn in tiles (Turns); or absent
-  std::vector<Item> by_class_;           // the window's work, class after class
+  UnsetVector<Item> by_class_;           // the window's work, class after class
   std::size_t turn_ = 0;                 // class being executed
   std::uint32_t window_ = 0;             // the window being run
 };

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,7 +29,7 @@ class OperatorCheck {
   using Deferred = DeferredUpdate<typename Op::Update>;
   static constexpr bool on = true;
 
-  void begin_round(const Op& op, std::uint32_t round, const std::vector<Item>& work) {
+  void begin_round(const Op& op, std::uint32_t round, std::span<const Item> work) {
     round_ = round;
     reconsidered.clear();
     if constexpr (ColouredOperator<Op>) {
@@ -127,7 +128,7 @@ class OperatorCheck {
   }
 
   /// Keeps what each item of the round plans and conflicts with at its beginning.
-  void note_waiting(const Op& op, const std::vector<Item>& work) {
+  void note_waiting(const Op& op, std::span<const Item> work) {
     place_of_.assign(op.item_count(), absent);
     conflicts_.clear();
     plans_.clear();

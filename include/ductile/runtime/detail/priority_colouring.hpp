@@ -86,7 +86,7 @@ class PriorityRun {
       if (colours_[v] == Colours<Width>::waiting && awaited_[v] == 0) free_.append(v);
     });
     for (free_.collect(); !free_.empty(); free_.collect()) {
-      const std::vector<std::uint32_t> now = free_.take();
+      const UnsetVector<std::uint32_t> now = free_.take();
       for_each(now, [&](std::uint32_t v) { colour_from(v); });
     }
   }

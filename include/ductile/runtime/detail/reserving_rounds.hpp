@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,6 +21,7 @@
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -34,13 +34,14 @@ class ReservingRounds {
 
   /// Goes over the work window by window, so that what is reserved, planned and applied one after
   /// the other stays in cache. Returns the work of the next round.
-  std::vector<Item> run(std::vector<Item> work) {
-    std::vector<Item> rest;
+  UnsetVector<Item> run(auto work) {
+    UnsetVector<Item> rest;
+    rest.reserve(work.size());
     const std::size_t wanted = Check::on ? 0 : batches_.options.reserving_window;
     const std::size_t largest = wanted == 0 ? most_items : std::min(wanted, most_items);
-    for_each_window(std::span(work), window_count(work.size(), largest),
+    for_each_window(std::span<Item>(work), window_count(work.size(), largest),
                     [&](std::span<Item> part) { reserve_and_run(part, rest); });
-    std::vector<Item> woken = batches_.take_woken();
+    UnsetVector<Item> woken = batches_.take_woken();
     rest.insert(rest.end(), std::make_move_iterator(woken.begin()),
                 std::make_move_iterator(woken.end()));
     return rest;
@@ -59,29 +60,29 @@ class ReservingRounds {
     std::size_t run = 0, lost = 0, left = 0;
   };
 
-  struct Winners {
-    std::unique_ptr<Item[]> items;
-    std::size_t count = 0;
-  };
-
   /// Items that a thread looks at in one go: fewer of a small window, so that each of many threads
   /// gets some.
   static std::size_t block_of(std::size_t items) {
     return std::clamp<std::size_t>(items / 512, 4, short_block);
   }
 
+  /// Few items are looked at before other threads would have begun.
+  static LoopOptions by_block_unless_few(std::size_t items) {
+    constexpr std::size_t few = 32;
+    return {.grain = 1, .serial_below = std::max(by_block.serial_below, few / block_of(items))};
+  }
+
   /// Runs the items of a window that win, and appends those that have to wait to `rest`.
-  void reserve_and_run(std::span<Item> work, std::vector<Item>& rest) {
-    Winners winners;
+  void reserve_and_run(std::span<Item> work, UnsetVector<Item>& rest) {
     {
       const PhaseTimer timer(batches_.report.conflict_seconds, executor_, Phase::conflict);
       ++window_;
       take_keys(work.size());
       reserve_all(work);
-      winners = take_winners(work, rest);
+      take_winners(work, rest);
     }
     batches_.run(
-        std::span<const Item>(winners.items.get(), winners.count), all_are_here, [](const Item&) {},
+        std::span<const Item>(winners_), all_are_here, [](const Item&) {},
         [&] { return batches_.new_commit(window_); }, [] {});
   }
 
@@ -110,14 +111,14 @@ class ReservingRounds {
             outcome_of_[i] = asks(i) ? reserve(work[i], i) : Outcome::passes;
           }
         },
-        by_block);
+        by_block_unless_few(work.size()));
   }
 
-  /// Finds out who holds all of its footprint; moves those out of the work, and those that have to
-  /// wait to `rest`, in order.
-  Winners take_winners(std::span<Item> work, std::vector<Item>& rest) {
+  /// Finds out who holds all of its footprint; moves those to winners_, and those that have to wait
+  /// to `rest`, in order.
+  void take_winners(std::span<Item> work, UnsetVector<Item>& rest) {
     const std::size_t block = block_of(work.size());
-    std::vector<Counts> counts((work.size() + block - 1) / block);
+    counts_of_.resize((work.size() + block - 1) / block);
     parallel_for_blocks(
         executor_, work.size(), block,
         [&](std::size_t b, std::size_t begin, std::size_t end) {
@@ -126,31 +127,30 @@ class ReservingRounds {
             if (share_ == everyone) prefetch_items_after<Op>(op_, work, i, all_are_here);
             settle(work[i], i, found);
           }
-          counts[b] = found;
+          counts_of_[b] = found;
         },
-        by_block);
+        by_block_unless_few(work.size()));
     if constexpr (Check::on)  // they have had their turn
       for (std::size_t i = 0; i < work.size(); ++i)
         if (outcome_of_[i] == Outcome::gone) batches_.check.note_void(work[i]);
     Counts total{.left = rest.size()};
-    for (Counts& count : counts)
+    for (Counts& count : counts_of_)
       total = {total.run + std::exchange(count.run, total.run), total.lost + count.lost,
                total.left + std::exchange(count.left, total.left)};
-    Winners winners{std::make_unique_for_overwrite<Item[]>(total.run), total.run};
+    winners_.resize(total.run);
     rest.resize(total.left);
     parallel_for_blocks(executor_, work.size(), block,
                         [&](std::size_t b, std::size_t begin, std::size_t end) {
-                          Counts at = counts[b];
+                          Counts at = counts_of_[b];
                           for (std::size_t i = begin; i < end; ++i) {
                             if (outcome_of_[i] == Outcome::runs)
-                              winners.items[at.run++] = std::move(work[i]);
+                              winners_[at.run++] = std::move(work[i]);
                             if (is_left(outcome_of_[i])) rest[at.left++] = std::move(work[i]);
                           }
                         },
                         {.grain = 4, .serial_below = 2048 / block});
     batches_.report.lost += total.lost;
     adapt_share(total.run, total.lost);
-    return winners;
   }
 
   static bool is_left(Outcome outcome) {
@@ -219,9 +219,11 @@ class ReservingRounds {
   std::uint32_t window_ = 0;
   std::uint64_t first_key_ = all_keys;  // all below are left for later windows
   unsigned tie_bits_ = 0;               // of a key, below the rank
-  std::vector<std::uint32_t> key_of_;   // [position]
-  std::vector<Outcome> outcome_of_;     // [position]
-  std::uint32_t ticket_ = 0;            // racing mode: how many have come
+  UnsetVector<std::uint32_t> key_of_;   // [position]
+  UnsetVector<Outcome> outcome_of_;     // [position]
+  UnsetVector<Counts> counts_of_;       // [block]
+  UnsetVector<Item> winners_;
+  std::uint32_t ticket_ = 0;  // racing mode: how many have come
 };
 
 }  // namespace ductile::runtime::detail

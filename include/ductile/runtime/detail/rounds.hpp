@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "ductile/runtime/detail/batches.hpp"
 #include "ductile/runtime/detail/coloured_rounds.hpp"
@@ -14,6 +13,7 @@
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -22,24 +22,36 @@ struct NoCheck {
   static constexpr bool on = false;
 };
 
+/// The work is a vector of items.
 template <class Op, class Check = NoCheck>
-RoundsReport run_all_rounds(const Executor& executor, Op& op, std::vector<typename Op::Item> work,
+RoundsReport run_all_rounds(const Executor& executor, Op& op, auto first_work,
                             const RoundsOptions& options) {
+  using Item = typename Op::Item;
   using Strategy = std::conditional_t<ColouredOperator<Op>, ColouredRounds<Op, Check>,
                                       ReservingRounds<Op, Check>>;
   Batches<Op, Check> batches(executor, op, options);
   Strategy strategy(batches);
   Recording* const recording = executor.recording();
-  for (std::uint32_t round = 1; !work.empty() && static_cast<int>(round) <= options.most_rounds;
-       ++round) {
-    ++batches.report.rounds;
+  RoundsReport& report = batches.report;
+  report.left = first_work.size();
+  const auto goes_on = [&] {
+    return report.left > 0 && static_cast<int>(report.rounds) < options.most_rounds;
+  };
+  const auto run_round = [&](auto work) {
+    ++report.rounds;
     if (recording != nullptr) recording->begin_round();
-    if constexpr (Check::on) batches.check.begin_round(op, round, work);
-    work = strategy.run(std::move(work));
+    if constexpr (Check::on)
+      batches.check.begin_round(op, static_cast<std::uint32_t>(report.rounds), work);
+    UnsetVector<Item> next = strategy.run(std::move(work));
+    report.left = next.size();
+    return next;
+  };
+  if (goes_on()) {
+    UnsetVector<Item> work = run_round(std::move(first_work));
+    while (goes_on()) work = run_round(std::move(work));
   }
   if (recording != nullptr) recording->end_rounds();
-  batches.report.left = work.size();
-  return batches.report;
+  return report;
 }
 
 }  // namespace ductile::runtime::detail

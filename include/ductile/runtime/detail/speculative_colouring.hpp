@@ -51,7 +51,7 @@ class FirstRound {
         suspects_(executor, {.order = WorkOrder::arrival}) {}
 
   /// Returns vertices in any order; of any two that clash, one at least is among them.
-  std::vector<std::uint32_t> run() {
+  UnsetVector<std::uint32_t> run() {
     Fronts fronts(graph_, static_cast<std::uint32_t>(executor_.threads()));
     parallel_for(executor_, fronts.seeds().size(),
                  [&](std::size_t i) { colour(fronts.seeds()[i]); }, {.grain = 1});
@@ -145,7 +145,7 @@ struct TwoPhase {
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> words) {
-    std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, words).run();
+    UnsetVector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, words).run();
     const auto colours = words.template as<LongOf<Width>>();
     Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
     for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
@@ -173,7 +173,7 @@ struct DetectAgain {
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> words) {
-    std::vector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, words).run();
+    UnsetVector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, words).run();
     const auto colours = words.template as<LongOf<Width>>();
     Worklist<std::uint32_t> recoloured(executor, {.order = WorkOrder::arrival});
     for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {

@@ -58,10 +58,11 @@ class SurveyedTiles {
         range_of_(tile_count()),
         counts_of_(tile_count()),
         met_(executor) {
-    parallel_for(executor, work.size(),
-                 [&](std::size_t place) { turn_of_[work_[place]] = turn_at(place); },
-                 {.grain = 512, .serial_below = 2048});
-    parallel_for(executor, tile_count(), [&](std::size_t tile) { survey(tile); }, {.grain = 1});
+    parallel_for(
+        executor, work.size(), [&](std::size_t place) { turn_of_[work_[place]] = turn_at(place); },
+        few_nanoseconds);
+    parallel_for(executor, tile_count(), [&](std::size_t tile) { survey(tile); },
+                 {.grain = 1, .serial_below = few_to_survey >> layout_.block_bits});
   }
 
   /// Whether the item at this place has an earlier neighbour in another tile of the same rank, so
@@ -104,6 +105,8 @@ class SurveyedTiles {
   static constexpr std::size_t none = Ranked::none;
   /// Items between asking for something that an item needs and the next stage of it.
   static constexpr std::size_t ahead = 3;
+  /// Items whose conflicts are looked at before other threads would have begun.
+  static constexpr std::size_t few_to_survey = 16;
 
   /// What a thread's tiles wait for, one tile after the other.
   struct Met {
