@@ -13,7 +13,7 @@ namespace ductile::meshadapt::gmf {
 /// Gives a vector that holds nothing n elements, all of which are about to be read.
 template <class T>
 static void make_room(std::vector<T>& empty, std::size_t n) {
-  runtime::resize_empty(runtime::Executor({.threads = 1}), empty, n);
+  runtime::resize_empty(runtime::Executor({.threads = 1}), runtime::EmptyVector{empty, n});
 }
 
 // ---- Heads ----

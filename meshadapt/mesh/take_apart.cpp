@@ -17,10 +17,10 @@
 
 namespace ductile::meshadapt {
 
+using runtime::EmptyVector;
 using runtime::Executor;
 using runtime::parallel_collect;
 using runtime::parallel_for;
-using runtime::resize_empty;
 
 namespace {
 
@@ -123,8 +123,8 @@ template <int Dim>
 void add_elements(const Executor& executor, const Mesh<Dim>& mesh, const Ids& elements,
                   AnyMesh& any) {
   Cells<Dim + 1>& cells = elements_in<Dim>(any);
-  resize_empty(executor, cells.vertices, elements.size());
-  resize_empty(executor, cells.reference, elements.size());
+  runtime::resize_empty(executor, EmptyVector{cells.vertices, elements.size()},
+                        EmptyVector{cells.reference, elements.size()});
   parallel_for(executor, elements.size(), [&](std::size_t i) {
     cells.vertices[i] = mesh.corners_of[elements[i]];
     cells.reference[i] = mesh.regions[mesh.region_of[elements[i]]].reference;
@@ -134,33 +134,29 @@ void add_elements(const Executor& executor, const Mesh<Dim>& mesh, const Ids& el
                         [&](std::size_t i) { return mesh.required_element(elements[i]); });
 }
 
+/// Vertices with their metric.
 template <int Dim>
 void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& vertices,
-                  AnyMesh& any) {
-  resize_empty(executor, any.vertex_reference, vertices.size());
-  resize_empty(executor, any.coordinates, vertices.size() * Dim);
-  parallel_for(executor, vertices.size(), [&](std::size_t i) {
+                  MeshWithMetric& result) {
+  constexpr std::size_t stride = Metric<Dim>::size;
+  const std::size_t count = vertices.size();
+  auto& [any, field] = result;
+  field.dimension = Dim;
+  field.vertex_count = count;
+  field.types = {AnyField::Type::symmetric};
+  runtime::resize_empty(executor, EmptyVector{any.vertex_reference, count},
+                        EmptyVector{any.coordinates, count * Dim},
+                        EmptyVector{field.values, count * stride});
+  parallel_for(executor, count, [&](std::size_t i) {
+    const Site<Dim>& site = mesh.site_of[vertices[i]];
     any.vertex_reference[i] = mesh.reference_of[vertices[i]];
-    std::copy_n(mesh.site_of[vertices[i]].position.x.begin(), Dim, &any.coordinates[i * Dim]);
+    std::copy_n(site.position.x.begin(), Dim, &any.coordinates[i * Dim]);
+    std::copy_n(site.metric.m.begin(), stride, &field.values[i * stride]);
   });
   any.corners = numbers_of(executor, vertices.size(),
                            [&](std::size_t i) { return mesh.kind_of[vertices[i]].corner; });
   any.required_vertices = numbers_of(
       executor, vertices.size(), [&](std::size_t i) { return mesh.kind_of[vertices[i]].required; });
-}
-
-template <int Dim>
-AnyField metric_at(const Executor& executor, const Mesh<Dim>& mesh, const Ids& vertices) {
-  AnyField field;
-  field.dimension = Dim;
-  field.vertex_count = vertices.size();
-  field.types = {AnyField::Type::symmetric};
-  resize_empty(executor, field.values, vertices.size() * Metric<Dim>::size);
-  parallel_for(executor, vertices.size(), [&](std::size_t i) {
-    std::copy_n(mesh.site_of[vertices[i]].metric.m.begin(), Metric<Dim>::size,
-                &field.values[i * Metric<Dim>::size]);
-  });
-  return field;
 }
 
 }  // namespace
@@ -187,8 +183,7 @@ MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
   release(mesh.patches_of);
   add_elements(executor, mesh, elements, result.mesh);
   release(mesh.corners_of, mesh.region_of);
-  add_vertices(executor, mesh, vertices, result.mesh);
-  result.metric = metric_at(executor, mesh, vertices);
+  add_vertices(executor, mesh, vertices, result);
   release(mesh.site_of, mesh.kind_of, mesh.reference_of);
   return result;
 }

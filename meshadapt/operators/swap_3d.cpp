@@ -355,26 +355,31 @@ runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& e
   const auto poor = [&](ElementId e) { return mesh.shape_of[e] < good_enough; };
   const double flat = std::min<double>(good_enough, shape_of_mean_ratio<3>(0.5));
   const auto near_change = mark_changed(executor, mesh, after);
-  auto found = runtime::parallel_collect<Swappable>(
-      executor, mesh.vertex_slots(), [&](std::size_t v, auto&& append) {
-        prefetch_stars_after(mesh, near_change, v);
-        if (!near_change[v]) return;
-        const auto vertex = static_cast<VertexId>(v);
-        const auto ball = mesh.elements_of.of(vertex);
-        if (std::any_of(ball.begin(), ball.end(), poor))
-          EdgeSearch(mesh, vertex, after, good_enough).run(append);
-      });
-  const auto faces = runtime::parallel_collect<Swappable>(
-      executor, mesh.element_slots(), [&](std::size_t e, auto&& append) {
-        const auto element = static_cast<ElementId>(e);
-        if (!(mesh.shape_of[e] < flat) || !mesh.alive(element)) return;
-        const auto is_near = [&](VertexId v) { return near_change[v] != 0; };
-        const Corners<3>& corners = mesh.corners_of[e];
-        if (std::count_if(corners.begin(), corners.end(), is_near) < 3) return;
-        if (const auto face = face_to_pierce(mesh, element, after)) append(*face);
-      });
-  found.insert(found.end(), faces.begin(), faces.end());
-  return found;
+  const auto find_edges = [&](std::size_t v, auto&& append) {
+    prefetch_stars_after(mesh, near_change, v);
+    if (!near_change[v]) return;
+    const auto vertex = static_cast<VertexId>(v);
+    const auto ball = mesh.elements_of.of(vertex);
+    if (std::any_of(ball.begin(), ball.end(), poor))
+      EdgeSearch(mesh, vertex, after, good_enough).run(append);
+  };
+  const auto find_faces = [&](std::size_t e, auto&& append) {
+    const auto element = static_cast<ElementId>(e);
+    if (!(mesh.shape_of[e] < flat) || !mesh.alive(element)) return;
+    const auto is_near = [&](VertexId v) { return near_change[v] != 0; };
+    const Corners<3>& corners = mesh.corners_of[e];
+    if (std::count_if(corners.begin(), corners.end(), is_near) < 3) return;
+    if (const auto face = face_to_pierce(mesh, element, after)) append(*face);
+  };
+  const std::size_t vertices = mesh.vertex_slots();
+  const auto find = [&](std::size_t i, auto&& append) {
+    if (i < vertices) {
+      find_edges(i, append);
+    } else {
+      find_faces(i - vertices, append);
+    }
+  };
+  return runtime::parallel_collect<Swappable>(executor, vertices + mesh.element_slots(), find);
 }
 
 template class Swap<3>;

@@ -27,7 +27,7 @@ TEST(MakeVector, ForgetsWhatMemoryHeld) {
   const Executor executor({.threads = 3});
   std::vector<std::uint64_t> values(200000, 7);
   values.clear();
-  resize_empty(executor, values, 100000);
+  resize_empty(executor, EmptyVector{values, 100000});
   EXPECT_EQ(std::count(values.begin(), values.end(), 0U), 100000);
 }
 
