@@ -87,9 +87,14 @@ void GrowingMemory::reserve(std::size_t bytes) {
 void GrowingMemory::reserve_pages(std::size_t bytes) {
   const std::size_t wanted = whole_pages(bytes);
   if (wanted > space_) move_to_larger_space(wanted);
-  if (mprotect(data_ + bytes_, wanted - bytes_, PROT_READ | PROT_WRITE) != 0)
-    throw std::bad_alloc();
-  bytes_ = wanted;
+  const auto may_write = [&](std::size_t end) {
+    return mprotect(data_ + bytes_, end - bytes_, PROT_READ | PROT_WRITE) == 0;
+  };
+  // In few steps, as each takes some microseconds; but no further, as programs may lock all memory
+  // that they may write.
+  std::size_t end = std::min(4 * wanted, space_);
+  if (!may_write(end) && !may_write(end = wanted)) throw std::bad_alloc();
+  bytes_ = end;
 }
 
 /// Pages are moved one by one, so they should be seldom.
@@ -133,16 +138,16 @@ void GrowingMemory::reserve(std::size_t bytes) {
 #ifdef DUCTILE_MOVES_PAGES
 
 void SpentMemory::give_back(const Executor& executor) {
-  constexpr std::size_t least = std::size_t{1} << 20U;
+  constexpr std::size_t least = std::size_t{1} << 18U;
   const auto threads = static_cast<std::size_t>(executor.threads());
   std::size_t all = 0;
-  for (const auto& memory : memories_) all += memory.is_mapped() ? memory.bytes() : 0;
+  for (const Part& part : parts_) all += part.memory.is_mapped() ? part.used : 0;
   // In large parts, as each interrupts all threads; the largest first.
   const std::size_t most = detail::whole_pages(std::max(all / threads, least));
   std::vector<std::span<std::byte>> parts;
-  for (const auto& memory : memories_)
-    for (std::size_t at = 0; memory.is_mapped() && at < memory.bytes(); at += most)
-      parts.emplace_back(memory.data() + at, std::min(most, memory.bytes() - at));
+  for (const auto& [memory, used] : parts_)
+    for (std::size_t at = 0; memory.is_mapped() && at < used; at += most)
+      parts.emplace_back(memory.data() + at, std::min(most, used - at));
   std::stable_sort(parts.begin(), parts.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
   const auto give_back = [&](std::size_t i) {
@@ -150,12 +155,12 @@ void SpentMemory::give_back(const Executor& executor) {
   };
   // Unmapping what has no pages any more takes no time. If it could not be, this takes it.
   if (all > most) parallel_for(executor, parts.size(), give_back, {.grain = 1});
-  memories_.clear();
+  parts_.clear();
 }
 
 #else
 
-void SpentMemory::give_back(const Executor&) { memories_.clear(); }
+void SpentMemory::give_back(const Executor&) { parts_.clear(); }
 
 #endif
 

@@ -82,7 +82,11 @@ class SpentMemory {
   requires(std::is_trivially_copyable_v<T> &&
            alignof(T) <= alignof(std::max_align_t)) friend class GrowingArray;
 
-  std::vector<detail::GrowingMemory> memories_;
+  struct Part {
+    detail::GrowingMemory memory;
+    std::size_t used;  // bytes, the first ones
+  };
+  std::vector<Part> parts_;
 };
 
 /// Thread safety: elements as those of an array; what changes the size, one thread.
@@ -148,7 +152,8 @@ requires(std::is_trivially_copyable_v<T> &&
 
   /// Empties the array and leaves its memory to others to give back. Throws std::bad_alloc.
   void release(SpentMemory& spent) {
-    spent.memories_.push_back(std::move(memory_));
+    const std::size_t used = std::max(size_, touched_) * sizeof(T);
+    spent.parts_.push_back({std::move(memory_), used});
     size_ = touched_ = 0;
   }
 

@@ -18,6 +18,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -37,10 +38,12 @@ class RankedBlocks {
     // Loops that run inside another, or on one thread, are not recorded as loops.
     if (executor.threads() == 1 || (recording_ != nullptr && recording_->in_loop()))
       recording_ = nullptr;
-    parallel_for(
-        executor_, count,
-        [&](std::size_t block) { rank_of_[block] = static_cast<std::uint8_t>(rank_of(block)); },
-        {.serial_below = 4096});
+    parallel_for(executor_, count,
+                 [&](std::size_t block) {
+                   rank_of_[block] = static_cast<std::uint8_t>(rank_of(block));
+                   claimed_[block] = 0;
+                 },
+                 {.serial_below = 4096});
     if (recording_ != nullptr) recording_->aside([&] { number_parts(); });
   }
 
@@ -128,7 +131,7 @@ class RankedBlocks {
                      [&](std::size_t a, std::size_t b) { return rank_of_[a] < rank_of_[b]; });
     part_of_.resize(blocks.size());
     for (std::size_t i = 0; i < blocks.size(); ++i) part_of_[blocks[i]] = i;
-    first_rank_of_ = rank_of_;
+    first_rank_of_.assign(rank_of_.begin(), rank_of_.end());
   }
 
   void record_waits(std::size_t block, auto&& visit_met) {
@@ -144,8 +147,8 @@ class RankedBlocks {
   }
 
   const Executor& executor_;
-  std::vector<std::uint8_t> rank_of_;    // [block], or done
-  std::vector<std::uint8_t> claimed_;    // [block], by a thread that has begun it
+  UnsetVector<std::uint8_t> rank_of_;    // [block], or done
+  UnsetVector<std::uint8_t> claimed_;    // [block], by a thread that has begun it
   PerThread<std::vector<Entry>> begun_;  // the thread's
   std::atomic<bool> failed_{false};
   Recording* recording_;                     // null but where this is what is recorded

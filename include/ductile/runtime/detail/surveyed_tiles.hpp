@@ -22,6 +22,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -148,6 +149,7 @@ class SurveyedTiles {
       if (i >= 2 * ahead)
         is_late_[first_place(tile) + i - 2 * ahead] = look(items[i - 2 * ahead], tile, met);
     }
+    counts_of_[tile] = {};
     range_of_[tile] = {static_cast<std::uint32_t>(this_thread()), begin,
                        static_cast<std::uint32_t>(met.tiles.size())};
   }
@@ -231,8 +233,8 @@ class SurveyedTiles {
   BlockLayout layout_;
   Ranked tiles_;
   std::unique_ptr<bool[]> is_late_;  // [place]
-  std::vector<Range> range_of_;      // [tile], what it waits for
-  std::vector<Counts> counts_of_;    // [tile]
+  UnsetVector<Range> range_of_;      // [tile], what it waits for
+  UnsetVector<Counts> counts_of_;    // [tile]
   PerThread<Met> met_;
 };
 
