@@ -56,6 +56,7 @@ class Bypass {
     int reach = 3;
     bool wakes_back = true, wakes_ahead = true, wakes_itself = true;
     bool symmetric = true, in_range = true, plans_only_read = true;
+    bool wakes_in_range = true;
   };
   static constexpr Vertex length = 10;
 
@@ -88,6 +89,7 @@ class Bypass {
     gone[plan.gone] = 1;
     commit.defer(plan.next, {plan.keeper});
     if (faults_.wakes_itself) commit.wake(plan.keeper);
+    if (!faults_.wakes_in_range) commit.wake(static_cast<Vertex>(next.size()) + 2);
     Vertex near = previous[plan.keeper];
     for (int step = 0; step < 2 && near != nobody && faults_.wakes_back;
          ++step, near = previous[near])
@@ -161,6 +163,23 @@ TEST(RunRoundsChecked, CatchesNumbersOutOfRange) {
   const std::string message =
       caught(ContractRule::numbers_in_range, Bypass(400, {.in_range = false}), all_items(400));
   EXPECT_NE(message.find("item 5, round 1: conflicts() visits 400"), std::string::npos) << message;
+}
+
+TEST(RunRoundsChecked, CatchesAWakeOfWhatIsNoItem) {
+  const std::string message =
+      caught(ContractRule::numbers_in_range, Bypass(10, {.wakes_in_range = false}), {0});
+  EXPECT_NE(
+      message.find("item 0, round 1: while it was applied, item 12 was woken, but item_count() "
+                   "is 10"),
+      std::string::npos)
+      << message;
+}
+
+TEST(RunRounds, RefusesToWakeWhatIsNoItem) {
+  for (const int threads : {1, 3}) {
+    Bypass op(400, {.wakes_in_range = false});
+    EXPECT_THROW(run_rounds(Executor({.threads = threads}), op, all_items(400)), UnknownItem);
+  }
 }
 
 TEST(RunRoundsChecked, CatchesWorkThatIsOutOfRangeOrTwiceThere) {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -148,6 +149,12 @@ struct Kinds<Op> {
 
 }  // namespace detail
 
+/// What Commit throws for an item that is not below item_count().
+class UnknownItem : public std::out_of_range {
+ public:
+  UnknownItem(std::uint32_t item, std::uint32_t item_count);
+};
+
 /// What an operator may do beside its own writes, handed to apply().
 template <class Op>
 class Commit {
@@ -165,17 +172,20 @@ class Commit {
 
   /// Considers an item again: its plan or its conflicts may have changed. If it is in this window
   /// of the round and not yet applied, it leaves and comes back in the next round; in a later
-  /// window it is planned there.
+  /// window it is planned there. Throws UnknownItem, of operators that are coloured.
   void wake(Item item) {
-    // Relaxed: read after the barrier that ends the phase, or, in tiles, ordered by those.
-    if constexpr (ColouredOperator<Op>)
+    if constexpr (ColouredOperator<Op>) {
+      expect_known(item);
+      // Relaxed: read after the barrier that ends the phase, or, in tiles, ordered by those.
       std::atomic_ref(woken_at_[item]).store(window_, std::memory_order_relaxed);
+    }
     woken_->append(std::move(item));
   }
 
   /// Like wake() for an item whose plan may have changed, but of whose conflicts none is new save
   /// with items that are woken: if it is still to be planned in this window, it stays for its turn.
   void reconsider(Item item) requires ColouredOperator<Op> {
+    expect_known(item);
     const bool waits = turn_of_[item] > turn_ && turn_of_[item] != 0xffffffffU;
     if (!waits) return wake(item);
     if (reconsidered_ != nullptr) reconsidered_->push_back(item);
@@ -192,6 +202,12 @@ class Commit {
   friend class detail::SurveyedTiles<Op>;
   friend class detail::OperatorCheck<Op>;
   friend class detail::OppositeOrder<Op>;
+
+  void expect_known(std::uint32_t item) const {
+    if (item >= item_count_) [[unlikely]]
+      throw UnknownItem(item, item_count_);
+  }
+
   Deferrer<Update> deferrer_;
   Worklist<Item>* woken_ = nullptr;
   std::uint32_t* woken_at_ = nullptr;          // [item], the window it was last woken in
@@ -200,6 +216,7 @@ class Commit {
   std::vector<Item>* reconsidered_ = nullptr;  // if rounds are checked
   std::uint64_t source_ = 0;
   std::uint32_t window_ = 0;
+  std::uint32_t item_count_ = 0;  // below which all items are, if they are coloured
   std::array<std::uint32_t, detail::Kinds<Op>::count> next_{};
 };
 

@@ -237,6 +237,7 @@ class ColouredRounds {
     Commit<Op> commit = batches_.new_commit(window_);
     commit.woken_at_ = woken_at_.data();
     commit.turn_of_ = turn_of_.data();
+    commit.item_count_ = static_cast<std::uint32_t>(woken_at_.size());
     commit.turn_ = static_cast<std::uint32_t>(turn_);
     return commit;
   }

@@ -205,6 +205,16 @@ class OperatorCheck {
   }
 
   void apply(Op& op, const Item& item, std::size_t i, const Plan& plan, Commit<Op>& commit) const {
+    try {
+      apply_in_range(op, item, i, plan, commit);
+    } catch (const UnknownItem& unknown) {
+      refuse(ContractRule::numbers_in_range, item, i,
+             std::string("while it was applied, ") + unknown.what());
+    }
+  }
+
+  void apply_in_range(Op& op, [[maybe_unused]] const Item& item, [[maybe_unused]] std::size_t i,
+                      const Plan& plan, Commit<Op>& commit) const {
     if constexpr (Kinds<Op>::count > 0) {
       const auto demand = op.demand(plan);
       const auto first = commit.next_;

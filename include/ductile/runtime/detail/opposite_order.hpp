@@ -75,18 +75,25 @@ class OppositeOrder {
         commit.woken_ = &woken;
         commit.woken_at_ = woken_at.data();
         commit.reconsidered_ = nullptr;
-        if (plans[i]) twin_->apply(*plans[i], commit);
+        try {
+          if (plans[i]) twin_->apply(*plans[i], commit);
+        } catch (const UnknownItem&) {
+          twin_.reset();  // in the right order it is thrown, too, and told
+          return;
+        }
       }
       commit_all(*twin_, deferred);
     }
   }
 
-  bool agrees([[maybe_unused]] const Op& op) const {
+  bool agrees(const Op& op) const { return !twin_ || same(op); }
+
+ private:
+  bool same([[maybe_unused]] const Op& op) const {
     if constexpr (comparable) return *twin_ == op;
     return true;
   }
 
- private:
   static constexpr bool comparable = std::equality_comparable<Op> && std::copyable<Op>;
   std::optional<Op> twin_;
 };
