@@ -41,7 +41,7 @@ namespace {
 /// What malloc may give. Unmapping pages interrupts all threads, which for a few takes longer than
 /// all that is done to them: up to 2 ms on a virtual machine whose host lets that wait until the
 /// threads that spin there happen to call it.
-constexpr std::size_t small = std::size_t{1} << 15U;
+constexpr std::size_t small = std::size_t{1} << 16U;
 
 std::size_t whole_pages(std::size_t bytes) {
   static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
