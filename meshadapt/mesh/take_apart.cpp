@@ -140,7 +140,8 @@ void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& ve
                   MeshWithMetric& result) {
   constexpr std::size_t stride = Metric<Dim>::size;
   const std::size_t count = vertices.size();
-  auto& [any, field] = result;
+  AnyMesh& any = result.mesh;
+  AnyField& field = result.metric;
   field.dimension = Dim;
   field.vertex_count = count;
   field.types = {AnyField::Type::symmetric};

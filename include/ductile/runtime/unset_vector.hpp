@@ -19,11 +19,6 @@ namespace ductile::runtime {
 /// copyable.
 template <class T>
 struct UnsetAllocator : std::allocator<T> {
-  template <class U>
-  struct rebind {
-    using other = UnsetAllocator<U>;
-  };
-
   UnsetAllocator() = default;
   template <class U>
   UnsetAllocator(const UnsetAllocator<U>&) noexcept {}
