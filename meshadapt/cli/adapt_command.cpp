@@ -239,7 +239,7 @@ int run(const Arguments& arguments) {
        .after = job.json || job.verbosity > 0,
        .expects_lengths = job.adapt.insert,
        .keeps_surface = job.adapt.make.surface_tolerance == 0 && !job.adapt.make.lock_boundary,
-       .surface_tolerance = job.adapt.make.surface_tolerance});
+       .surface_tolerance = job.adapt.make.lock_boundary ? 0 : job.adapt.make.surface_tolerance});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   print_warnings(warnings, job.verbosity);
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string());

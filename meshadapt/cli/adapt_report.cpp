@@ -133,13 +133,29 @@ std::string advice_on_tolerance(const meshadapt::MeshStatistics& statistics,
          " sizes grow gently from there";
 }
 
+/// The same of a mesh much of which are corners, as where too small an angle makes ridges.
+std::string advice_on_ridges(const meshadapt::MeshStatistics& statistics, const AdaptReport& report,
+                             std::size_t vertices) {
+  constexpr std::size_t in_part = 4;
+  const double share = share_of_edges(statistics, statistics.edges_short);
+  if (share < many_short || report.fixed_vertices * in_part < vertices) return {};
+  return percent(share) +
+         " of the edges are shorter than asked for: " + std::to_string(report.fixed_vertices) +
+         " vertices are corners of the boundary or required, and stay; with a larger angle -ar"
+         " fewer of a curved one are";
+}
+
 /// What is to be said of lengths.
 std::vector<std::string> advice(const meshadapt::MeshStatistics& statistics,
-                                const AdaptReport& report, const SummaryOptions& options) {
+                                const meshadapt::AdaptedMesh& after,
+                                const SummaryOptions& options) {
+  const AdaptReport& report = after.report;
   std::vector<std::string> all{advice_on_lengths(statistics)};
   if (options.keeps_surface) all.push_back(advice_on_surface(statistics, report));
-  if (options.surface_tolerance > 0)
+  if (options.surface_tolerance > 0) {
     all.push_back(advice_on_tolerance(statistics, report, options.surface_tolerance));
+    all.push_back(advice_on_ridges(statistics, report, after.mesh.vertex_count()));
+  }
   std::erase(all, "");
   return all;
 }
@@ -158,7 +174,7 @@ AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
   if (options.before) summary.before.statistics = measure(executor, before, &metric);
   if (options.after) summary.after.statistics = measure(executor, after.mesh, &after.metric);
   if (options.expects_lengths && summary.after.statistics)
-    for (std::string& said : advice(*summary.after.statistics, after.report, options))
+    for (std::string& said : advice(*summary.after.statistics, after, options))
       summary.report.warnings.push_back(std::move(said));
   return summary;
 }

@@ -163,7 +163,10 @@ TEST(AdaptCommand, CoarsensACurvedBoundaryIfToldTo) {
   EXPECT_FALSE(contains(coarsened.err, "-hausd")) << coarsened.err;
   EXPECT_LT(meshadapt::read_mesh(folder.path() / "coarse.mesh").edges.size(),
             meshadapt::read_mesh(folder.path() / "arc.o.mesh").edges.size() / 3);
-  EXPECT_EQ(folder.run("adapt arc.mesh -hsiz 0.3 -hausd 0.01 -ar 1 -o ridges.mesh").status, 0);
+  const Outcome ridges = folder.run("adapt arc.mesh -hsiz 0.3 -hausd 0.01 -ar 1 -o ridges.mesh");
+  EXPECT_EQ(ridges.status, 0);
+  EXPECT_TRUE(contains(ridges.err, "larger angle -ar")) << ridges.err;
+  EXPECT_FALSE(contains(coarsened.err, "-ar")) << coarsened.err;
   EXPECT_EQ(meshadapt::read_mesh(folder.path() / "ridges.mesh").edges.size(),
             meshadapt::read_mesh(folder.path() / "arc.o.mesh").edges.size());
   for (const char* wrong : {"-hausd 0", "-hausd 0.01 -ar 90", "-hausd 0.01 -ar 0", "-ar 30"})
