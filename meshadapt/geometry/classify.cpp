@@ -388,8 +388,7 @@ class Classifier {
   // ---- Vertices ----
 
   void classify_vertices() {
-    const runtime::UnsetVector<std::uint64_t> corners =
-        corners_with_patches();  // vertex, then patch
+    const auto corners = corners_with_patches();  // vertex, then patch
     const auto vertex_at = [&](std::size_t i) { return static_cast<VertexId>(corners[i] >> 32U); };
     std::vector<std::uint32_t> first_of(mesh_.vertex_slots(), none);  // [vertex], among corners
     runtime::parallel_for(executor_, corners.size(), [&](std::size_t i) {
