@@ -31,6 +31,7 @@ Vector<Dim> shortest_in_hull(const Vectors& gradients) {
   return x;
 }
 
+/// The marked vertices that may move, in order.
 template <int Dim>
 runtime::UnsetVector<VertexId> movable_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                           const runtime::FilledArray<std::uint8_t>& marked) {
