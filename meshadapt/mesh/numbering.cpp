@@ -69,16 +69,17 @@ std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> wo
 Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, auto&& is_alive,
                auto&& key_of) {
   const KeyedWords keyed(count, key_bits);
-  Unset<std::uint64_t> words(executor, count);
+  auto words = runtime::make_unset_vector<std::uint64_t>(executor, count);
   parallel_for(executor, count, [&](std::size_t id) {
     words[id] = is_alive(id) ? keyed.word(key_of(id), id) : keyed.gone();
   });
-  const std::span all(words.begin(), count);
+  const std::span all(words);
   runtime::parallel_sort_above(executor, all, keyed.id_bits());  // ids are in order
   // Those that are gone may lie among living ones of the greatest key.
   const auto last = std::lower_bound(all.begin(), all.end(), keyed.word(keyed.greatest_key(), 0));
   const auto end = remove_gone(executor, std::span(last, all.end()), keyed.gone());
-  Ids order(executor, static_cast<std::size_t>(end - words.begin()));
+  auto order = runtime::make_unset_vector<std::uint32_t>(
+      executor, static_cast<std::size_t>(end - words.data()));
   parallel_for(executor, order.size(), [&](std::size_t i) { order[i] = keyed.id(words[i]); });
   return order;
 }
@@ -87,7 +88,7 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
 /// gone.
 template <int Dim>
 Ids renumbered_lowest(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex) {
-  Ids lowest_of(executor, mesh.element_slots());
+  auto lowest_of = runtime::make_unset_vector<std::uint32_t>(executor, mesh.element_slots());
   parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     Corners<Dim>& corners = mesh.corners_of[e];
     lowest_of[e] = none;
@@ -104,12 +105,12 @@ Ids renumbered_lowest(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_
 /// for all, and shrinks it. lowest_of is none for others.
 void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
                    std::size_t vertex_count) {
-  Ids count_of(executor, vertex_count);
+  auto count_of = runtime::make_unset_vector<std::uint32_t>(executor, vertex_count);
   Grouping grouping(executor, GroupingBounds::even(executor, lowest_of.size(), vertex_count),
-                    count_of.all(), [&lowest_of](ElementId element, auto&& visit) {
+                    count_of, [&lowest_of](ElementId element, auto&& visit) {
                       if (lowest_of[element] != none) visit(lowest_of[element]);
                     });
-  order.shrink(grouping.size());
+  order.resize(grouping.size());
   grouping.list([&](std::uint32_t place, ElementId element) { order[place] = element; });
 }
 
@@ -126,7 +127,7 @@ Ids order_of_vertices(const Executor& executor, const Mesh<Dim>& mesh, VertexId 
 }
 
 Ids places_in(const Executor& executor, const Ids& order, std::size_t count) {
-  Ids place_of(executor, count);
+  auto place_of = runtime::make_unset_vector<std::uint32_t>(executor, count);
   parallel_for(executor, order.size(),
                [&](std::size_t i) { place_of[order[i]] = static_cast<std::uint32_t>(i); });
   return place_of;
@@ -135,7 +136,8 @@ Ids places_in(const Executor& executor, const Ids& order, std::size_t count) {
 template <int Dim>
 Ids renumber_corners(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex,
                      std::size_t vertex_count) {
-  Ids order(executor, mesh.element_slots());  // first: what is freed behind it is one piece then
+  // First: what is freed behind it is one piece then.
+  auto order = runtime::make_unset_vector<std::uint32_t>(executor, mesh.element_slots());
   const Ids lowest_of = renumbered_lowest(executor, mesh, new_vertex);
   sort_elements(order, executor, lowest_of, vertex_count);
   return order;

@@ -7,34 +7,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <span>
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::meshadapt {
 
-/// An array that one thread alone neither fills nor touches first.
-template <class T>
-class Unset {
- public:
-  Unset(const runtime::Executor& executor, std::size_t size)
-      : values_(runtime::make_unset<T>(executor, size)), size_(size) {}
-  std::size_t size() const { return size_; }
-  void shrink(std::size_t size) { size_ = size; }
-  T* begin() { return values_.get(); }
-  std::span<T> all() { return {values_.get(), size_}; }
-  std::span<const T> all() const { return {values_.get(), size_}; }
-  T& operator[](std::size_t i) { return values_[i]; }
-  const T& operator[](std::size_t i) const { return values_[i]; }
-
- private:
-  std::unique_ptr<T[]> values_;
-  std::size_t size_;
-};
-using Ids = Unset<std::uint32_t>;
+using Ids = runtime::UnsetVector<std::uint32_t>;
 
 /// Vertices that have elements, as their lists say; those from `unlisted` on have some.
 template <int Dim>

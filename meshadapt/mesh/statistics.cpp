@@ -82,10 +82,10 @@ class HigherNeighbours {
   HigherNeighbours(const Executor& executor, const std::vector<Corners<Dim>>& elements,
                    std::size_t vertex_count)
       : elements_(elements),
-        end_of_(executor, vertex_count),
-        listed_(executor, elements.size() * Dim) {
+        end_of_(runtime::make_unset_vector<std::uint32_t>(executor, vertex_count)),
+        listed_(runtime::make_unset_vector<std::uint32_t>(executor, elements.size() * Dim)) {
     Grouping grouping(executor, GroupingBounds::even(executor, elements.size(), vertex_count),
-                      end_of_.all(), [&elements](std::uint32_t element, auto&& visit) {
+                      end_of_, [&elements](std::uint32_t element, auto&& visit) {
                         const Corners<Dim>& corners = elements[element];
                         const VertexId highest = *std::max_element(corners.begin(), corners.end());
                         for (const VertexId v : corners)
@@ -114,7 +114,7 @@ class HigherNeighbours {
   /// The elements of which a vertex is a corner, but not the highest.
   std::span<const std::uint32_t> around(VertexId vertex) const {
     const std::uint32_t begin = vertex == 0 ? 0 : end_of_[vertex - 1];
-    return listed_.all().subspan(begin, end_of_[vertex] - begin);
+    return std::span(listed_).subspan(begin, end_of_[vertex] - begin);
   }
 
   const std::vector<Corners<Dim>>& elements_;
