@@ -2,7 +2,8 @@
 /// Swap: reconnects vertices where that raises the worst shape of the elements concerned. In 2D it
 /// flips the edge between two triangles. In 3D it removes an edge, with the best triangulation of
 /// the ring around it (3-2, 4-4 and so on up to seven elements, also on flat boundary), or replaces
-/// the face between two tetrahedra by an edge (2-3).
+/// the face between two tetrahedra by an edge (2-3); below a smooth patch it cuts poor elements off
+/// (cut_off.hpp).
 #pragma once
 
 #include <array>

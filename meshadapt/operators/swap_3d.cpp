@@ -4,6 +4,7 @@
 
 #include "ductile/runtime/collect.hpp"
 #include "operators/base.hpp"
+#include "operators/cut_off.hpp"
 #include "operators/ring.hpp"
 #include "operators/star.hpp"
 #include "operators/swap.hpp"
@@ -114,9 +115,11 @@ bool convex_in_patch(const Mesh<3>& mesh, const std::array<VertexId, 4>& corners
          0;
 }
 
-/// An edge's removal by the best triangulation of its ring, if its worst element beats the bar.
+/// An edge's removal by the best triangulation of its ring, if its worst element beats the bar and
+/// the ring is not too large.
 std::optional<Replacement<3>> triangulate(const Mesh<3>& mesh, const Swappable& edge,
                                           const Ring& ring, double bar) {
+  if (ring.vertices.size() > largest_ring) return {};
   std::optional<Replacement<3>> result(std::in_place);
   if (!RingTriangulation(mesh, ring, edge.a, edge.b, bar).find(*result)) return {};
   return result;
@@ -189,12 +192,11 @@ std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
     return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(worst)) : std::nullopt;
   Ring ring;
   if (!ring.close(shell.size(), item.a, item.b,
-                  [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }) ||
-      ring.vertices.size() > largest_ring)
+                  [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }))
     return {};
   auto result = triangulate(mesh_, item, ring, bar(worst));
-  if (!result || !accept_edge_removal(mesh_, item, shell, ring, *result)) return {};
-  return result;
+  if (result && accept_edge_removal(mesh_, item, shell, ring, *result)) return result;
+  return mesh_.surface ? plan_cut_off(mesh_, item.a, item.b, shell, ring) : std::nullopt;
 }
 
 template <>
@@ -222,7 +224,7 @@ struct Gauge {
   }
 };
 
-/// Looks for edges from one vertex whose removal is worth it.
+/// Looks for edges from one vertex whose removal is worth it, or an element's next to them.
 class EdgeSearch {
  public:
   EdgeSearch(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after, float good_enough)
@@ -236,7 +238,7 @@ class EdgeSearch {
 
   void run(auto&& append) {
     for (std::size_t i = 0; i < star_.size(); ++i)
-      if (worth_a_look(star_.edge(i)) && worth_removing(i))
+      if ((worth_a_look(star_.edge(i)) && worth_removing(i)) || worth_cutting_off(star_.edge(i)))
         append(Swappable{vertex_, star_.edge(i).to, none, star_.edge(i).worst_shape});
   }
 
@@ -266,13 +268,18 @@ class EdgeSearch {
     return gauge.relative_square(along) > limit;
   }
 
+  /// The worst element around the edge?
+  bool worth_cutting_off(const Star::Edge& edge) const {
+    return mesh_.surface && edge.changed && edge.ends == 0 &&
+           patch_above(mesh_, ball_[edge.worst], vertex_, edge.to) != 0;
+  }
+
   bool worth_removing(std::size_t i) const {
     const Star::Edge& edge = star_.edge(i);
     const auto element = [&](std::size_t k) { return ball_[star_.around(i)[k]]; };
     const auto corners = [&](std::size_t k) { return mesh_.corners_of[element(k)]; };
     Ring ring;
-    if (!ring.close(edge.count, vertex_, edge.to, corners) || ring.vertices.size() > largest_ring)
-      return false;
+    if (!ring.close(edge.count, vertex_, edge.to, corners)) return false;
     const double bar = Swap<3>::bar(edge.worst_shape);
     auto result = triangulate(mesh_, {vertex_, edge.to}, ring, bar);
     if (!result) return false;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <initializer_list>
+#include <numbers>
 
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
@@ -11,6 +13,18 @@ namespace ductile::meshadapt {
 namespace {
 
 const runtime::Executor executor({.threads = 2});
+
+template <int Dim>
+Mesh<Dim> in_unit_metric(const AnyMesh& any, const MakeMeshOptions& options) {
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  auto mesh = make_mesh<Dim>(executor, any, options, neighbours, warnings);
+  Metric<Dim> unit;
+  for (std::size_t i = 0, k = 0; i < Dim; k += ++i + 1) unit.m[k] = 1;
+  for (auto& site : mesh.site_of) site = make_site(site.position, unit);
+  update_shapes(executor, mesh);
+  return mesh;
+}
 
 /// A mesh in the Euclidean metric.
 template <int Dim>
@@ -28,14 +42,31 @@ Mesh<Dim> mesh_of(std::initializer_list<Vector<Dim>> points,
     else
       any.tetrahedra.add(corners, 1);
   }
-  Neighbours<Dim> neighbours;
-  std::vector<std::string> warnings;
-  auto mesh = make_mesh<Dim>(executor, any, {.complete_boundary = true}, neighbours, warnings);
-  Metric<Dim> unit;
-  for (std::size_t i = 0, k = 0; i < Dim; k += ++i + 1) unit.m[k] = 1;
-  for (auto& site : mesh.site_of) site = make_site(site.position, unit);
-  update_shapes(executor, mesh);
-  return mesh;
+  return in_unit_metric<Dim>(any, {.complete_boundary = true});
+}
+
+/// Elements around the edge 0-1, eight as in an orange of which the upper half was cut away, all
+/// but a slice of this height with the facets 0-2-3 and 1-2-3; and, on request, two elements on it
+/// of another region. Boundaries bend, and may change by the tolerance.
+Mesh<3> half_orange(double height, double tolerance, bool covered = false) {
+  AnyMesh any;
+  any.dimension = 3;
+  any.coordinates = {-1, 0, 0, 1, 0, 0, 0, -1, height, 0, 1, height};
+  constexpr std::uint32_t segments = 7, first = 4, top = first + segments - 1;
+  for (std::uint32_t i = 1; i < segments; ++i) {
+    const double angle = -std::numbers::pi * i / segments;
+    any.coordinates.insert(any.coordinates.end(), {0, std::cos(angle), std::sin(angle)});
+  }
+  any.tetrahedra.add({0, 1, 2, 3}, 1);
+  for (std::uint32_t i = 0; i < segments; ++i)
+    any.tetrahedra.add({0, 1, i == 0 ? 3 : first + i - 1, i + 1 == segments ? 2 : first + i}, 1);
+  if (covered) {
+    any.coordinates.insert(any.coordinates.end(), {0, 0, 1});
+    any.tetrahedra.add({0, 3, 2, top}, 2);
+    any.tetrahedra.add({1, 2, 3, top}, 2);
+  }
+  any.vertex_reference.assign(any.coordinates.size() / 3, 0);
+  return in_unit_metric<3>(any, {.complete_boundary = true, .surface_tolerance = tolerance});
 }
 
 template <int Dim>
@@ -99,6 +130,38 @@ TEST(Swap, PiercesTheLargeFaceOfFlatTetrahedra) {
     ASSERT_EQ(found.size(), 1U) << below;
     EXPECT_EQ((std::array{found[0].a, found[0].b, found[0].c}), (std::array<VertexId, 3>{0, 1, 2}));
   }
+}
+
+TEST(Swap, CutsOffAPoorElementBelowASmoothPatch) {
+  auto mesh = half_orange(0.01, 0.03);
+  auto found = improvements(mesh);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(std::pair(found[0].a, found[0].b), std::pair(VertexId{0}, VertexId{1}));
+  Swap<3> swap(executor, mesh);
+  EXPECT_EQ(run_rounds(executor, swap, std::move(found)).applied, 1U);
+  std::size_t on_top = 0, elements = 0;
+  for (std::size_t e = 0; e < mesh.element_slots(); ++e) {
+    if (!mesh.alive(static_cast<ElementId>(e))) continue;
+    ++elements;
+    EXPECT_FALSE(contains(mesh.corners_of[e], 2) && contains(mesh.corners_of[e], 3));
+    on_top += patch_of_edge(mesh, static_cast<ElementId>(e), 0, 1) != 0;
+  }
+  EXPECT_EQ(elements, 7U);
+  EXPECT_EQ(on_top, 2U);
+  EXPECT_TRUE(improvements(mesh).empty());
+}
+
+TEST(Swap, CutsNothingOffThatIsFarFromTheInputOrNotPoorOrBelowAnotherRegion) {
+  const auto cuts = [](Mesh<3> mesh) {
+    auto found = improvements(mesh);
+    Swap<3> swap(executor, mesh);
+    run_rounds(executor, swap, std::move(found));
+    return !contains(mesh.corners_of[0], 3);
+  };
+  EXPECT_TRUE(cuts(half_orange(0.01, 0.03)));
+  EXPECT_FALSE(cuts(half_orange(0.01, 0.003)));
+  EXPECT_FALSE(cuts(half_orange(0.2, 1)));
+  EXPECT_FALSE(cuts(half_orange(0.01, 0.03, true)));
 }
 
 }  // namespace
