@@ -13,6 +13,10 @@ double nanoseconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration<double, std::nano>(time).count();
 }
 
+/// Nanoseconds. The system takes a core away for longer than that. It is asked no more often how
+/// long the thread has run: after each time the next code begins with a cold cache.
+constexpr double suspicious = 2e5;
+
 /// Nanoseconds this thread has run so far; those in which others had its core, or in which it was
 /// stopped, are not among them, if the system can tell.
 double ran() {
@@ -32,23 +36,25 @@ Recording::Recording() {
 }
 
 double Recording::lap() {
-  constexpr double suspicious = 2e5;  // shorter than the system takes the core away for
   const Clock::time_point now = Clock::now();
   double ns = nanoseconds(now - std::exchange(last_, now)) - clock_ns_;
   if (ns > suspicious) {
+    asked_ = now;
     const double gone = nanoseconds(now - start_) - ran();
     ns -= std::max(0.0, gone - std::exchange(gone_, gone));
   }
   return std::max(0.0, ns) + std::exchange(held_, 0.0);
 }
 
-/// Reading the thread's time takes longer than reading the clock: laps of single items begin
-/// without. Where the core is taken away between the two readings, that lies before the lap, as in
-/// lap() it lies behind.
+/// Leaves out what was between the last lap and this one. Where the core is taken away between the
+/// two readings, that lies before the lap, as in lap() it lies behind.
 void Recording::begin_lap() {
-  const double before = ran();
+  if (nanoseconds(Clock::now() - asked_) > suspicious) {
+    const double before = ran();
+    asked_ = Clock::now();
+    gone_ = nanoseconds(asked_ - start_) - before;
+  }
   last_ = Clock::now();
-  gone_ = nanoseconds(last_ - start_) - before;
   held_ = 0;
 }
 
