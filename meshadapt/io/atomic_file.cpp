@@ -176,8 +176,11 @@ OutputFile::OutputFile(fs::path path)
 OutputFile::~OutputFile() { discard(); }
 
 void OutputFile::fail(const char* action) const {
-  throw Error(path_.string() + ": cannot " + action + ", " + reason(errno) + " after " +
-              std::to_string(flushed_) + " bytes; free disk space or choose another folder");
+  const int code = errno;
+  throw Error(path_.string() + ": cannot " + action + ", " + reason(code) + " after " +
+              std::to_string(flushed_) + " bytes; " +
+              (code == EFBIG ? "raise the limit of file sizes (ulimit -f)"
+                             : "free disk space or choose another folder"));
 }
 
 void OutputFile::write(std::string_view bytes) {

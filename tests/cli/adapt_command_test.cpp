@@ -74,6 +74,15 @@ TEST(AdaptCommand, FailsCleanlyWhenMemoryRunsOut) {
 }
 #endif
 
+TEST(AdaptCommand, FailsCleanlyWhenFilesMayNotGrow) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const Outcome outcome = folder.run("adapt waves2d.mesh", "ulimit -f 8 &&");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "waves2d.o.mesh: cannot write, File too large")) << outcome.err;
+  EXPECT_EQ(folder.file_count(), 2U);
+}
+
 TEST(AdaptCommand, TakesTheMetricByEitherOfMmgsNames) {
   const Folder folder;
   folder.add_example("waves2d");
