@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -64,6 +65,7 @@ class Grouping {
         count_of_(count_of),
         keys_of_(std::move(keys_of)),
         own_(chunks_),
+        spread_(chunks_),
         noted_begin_(chunks_ * chunks_ + 1) {
     for_each_chunk([&](std::size_t c) { count(c); });
     std::uint64_t total = 0, own = std::accumulate(own_.begin(), own_.end(), std::uint64_t{0});
@@ -73,6 +75,7 @@ class Grouping {
       throw std::length_error("a mesh of more elements than lists of 32-bit numbers can have");
     noted_ = runtime::make_unset<Pair>(executor_, total);
     if (total != 0) for_each_chunk([&](std::size_t c) { note(c); });
+    spread_.clear();
   }
 
   /// Once: calls put(place, item) for each key of each item, in order, where places are numbered
@@ -142,6 +145,12 @@ class Grouping {
     const auto after = std::upper_bound(bounds_.keys.begin(), bounds_.keys.end(), key);
     return static_cast<std::size_t>(after - bounds_.keys.begin()) - 1;
   }
+  /// Calls visit(item) for each of a chunk's items that has keys in other chunks.
+  void each_spread(std::size_t c, auto&& visit) const {
+    for (std::size_t word = 0; word < spread_[c].size(); ++word)
+      for (std::uint64_t bits = spread_[c][word]; bits != 0; bits &= bits - 1)
+        visit(static_cast<std::uint32_t>(bounds_.items[c] + 64 * word + std::countr_zero(bits)));
+  }
   /// Calls visit(key, item) for all keys of a chunk's items.
   void each_key(std::size_t c, auto&& visit) const {
     const std::uint32_t end = bounds_.items[c + 1];
@@ -159,12 +168,15 @@ class Grouping {
     std::fill(begin + bounds_.keys[c], begin + bounds_.keys[c + 1], 0U);
     std::vector<std::uint32_t> noted(chunks_);
     std::size_t other = c;
-    each_key(c, [&, own = range(c), count_of = count_of_](std::uint32_t key, std::uint32_t) {
+    const std::uint32_t first = bounds_.items[c];
+    spread_[c].assign((bounds_.items[c + 1] - first + 63) / 64, 0);
+    each_key(c, [&, own = range(c), count_of = count_of_](std::uint32_t key, std::uint32_t item) {
       if (own.contains(key)) {
         ++count_of[key];
       } else {
         other = chunk_of(key, other);
         ++noted[other];
+        spread_[c][(item - first) / 64] |= std::uint64_t{1} << (item - first) % 64;
       }
     });
     own_[c] = std::accumulate(begin + bounds_.keys[c], begin + bounds_.keys[c + 1], 0U);
@@ -175,10 +187,12 @@ class Grouping {
     std::vector<std::uint32_t> at(chunks_);
     for (std::size_t keys = 0; keys < chunks_; ++keys) at[keys] = noted_begin(keys, c);
     std::size_t other = c;
-    each_key(c, [&, own = range(c)](std::uint32_t key, std::uint32_t item) {
-      if (own.contains(key)) return;
-      other = chunk_of(key, other);
-      noted_[at[other]++] = {key, item};
+    each_spread(c, [&, own = range(c)](std::uint32_t item) {
+      keys_of_(item, [&](std::uint32_t key) {
+        if (own.contains(key)) return;
+        other = chunk_of(key, other);
+        noted_[at[other]++] = {key, item};
+      });
     });
   }
 
@@ -187,7 +201,9 @@ class Grouping {
   std::size_t chunks_;
   std::span<std::uint32_t> count_of_;
   KeysOf keys_of_;
-  std::vector<std::uint32_t> own_;          // [chunk], keys in it of its own items
+  std::vector<std::uint32_t> own_;  // [chunk], keys in it of its own items
+  std::vector<std::vector<std::uint64_t>>
+      spread_;                              // [chunk], a bit for each item; see each_spread()
   std::vector<std::uint32_t> noted_begin_;  // [chunk of keys][chunk of items]
   std::unique_ptr<Pair[]> noted_;
 };
