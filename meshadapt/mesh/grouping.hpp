@@ -201,10 +201,9 @@ class Grouping {
   std::size_t chunks_;
   std::span<std::uint32_t> count_of_;
   KeysOf keys_of_;
-  std::vector<std::uint32_t> own_;  // [chunk], keys in it of its own items
-  std::vector<std::vector<std::uint64_t>>
-      spread_;                              // [chunk], a bit for each item; see each_spread()
-  std::vector<std::uint32_t> noted_begin_;  // [chunk of keys][chunk of items]
+  std::vector<std::uint32_t> own_;                  // [chunk], keys in it of its own items
+  std::vector<std::vector<std::uint64_t>> spread_;  // [chunk], bits of items, for each_spread()
+  std::vector<std::uint32_t> noted_begin_;          // [chunk of keys][chunk of items]
   std::unique_ptr<Pair[]> noted_;
 };
 

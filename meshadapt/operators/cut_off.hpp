@@ -41,7 +41,8 @@ inline std::optional<Replacement<3>> plan_cut_off(const Mesh<3>& mesh, VertexId 
   const std::size_t count = shell.size();
   const auto element = [&](std::size_t i) { return shell[ring.order[i % count]]; };
   std::size_t at = 0;
-  while (at < count && patch_above(mesh, element(at), p, q) == 0) ++at;
+  PatchId patch = 0;
+  while (at < count && (patch = patch_above(mesh, element(at), p, q)) == 0) ++at;
   if (at == count || ring.open || mesh.curve_of(p, q) != 0 || !is_inside(mesh, shell, p, q))
     return {};
   const ElementId cut = element(at), before = element(at + count - 1), after = element(at + 1);
@@ -49,7 +50,6 @@ inline std::optional<Replacement<3>> plan_cut_off(const Mesh<3>& mesh, VertexId 
   for (const VertexId v : {p, q})  // a patch between regions has elements on both sides
     if (neighbour(mesh, cut, corner_of(mesh.corners_of[cut], v)) != none) return {};
   if (mesh.curve_of(a, b) != 0) return {};
-  const PatchId patch = patch_above(mesh, cut, p, q);
   const auto covers = [&](VertexId u, VertexId v, VertexId w) {
     return mesh.surface->facets.cover(
         {mesh.site_of[u].position, mesh.site_of[v].position, mesh.site_of[w].position}, patch);
