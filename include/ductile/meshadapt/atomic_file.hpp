@@ -27,7 +27,8 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Appends bytes. Throws Error when the system takes no more (disk full, quota, size limit).
+  /// Appends bytes. Throws Error when the system takes no more: disk full, quota, or, in programs
+  /// that ignore SIGXFSZ, as `ductile` does, the size limit.
   void write(std::string_view bytes);
 
   /// Where the next byte goes, with room for `size` bytes (at most `buffer_size`) behind it: put
