@@ -9,6 +9,5 @@ int main(int argument_count, char** argument) {
   const std::vector<std::string> words(argument + 1, argument + argument_count);
   if (!ductile::cli::is_alone(words)) ductile::cli::wait_briefly(argument);
   ductile::cli::reuse_memory();
-  ductile::cli::outlive_size_limits();
   return ductile::cli::run_program(words);
 }

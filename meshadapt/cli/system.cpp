@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
 
 namespace ductile::cli {
@@ -44,8 +43,6 @@ void reuse_memory() {
   mallopt(M_ARENA_MAX, 1);              // one heap: what a thread frees serves all
 #endif
 }
-
-void outlive_size_limits() { std::signal(SIGXFSZ, SIG_IGN); }
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
 

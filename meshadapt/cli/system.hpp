@@ -18,10 +18,6 @@ void limit_memory(std::size_t bytes);
 /// with the same arguments; not if the environment already says how threads wait.
 void wait_briefly(char** arguments);
 
-/// Writing a file beyond the size that the system allows (`ulimit -f`) fails from here on, as on a
-/// full disk, instead of ending the program.
-void outlive_size_limits();
-
 /// Whether a person is likely to watch standard error.
 bool stderr_is_terminal();
 

@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,6 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string reason(int code) { return std::generic_category().message(code); }
+
+/// Whether a file may have so many bytes. A process that writes more is ended.
+bool may_have(std::size_t bytes) {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
+         bytes <= limit.rlim_cur;
+}
 
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -195,8 +203,8 @@ void OutputFile::write(std::string_view bytes) {
 
 void OutputFile::flush() {
   if (used_ == 0) return;
-  errno = 0;
-  const std::size_t written = std::fwrite(buffer_.get(), 1, used_, file_);
+  errno = writes_directly() || may_have(flushed_ + used_) ? 0 : EFBIG;
+  const std::size_t written = errno == 0 ? std::fwrite(buffer_.get(), 1, used_, file_) : 0;
   flushed_ += written;
   broken_ = broken_ || written != std::exchange(used_, 0);
   if (broken_) fail("write");

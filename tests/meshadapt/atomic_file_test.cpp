@@ -163,33 +163,28 @@ TEST(AtomicOutputs, ReportAFullDisk) {
   EXPECT_FALSE(fs::is_regular_file("/dev/null"));
 }
 
-/// Files cannot grow beyond `bytes` while it lives.
+/// Files cannot grow beyond `bytes` while it lives: the process ends if it tries.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
-    previous_handler_ = std::signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &previous_);
     const rlimit limit{bytes, previous_.rlim_max};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &previous_);
-    std::signal(SIGXFSZ, previous_handler_);
-  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &previous_); }
   FileSizeLimit(const FileSizeLimit&) = delete;
   FileSizeLimit& operator=(const FileSizeLimit&) = delete;
 
  private:
   rlimit previous_{};
-  void (*previous_handler_)(int) = nullptr;
 };
 
-TEST(AtomicOutputs, KeepTheOldFileWhenTheDiskFillsUp) {
+TEST(AtomicOutputs, KeepTheOldFileWhenTheNewOneMayNotGrow) {
   const test::TemporaryFolder folder;
   test::put_bytes(folder / "a.meshb", "old");
   const AnyMesh mesh = test::random_mesh(3, 50000, 1);
   for (const rlim_t limit : {0, 1, 300000, 1000000}) {
-    const FileSizeLimit full(limit);
+    const FileSizeLimit limited(limit);
     EXPECT_THROW(write_mesh(folder / "a.meshb", mesh), Error);
     EXPECT_THROW(write_mesh(folder / "b.mesh", mesh), Error);
   }
@@ -202,7 +197,7 @@ TEST(AtomicOutputs, NeverCommitAFileWithAGap) {
   AtomicOutputs outputs;
   OutputFile& file = outputs.stage(folder / "a");
   {
-    const FileSizeLimit full(1);
+    const FileSizeLimit limited(1);
     EXPECT_THROW(file.write(std::string(2 * OutputFile::buffer_size, 'x')), Error);
   }
   EXPECT_THROW(outputs.commit(), Error);

@@ -27,8 +27,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Appends bytes. Throws Error when the system takes no more: disk full, quota, or, in programs
-  /// that ignore SIGXFSZ, as `ductile` does, the size limit.
+  /// Appends bytes. Throws Error when the system takes no more (disk full, quota, size limit).
   void write(std::string_view bytes);
 
   /// Where the next byte goes, with room for `size` bytes (at most `buffer_size`) behind it: put
