@@ -203,8 +203,9 @@ void OutputFile::write(std::string_view bytes) {
 
 void OutputFile::flush() {
   if (used_ == 0) return;
-  errno = writes_directly() || may_have(flushed_ + used_) ? 0 : EFBIG;
-  const std::size_t written = errno == 0 ? std::fwrite(buffer_.get(), 1, used_, file_) : 0;
+  const bool may_grow = writes_directly() || may_have(flushed_ + used_);
+  errno = may_grow ? 0 : EFBIG;
+  const std::size_t written = may_grow ? std::fwrite(buffer_.get(), 1, used_, file_) : 0;
   flushed_ += written;
   broken_ = broken_ || written != std::exchange(used_, 0);
   if (broken_) fail("write");
