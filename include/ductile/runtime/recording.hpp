@@ -108,8 +108,8 @@ class Recording {
   std::vector<Wait> waits_;
   Clock::time_point last_ = Clock::now();
   const Clock::time_point start_ = last_;
-  double gone_ = 0;  // of the nanoseconds since then, those in which the thread did not run ...
-  Clock::time_point asked_ = start_;  // ... as it was when the system was asked
+  double gone_ = 0;  // of the nanoseconds since then, those in which the thread did not run
+  Clock::time_point asked_{};  // when the system was asked for that
   double clock_ns_ = 0;
   double held_ = 0;  // what the next lap is longer by
   std::uint32_t section_ = 0, round_ = 0, rounds_ = 0;
