@@ -212,6 +212,20 @@ bool keeps_facets_turned(const Mesh<Dim>& mesh, ElementId element, VertexId vert
   return true;
 }
 
+/// Does the quadrilateral of two facets on a patch remain unfolded when its diagonal is swapped,
+/// and close to a smooth patch? Its corners turn as facets do, seen from outside.
+inline bool convex_in_patch(const Mesh<3>& mesh, const std::array<VertexId, 4>& corners,
+                            PatchId patch) {
+  const auto at = [&](std::size_t i) { return mesh.site_of[corners[i]].position; };
+  if (mesh.patches[patch].smooth)
+    return mesh.surface->facets.cover({at(0), at(1), at(3)}, patch) &&
+           mesh.surface->facets.cover({at(1), at(2), at(3)}, patch);
+  const Vector<3>& normal = mesh.patches[patch].normal;
+  return dot(facet_normal({at(0), at(1), at(3)}), normal) *
+             dot(facet_normal({at(1), at(2), at(3)}), normal) >
+         0;
+}
+
 /// Elements to go and elements to come, of the same region, filling the same space. Old numbers are
 /// used again first; `fresh` ones only when there are more new elements than old.
 template <int Dim>

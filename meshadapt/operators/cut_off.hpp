@@ -49,12 +49,7 @@ inline std::optional<Replacement<3>> plan_cut_off(const Mesh<3>& mesh, VertexId 
   const VertexId a = ring.vertices[at], b = ring.vertices[(at + 1) % count];
   for (const VertexId v : {p, q})  // a patch between regions has elements on both sides
     if (neighbour(mesh, cut, corner_of(mesh.corners_of[cut], v)) != none) return {};
-  if (mesh.curve_of(a, b) != 0) return {};
-  const auto covers = [&](VertexId u, VertexId v, VertexId w) {
-    return mesh.surface->facets.cover(
-        {mesh.site_of[u].position, mesh.site_of[v].position, mesh.site_of[w].position}, patch);
-  };
-  if (!covers(a, p, q) || !covers(b, q, p)) return {};
+  if (mesh.curve_of(a, b) != 0 || !convex_in_patch(mesh, {a, p, b, q}, patch)) return {};
   Replacement<3> result;
   result.old_elements = {before, after, cut};
   result.new_elements = {mesh.corners_of[before], mesh.corners_of[after]};

@@ -102,19 +102,6 @@ class RingTriangulation {
   std::array<std::array<std::uint8_t, largest_ring>, largest_ring> apex_{};
 };
 
-/// Does the quadrilateral of two facets on a patch remain unfolded when its diagonal is swapped,
-/// and close to a smooth patch? Its corners turn as facets do, seen from outside.
-bool convex_in_patch(const Mesh<3>& mesh, const std::array<VertexId, 4>& corners, PatchId patch) {
-  const auto at = [&](std::size_t i) { return mesh.site_of[corners[i]].position; };
-  if (mesh.patches[patch].smooth)
-    return mesh.surface->facets.cover({at(0), at(1), at(3)}, patch) &&
-           mesh.surface->facets.cover({at(1), at(2), at(3)}, patch);
-  const Vector<3>& normal = mesh.patches[patch].normal;
-  return dot(facet_normal({at(0), at(1), at(3)}), normal) *
-             dot(facet_normal({at(1), at(2), at(3)}), normal) >
-         0;
-}
-
 /// An edge's removal by the best triangulation of its ring, if its worst element beats the bar and
 /// the ring is not too large.
 std::optional<Replacement<3>> triangulate(const Mesh<3>& mesh, const Swappable& edge,
