@@ -13,6 +13,7 @@
 #include "binding.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "team.hpp"
 
 namespace ductile::runtime {
 
@@ -72,10 +73,21 @@ class TeamMember {
   bool inside_before_;
 };
 
-/// Calls work(thread) on each thread of a team of OpenMP's, of executor.threads() threads or fewer.
-/// The size does not follow the loop's: OpenMP runtimes end and create threads when it changes.
+/// Whether the calling thread runs iterations of a loop.
+bool inside_a_loop() noexcept;
+
+/// Calls work(thread) on each thread of the caller's team, or else of a team of OpenMP's, of
+/// executor.threads() threads or fewer. The size does not follow the loop's: OpenMP runtimes end
+/// and create threads when it changes.
 template <class Work>
 void run_team(const Executor& executor, Work&& work) {
+  if (Team* const team = Team::of(executor)) {
+    auto as_member = [&](int thread) {
+      const TeamMember member(thread);
+      work(thread);
+    };
+    return team->run(as_member);
+  }
 #pragma omp parallel num_threads(executor.threads())
   {
     const int thread = omp_get_thread_num();

@@ -45,6 +45,8 @@ void run_recorded(Recording& recording, const Loop& loop) {
 
 }  // namespace
 
+bool inside_a_loop() noexcept { return inside_loop; }
+
 TeamMember::TeamMember(int thread) noexcept
     : thread_before_(std::exchange(detail::current_thread, thread)),
       inside_before_(std::exchange(inside_loop, true)) {}

@@ -6,6 +6,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/team.hpp"
 #include "mesh/first_bad.hpp"
 #include "operators/processor_level.hpp"
 
@@ -46,7 +47,11 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const 
     throw InputError(mesh.name + ": expected dimension 2 or 3, found " +
                      std::to_string(mesh.dimension));
   expect_numbers(executor, metric);
-  return adapt_at(usable_levels().front(), executor, mesh, metric, options);
+  AdaptedMesh adapted;
+  runtime::with_team(executor, [&] {
+    adapted = adapt_at(usable_levels().front(), executor, mesh, metric, options);
+  });
+  return adapted;
 }
 
 }  // namespace ductile::meshadapt
