@@ -27,9 +27,9 @@ struct LoopOptions {
   std::size_t serial_below = 0;             ///< fewer iterations than this run on the caller alone
 };
 
-/// For bodies of a few nanoseconds, such as copying a number: a thousand of them take as long as it
-/// takes for threads to begin.
-constexpr LoopOptions few_nanoseconds{.grain = 512, .serial_below = 2048};
+/// For bodies of a few nanoseconds, such as copying a number: some hundred of them take as long as
+/// it takes for the threads of a team (team.hpp) to begin.
+constexpr LoopOptions few_nanoseconds{.grain = 128, .serial_below = 512};
 
 namespace detail {
 extern constinit thread_local int current_thread;  // see this_thread()
