@@ -76,24 +76,26 @@ class TeamMember {
 /// Whether the calling thread runs iterations of a loop.
 bool inside_a_loop() noexcept;
 
-/// Calls work(thread) on each thread of the caller's team, or else of a team of OpenMP's, of
+/// Calls work(thread) on the threads of the caller's team, or else of one of OpenMP's, of
 /// executor.threads() threads or fewer. The size does not follow the loop's: OpenMP runtimes end
-/// and create threads when it changes.
+/// and create threads when it changes. Of the caller's team, threads that have not begun when the
+/// others are done are left out, unless the work needs all.
 template <class Work>
-void run_team(const Executor& executor, Work&& work) {
+void run_team(const Executor& executor, Work&& work, bool needs_all) {
+  auto as_member = [&](int thread) {
+    const TeamMember member(thread);
+    work(thread);
+  };
   if (Team* const team = Team::of(executor)) {
-    auto as_member = [&](int thread) {
-      const TeamMember member(thread);
-      work(thread);
-    };
-    return team->run(as_member);
+    using Member = decltype(as_member);
+    return team->run({[](void* context, int thread) { (*static_cast<Member*>(context))(thread); },
+                      &as_member, needs_all});
   }
 #pragma omp parallel num_threads(executor.threads())
   {
     const int thread = omp_get_thread_num();
-    const TeamMember member(thread);
     const detail::ScopedBinding binding(executor.places(), thread);
-    work(thread);
+    as_member(thread);
   }
 }
 

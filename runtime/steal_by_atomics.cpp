@@ -112,12 +112,15 @@ void run_steal_by_atomics(const Executor& executor, Loop& loop) {
     };
     parts[t].word.store(Part{bound(t), bound(t + 1)}.word(), std::memory_order_relaxed);
   }
-  // Should the team be smaller than it was to be, the parts without a thread are stolen.
-  run_team(executor, [&](int thread) {
-    PartOfThread& mine = parts[static_cast<std::size_t>(thread)];
-    if (thread + 1 == executor.threads() && !run_chunks(loop, mine.take_last())) return;
-    work_and_steal(loop, parts, mine);
-  });
+  // The parts of threads that do not come, or not in time, are stolen.
+  run_team(
+      executor,
+      [&](int thread) {
+        PartOfThread& mine = parts[static_cast<std::size_t>(thread)];
+        if (thread + 1 == executor.threads() && !run_chunks(loop, mine.take_last())) return;
+        work_and_steal(loop, parts, mine);
+      },
+      false);
 }
 
 }  // namespace ductile::runtime

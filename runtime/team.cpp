@@ -3,7 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <utility>
+#include <thread>
 
 #include "ductile/runtime/team.hpp"
 #include "loop.hpp"
@@ -13,7 +13,8 @@ namespace ductile::runtime {
 namespace {
 
 constexpr std::size_t children = 4;
-constexpr int spins_while_alone = 2000;  // some ten microseconds
+/// About as long as it takes to wake a thread, which may cost no more than to have it wait.
+constexpr std::chrono::microseconds spin_time{50};
 
 thread_local Team* led_team = nullptr;
 
@@ -26,11 +27,25 @@ void pause() {
 #endif
 }
 
+/// Asks again and again for so long; false if the answer was never yes.
+template <class Answer>
+bool spin_until(std::chrono::nanoseconds time, Answer&& yes) {
+  constexpr int between_looks_at_the_clock = 16;
+  using Clock = std::chrono::steady_clock;
+  if (yes()) return true;
+  for (const auto end = Clock::now() + time; Clock::now() < end;)
+    for (int i = 0; i < between_looks_at_the_clock; ++i) {
+      if (yes()) return true;
+      pause();
+    }
+  return false;
+}
+
 }  // namespace
 
 Team::Team(const Executor& executor)
     : executor_(executor),
-      spins_(executor.threads() > omp_get_num_procs() ? 0 : spins_while_alone),
+      spin_(executor.threads() > omp_get_num_procs() ? std::chrono::microseconds{0} : spin_time),
       seats_(std::make_unique<Seat[]>(static_cast<std::size_t>(executor.threads()))) {}
 
 Team* Team::of(const Executor& executor) noexcept {
@@ -48,57 +63,81 @@ Team::Leading::Leading(Team& team, int size) noexcept : team_(team) {
 
 Team::Leading::~Leading() {
   led_team = nullptr;
-  team_.call(0, ++team_.loops_, nullptr, nullptr);
+  team_.call(0, {});
 }
 
-void Team::run(Work work, void* context) {
-  const std::uint32_t loop = ++loops_;
-  call(0, loop, work, context);
-  work(context, 0);
-  await(0, loop);
+void Team::run(const Task& task) {
+  call(0, task);
+  task.work(task.context, 0);
+  join(0, task);
 }
 
 void Team::serve(int thread) {
   const auto own = static_cast<std::size_t>(thread);
   Seat& seat = seats_[own];
-  for (std::uint32_t loop = 1;; ++loop) {
-    wait_until(seat.called, loop);
-    const Work work = seat.work;
-    call(own, loop, work, seat.context);
-    if (work == nullptr) return;
-    work(seat.context, thread);
-    await(own, loop);
-    // Sequentially consistent, as notify_one() looks for somebody who waits after that.
-    seat.done.store(loop);
-    seat.done.notify_one();
+  for (;;) {
+    take_call(seat);
+    const Task task = seat.task;
+    call(own, task);
+    if (task.work == nullptr) return;
+    task.work(task.context, thread);
+    join(own, task);
+    // Releases what the loop has written to who finds that in join_one().
+    if (seat.state.exchange(State::idle, std::memory_order_release) == State::awaited)
+      seat.state.notify_one();
   }
 }
 
-/// Passes the work on to those whom `caller` calls.
-void Team::call(std::size_t caller, std::uint32_t loop, Work work, void* context) {
+/// Waits for a call and takes it: it cannot be taken back any more.
+void Team::take_call(Seat& seat) const {
+  const auto take = [&] {
+    // Acquires the task, and what its caller has written. To look first would take the caller's
+    // cache line twice.
+    State expected = State::called;
+    return seat.state.compare_exchange_strong(expected, State::busy, std::memory_order_acquire,
+                                              std::memory_order_relaxed);
+  };
+  while (!spin_until(spin_, take)) {
+    State expected = State::idle;
+    if (seat.state.compare_exchange_strong(expected, State::asleep, std::memory_order_relaxed))
+      seat.state.wait(State::asleep, std::memory_order_relaxed);
+  }
+}
+
+/// Passes the task on to those whom `caller` calls.
+void Team::call(std::size_t caller, const Task& task) {
   const std::size_t end = std::min(size_, children * caller + children + 1);
   for (std::size_t t = children * caller + 1; t < end; ++t) {
-    seats_[t].work = work;
-    seats_[t].context = context;
-    seats_[t].called.store(loop);  // as in serve()
-    seats_[t].called.notify_one();
+    Seat& seat = seats_[t];
+    seat.task = task;
+    if (seat.state.exchange(State::called, std::memory_order_release) == State::asleep)
+      seat.state.notify_one();
   }
 }
 
 /// Waits for those whom `caller` has called.
-void Team::await(std::size_t caller, std::uint32_t loop) {
+void Team::join(std::size_t caller, const Task& task) {
   const std::size_t end = std::min(size_, children * caller + children + 1);
-  for (std::size_t t = children * caller + 1; t < end; ++t) wait_until(seats_[t].done, loop);
+  for (std::size_t t = children * caller + 1; t < end; ++t) join_one(seats_[t], task);
 }
 
-/// Acquires what was written before the counter.
-void Team::wait_until(const std::atomic<std::uint32_t>& counter, std::uint32_t loop) const {
-  for (int spin = 0; spin < spins_; ++spin) {
-    if (counter.load(std::memory_order_acquire) == loop) return;
-    pause();
+void Team::join_one(Seat& seat, const Task& task) const {
+  const auto is_done = [&] {
+    const State now = seat.state.load(std::memory_order_acquire);
+    return now == State::idle || now == State::asleep;
+  };
+  State expected = State::called;
+  if (!task.needs_all &&
+      seat.state.compare_exchange_strong(expected, State::idle, std::memory_order_acquire))
+    return;
+  while (!spin_until(spin_, is_done)) {
+    expected = State::busy;
+    if (seat.state.compare_exchange_strong(expected, State::awaited, std::memory_order_relaxed)) {
+      seat.state.wait(State::awaited, std::memory_order_relaxed);
+    } else {
+      std::this_thread::yield();  // it has not begun
+    }
   }
-  for (std::uint32_t now = 0; (now = counter.load(std::memory_order_acquire)) != loop;)
-    counter.wait(now, std::memory_order_acquire);
 }
 
 void run_with_team(const Executor& executor, TeamBody body, void* context) {

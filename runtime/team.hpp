@@ -1,14 +1,16 @@
 /// @file
 /// Team: threads that wait for the loops of one thread, the leader (private to the runtime). Work
-/// is passed on along a tree: each thread calls four others, and has done its part when they have,
-/// too. So a message takes as many steps as the tree is high, and no thread writes to many.
+/// is passed on along a tree: each thread calls four others and waits for them when it is done
+/// itself, so a message takes as many steps as the tree is high, and no thread writes to many.
+/// Nobody waits for a thread that has not begun: it may sleep, or have no core to run on, which
+/// takes longer than most loops. Its call is taken back, once the others have done its share.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <type_traits>
 
 #include "ductile/runtime/executor.hpp"
 
@@ -16,12 +18,16 @@ namespace ductile::runtime {
 
 class Team {
  public:
-  /// What a loop does on each thread, without its type.
-  using Work = void (*)(void* context, int thread);
+  /// A loop's work, without its type, called with the number of the thread.
+  struct Task {
+    void (*work)(void* context, int thread) = nullptr;  // null: the thread is to go home
+    void* context = nullptr;
+    bool needs_all = false;  ///< no call is taken back
+  };
 
   explicit Team(const Executor& executor);
 
-  /// The calling thread's, if it leads one for such an executor and runs no loop; null otherwise.
+  /// The calling thread's, if it leads one for such an executor; null otherwise.
   static Team* of(const Executor& executor) noexcept;
 
   /// Makes this the calling thread's team until destruction.
@@ -37,34 +43,31 @@ class Team {
     Team& team_;
   };
 
-  /// Leader only: calls work(thread) on each thread, and returns when all are done.
-  template <class Function>
-  void run(Function& function) {
-    run([](void* context, int thread) { (*static_cast<Function*>(context))(thread); }, &function);
-  }
+  /// Leader only: runs the task on the calling thread and on those others that begin before it is
+  /// done, or on all; returns when they are.
+  void run(const Task& task);
 
   /// On each other thread: does what comes until it is sent home.
   void serve(int thread);
 
  private:
-  /// One thread's mailbox. Its caller writes `called`, it writes `done`; each counts loops.
-  struct Seat {
-    alignas(128) std::atomic<std::uint32_t> called{0};
-    Work work = nullptr;
-    void* context = nullptr;
-    alignas(128) std::atomic<std::uint32_t> done{0};
+  enum class State : std::uint32_t { idle, asleep, called, busy, awaited };
+
+  /// One thread's, and where its caller leaves a task for it.
+  struct alignas(128) Seat {
+    std::atomic<State> state{State::idle};
+    Task task;
   };
 
-  void run(Work work, void* context);
-  void call(std::size_t caller, std::uint32_t loop, Work work, void* context);
-  void await(std::size_t caller, std::uint32_t loop);
-  void wait_until(const std::atomic<std::uint32_t>& counter, std::uint32_t loop) const;
+  void call(std::size_t caller, const Task& task);
+  void join(std::size_t caller, const Task& task);
+  void join_one(Seat& seat, const Task& task) const;
+  void take_call(Seat& seat) const;
 
   const Executor& executor_;
-  const int spins_;
+  const std::chrono::nanoseconds spin_;
   const std::unique_ptr<Seat[]> seats_;
   std::size_t size_ = 0;  // written before the first call
-  std::uint32_t loops_ = 0;
 };
 
 }  // namespace ductile::runtime
