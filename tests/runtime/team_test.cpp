@@ -63,7 +63,7 @@ TEST(WithTeam, GoesOnWhereverThreadsAre) {
     const Executor executor({.threads = threads});
     with_team(executor, [&] {
       for (std::uint64_t round = 0; round < 400; ++round) {
-        const std::uint64_t dice = hash(round);
+        const std::uint64_t dice = mix64(round);
         spin(pauses[dice % 4]);
         std::atomic<std::size_t> done{0};
         const auto slow = static_cast<std::size_t>(dice >> 8U) % 4;
@@ -128,8 +128,7 @@ TEST(WithTeam, InsideALoopCallsTheBodyAndNoMore) {
   std::atomic<int> calls{0};
   parallel_for(executor, 8,
                [&](std::size_t) {
-                 with_team(executor,
-                           [&] { ++calls, EXPECT_TRUE(counts_each_once(executor, 100)); });
+                 with_team(executor, [&] { calls += counts_each_once(executor, 100) ? 1 : 0; });
                },
                {.grain = 1});
   EXPECT_EQ(calls, 8);
