@@ -12,6 +12,7 @@
 #include "support/loop_cases.hpp"
 
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/team.hpp"
 
 namespace ductile::bench {
 namespace {
@@ -37,7 +38,39 @@ void serial_loop(benchmark::State& state, const LoopCase& loop_case, int threads
   }
 }
 
+/// Loops so short that beginning and ending them counts: by themselves, and by a team.
+void add_short_loops() {
+  constexpr std::size_t iterations = 16;
+  constexpr std::uint32_t units = 250;
+  const std::string name = "loops/short_16x250ns/";
+  const auto run_once = [](const Executor& executor) {
+    parallel_for(executor, iterations, [](std::size_t) { work(units); }, {.grain = 1});
+  };
+  add(
+      name + "floor", team_sizes(),
+      [](benchmark::State& state, int threads) {
+        for (auto _ : state) {
+          const auto start = std::chrono::steady_clock::now();
+          for (std::size_t i = 0; i < iterations; ++i) work(units);
+          const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+          state.SetIterationTime(taken.count() / threads);
+        }
+      },
+      Clock::manual);
+  add(name + "ductile.alone", team_sizes(), [run_once](benchmark::State& state, int threads) {
+    const Executor executor({.threads = threads});
+    for (auto _ : state) run_once(executor);
+  });
+  add(name + "ductile.team", team_sizes(), [run_once](benchmark::State& state, int threads) {
+    const Executor executor({.threads = threads});
+    runtime::with_team(executor, [&] {
+      for (auto _ : state) run_once(executor);
+    });
+  });
+}
+
 void add_all() {
+  add_short_loops();
   for (const LoopCase& loop_case : loop_cases())
     add(
         "loops/" + loop_case.name + "/floor", team_sizes(),

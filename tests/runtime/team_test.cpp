@@ -146,6 +146,7 @@ TEST(WithTeam, RecordsLoopsAsWithoutATeam) {
 TEST(WithTeam, SeveralThreadsHaveTheirOwn) {
   const Executor executor({.threads = 3});
   std::vector<std::jthread> callers;
+  callers.reserve(3);
   for (int c = 0; c < 3; ++c)
     callers.emplace_back([&] {
       for (int again = 0; again < 20; ++again)
