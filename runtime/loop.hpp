@@ -78,10 +78,9 @@ bool inside_a_loop() noexcept;
 
 /// Calls work(thread) on the threads of the caller's team, or else of one of OpenMP's, of
 /// executor.threads() threads or fewer. The size does not follow the loop's: OpenMP runtimes end
-/// and create threads when it changes. Of the caller's team, threads that have not begun when the
-/// others are done are left out, unless the work needs all.
+/// and create threads when it changes.
 template <class Work>
-void run_team(const Executor& executor, Work&& work, bool needs_all) {
+void run_team(const Executor& executor, Turnout turnout, Work&& work) {
   auto as_member = [&](int thread) {
     const TeamMember member(thread);
     work(thread);
@@ -89,7 +88,7 @@ void run_team(const Executor& executor, Work&& work, bool needs_all) {
   if (Team* const team = Team::of(executor)) {
     using Member = decltype(as_member);
     return team->run({[](void* context, int thread) { (*static_cast<Member*>(context))(thread); },
-                      &as_member, needs_all});
+                      &as_member, turnout});
   }
 #pragma omp parallel num_threads(executor.threads())
   {

@@ -17,35 +17,26 @@ void run_chunk(Loop& loop, long long c) {
 
 void run_omp_static(const Executor& executor, Loop& loop) {
   const auto chunks = static_cast<long long>(loop.chunk_count());
-  run_team(
-      executor,
-      [&](int) {
+  run_team(executor, Turnout::everyone, [&](int) {
 #pragma omp for schedule(static) nowait
-        for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
-      },
-      true);
+    for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
+  });
 }
 
 void run_omp_dynamic(const Executor& executor, Loop& loop) {
   const auto chunks = static_cast<long long>(loop.chunk_count());
-  run_team(
-      executor,
-      [&](int) {
+  run_team(executor, Turnout::everyone, [&](int) {
 #pragma omp for schedule(dynamic, 1) nowait
-        for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
-      },
-      true);
+    for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
+  });
 }
 
 void run_omp_guided(const Executor& executor, Loop& loop) {
   const auto chunks = static_cast<long long>(loop.chunk_count());
-  run_team(
-      executor,
-      [&](int) {
+  run_team(executor, Turnout::everyone, [&](int) {
 #pragma omp for schedule(guided, 1) nowait
-        for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
-      },
-      true);
+    for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
+  });
 }
 
 }  // namespace ductile::runtime

@@ -113,14 +113,11 @@ void run_steal_by_atomics(const Executor& executor, Loop& loop) {
     parts[t].word.store(Part{bound(t), bound(t + 1)}.word(), std::memory_order_relaxed);
   }
   // The parts of threads that do not come, or not in time, are stolen.
-  run_team(
-      executor,
-      [&](int thread) {
-        PartOfThread& mine = parts[static_cast<std::size_t>(thread)];
-        if (thread + 1 == executor.threads() && !run_chunks(loop, mine.take_last())) return;
-        work_and_steal(loop, parts, mine);
-      },
-      false);
+  run_team(executor, Turnout::whoever_comes, [&](int thread) {
+    PartOfThread& mine = parts[static_cast<std::size_t>(thread)];
+    if (thread + 1 == executor.threads() && !run_chunks(loop, mine.take_last())) return;
+    work_and_steal(loop, parts, mine);
+  });
 }
 
 }  // namespace ductile::runtime

@@ -127,7 +127,7 @@ void Team::join_one(Seat& seat, const Task& task) const {
     return now == State::idle || now == State::asleep;
   };
   State expected = State::called;
-  if (!task.needs_all &&
+  if (task.turnout == Turnout::whoever_comes &&
       seat.state.compare_exchange_strong(expected, State::idle, std::memory_order_acquire))
     return;
   while (!spin_until(spin_, is_done)) {

@@ -16,13 +16,16 @@
 
 namespace ductile::runtime {
 
+/// Which threads a loop runs on: those that begin before its work is done, or each of them.
+enum class Turnout : std::uint8_t { whoever_comes, everyone };
+
 class Team {
  public:
   /// A loop's work, without its type, called with the number of the thread.
   struct Task {
     void (*work)(void* context, int thread) = nullptr;  // null: the thread is to go home
     void* context = nullptr;
-    bool needs_all = false;  ///< no call is taken back
+    Turnout turnout = Turnout::everyone;
   };
 
   explicit Team(const Executor& executor);
@@ -43,8 +46,7 @@ class Team {
     Team& team_;
   };
 
-  /// Leader only: runs the task on the calling thread and on those others that begin before it is
-  /// done, or on all; returns when they are.
+  /// Leader only: runs the task on the calling thread and the others; returns when all are done.
   void run(const Task& task);
 
   /// On each other thread: does what comes until it is sent home.
