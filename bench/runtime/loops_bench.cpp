@@ -38,39 +38,23 @@ void serial_loop(benchmark::State& state, const LoopCase& loop_case, int threads
   }
 }
 
-/// Loops so short that beginning and ending them counts: by themselves, and by a team.
-void add_short_loops() {
-  constexpr std::size_t iterations = 16;
-  constexpr std::uint32_t units = 250;
-  const std::string name = "loops/short_16x250ns/";
-  const auto run_once = [](const Executor& executor) {
-    parallel_for(executor, iterations, [](std::size_t) { work(units); }, {.grain = 1});
-  };
-  add(
-      name + "floor", team_sizes(),
-      [](benchmark::State& state, int threads) {
-        for (auto _ : state) {
-          const auto start = std::chrono::steady_clock::now();
-          for (std::size_t i = 0; i < iterations; ++i) work(units);
-          const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-          state.SetIterationTime(taken.count() / threads);
-        }
-      },
-      Clock::manual);
-  add(name + "ductile.alone", team_sizes(), [run_once](benchmark::State& state, int threads) {
-    const Executor executor({.threads = threads});
-    for (auto _ : state) run_once(executor);
-  });
-  add(name + "ductile.team", team_sizes(), [run_once](benchmark::State& state, int threads) {
-    const Executor executor({.threads = threads});
-    runtime::with_team(executor, [&] {
-      for (auto _ : state) run_once(executor);
-    });
-  });
+/// The loops of a team, whose threads stay together from one to the next.
+void add_loops_of_team() {
+  for (const LoopCase& loop_case : loop_cases())
+    add("loops/" + loop_case.name + "/ductile.team", team_sizes(),
+        [&loop_case](benchmark::State& state, int threads) {
+          const std::span<const std::uint32_t> units = units_of(loop_case);
+          const Executor executor({.threads = threads});
+          runtime::with_team(executor, [&] {
+            for (auto _ : state)
+              parallel_for(executor, units.size(), [units](std::size_t i) { work(units[i]); },
+                           {.grain = loop_grain});
+          });
+        });
 }
 
 void add_all() {
-  add_short_loops();
+  add_loops_of_team();
   for (const LoopCase& loop_case : loop_cases())
     add(
         "loops/" + loop_case.name + "/floor", team_sizes(),
