@@ -155,8 +155,7 @@ int main(int word_count, char** word) {
       return 0;
     }
     const Plan plan = plan_from(arguments);
-    ductile::cli::wait_briefly(word);  // as the program does
-    ductile::cli::reuse_memory();
+    ductile::cli::reuse_memory();  // as the program does
     return run(plan);
   } catch (const ductile::cli::UsageError& error) {
     std::fprintf(stderr, "adapt_bench: %s\n", error.what());

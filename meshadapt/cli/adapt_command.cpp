@@ -14,6 +14,7 @@
 #include "ductile/meshadapt/transfer.hpp"
 #include "ductile/meshadapt/vtu.hpp"
 #include "files.hpp"
+#include "run_in_team.hpp"
 #include "system.hpp"
 
 namespace ductile::cli {
@@ -222,9 +223,7 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::option
   outputs.commit();
 }
 
-int run(const Arguments& arguments) {
-  const Job job = read_job(arguments);
-  const Executor executor({.threads = job.threads, .deterministic = !job.racing});
+int work(const Executor& executor, const Job& job) {
   meshadapt::Warnings warnings;
   const AnyMesh mesh = meshadapt::read_mesh(job.input, &warnings);
   const AnyField metric = choose_metric(job, mesh, warnings);
@@ -251,6 +250,12 @@ int run(const Arguments& arguments) {
     std::printf("\n");
   }
   return done;
+}
+
+int run(const Arguments& arguments) {
+  const Job job = read_job(arguments);
+  return run_in_team({.threads = job.threads, .deterministic = !job.racing},
+                     [&](const Executor& executor) { return work(executor, job); });
 }
 
 }  // namespace

@@ -147,15 +147,4 @@ std::optional<int> Arguments::integer(std::string_view name, int least, int most
   return parsed;
 }
 
-bool is_alone(std::span<const std::string> words) {
-  constexpr std::string_view name = "-threads";
-  bool alone = false;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string_view option = std::string_view(words[i]).substr(words[i].starts_with("--"));
-    if (option == name) alone = i + 1 < words.size() && words[i + 1] == "1";
-    if (option.starts_with("-threads=")) alone = option.substr(name.size()) == "=1";
-  }
-  return alone;
-}
-
 }  // namespace ductile::cli

@@ -52,10 +52,6 @@ class Arguments {
   std::map<std::string, std::string, std::less<>> value_of_;  // [option as in the table]
 };
 
-/// Is one thread asked for, which waits for nobody? Of a program's words, which are not checked
-/// yet; the last one counts.
-bool is_alone(std::span<const std::string> words);
-
 /// Least number of letters to insert, remove, replace or exchange with the next to turn a into b.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 

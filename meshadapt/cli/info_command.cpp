@@ -10,6 +10,7 @@
 #include "ductile/meshadapt/statistics.hpp"
 #include "files.hpp"
 #include "report.hpp"
+#include "run_in_team.hpp"
 
 namespace ductile::cli {
 
@@ -96,10 +97,7 @@ void write_json(const std::string& path, const AnyMesh& mesh, const Validity& va
   outputs.commit();
 }
 
-int run(const Arguments& arguments) {
-  if (arguments.operands().size() != 1)
-    throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
-  const Executor executor({.threads = arguments.integer("--threads", 1, 4096).value_or(0)});
+int work(const Executor& executor, const Arguments& arguments) {
   meshadapt::Warnings warnings;
   const AnyMesh mesh = meshadapt::read_mesh(arguments.operands()[0], &warnings);
   std::optional<AnyField> metric;
@@ -121,6 +119,13 @@ int run(const Arguments& arguments) {
   print_warnings(warnings);
   if (const auto path = arguments.text("--json")) write_json(*path, mesh, validity, statistics);
   return validity.reason.empty() ? done : misused;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.operands().size() != 1)
+    throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
+  return run_in_team({.threads = arguments.integer("--threads", 1, 4096).value_or(0)},
+                     [&](const Executor& executor) { return work(executor, arguments); });
 }
 
 }  // namespace

@@ -1,13 +1,11 @@
 #include <string>
 #include <vector>
 
-#include "arguments.hpp"
 #include "command.hpp"
 #include "system.hpp"
 
 int main(int argument_count, char** argument) {
   const std::vector<std::string> words(argument + 1, argument + argument_count);
-  if (!ductile::cli::is_alone(words)) ductile::cli::wait_briefly(argument);
   ductile::cli::reuse_memory();
   return ductile::cli::run_program(words);
 }

@@ -15,6 +15,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "files.hpp"
+#include "run_in_team.hpp"
 
 namespace ductile::cli {
 
@@ -271,12 +272,13 @@ void work(const Executor& executor, const Job& job, const AnyMesh& mesh,
 
 int run(const Arguments& arguments) {
   const Job job = read_job(arguments);
-  const Executor executor({.threads = job.threads});
-  meshadapt::Warnings warnings;
-  const AnyMesh mesh = meshadapt::read_mesh(job.mesh, &warnings);
-  mesh.dimension == 2 ? work<2>(executor, job, mesh, warnings)
-                      : work<3>(executor, job, mesh, warnings);
-  return done;
+  return run_in_team({.threads = job.threads}, [&](const Executor& executor) {
+    meshadapt::Warnings warnings;
+    const AnyMesh mesh = meshadapt::read_mesh(job.mesh, &warnings);
+    mesh.dimension == 2 ? work<2>(executor, job, mesh, warnings)
+                        : work<3>(executor, job, mesh, warnings);
+    return done;
+  });
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace ductile::cli {
 
@@ -26,14 +25,6 @@ void limit_memory(std::size_t bytes) {
   getrlimit(RLIMIT_DATA, &limit);
   limit.rlim_cur = std::min<rlim_t>(bytes, limit.rlim_max);
   setrlimit(RLIMIT_DATA, &limit);
-}
-
-void wait_briefly([[maybe_unused]] char** arguments) {
-#ifdef __linux__
-  if (getenv("OMP_WAIT_POLICY") != nullptr || getenv("GOMP_SPINCOUNT") != nullptr) return;
-  setenv("GOMP_SPINCOUNT", "2000", 0);
-  execv("/proc/self/exe", arguments);  // returns only if that cannot be done: then as it is
-#endif
 }
 
 void reuse_memory() {

@@ -12,12 +12,6 @@ std::size_t peak_memory();
 /// From here on, taking more memory than this fails, with std::bad_alloc.
 void limit_memory(std::size_t bytes);
 
-/// Lets threads that wait for others give their core away after some ten microseconds, instead of
-/// milliseconds in which, on a machine that others use too, those they wait for may need it. The
-/// OpenMP runtime of GCC reads this when a program starts, so the program starts itself once more,
-/// with the same arguments; not if the environment already says how threads wait.
-void wait_briefly(char** arguments);
-
 /// Whether a person is likely to watch standard error.
 bool stderr_is_terminal();
 

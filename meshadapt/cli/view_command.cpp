@@ -6,6 +6,7 @@
 #include "ductile/meshadapt/gmf.hpp"
 #include "files.hpp"
 #include "picture/draw.hpp"
+#include "run_in_team.hpp"
 
 namespace ductile::cli {
 
@@ -57,19 +58,20 @@ int run(const Arguments& arguments) {
   const int size = arguments.integer("--size", 50, 8000).value_or(1000);
   meshadapt::check_writable(picture);
 
-  const runtime::Executor executor(
-      {.threads = arguments.integer("--threads", 1, 4096).value_or(0)});
-  meshadapt::Warnings warnings;
-  const meshadapt::AnyMesh mesh = meshadapt::read_mesh(input, &warnings);
-  std::optional<meshadapt::AnyField> metric;
-  if (const auto path = arguments.text("-sol")) metric = read_metric(*path, mesh, warnings);
-  const Scene scene = make_scene(executor, mesh, metric ? &*metric : nullptr, options_of_scene);
-  const std::string bytes = draw(scene, format, size);
-  meshadapt::AtomicOutputs outputs;
-  outputs.stage(picture).write(bytes);
-  outputs.commit();
-  print_warnings(warnings);
-  return done;
+  const int threads = arguments.integer("--threads", 1, 4096).value_or(0);
+  return run_in_team({.threads = threads}, [&](const runtime::Executor& executor) {
+    meshadapt::Warnings warnings;
+    const meshadapt::AnyMesh mesh = meshadapt::read_mesh(input, &warnings);
+    std::optional<meshadapt::AnyField> metric;
+    if (const auto path = arguments.text("-sol")) metric = read_metric(*path, mesh, warnings);
+    const Scene scene = make_scene(executor, mesh, metric ? &*metric : nullptr, options_of_scene);
+    const std::string bytes = draw(scene, format, size);
+    meshadapt::AtomicOutputs outputs;
+    outputs.stage(picture).write(bytes);
+    outputs.commit();
+    print_warnings(warnings);
+    return done;
+  });
 }
 
 }  // namespace

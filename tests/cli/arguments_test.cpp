@@ -52,19 +52,6 @@ TEST(Arguments, RefusesWhatIsNoNumber) {
     EXPECT_THROW(parse({"--threads", text}).integer("--threads", 1, 8), UsageError) << text;
 }
 
-TEST(IsAlone, WhereTheLastWordOnThreadsAsksForOne) {
-  using Words = std::vector<std::string>;
-  for (const Words& words :
-       {Words{"adapt", "a.mesh", "--threads", "1"}, Words{"-threads", "1"}, Words{"--threads=1"},
-        Words{"-threads=1", "-v", "0"}, Words{"--threads", "2", "-threads=1"}})
-    EXPECT_TRUE(is_alone(words)) << words.back();
-  for (const Words& words :
-       {Words{}, Words{"adapt", "1"}, Words{"--threads"}, Words{"--threads", "2"},
-        Words{"--threads", "11"}, Words{"--threads=12"}, Words{"-threads=1", "--threads", "2"},
-        Words{"--threads", "1", "--threads"}, Words{"threads", "1"}, Words{"---threads", "1"}})
-    EXPECT_FALSE(is_alone(words)) << testing::PrintToString(words);
-}
-
 TEST(EditDistance, CountsTypingErrors) {
   EXPECT_EQ(edit_distance("adapt", "adapt"), 0U);
   EXPECT_EQ(edit_distance("adpat", "adapt"), 1U);

@@ -26,20 +26,6 @@ TEST(Program, ShowsItsCommandsAndVersion) {
   }
 }
 
-TEST(Program, KeepsItsArgumentsWhereverThreadsWait) {
-  const Folder folder;
-  folder.add_example("waves2d");
-  for (const char* environment : {"env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT", "GOMP_SPINCOUNT=10",
-                                  "OMP_WAIT_POLICY=passive"}) {
-    const Outcome outcome =
-        folder.run("adapt waves2d.mesh -o 'a b.mesh' --threads 2 -v 0", environment);
-    EXPECT_EQ(outcome.status, 0) << environment << ": " << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_TRUE(folder.has("a b.mesh"));
-    std::filesystem::remove(folder.path() / "a b.mesh");
-  }
-}
-
 TEST(Program, TellsWhatIsWrongWithACommandLine) {
   const Folder folder;
   const auto expect = [&](const char* words, const char* part) {

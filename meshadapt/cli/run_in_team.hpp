@@ -1,0 +1,22 @@
+/// @file
+/// run_in_team: how commands run what takes long.
+#pragma once
+
+#include "command.hpp"
+
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/team.hpp"
+
+namespace ductile::cli {
+
+/// Returns body(executor), an exit status. The executor's threads stay together meanwhile, so that
+/// they give their core away soon when they wait (runtime/team.hpp).
+template <class Body>
+int run_in_team(const runtime::ExecutorOptions& options, Body&& body) {
+  const runtime::Executor executor(options);
+  int status = failed;
+  runtime::with_team(executor, [&] { status = body(executor); });
+  return status;
+}
+
+}  // namespace ductile::cli
