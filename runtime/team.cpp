@@ -82,9 +82,9 @@ void Team::serve(int thread) {
     if (task.work == nullptr) return;
     task.work(task.context, thread);
     join(own, task);
-    // Releases what the loop has written to who finds that in join_one().
-    if (seat.state.exchange(State::idle, std::memory_order_release) == State::awaited)
-      seat.state.notify_one();
+    // Releases what the loop has written to who finds that in join_one(). Sequentially consistent,
+    // as notify_one() looks for somebody who waits after that; in call(), too.
+    if (seat.state.exchange(State::idle) == State::awaited) seat.state.notify_one();
   }
 }
 
@@ -110,8 +110,7 @@ void Team::call(std::size_t caller, const Task& task) {
   for (std::size_t t = children * caller + 1; t < end; ++t) {
     Seat& seat = seats_[t];
     seat.task = task;
-    if (seat.state.exchange(State::called, std::memory_order_release) == State::asleep)
-      seat.state.notify_one();
+    if (seat.state.exchange(State::called) == State::asleep) seat.state.notify_one();
   }
 }
 
@@ -135,7 +134,7 @@ void Team::join_one(Seat& seat, const Task& task) const {
     if (seat.state.compare_exchange_strong(expected, State::awaited, std::memory_order_relaxed)) {
       seat.state.wait(State::awaited, std::memory_order_relaxed);
     } else {
-      std::this_thread::yield();  // it has not begun
+      std::this_thread::yield();  // it has not begun, or is done just now
     }
   }
 }
