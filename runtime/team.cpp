@@ -104,20 +104,20 @@ void Team::take_call(Seat& seat) const {
   }
 }
 
-/// Passes the task on to those whom `caller` calls.
+std::span<Team::Seat> Team::called_by(std::size_t caller) const {
+  const std::size_t begin = std::min(size_, children * caller + 1);
+  return {&seats_[0] + begin, std::min(size_ - begin, children)};
+}
+
 void Team::call(std::size_t caller, const Task& task) {
-  const std::size_t end = std::min(size_, children * caller + children + 1);
-  for (std::size_t t = children * caller + 1; t < end; ++t) {
-    Seat& seat = seats_[t];
+  for (Seat& seat : called_by(caller)) {
     seat.task = task;
     if (seat.state.exchange(State::called) == State::asleep) seat.state.notify_one();
   }
 }
 
-/// Waits for those whom `caller` has called.
 void Team::join(std::size_t caller, const Task& task) {
-  const std::size_t end = std::min(size_, children * caller + children + 1);
-  for (std::size_t t = children * caller + 1; t < end; ++t) join_one(seats_[t], task);
+  for (Seat& seat : called_by(caller)) join_one(seat, task);
 }
 
 void Team::join_one(Seat& seat, const Task& task) const {

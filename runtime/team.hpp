@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "ductile/runtime/executor.hpp"
 
@@ -61,6 +62,7 @@ class Team {
     Task task;
   };
 
+  std::span<Seat> called_by(std::size_t caller) const;
   void call(std::size_t caller, const Task& task);
   void join(std::size_t caller, const Task& task);
   void join_one(Seat& seat, const Task& task) const;

@@ -46,9 +46,9 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const 
   if (mesh.dimension != 2 && mesh.dimension != 3)
     throw InputError(mesh.name + ": expected dimension 2 or 3, found " +
                      std::to_string(mesh.dimension));
-  expect_numbers(executor, metric);
   AdaptedMesh adapted;
   runtime::with_team(executor, [&] {
+    expect_numbers(executor, metric);
     adapted = adapt_at(usable_levels().front(), executor, mesh, metric, options);
   });
   return adapted;
