@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -75,6 +78,36 @@ TEST(RankedBlocks, RunOnceAndAfterThoseOfLowerRankThatTheyMeet) {
           EXPECT_TRUE(!before || turn_of[other] < turn_of[b])
               << threads << " threads, seed " << seed;
         }
+    }
+}
+
+/// A block ends only when all that do not meet it are done, which those who wait for it have to do.
+TEST(RankedBlocks, AreDoneByThreadsThatWaitForAnother) {
+  using namespace std::chrono_literals;
+  constexpr std::size_t count = 40;
+  for (const int threads : {2, 3, 8})
+    for (std::size_t slow = 0; slow < count; ++slow) {
+      Meetings meetings(0, 1, 0);
+      meetings.met.resize(count);
+      meetings.rank_of.assign(count, 1);
+      meetings.rank_of[slow] = 0;
+      for (const std::size_t block : {std::size_t{0}, count / 2, count - 1})
+        if (block != slow) meetings.met[block] = {slow};
+      const std::size_t others =
+          count - 1 -
+          static_cast<std::size_t>(
+              std::count(meetings.met.begin(), meetings.met.end(), std::vector<std::size_t>{slow}));
+      std::atomic<std::size_t> done = 0;
+      bool in_time = true;
+      run(Executor({.threads = threads}), meetings, [&](std::size_t block) {
+        if (block != slow) return void(++done);
+        const auto end = std::chrono::steady_clock::now() + 20s;
+        while (done < others && in_time) {
+          std::this_thread::yield();
+          in_time = std::chrono::steady_clock::now() < end;
+        }
+      });
+      ASSERT_TRUE(in_time) << threads << " threads, slow block " << slow;
     }
 }
 

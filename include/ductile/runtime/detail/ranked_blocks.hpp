@@ -1,9 +1,10 @@
 /// @file
 /// RankedBlocks: blocks of work, each with a rank, of which those that meet run in the order of
 /// their ranks, without a barrier between one rank and the next. Threads take blocks as they lie
-/// side by side. One that meets a block of lower rank that is not done does that first, or waits
-/// until the thread that has begun it is done. As ranks fall from each block to the one it waits
-/// for, nobody waits for himself.
+/// side by side. One that meets a block of lower rank that is not done does that first, or, if
+/// another thread has begun it, other blocks meanwhile: of no higher rank than the one that waits.
+/// So ranks do not rise from a block to what its thread has begun since, and fall from each block
+/// to the one it waits for: of those begun, one of the lowest rank can always go on.
 #pragma once
 
 #include <algorithm>
@@ -100,8 +101,13 @@ class RankedBlocks {
         stack.pop_back();
       } else if (claim(before)) {
         push(before);
-      } else {
-        await(before);
+      } else if (!is_done_soon(before)) {
+        const std::size_t other = claim_instead(stack.back().block, first);
+        if (other != none) {
+          push(other);
+        } else {
+          std::this_thread::yield();  // whoever has begun it may have lost its core
+        }
       }
     }
   }
@@ -111,10 +117,26 @@ class RankedBlocks {
     return std::atomic_ref(claimed_[block]).exchange(1, std::memory_order_relaxed) == 0;
   }
 
-  void await(std::size_t block) {
-    constexpr int spins = 1000;  // then whoever has begun it may have lost its core
-    for (int tries = 0; comes_before(block, done) && !failed_.load(); tries += tries < spins)
-      if (tries == spins) std::this_thread::yield();
+  /// Waits for a short while.
+  bool is_done_soon(std::size_t block) {
+    constexpr int looks = 200;
+    for (int i = 0; i < looks; ++i)
+      if (!comes_before(block, done) || failed_.load(std::memory_order_relaxed)) return true;
+    return false;
+  }
+
+  /// Claims one of the next blocks that may run while one waits; none if nobody is to begin any.
+  std::size_t claim_instead(std::size_t waiting, std::size_t first) {
+    constexpr std::size_t near = 512;
+    const std::size_t count = rank_of_.size();
+    const std::uint8_t most = std::atomic_ref(rank_of_[waiting]).load(std::memory_order_relaxed);
+    for (std::size_t i = 1; i < std::min(near, count); ++i) {
+      const std::size_t block = first + i < count ? first + i : first + i - count;
+      if (std::atomic_ref(rank_of_[block]).load(std::memory_order_relaxed) <= most &&
+          std::atomic_ref(claimed_[block]).load(std::memory_order_relaxed) == 0 && claim(block))
+        return block;
+    }
+    return none;
   }
 
   // ---- Recordings: each block is a part of the loop, and those of lower rank come first ----
