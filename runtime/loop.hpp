@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 
@@ -76,11 +77,15 @@ class TeamMember {
 /// Whether the calling thread runs iterations of a loop.
 bool inside_a_loop() noexcept;
 
-/// Calls work(thread) on the threads of the caller's team, or else of one of OpenMP's, of
-/// executor.threads() threads or fewer. The size does not follow the loop's: OpenMP runtimes end
-/// and create threads when it changes.
+inline std::size_t everyone_of(const Executor& executor) {
+  return static_cast<std::size_t>(executor.threads());
+}
+
+/// Calls work(thread) on the threads of the caller's team, the first `wanted`, or else on all of
+/// one of OpenMP's: of executor.threads() threads or fewer. The size of the latter does not follow
+/// the loop's: OpenMP runtimes end and create threads when it changes.
 template <class Work>
-void run_team(const Executor& executor, Turnout turnout, Work&& work) {
+void run_team(const Executor& executor, Turnout turnout, std::size_t wanted, Work&& work) {
   auto as_member = [&](int thread) {
     const TeamMember member(thread);
     work(thread);
@@ -88,7 +93,7 @@ void run_team(const Executor& executor, Turnout turnout, Work&& work) {
   if (Team* const team = Team::of(executor)) {
     using Member = decltype(as_member);
     return team->run({[](void* context, int thread) { (*static_cast<Member*>(context))(thread); },
-                      &as_member, turnout});
+                      &as_member, turnout, static_cast<std::uint32_t>(wanted)});
   }
 #pragma omp parallel num_threads(executor.threads())
   {

@@ -17,7 +17,7 @@ void run_chunk(Loop& loop, long long c) {
 
 void run_omp_static(const Executor& executor, Loop& loop) {
   const auto chunks = static_cast<long long>(loop.chunk_count());
-  run_team(executor, Turnout::everyone, [&](int) {
+  run_team(executor, Turnout::everyone, everyone_of(executor), [&](int) {
 #pragma omp for schedule(static) nowait
     for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
   });
@@ -25,7 +25,7 @@ void run_omp_static(const Executor& executor, Loop& loop) {
 
 void run_omp_dynamic(const Executor& executor, Loop& loop) {
   const auto chunks = static_cast<long long>(loop.chunk_count());
-  run_team(executor, Turnout::everyone, [&](int) {
+  run_team(executor, Turnout::everyone, everyone_of(executor), [&](int) {
 #pragma omp for schedule(dynamic, 1) nowait
     for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
   });
@@ -33,7 +33,7 @@ void run_omp_dynamic(const Executor& executor, Loop& loop) {
 
 void run_omp_guided(const Executor& executor, Loop& loop) {
   const auto chunks = static_cast<long long>(loop.chunk_count());
-  run_team(executor, Turnout::everyone, [&](int) {
+  run_team(executor, Turnout::everyone, everyone_of(executor), [&](int) {
 #pragma omp for schedule(guided, 1) nowait
     for (long long c = 0; c < chunks; ++c) run_chunk(loop, c);
   });

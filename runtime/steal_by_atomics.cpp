@@ -103,19 +103,21 @@ void run_steal_by_atomics(const Executor& executor, Loop& loop) {
   static thread_local std::vector<PartOfThread> kept;
   const auto threads = static_cast<std::size_t>(executor.threads());
   if (kept.size() < threads) kept = std::vector<PartOfThread>(threads);
-  const Parts parts(kept.data(), threads);
   while (loop.chunk_count() > UINT32_MAX) loop.grain *= 2;
-  const std::size_t chunks = loop.chunk_count();
-  for (std::size_t t = 0; t < threads; ++t) {
+  const std::size_t chunks = loop.chunk_count(), wanted = std::min(threads, chunks);
+  const Parts parts(kept.data(), wanted);
+  for (std::size_t t = 0; t < wanted; ++t) {
     const auto bound = [&](std::size_t i) {
-      return static_cast<std::uint32_t>(chunks * i / threads);
+      return static_cast<std::uint32_t>(chunks * i / wanted);
     };
     parts[t].word.store(Part{bound(t), bound(t + 1)}.word(), std::memory_order_relaxed);
   }
   // The parts of threads that do not come, or not in time, are stolen.
-  run_team(executor, Turnout::whoever_comes, [&](int thread) {
-    PartOfThread& mine = parts[static_cast<std::size_t>(thread)];
-    if (thread + 1 == executor.threads() && !run_chunks(loop, mine.take_last())) return;
+  run_team(executor, Turnout::whoever_comes, wanted, [&](int thread) {
+    const auto own = static_cast<std::size_t>(thread);
+    if (own >= wanted) return;  // of OpenMP's
+    PartOfThread& mine = parts[own];
+    if (own + 1 == wanted && !run_chunks(loop, mine.take_last())) return;
     work_and_steal(loop, parts, mine);
   });
 }

@@ -201,7 +201,7 @@ void run_steal_by_signal(const Executor& executor, Loop& loop) {
   if (!DUCTILE_SIGNALS_ARRIVE || !signal.available()) return run_steal_by_atomics(executor, loop);
   std::vector<Part> parts(static_cast<std::size_t>(executor.threads()));
   SignalLoop signal_loop(signal, loop, parts);
-  run_team(executor, Turnout::everyone, [&](int thread) {
+  run_team(executor, Turnout::everyone, everyone_of(executor), [&](int thread) {
     signal_loop.run(static_cast<std::size_t>(thread),
                     static_cast<std::size_t>(omp_get_num_threads()));
   });

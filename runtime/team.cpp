@@ -13,8 +13,13 @@ namespace ductile::runtime {
 namespace {
 
 constexpr std::size_t children = 4;
-/// About as long as it takes to wake a thread, which may cost no more than to have it wait.
-constexpr std::chrono::microseconds spin_time{50};
+/// About as long as it takes to wake such a team, which may cost no more than to have it wait.
+/// None where threads have no core each: those that wait would hold one that others need.
+std::chrono::microseconds spin_time(int threads) {
+  constexpr int of_each = 25, least = 50, most = 200;
+  return std::chrono::microseconds(
+      threads > omp_get_num_procs() ? 0 : std::clamp(of_each * threads, least, most));
+}
 
 thread_local Team* led_team = nullptr;
 
@@ -45,7 +50,7 @@ bool spin_until(std::chrono::nanoseconds time, Answer&& yes) {
 
 Team::Team(const Executor& executor)
     : executor_(executor),
-      spin_(executor.threads() > omp_get_num_procs() ? std::chrono::microseconds{0} : spin_time),
+      spin_(spin_time(executor.threads())),
       seats_(std::make_unique<Seat[]>(static_cast<std::size_t>(executor.threads()))) {}
 
 Team* Team::of(const Executor& executor) noexcept {
@@ -104,20 +109,21 @@ void Team::take_call(Seat& seat) const {
   }
 }
 
-std::span<Team::Seat> Team::called_by(std::size_t caller) const {
-  const std::size_t begin = std::min(size_, children * caller + 1);
-  return {&seats_[0] + begin, std::min(size_ - begin, children)};
+std::span<Team::Seat> Team::called_by(std::size_t caller, const Task& task) const {
+  const std::size_t size = std::min<std::size_t>(size_, task.threads);
+  const std::size_t begin = std::min(size, children * caller + 1);
+  return {&seats_[0] + begin, std::min(size - begin, children)};
 }
 
 void Team::call(std::size_t caller, const Task& task) {
-  for (Seat& seat : called_by(caller)) {
+  for (Seat& seat : called_by(caller, task)) {
     seat.task = task;
     if (seat.state.exchange(State::called) == State::asleep) seat.state.notify_one();
   }
 }
 
 void Team::join(std::size_t caller, const Task& task) {
-  for (Seat& seat : called_by(caller)) join_one(seat, task);
+  for (Seat& seat : called_by(caller, task)) join_one(seat, task);
 }
 
 void Team::join_one(Seat& seat, const Task& task) const {

@@ -27,6 +27,8 @@ class Team {
     void (*work)(void* context, int thread) = nullptr;  // null: the thread is to go home
     void* context = nullptr;
     Turnout turnout = Turnout::everyone;
+    std::uint32_t threads =
+        ~std::uint32_t{0};  // of the team, the first so many; there may be fewer
   };
 
   explicit Team(const Executor& executor);
@@ -62,7 +64,7 @@ class Team {
     Task task;
   };
 
-  std::span<Seat> called_by(std::size_t caller) const;
+  std::span<Seat> called_by(std::size_t caller, const Task& task) const;
   void call(std::size_t caller, const Task& task);
   void join(std::size_t caller, const Task& task);
   void join_one(Seat& seat, const Task& task) const;

@@ -55,6 +55,21 @@ TEST(WithTeam, RunsEachIterationOnceUnderAllSchedules) {
     }
 }
 
+TEST(WithTeam, RunsFewChunksOnAsManyThreadsAtMost) {
+  const Executor executor({.threads = 8});
+  std::atomic<int> last_thread = 0;
+  with_team(executor, [&] {
+    for (int repetition = 0; repetition < 200; ++repetition)
+      parallel_for(executor, 3,
+                   [&](std::size_t) {
+                     spin(2us);
+                     if (this_thread() > last_thread) last_thread = this_thread();
+                   },
+                   {.grain = 1});
+  });
+  EXPECT_LT(last_thread, 3);
+}
+
 /// Whoever sleeps, is late or has no core to run on meanwhile: long pauses between loops, threads
 /// that are done long before the leader, and leaders that are done before others have begun.
 TEST(WithTeam, GoesOnWhereverThreadsAre) {

@@ -19,13 +19,13 @@ void run_with_team(const Executor& executor, TeamBody body, void* context);
 
 /// Calls body() on the calling thread; all loops that it starts there with this executor, or a copy
 /// of it, run on threads that stay together until body() is done. What loops do is the same as
-/// without a team. Threads that wait for the next loop spin for 50 microseconds, or not at all
-/// where there are more of them than cores, and then sleep. With a placement they are bound, the
-/// calling one too, until body() is done. Meanwhile the thread is within a parallel region of
-/// OpenMP's: loops of other executors, and parallel regions that body() begins itself, run on it
-/// alone. What body() throws reaches the caller. Inside a loop or another team, for one thread, or
-/// while loops are recorded, body() is called and that is all. Thread safety: any thread; each that
-/// calls it has a team of its own.
+/// without a team. Threads that wait for the next loop spin for 50 microseconds, in large teams for
+/// up to 200, or not at all where there are more of them than cores, and then sleep. With a
+/// placement they are bound, the calling one too, until body() is done. Meanwhile the thread is
+/// within a parallel region of OpenMP's: loops of other executors, and parallel regions that body()
+/// begins itself, run on it alone. What body() throws reaches the caller. Inside a loop or another
+/// team, for one thread, or while loops are recorded, body() is called and that is all. Thread
+/// safety: any thread; each that calls it has a team of its own.
 template <class Body>
 void with_team(const Executor& executor, Body&& body) {
   using Plain = std::remove_reference_t<Body>;
