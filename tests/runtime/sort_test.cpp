@@ -28,7 +28,7 @@ TYPED_TEST(ParallelSort, AgreesWithTheStandardOne) {
       values[i] = static_cast<TypeParam>(mix64(i) >> (i % 3 == 0 ? 40U : 0U));
     std::vector<TypeParam> expected = values;
     std::sort(expected.begin(), expected.end());
-    for (int threads : {1, 2, 3, 8}) {
+    for (int threads : {1, 2, 3, 8, 64}) {
       std::vector<TypeParam> sorted = values;
       parallel_sort(Executor({.threads = threads}), std::span(sorted));
       EXPECT_EQ(sorted, expected) << n << " values, " << threads << " threads";
@@ -74,13 +74,32 @@ TEST(ParallelSort, KeepsWordsOfTheSameUpperBitsInOrder) {
       std::vector<std::uint64_t> expected = values;
       std::stable_sort(expected.begin(), expected.end(),
                        [low](auto a, auto b) { return a >> low < b >> low; });
-      for (int threads : {1, 2, 3, 8}) {
+      for (int threads : {1, 2, 3, 8, 64}) {
         std::vector<std::uint64_t> sorted = values;
         parallel_sort_above(Executor({.threads = threads}), std::span(sorted), low);
         EXPECT_EQ(sorted, expected) << n << " values, bit " << low << ", " << threads;
       }
     }
   }
+}
+
+TEST(ParallelSort, SortsWhatHasFewKeysOrOneOfMany) {
+  const std::size_t n = 100000;
+  for (const std::uint32_t keys : {1U, 2U, 50U})
+    for (const bool greatest : {false, true}) {
+      std::vector<std::uint32_t> values(n);
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t often = greatest ? ~0U : 1000U;
+        values[i] = i % 3 != 0 ? often : mix32(i % (3 * keys));
+      }
+      std::vector<std::uint32_t> expected = values;
+      std::sort(expected.begin(), expected.end());
+      for (int threads : {2, 3, 4, 8, 64}) {
+        std::vector<std::uint32_t> sorted = values;
+        parallel_sort(Executor({.threads = threads}), std::span(sorted));
+        EXPECT_EQ(sorted, expected) << keys << " keys, " << threads << " threads";
+      }
+    }
 }
 
 TEST(ParallelSort, SeesWhatIsOutOfOrderBetweenBlocks) {
