@@ -155,7 +155,7 @@ int main(int word_count, char** word) {
       return 0;
     }
     const Plan plan = plan_from(arguments);
-    ductile::cli::reuse_memory();  // as the program does
+    ductile::cli::reuse_memory(plan.most_threads);  // as the program does
     return run(plan);
   } catch (const ductile::cli::UsageError& error) {
     std::fprintf(stderr, "adapt_bench: %s\n", error.what());

@@ -2,10 +2,8 @@
 #include <vector>
 
 #include "command.hpp"
-#include "system.hpp"
 
 int main(int argument_count, char** argument) {
   const std::vector<std::string> words(argument + 1, argument + argument_count);
-  ductile::cli::reuse_memory();
   return ductile::cli::run_program(words);
 }

@@ -27,11 +27,14 @@ void limit_memory(std::size_t bytes) {
   setrlimit(RLIMIT_DATA, &limit);
 }
 
-void reuse_memory() {
+void reuse_memory(int threads) {
 #ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // larger arrays in pages of their own
-  mallopt(M_TRIM_THRESHOLD, 6 << 20);   // more than this, free at the heap's end, is given back
-  mallopt(M_ARENA_MAX, 1);              // one heap: what a thread frees serves all
+  const bool few = threads <= 4;
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);               // larger arrays in pages of their own
+  mallopt(M_TRIM_THRESHOLD, (few ? 10 : 32) << 20);  // more, free at a heap's end, is given back
+  if (few) mallopt(M_ARENA_MAX, 1);                  // one heap: what a thread frees serves all
+#else
+  static_cast<void>(threads);
 #endif
 }
 

@@ -16,7 +16,8 @@ void limit_memory(std::size_t bytes);
 bool stderr_is_terminal();
 
 /// What is freed is used again rather than given back and asked for anew: kernels take and free the
-/// same arrays in turns. With glibc; otherwise nothing.
-void reuse_memory();
+/// same arrays in turns. Few threads share one heap, which takes least memory; more would wait for
+/// each other there. With glibc; otherwise nothing. Thread safety: before there are other threads.
+void reuse_memory(int threads);
 
 }  // namespace ductile::cli
