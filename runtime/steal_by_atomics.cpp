@@ -1,12 +1,13 @@
 /// @file
-/// Work stealing by compare-and-swap. Every thread starts with an equal part of the chunks, kept as
-/// one packed word, and takes chunks from its front: many at once while it has many, so that
-/// taking them costs nothing, and single ones in the end. A thread without work looks for the
-/// longest part and takes the back half of it. The last chunk of all is begun first: in order it
-/// would be begun last, and if it is a long one, everybody would wait for it. A thread leaves when
-/// it finds nothing to take: what others still run cannot be shared any more, so nobody waits here
-/// but for the join. The words carry numbers of chunks only, so all orders are relaxed: what bodies
-/// read was written before the loop began, what they write is read after the join.
+/// Work stealing by compare-and-swap. Every thread, or as many as there are chunks, starts with an
+/// equal part of the chunks, kept as one packed word, and takes chunks from its front: many at once
+/// while it has many, so that taking them costs nothing, and single ones in the end. A thread
+/// without work looks for the longest part and takes the back half of it. The last chunk of all is
+/// begun first: in order it would be begun last, and if it is a long one, everybody would wait for
+/// it. A thread leaves when it finds nothing to take: what others still run cannot be shared any
+/// more, so nobody waits here but for the join. The words carry numbers of chunks only, so all
+/// orders are relaxed: what bodies read was written before the loop began, what they write is read
+/// after the join.
 
 #include <algorithm>
 #include <atomic>

@@ -27,8 +27,8 @@ class Team {
     void (*work)(void* context, int thread) = nullptr;  // null: the thread is to go home
     void* context = nullptr;
     Turnout turnout = Turnout::everyone;
-    std::uint32_t threads =
-        ~std::uint32_t{0};  // of the team, the first so many; there may be fewer
+    /// It runs on the first so many of the team, or on all if there are fewer.
+    std::uint32_t threads = ~std::uint32_t{0};
   };
 
   explicit Team(const Executor& executor);

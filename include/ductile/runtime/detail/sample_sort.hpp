@@ -1,8 +1,8 @@
 /// @file
 /// A sample sort of unsigned integers for many threads: a sample says which keys cut them into
 /// about equal buckets, all threads put each value into its bucket, and then sort bucket by bucket,
-/// each in a cache. All values go through memory once, where a radix sort of all of them moves them
-/// once for each digit, to places that lie apart.
+/// each in a cache. Values are moved between caches once, where a radix sort of all of them moves
+/// them once for each digit, to places that lie apart.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +24,8 @@
 
 namespace ductile::runtime::sort_detail {
 
+constexpr std::size_t most_buckets = 256;  // so that a byte says which
+
 /// Keys that cut values into buckets, which are as many as a power of two.
 template <std::unsigned_integral T>
 class Splitters {
@@ -40,8 +42,8 @@ class Splitters {
       const T key = sample[samples * (i + 1)];
       const bool repeats =
           i > 0 && key == sample[samples * i] && key != std::numeric_limits<T>::max();
-      key_[i] =
-          key + static_cast<T>(repeats);  // the many values of one key have a bucket of their own
+      // The values of a key that many have get a bucket of their own, which is in order.
+      key_[i] = static_cast<T>(key + static_cast<T>(repeats));
     }
   }
 
@@ -86,7 +88,7 @@ void sort_bucket(std::span<T> from, std::span<T> to, unsigned low) {
 template <std::unsigned_integral T>
 void sample_sort(const Executor& executor, std::span<T> values, unsigned low) {
   const auto threads = static_cast<std::size_t>(executor.threads());
-  const Splitters<T> splitters(values, low, std::min<std::size_t>(std::bit_ceil(4 * threads), 256));
+  const Splitters<T> splitters(values, low, std::min(std::bit_ceil(4 * threads), most_buckets));
   const std::size_t buckets = splitters.bucket_count();
   const std::size_t block = std::max<std::size_t>(1024, values.size() / (2 * threads) + 1);
   const std::size_t blocks = (values.size() + block - 1) / block;
@@ -96,7 +98,7 @@ void sample_sort(const Executor& executor, std::span<T> values, unsigned low) {
   const auto scratch = make_unset<T>(executor, values.size());
   parallel_for_blocks(executor, values.size(), block,
                       [&](std::size_t b, std::size_t begin, std::size_t end) {
-                        std::array<std::uint32_t, 256> count{};
+                        std::array<std::uint32_t, most_buckets> count{};
                         for (std::size_t i = begin; i < end; ++i) {
                           const std::size_t bucket = splitters.bucket_of(values[i]);
                           bucket_of[i] = static_cast<std::uint8_t>(bucket);
@@ -113,7 +115,7 @@ void sample_sort(const Executor& executor, std::span<T> values, unsigned low) {
   begin_of[buckets] = all;
   parallel_for_blocks(executor, values.size(), block,
                       [&](std::size_t b, std::size_t begin, std::size_t end) {
-                        std::array<std::uint32_t, 256> place;
+                        std::array<std::uint32_t, most_buckets> place;
                         std::copy_n(place_of.begin() + b * buckets, buckets, place.begin());
                         for (std::size_t i = begin; i < end; ++i)
                           scratch[place[bucket_of[i]]++] = values[i];
