@@ -81,9 +81,9 @@ inline std::size_t everyone_of(const Executor& executor) {
   return static_cast<std::size_t>(executor.threads());
 }
 
-/// Calls work(thread) on the threads of the caller's team, the first `wanted`, or else on all of
-/// one of OpenMP's: of executor.threads() threads or fewer. The size of the latter does not follow
-/// the loop's: OpenMP runtimes end and create threads when it changes.
+/// Calls work(thread) on the first `wanted` threads of the caller's team, or else of one of
+/// OpenMP's, of executor.threads() threads or fewer. Its size does not follow the loop's: OpenMP
+/// runtimes end and create threads when it changes.
 template <class Work>
 void run_team(const Executor& executor, Turnout turnout, std::size_t wanted, Work&& work) {
   auto as_member = [&](int thread) {
@@ -99,7 +99,7 @@ void run_team(const Executor& executor, Turnout turnout, std::size_t wanted, Wor
   {
     const int thread = omp_get_thread_num();
     const detail::ScopedBinding binding(executor.places(), thread);
-    as_member(thread);
+    if (static_cast<std::size_t>(thread) < wanted) as_member(thread);
   }
 }
 

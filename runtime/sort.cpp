@@ -2,7 +2,9 @@
 
 namespace ductile::runtime::sort_detail {
 
-template void radix_sort(const Executor& executor, std::span<std::uint32_t> values, unsigned low);
-template void radix_sort(const Executor& executor, std::span<std::uint64_t> values, unsigned low);
+template void sort_integers(const Executor& executor, std::span<std::uint32_t> values,
+                            unsigned low);
+template void sort_integers(const Executor& executor, std::span<std::uint64_t> values,
+                            unsigned low);
 
 }  // namespace ductile::runtime::sort_detail

@@ -116,7 +116,6 @@ void run_steal_by_atomics(const Executor& executor, Loop& loop) {
   // The parts of threads that do not come, or not in time, are stolen.
   run_team(executor, Turnout::whoever_comes, wanted, [&](int thread) {
     const auto own = static_cast<std::size_t>(thread);
-    if (own >= wanted) return;  // of OpenMP's
     PartOfThread& mine = parts[own];
     if (own + 1 == wanted && !run_chunks(loop, mine.take_last())) return;
     work_and_steal(loop, parts, mine);

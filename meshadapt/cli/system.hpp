@@ -17,7 +17,7 @@ bool stderr_is_terminal();
 
 /// What is freed is used again rather than given back and asked for anew: kernels take and free the
 /// same arrays in turns. Few threads share one heap, which takes least memory; more would wait for
-/// each other there. With glibc; otherwise nothing. Thread safety: before there are other threads.
+/// each other there. With glibc; otherwise nothing. Thread safety: no other thread runs meanwhile.
 void reuse_memory(int threads);
 
 }  // namespace ductile::cli

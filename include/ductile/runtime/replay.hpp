@@ -1,9 +1,10 @@
 /// @file
 /// replay: what a recorded run would need on P threads, for P far past the cores at hand.
 /// Each loop's chunks go, in order, to whichever thread is free first, as a scheduler that balances
-/// does it; parts of loops wait there for those they were recorded to wait for. A loop ends with
-/// its last chunk and costs a launch; what lay between loops stays serial. It knows nothing of
-/// memory: caches and bandwidth that threads share make real runs slower.
+/// does it; parts of loops wait there for those they were recorded to wait for, where real threads
+/// begin others meanwhile. A loop ends with its last chunk and costs a launch; what lay between
+/// loops stays serial. It knows nothing of memory: caches and bandwidth that threads share make
+/// real runs slower.
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 /// parallel_sort, parallel_unique: sort by operator<, and drop repetitions, on all threads of an
 /// executor. The result does not depend on threads or timing as long as items of which neither is
 /// less are identical.
-/// Unsigned integers by radix, least significant digit first; other types by sorted blocks merged
+/// Unsigned integers by radix or, by many threads, by samples; other types by sorted blocks merged
 /// pairwise, each merge cut into pieces of equal length ("merge path"). What is large, or can only
 /// be moved, stays where it is until its order is known.
 #pragma once
@@ -13,6 +13,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <type_traits>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "ductile/runtime/detail/radix_sort.hpp"
+#include "ductile/runtime/detail/sample_sort.hpp"
 #include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
@@ -28,6 +30,29 @@
 namespace ductile::runtime {
 
 namespace sort_detail {
+
+/// Stable: sorts by value >> low. Few values are sorted soonest by one thread; of many, two or
+/// three threads share the passes of a radix sort as well as the buckets of a sample sort.
+template <std::unsigned_integral T>
+void sort_integers(const Executor& executor, std::span<T> values, unsigned low) {
+  const auto threads = static_cast<std::size_t>(executor.threads());
+  const std::size_t few = std::max<std::size_t>(4096, 16384 / threads);
+  const std::size_t most_sampled =
+      threads < 4 ? 300'000 : std::numeric_limits<std::uint32_t>::max();
+  if (threads == 1 || values.size() < few) {
+    radix_sort(Executor({.threads = 1}), values, low);
+  } else if (values.size() <= most_sampled) {
+    sample_sort(executor, values, low);
+  } else {
+    radix_sort(executor, values, low);
+  }
+}
+
+// Of items of most programs: compiled once.
+extern template void sort_integers(const Executor& executor, std::span<std::uint32_t> values,
+                                   unsigned low);
+extern template void sort_integers(const Executor& executor, std::span<std::uint64_t> values,
+                                   unsigned low);
 
 /// Of blocks that are sorted, merged or copied at once: enough of them for many threads.
 inline std::size_t block_size_of(std::size_t n) {
@@ -149,7 +174,7 @@ void parallel_sort(const Executor& executor, std::span<T> values) {
   if (sort_detail::is_sorted<T>(executor, values)) return;
   // Not bool and characters, of which there is no bit_width.
   if constexpr (std::unsigned_integral<T> && requires(T value) { std::bit_width(value); }) {
-    if (values.size() >= 1024) return sort_detail::radix_sort(executor, values, 0);
+    if (values.size() >= 1024) return sort_detail::sort_integers(executor, values, 0);
     std::sort(values.begin(), values.end());
   } else if constexpr (sort_detail::cheap_to_move<T>) {
     sort_detail::sort_in_place(executor, values);
@@ -162,7 +187,8 @@ void parallel_sort(const Executor& executor, std::span<T> values) {
 /// std::bad_alloc; no value is lost then. Thread safety: one thread.
 template <std::unsigned_integral T>
 void parallel_sort_above(const Executor& executor, std::span<T> values, unsigned low) {
-  if (!sort_detail::is_sorted<T>(executor, values)) sort_detail::radix_sort(executor, values, low);
+  if (!sort_detail::is_sorted<T>(executor, values))
+    sort_detail::sort_integers(executor, values, low);
 }
 
 /// Moves the first of each run of equal items (neither is less) of a sorted range to the front, in

@@ -1,6 +1,5 @@
 /// @file
-/// A radix sort of unsigned integers on all threads of an executor, least significant digit first,
-/// or, where there are too many threads or too few values for that, a sample sort.
+/// A radix sort of unsigned integers on all threads of an executor, least significant digit first.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +9,11 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <span>
 #include <utility>
 
-#include "ductile/runtime/detail/sample_sort.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -135,16 +132,6 @@ void scatter_by_digit(const Executor& executor, std::span<const T> from, std::sp
   parallel_for_blocks(executor, from.size(), pass.block, scatter);
 }
 
-/// Values that one thread sorts sooner than several.
-inline std::size_t few_for(std::size_t threads) {
-  return std::max<std::size_t>(4096, 16384 / threads);
-}
-
-/// Two threads share long passes as well as buckets.
-inline bool pays_to_sample(std::size_t size, std::size_t threads) {
-  return size <= (threads < 4 ? 300'000 : std::numeric_limits<std::uint32_t>::max());
-}
-
 /// One block for each thread, as long as one thread needs less to add up all counts than another
 /// takes off the work; or some more, if they are long.
 inline std::size_t radix_blocks(std::size_t size, std::size_t threads) {
@@ -157,10 +144,6 @@ inline std::size_t radix_blocks(std::size_t size, std::size_t threads) {
 template <std::unsigned_integral T>
 void radix_sort(const Executor& executor, std::span<T> values, unsigned low) {
   const auto threads = static_cast<std::size_t>(executor.threads());
-  if (threads > 1 && values.size() < few_for(threads))
-    return radix_sort(Executor({.threads = 1}), values, low);
-  if (threads > 1 && pays_to_sample(values.size(), threads))
-    return sample_sort(executor, values, low);
   const T top = parallel_reduce(
       executor, values.size(), T{0}, [&](std::size_t i) { return values[i]; },
       [](T a, T b) { return std::max(a, b); });
@@ -180,11 +163,5 @@ void radix_sort(const Executor& executor, std::span<T> values, unsigned low) {
   }
   if (from.data() != values.data()) copy<T>(executor, from, values);
 }
-
-// Of items of most programs: compiled once.
-extern template void radix_sort(const Executor& executor, std::span<std::uint32_t> values,
-                                unsigned low);
-extern template void radix_sort(const Executor& executor, std::span<std::uint64_t> values,
-                                unsigned low);
 
 }  // namespace ductile::runtime::sort_detail

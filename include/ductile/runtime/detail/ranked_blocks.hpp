@@ -125,7 +125,8 @@ class RankedBlocks {
     return false;
   }
 
-  /// Claims one of the next blocks that may run while one waits; none if nobody is to begin any.
+  /// Claims one of the blocks after `first` that may run while one waits; none if there is none
+  /// near by.
   std::size_t claim_instead(std::size_t waiting, std::size_t first) {
     constexpr std::size_t near = 512;
     const std::size_t count = rank_of_.size();

@@ -67,14 +67,14 @@ class Splitters {
 /// written.
 template <std::unsigned_integral T>
 void sort_bucket(std::span<T> from, std::span<T> to, unsigned low) {
-  constexpr unsigned digit_bits = 8;
+  constexpr unsigned digit_size = 8;
   T differing = 0;
   for (const T value : from) differing |= value ^ from.front();
   bool is_in_from = true;
-  for (unsigned shift = low; shift < std::numeric_limits<T>::digits; shift += digit_bits) {
+  for (unsigned shift = low; shift < std::numeric_limits<T>::digits; shift += digit_size) {
     if (differing >> shift == 0) break;
-    std::array<std::uint32_t, std::size_t{1} << digit_bits> place{};
-    const auto digit = [shift](T value) { return (value >> shift) & ((1U << digit_bits) - 1); };
+    std::array<std::uint32_t, std::size_t{1} << digit_size> place{};
+    const auto digit = [shift](T value) { return (value >> shift) & ((1U << digit_size) - 1); };
     for (const T value : from) ++place[digit(value)];
     std::exclusive_scan(place.begin(), place.end(), place.begin(), std::uint32_t{0});
     for (const T value : from) to[place[digit(value)]++] = value;
