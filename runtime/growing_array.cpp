@@ -103,12 +103,19 @@ void GrowingMemory::move_to_larger_space(std::size_t wanted) {
   std::byte* place = map_space(space);
   if (place == nullptr) place = map_space(space = wanted);
   if (place == nullptr) throw std::bad_alloc();
+  std::size_t gone = bytes_;  // from where they were
   if (bytes_ > 0 &&
       mremap(data_, bytes_, bytes_, MREMAP_MAYMOVE | MREMAP_FIXED, place) == MAP_FAILED) {
-    munmap(place, space);
-    throw std::bad_alloc();
+    // Linux before 6.17 does not if they belong to several mappings, as they do from the second
+    // time on.
+    gone = 0;
+    if (mprotect(place, bytes_, PROT_READ | PROT_WRITE) != 0) {
+      munmap(place, space);
+      throw std::bad_alloc();
+    }
+    std::copy_n(data_, bytes_, place);
   }
-  if (space_ > bytes_) munmap(data_ + bytes_, space_ - bytes_);
+  if (space_ > gone) munmap(data_ + gone, space_ - gone);
   data_ = place;
   space_ = space;
 }

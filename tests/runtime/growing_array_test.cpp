@@ -1,10 +1,19 @@
 #include "ductile/runtime/growing_array.hpp"
 
 #include <gtest/gtest.h>
+#ifdef __linux__
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#endif
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <new>
 #include <random>
@@ -59,6 +68,37 @@ TEST(GrowingArray, KeepsWhatItHoldsWhereItsPagesAreAskedFor) {
     for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(array[i], 3 * i) << n;
   }
 }
+
+#ifdef __linux__
+/// From here on the system moves no pages, unless it takes no such orders.
+void forbid_moving_pages() {
+  std::array<sock_filter, 4> filter = {
+      {{BPF_LD | BPF_W | BPF_ABS, 0, 0, offsetof(seccomp_data, nr)},
+       {BPF_JMP | BPF_JEQ | BPF_K, 0, 1, SYS_mremap},
+       {BPF_RET | BPF_K, 0, 0, SECCOMP_RET_ERRNO | EFAULT},
+       {BPF_RET | BPF_K, 0, 0, SECCOMP_RET_ALLOW}}};
+  const sock_fprog program = {filter.size(), filter.data()};
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0);
+}
+
+/// As before Linux 6.17 pages of several mappings could not be moved.
+TEST(GrowingArray, KeepsWhatItHoldsWherePagesCannotBeMoved) {
+  const auto grow = [] {
+    forbid_moving_pages();
+    GrowingArray<std::uint64_t> array;
+    for (const std::size_t n : {20000UL, 1000000UL, 2000000UL}) {  // to more than is held free
+      const std::size_t before = array.size();
+      array.resize(n);
+      for (std::size_t i = before; i < n; ++i) array[i] += 3 * i;
+      for (std::size_t i = 0; i < n; ++i)
+        if (array[i] != 3 * i) std::exit(1);
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(grow(), testing::ExitedWithCode(0), "");
+}
+#endif
 
 TEST(GrowingArray, GivesItsElementsAwayWhenMoved) {
   GrowingArray<int> a;
