@@ -62,6 +62,7 @@ struct Job {
   fs::path input, output;
   std::optional<fs::path> metric_in, metric_out, json, vtu, field_in, field_out;
   std::optional<double> size;
+  std::optional<std::size_t> memory;  // bytes
   AdaptOptions adapt;
   int verbosity = 1;
   int threads = 0;
@@ -130,6 +131,13 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   if (const auto n = arguments.integer("--iterations", 1, 1000)) adapt.iterations = *n;
 }
 
+std::vector<fs::path> outputs_of(const Job& job) {
+  std::vector<fs::path> paths = {job.output};
+  for (const auto& path : {job.metric_out, job.json, job.vtu, job.field_out})
+    if (path) paths.push_back(*path);
+  return paths;
+}
+
 Job read_job(const Arguments& arguments) {
   Job job;
   set_files(job, arguments);
@@ -138,10 +146,8 @@ Job read_job(const Arguments& arguments) {
   job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
   job.racing = arguments.has("--racing");
   if (const auto megabytes = arguments.integer("-m", 1, 1 << 30))
-    limit_memory(static_cast<std::size_t>(*megabytes) << 20U);
-  meshadapt::check_writable(job.output);
-  for (const auto& path : {job.metric_out, job.json, job.vtu, job.field_out})
-    if (path) meshadapt::check_writable(*path);
+    job.memory = static_cast<std::size_t>(*megabytes) << 20U;
+  meshadapt::check_writable(outputs_of(job));
   return job;
 }
 
@@ -224,6 +230,7 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::option
 }
 
 int work(const Executor& executor, const Job& job) {
+  if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
   const AnyMesh mesh = meshadapt::read_mesh(job.input, &warnings);
   const AnyField metric = choose_metric(job, mesh, warnings);

@@ -7,8 +7,22 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 
 namespace ductile::cli {
+
+namespace {
+
+/// Bytes of addresses that may be written, which is what systems limit, used or not. Where they are
+/// not told, 0.
+std::size_t writable_addresses() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t size = 0, resident = 0, shared = 0, text = 0, unused = 0, data = 0;
+  statm >> size >> resident >> shared >> text >> unused >> data;
+  return statm ? data * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+}  // namespace
 
 std::size_t peak_memory() {
   rusage usage{};
@@ -21,9 +35,10 @@ std::size_t peak_memory() {
 }
 
 void limit_memory(std::size_t bytes) {
+  const std::size_t held = peak_memory(), more = bytes > held ? bytes - held : 0;
   rlimit limit{};
   getrlimit(RLIMIT_DATA, &limit);
-  limit.rlim_cur = std::min<rlim_t>(bytes, limit.rlim_max);
+  limit.rlim_cur = std::min<rlim_t>(writable_addresses() + more, limit.rlim_max);
   setrlimit(RLIMIT_DATA, &limit);
 }
 

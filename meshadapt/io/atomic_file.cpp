@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -86,6 +87,16 @@ bool is_device(const fs::path& path) {
 
 bool is_written_directly(const fs::path& path) {
   return is_device(path) || descriptor_of(path).has_value();
+}
+
+/// The file that an output becomes, whatever it is called by. What is written directly is left as
+/// it is: what /dev/stdout leads to, as "pipe:[123]", is no name that could be opened.
+fs::path place_of(const fs::path& path) {
+  return is_written_directly(path) ? path : resolve_links(path).lexically_normal();
+}
+
+[[noreturn]] void complain_of_two_outputs(const fs::path& path) {
+  throw InputError(path.string() + ": is the name of two outputs; give each its own");
 }
 
 void expect_usable_name(const fs::path& path) {
@@ -240,12 +251,10 @@ AtomicOutputs::~AtomicOutputs() = default;
 
 OutputFile& AtomicOutputs::stage(const fs::path& path) {
   expect_usable_name(path);
-  // As it is: what /dev/stdout leads to, as "pipe:[123]", is no name that could be opened.
-  const fs::path target = is_written_directly(path) ? path : resolve_links(path).lexically_normal();
+  const fs::path place = place_of(path);
   for (const auto& file : files_)
-    if (file->path_ == target)
-      throw InputError(path.string() + ": is the name of two outputs; give each its own");
-  files_.push_back(std::make_unique<OutputFile>(target));
+    if (file->path_ == place) complain_of_two_outputs(path);
+  files_.push_back(std::make_unique<OutputFile>(place));
   return *files_.back();
 }
 
@@ -270,6 +279,15 @@ void check_writable(const fs::path& path) {
   const fs::path target = resolve_links(path);
   std::error_code ignored;
   fs::remove(create_temporary(target), ignored);
+}
+
+void check_writable(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> places;
+  for (const fs::path& path : paths) {
+    check_writable(path);
+    places.push_back(place_of(path));
+    if (std::count(places.begin(), places.end(), places.back()) > 1) complain_of_two_outputs(path);
+  }
 }
 
 }  // namespace ductile::meshadapt

@@ -67,10 +67,21 @@ TEST(AdaptCommand, TakesMmgsOptions) {
 TEST(AdaptCommand, FailsCleanlyWhenMemoryRunsOut) {
   const Folder folder;
   folder.add_example("waves3d");
-  const Outcome outcome = folder.run("adapt waves3d.mesh -m 4 --threads 1");
-  EXPECT_EQ(outcome.status, 1) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "out of memory")) << outcome.err;
+  for (const char* threads : {"1", "64"}) {
+    const Outcome outcome = folder.run(std::string("adapt waves3d.mesh -m 10 --threads ") + threads);
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "out of memory")) << outcome.err;
+  }
   EXPECT_EQ(folder.file_count(), 2U);
+}
+
+/// Of which threads hold 500 MB for their stacks.
+TEST(AdaptCommand, DoesNotTakeAddressesForMemory) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const Outcome outcome =
+      folder.run("adapt waves2d.mesh -m 100 --threads 64 --iterations 1 -o out.mesh");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
 TEST(AdaptCommand, FailsCleanlyWhenFilesMayNotGrow) {
@@ -299,6 +310,9 @@ TEST(AdaptCommand, ChecksItsOutputsBeforeItWorks) {
     EXPECT_EQ(outcome.status, 2) << option;
     EXPECT_TRUE(contains(outcome.err, "nowhere")) << outcome.err;
   }
+  const Outcome twice = folder.run("adapt none.mesh --json waves2d.vtu --vtu ./waves2d.vtu");
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_TRUE(contains(twice.err, "two outputs")) << twice.err;
   EXPECT_EQ(folder.file_count(), 2U);
 }
 

@@ -127,8 +127,16 @@ TEST(AtomicOutputs, RefusePlacesThatCannotBeWritten) {
   EXPECT_NE(complaint("/proc/a.mesh").find("/proc/a.mesh: cannot create"), std::string::npos);
   AtomicOutputs outputs;
   outputs.stage(folder / "a");
-  EXPECT_NE(test::complaint([&] { outputs.stage(folder / "a"); }).find("two outputs"),
-            std::string::npos);
+  fs::create_symlink(folder / "a", folder / "link");
+  for (const fs::path& again : {folder / "a", folder / "." / "a", folder / "link"}) {
+    EXPECT_NE(test::complaint([&] { outputs.stage(again); }).find("two outputs"),
+              std::string::npos);
+    EXPECT_NE(test::complaint([&] {
+                check_writable({folder / "a", folder / "b", again});
+              }).find(again.string() + ": is the name of two outputs"),
+              std::string::npos);
+  }
+  EXPECT_NO_THROW(check_writable({folder / "a", folder / "b", "/dev/null"}));
 }
 
 TEST(AtomicOutputs, RefuseAFolderWithoutPermission) {

@@ -89,4 +89,7 @@ class AtomicOutputs {
 /// the path is empty or a folder, or if its folder is missing or refuses a new file.
 void check_writable(const std::filesystem::path& path);
 
+/// The same of outputs that belong together, of which no two may be one file.
+void check_writable(const std::vector<std::filesystem::path>& paths);
+
 }  // namespace ductile::meshadapt
