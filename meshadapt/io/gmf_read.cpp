@@ -155,7 +155,8 @@ void read_gmf(const std::filesystem::path& path, const Target& target) {
     const FileBytes bytes = read_bytes(path);
     BinaryCursor::recognises(bytes) ? read_binary(bytes, target) : read_text(bytes, target);
   } catch (const std::bad_alloc&) {
-    throw Error(path.string() + ": not enough memory to read the file; allow more or use a larger machine");
+    throw Error(path.string() +
+                ": not enough memory to read the file; allow more or use a larger machine");
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <new>
 #include <pugixml.hpp>
 #include <span>
 #include <string_view>
@@ -32,16 +33,32 @@ const char* type_name(std::int64_t) { return "Int64"; }
 const char* type_name(std::int32_t) { return "Int32"; }
 const char* type_name(std::uint8_t) { return "UInt8"; }
 
+// pugixml says by what it returns that there is no memory, and does nothing then.
+void expect_memory(bool there_was) {
+  if (!there_was) throw std::bad_alloc();
+}
+
+pugi::xml_node add_node(pugi::xml_node parent, const char* name) {
+  const pugi::xml_node node = parent.append_child(name);
+  expect_memory(node);
+  return node;
+}
+
+template <class Value>
+void add_attribute(pugi::xml_node node, const char* name, const Value& value) {
+  expect_memory(node.append_attribute(name).set_value(value));
+}
+
 template <class Number>
 void add_array(pugi::xml_node parent, const std::string& name, int components,
                const std::vector<Number>& values) {
-  pugi::xml_node node = parent.append_child("DataArray");
-  node.append_attribute("type") = type_name(Number{});
-  node.append_attribute("Name") = name.c_str();
-  node.append_attribute("NumberOfComponents") = components;
-  node.append_attribute("format") = "binary";
+  pugi::xml_node node = add_node(parent, "DataArray");
+  add_attribute(node, "type", type_name(Number{}));
+  add_attribute(node, "Name", name.c_str());
+  add_attribute(node, "NumberOfComponents", components);
+  add_attribute(node, "format", "binary");
   const std::string text = vtk_encoded(std::as_bytes(std::span(values)));
-  node.append_child(pugi::node_pcdata).set_value(text.c_str());
+  expect_memory(node.append_child(pugi::node_pcdata).set_value(text.c_str()));
 }
 
 /// Where component (row, column) of a field stands among those of a vertex; -1: nowhere.
@@ -83,7 +100,7 @@ void add_field(pugi::xml_node parent, const VtuField& field, const AnyMesh& mesh
 
 void add_points(pugi::xml_node piece, const AnyMesh& mesh) {
   const VtuField points{"Points", Type::vector, mesh.coordinates};
-  add_field(piece.append_child("Points"), points, mesh);
+  add_field(add_node(piece, "Points"), points, mesh);
 }
 
 template <class Visit>
@@ -106,21 +123,21 @@ void add_cells(pugi::xml_node piece, const AnyMesh& mesh) {
     types.insert(types.end(), cells.size(), type);
     references.insert(references.end(), cells.reference.begin(), cells.reference.end());
   });
-  pugi::xml_node cells = piece.append_child("Cells");
+  const pugi::xml_node cells = add_node(piece, "Cells");
   add_array(cells, "connectivity", 1, connectivity);
   add_array(cells, "offsets", 1, offsets);
   add_array(cells, "types", 1, types);
-  add_array(piece.append_child("CellData"), "reference", 1, references);
+  add_array(add_node(piece, "CellData"), "reference", 1, references);
 }
 
 void add_piece(pugi::xml_node grid, const AnyMesh& mesh, const std::vector<VtuField>& fields) {
-  pugi::xml_node piece = grid.append_child("Piece");
+  const pugi::xml_node piece = add_node(grid, "Piece");
   const std::size_t cells = mesh.tetrahedra.size() + mesh.triangles.size() + mesh.edges.size();
-  piece.append_attribute("NumberOfPoints").set_value(mesh.vertex_count());
-  piece.append_attribute("NumberOfCells").set_value(cells);
+  add_attribute(piece, "NumberOfPoints", mesh.vertex_count());
+  add_attribute(piece, "NumberOfCells", cells);
   add_points(piece, mesh);
   add_cells(piece, mesh);
-  pugi::xml_node point_data = piece.append_child("PointData");
+  const pugi::xml_node point_data = add_node(piece, "PointData");
   add_array(point_data, "reference", 1, mesh.vertex_reference);
   for (const VtuField& field : fields) add_field(point_data, field, mesh);
 }
@@ -149,16 +166,16 @@ std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name)
 void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const std::vector<VtuField>& fields) {
   pugi::xml_document document;
-  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
-  declaration.append_attribute("version") = "1.0";
-  pugi::xml_node file = document.append_child("VTKFile");
-  file.append_attribute("type") = "UnstructuredGrid";
-  file.append_attribute("version") = "1.0";
-  file.append_attribute("byte_order") =
-      std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-  file.append_attribute("header_type") = "UInt64";
-  file.append_attribute("compressor") = "vtkZLibDataCompressor";
-  add_piece(file.append_child("UnstructuredGrid"), mesh, fields);
+  const pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  add_attribute(declaration, "version", "1.0");
+  const pugi::xml_node file = add_node(document, "VTKFile");
+  add_attribute(file, "type", "UnstructuredGrid");
+  add_attribute(file, "version", "1.0");
+  add_attribute(file, "byte_order",
+                std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian");
+  add_attribute(file, "header_type", "UInt64");
+  add_attribute(file, "compressor", "vtkZLibDataCompressor");
+  add_piece(add_node(file, "UnstructuredGrid"), mesh, fields);
   OutputWriter writer(outputs.stage(path));
   document.save(writer, " ");
 }

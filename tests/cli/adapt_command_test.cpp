@@ -68,7 +68,8 @@ TEST(AdaptCommand, FailsCleanlyWhenMemoryRunsOut) {
   const Folder folder;
   folder.add_example("waves3d");
   for (const char* threads : {"1", "64"}) {
-    const Outcome outcome = folder.run(std::string("adapt waves3d.mesh -m 10 --threads ") + threads);
+    const Outcome outcome =
+        folder.run(std::string("adapt waves3d.mesh -m 10 --threads ") + threads);
     EXPECT_EQ(outcome.status, 1) << outcome.err;
     EXPECT_TRUE(contains(outcome.err, "out of memory")) << outcome.err;
   }

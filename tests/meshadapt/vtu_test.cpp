@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <new>
 #include <pugixml.hpp>
 #include <string>
 #include <vector>
 
+#include "ductile/meshadapt/box_mesh.hpp"
 #include "io_support.hpp"
 
 namespace ductile::meshadapt {
@@ -190,6 +194,40 @@ TEST(Vtu, RefusesAFieldOfAnotherMesh) {
   const AnyMesh mesh = test::random_mesh(2, 4, 1);
   EXPECT_THROW(write_vtu(folder / "a.vtu", mesh, {{"h", Type::scalar, {1, 2, 3}}}), Error);
   EXPECT_EQ(folder.file_count(), 0U);
+}
+
+// ---- Without memory ----
+
+std::size_t allocations_left = 0;
+
+void* allocate_while_there_is(std::size_t bytes) {
+  if (allocations_left == 0) return nullptr;
+  --allocations_left;
+  return std::malloc(bytes);
+}
+
+TEST(Vtu, IsWholeOrNotThereIfMemoryRunsOut) {
+  const test::TemporaryFolder folder;
+  const AnyMesh mesh = rectangle_mesh({1, 1}, {120, 120});
+  const std::vector<VtuField> fields = {
+      {"u", Type::scalar, std::vector<double>(mesh.vertex_count(), 0.5)}};
+  write_vtu(folder / "whole.vtu", mesh, fields);
+  const auto allocate = pugi::get_memory_allocation_function();
+  const auto deallocate = pugi::get_memory_deallocation_function();
+  pugi::set_memory_management_functions(allocate_while_there_is, std::free);
+  std::size_t failures = 0;
+  for (bool done = false; !done; ++failures) {
+    allocations_left = failures;
+    try {
+      write_vtu(folder / "out.vtu", mesh, fields);
+      done = true;
+    } catch (const std::bad_alloc&) {
+      EXPECT_FALSE(std::filesystem::exists(folder / "out.vtu")) << failures;
+    }
+  }
+  pugi::set_memory_management_functions(allocate, deallocate);
+  EXPECT_GT(failures, 3U);
+  EXPECT_EQ(test::get_bytes(folder / "out.vtu"), test::get_bytes(folder / "whole.vtu"));
 }
 
 }  // namespace
