@@ -46,7 +46,7 @@ const Option* find(std::span<const Option> options, std::string_view word) {
 template <class Number>
 std::optional<Number> parse(std::string_view text) {
   Number value{};
-  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;

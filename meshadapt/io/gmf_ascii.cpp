@@ -66,14 +66,18 @@ std::string_view AsciiCursor::word() {
 
 /// Exponents written with D by Fortran, numbers too small for a double (0 then); else an error.
 double AsciiCursor::unusual_real() {
+  at_ = last_;
   const std::string_view found = peek();
-  std::string number(found.substr(0, 4096));
+  std::string_view digits = found;
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+  std::string number(digits.substr(0, 4096));
   std::replace_if(
       number.begin(), number.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
   double value = 0;
   const char* const number_end = number.data() + number.size();
   const auto [after, error] = std::from_chars(number.data(), number_end, value);
-  const bool is_number = after == number_end && number.size() == found.size();
+  const bool is_number =
+      error != std::errc::invalid_argument && after == number_end && number.size() == digits.size();
   if (is_number && error == std::errc::result_out_of_range && is_tiny(number))
     value = 0;
   else if (is_number && error == std::errc::result_out_of_range)
@@ -81,7 +85,7 @@ double AsciiCursor::unusual_real() {
          quoted(found) + "; correct it");
   else if (!is_number || !std::isfinite(value))
     fail_word("a finite number");
-  at_ += found.size();
+  at_ = last_ + found.size();
   return value;
 }
 
@@ -115,7 +119,10 @@ Place AsciiCursor::enter_records(Shape shape) {
 }
 
 std::string AsciiCursor::where(const char* at) const {
-  return std::string(name_) + ":" + std::to_string(1 + std::count(begin_, at, '\n')) + ": ";
+  std::size_t line = 1;
+  for (const char* c = begin_; c != at; ++c)
+    line += static_cast<std::size_t>(*c == '\n' || (*c == '\r' && (c + 1 == at || c[1] != '\n')));
+  return std::string(name_) + ":" + std::to_string(line) + ": ";
 }
 
 void AsciiCursor::fail_at(const char* at, const std::string& text) const {

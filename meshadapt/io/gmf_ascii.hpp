@@ -63,6 +63,7 @@ class AsciiCursor {
 
  private:
   void skip_space();
+  void skip_plus();
   bool at_word_end(const char* at) const { return at == end_ || is_space(*at) || *at == '#'; }
   static bool ends_line(char c) { return c == '\n' || c == '\r'; }
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -95,17 +96,22 @@ inline void AsciiCursor::skip_space() {
     if (is_space(*at_)) {
       ++at_;
     } else if (*at_ == '#') {
-      while (at_ != end_ && *at_ != '\n') ++at_;
+      skip_line();
     } else {
       return;
     }
   }
 }
 
+/// std::from_chars knows no plus sign.
+inline void AsciiCursor::skip_plus() {
+  if (end_ - at_ > 1 && *at_ == '+' && at_[1] != '-') ++at_;
+}
+
 inline std::int64_t AsciiCursor::integer() {
   skip_space();
   last_ = at_;
-  if (at_ != end_ && *at_ == '+') ++at_;
+  skip_plus();
   std::int64_t value = 0;
   const auto [after, error] = std::from_chars(at_, end_, value);
   if (error != std::errc{} || !at_word_end(after)) [[unlikely]]
@@ -117,7 +123,7 @@ inline std::int64_t AsciiCursor::integer() {
 inline double AsciiCursor::real() {
   skip_space();
   last_ = at_;
-  if (at_ != end_ && *at_ == '+') ++at_;
+  skip_plus();
   double value = 0;
   const auto [after, error] = std::from_chars(at_, end_, value);
   if (error != std::errc{} || !at_word_end(after) || value - value != 0) [[unlikely]]

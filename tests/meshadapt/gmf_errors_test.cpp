@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -190,6 +191,30 @@ TEST_F(GmfErrors, NeverMissACutText) {
   }
 }
 
+TEST_F(GmfErrors, NeverMissACutField) {
+  std::string text = "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n8\n2 1 2\n";
+  for (int v = 0; v < 8; ++v)
+    text += "0.12345678901234567 1.1234567890123457 -2.1234567890123457\n";
+  const std::string whole = text + "End\n";
+  test::put_bytes(folder_ / "whole.sol", whole);
+  ASSERT_EQ(read_field(folder_ / "whole.sol").values.size(), 24U);
+  for (std::size_t length = 0; length < text.size(); ++length)
+    EXPECT_NE(field_complaint(whole.substr(0, length)), "") << length;
+  EXPECT_NE(field_complaint(whole.substr(0, text.size() / 2)).find("the file is cut short"),
+            std::string::npos);
+}
+
+TEST_F(GmfErrors, TakeNoSignForANumber) {
+  for (const char* wrong : {"+-1", "-+1", "++1", "+ 1", "+", "-", "+\n#x\n1"}) {
+    EXPECT_TRUE(mesh_complaint(replaced(good_text, "1 0 0 1", std::string(wrong) + " 0 0 1"))
+                    .starts_with("bad.mesh:6: expected a finite number"))
+        << wrong;
+    EXPECT_TRUE(mesh_complaint(replaced(good_text, "1 0 0 1", std::string("1 0 0 ") + wrong))
+                    .starts_with("bad.mesh:6: expected an integer"))
+        << wrong;
+  }
+}
+
 // ---- What is odd but understood ----
 
 TEST_F(GmfErrors, AcceptFreeFormText) {
@@ -223,6 +248,15 @@ TEST_F(GmfErrors, TakeAnyWordsInSectionsOfText) {
     const Warnings warnings = mesh_warnings(replaced(good_text, "End\n", more));
     EXPECT_EQ(warnings.size(), 1U) << more;
   }
+}
+
+TEST_F(GmfErrors, TakeLinesThatEndAsOnOldMachines) {
+  std::string text = replaced(good_text, "Tetrahedra", "# four vertices\nTetrahedra");
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  EXPECT_TRUE(mesh_warnings(text).empty());
+  EXPECT_EQ(read_mesh(folder_ / "odd.mesh").tetrahedra.size(), 1U);
+  EXPECT_TRUE(
+      mesh_complaint(replaced(text, "1 2 3 4 5", "1 2 3 9 5")).starts_with("bad.mesh:12: "));
 }
 
 TEST_F(GmfErrors, ReportAMissingEnd) {
