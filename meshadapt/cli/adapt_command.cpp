@@ -133,9 +133,23 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
 
 std::vector<fs::path> outputs_of(const Job& job) {
   std::vector<fs::path> paths = {job.output};
-  for (const auto& path : {job.metric_out, job.json, job.vtu, job.field_out})
+  for (const auto& path : {job.metric_out, job.field_out, job.vtu, job.json})
     if (path) paths.push_back(*path);
   return paths;
+}
+
+/// A mesh may be adapted in place, with its metric; else what was read stays as it is.
+void expect_inputs_to_stay(const Job& job) {
+  std::vector<fs::path> inputs = {job.input}, fields;
+  for (const auto& path : {job.metric_in, job.field_in})
+    if (path) fields.push_back(*path);
+  inputs.insert(inputs.end(), fields.begin(), fields.end());
+  for (const auto& path : {job.json, job.vtu})
+    if (path) expect_no_input(*path, inputs);
+  std::error_code ignored;
+  if (fs::equivalent(job.output, job.input, ignored)) return;
+  for (const auto& path : {job.metric_out, job.field_out})
+    if (path) expect_no_input(*path, fields);
 }
 
 Job read_job(const Arguments& arguments) {
@@ -147,6 +161,7 @@ Job read_job(const Arguments& arguments) {
   job.racing = arguments.has("--racing");
   if (const auto megabytes = arguments.integer("-m", 1, 1 << 30))
     job.memory = static_cast<std::size_t>(*megabytes) << 20U;
+  expect_inputs_to_stay(job);
   meshadapt::check_writable(outputs_of(job));
   return job;
 }
@@ -251,10 +266,10 @@ int work(const Executor& executor, const Job& job) {
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string());
   if (job.verbosity > 0) {
     std::printf("%s", to_text(summary, job.verbosity > 1).c_str());
-    std::printf("written: %s", job.output.c_str());
-    for (const auto& path : {job.metric_out, job.field_out})
-      if (path) std::printf(", %s", path->c_str());
-    std::printf("\n");
+    std::string written;
+    for (const fs::path& path : outputs_of(job))
+      written += (written.empty() ? "written: " : ", ") + path.string();
+    std::printf("%s\n", written.c_str());
   }
   return done;
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "arguments.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
@@ -35,6 +36,14 @@ fs::path default_output(const fs::path& mesh) {
 fs::path field_beside(const fs::path& mesh) {
   fs::path output = mesh;
   return output.replace_extension(mesh.extension() == ".meshb" ? ".solb" : ".sol");
+}
+
+void expect_no_input(const fs::path& output, const std::vector<fs::path>& inputs) {
+  std::error_code ignored;
+  for (const fs::path& input : inputs)
+    if (fs::equivalent(output, input, ignored))
+      throw UsageError(output.string() +
+                       ": is read, and would be replaced; give the output another name");
 }
 
 meshadapt::AnyField read_metric(const fs::path& path, const meshadapt::AnyMesh& mesh,

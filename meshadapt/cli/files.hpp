@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
@@ -23,6 +24,10 @@ std::filesystem::path default_output(const std::filesystem::path& mesh);
 
 /// The same name with the ending of a field: .sol, or .solb for a .meshb.
 std::filesystem::path field_beside(const std::filesystem::path& mesh);
+
+/// Throws UsageError if an output that is none of its kind would take the place of an input.
+void expect_no_input(const std::filesystem::path& output,
+                     const std::vector<std::filesystem::path>& inputs);
 
 /// Reads a field and checks that it is a metric of this mesh.
 meshadapt::AnyField read_metric(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,

@@ -124,6 +124,8 @@ int work(const Executor& executor, const Arguments& arguments) {
 int run(const Arguments& arguments) {
   if (arguments.operands().size() != 1)
     throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
+  if (const auto json = arguments.text("--json"))
+    expect_no_input(*json, {arguments.operands()[0], arguments.text("-sol").value_or("")});
   return run_in_team({.threads = arguments.integer("--threads", 1, 4096).value_or(0)},
                      [&](const Executor& executor) { return work(executor, arguments); });
 }

@@ -89,10 +89,18 @@ bool is_written_directly(const fs::path& path) {
   return is_device(path) || descriptor_of(path).has_value();
 }
 
-/// The file that an output becomes, whatever it is called by. What is written directly is left as
-/// it is: what /dev/stdout leads to, as "pipe:[123]", is no name that could be opened.
+/// What to write for an output. What is written directly stays as it is: what /dev/stdout leads to,
+/// as "pipe:[123]", is no name that could be opened.
+fs::path file_of(const fs::path& path) {
+  return is_written_directly(path) ? path : resolve_links(path);
+}
+
+/// The same for all names of one file, which need not exist yet.
 fs::path place_of(const fs::path& path) {
-  return is_written_directly(path) ? path : resolve_links(path).lexically_normal();
+  const fs::path file = file_of(path);
+  std::error_code error;
+  const fs::path folder = fs::canonical(folder_of(file), error);
+  return error ? file : folder / file.filename();
 }
 
 [[noreturn]] void complain_of_two_outputs(const fs::path& path) {
@@ -253,8 +261,8 @@ OutputFile& AtomicOutputs::stage(const fs::path& path) {
   expect_usable_name(path);
   const fs::path place = place_of(path);
   for (const auto& file : files_)
-    if (file->path_ == place) complain_of_two_outputs(path);
-  files_.push_back(std::make_unique<OutputFile>(place));
+    if (place_of(file->path_) == place) complain_of_two_outputs(path);
+  files_.push_back(std::make_unique<OutputFile>(file_of(path)));
   return *files_.back();
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "adapt_report.hpp"
@@ -299,6 +300,28 @@ TEST(AdaptCommand, LeavesOldOutputWhenTheInputIsWrong) {
   EXPECT_EQ(folder.read("waves2d.o.mesh"), "old mesh");
   EXPECT_EQ(folder.read("waves2d.o.sol"), "old metric");
   EXPECT_EQ(folder.file_count(), 5U);
+}
+
+TEST(AdaptCommand, ReplacesWhatItReadOnlyInPlace) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const std::string mesh = folder.read("waves2d.mesh"), metric = folder.read("waves2d.sol");
+  std::filesystem::create_directory_symlink(".", folder.path() / "here");
+  for (const char* arguments :
+       {"adapt waves2d.mesh --json waves2d.mesh", "adapt waves2d.mesh --json here/waves2d.sol",
+        "info waves2d.mesh --json ./waves2d.mesh", "adapt here/waves2d.mesh --json waves2d.mesh",
+        "info waves2d.mesh -sol waves2d.sol --json here/waves2d.sol"}) {
+    const Outcome outcome = folder.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_TRUE(contains(outcome.err, "would be replaced")) << outcome.err;
+  }
+  folder.run("convert waves2d.mesh start.mesh");
+  EXPECT_EQ(folder.run("adapt start.mesh -sol waves2d.sol -o waves2d.mesh").status, 2);
+  EXPECT_EQ(folder.read("waves2d.mesh"), mesh);
+  EXPECT_EQ(folder.read("waves2d.sol"), metric);
+  EXPECT_EQ(folder.run("adapt here/waves2d.mesh --iterations 1 -o waves2d.mesh").status, 0);
+  EXPECT_NE(folder.read("waves2d.mesh"), mesh);
+  EXPECT_NE(folder.read("waves2d.sol"), metric);
 }
 
 TEST(AdaptCommand, ChecksItsOutputsBeforeItWorks) {

@@ -128,7 +128,10 @@ TEST(AtomicOutputs, RefusePlacesThatCannotBeWritten) {
   AtomicOutputs outputs;
   outputs.stage(folder / "a");
   fs::create_symlink(folder / "a", folder / "link");
-  for (const fs::path& again : {folder / "a", folder / "." / "a", folder / "link"}) {
+  fs::create_directory(folder / "deep");
+  fs::create_directory_symlink(folder / "", folder / "deep" / "up");
+  for (const fs::path& again : {folder / "a", folder / "." / "a", folder / "link",
+                                folder / "deep" / "up" / "a", folder / "deep" / ".." / "a"}) {
     EXPECT_NE(test::complaint([&] { outputs.stage(again); }).find("two outputs"),
               std::string::npos);
     EXPECT_NE(test::complaint([&] {
@@ -137,6 +140,17 @@ TEST(AtomicOutputs, RefusePlacesThatCannotBeWritten) {
               std::string::npos);
   }
   EXPECT_NO_THROW(check_writable({folder / "a", folder / "b", "/dev/null"}));
+}
+
+/// To the system the folder above is that of where the link leads.
+TEST(AtomicOutputs, GoUpFromWhereALinkLeads) {
+  const test::TemporaryFolder folder;
+  fs::create_directories(folder / "deep" / "down");
+  fs::create_directory_symlink(folder / "deep" / "down", folder / "link");
+  AtomicOutputs outputs;
+  outputs.stage(folder / "link" / ".." / "a").write("x");
+  outputs.commit();
+  EXPECT_EQ(test::get_bytes(folder / "deep" / "a"), "x");
 }
 
 TEST(AtomicOutputs, RefuseAFolderWithoutPermission) {
