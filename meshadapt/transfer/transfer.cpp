@@ -6,6 +6,8 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "mesh/finite_values.hpp"
+#include "mesh/first_bad.hpp"
 #include "transfer/projection.hpp"
 
 namespace ductile::meshadapt {
@@ -13,6 +15,26 @@ namespace ductile::meshadapt {
 using runtime::Executor;
 
 namespace {
+
+/// Throws unless all coordinates are so small that squares of distances are numbers; `what` has
+/// them.
+void expect_places(const Executor& executor, std::span<const double> coordinates, int dimension,
+                   const char* what) {
+  const std::size_t bad = first_bad(executor, coordinates.size(), [&](std::size_t i) {
+    return !(std::abs(coordinates[i]) <= 1e150);
+  });
+  if (bad != no_index)
+    throw InputError("expected coordinates from -1e150 to 1e150, found others at " +
+                     entity(what, bad / static_cast<std::size_t>(dimension)));
+}
+
+void expect_points(const Executor& executor, std::span<const double> coordinates, int dimension) {
+  if (coordinates.size() % static_cast<std::size_t>(dimension) != 0)
+    throw InputError("expected " + std::to_string(dimension) +
+                     " coordinates for each point, found " + std::to_string(coordinates.size()) +
+                     " in all");
+  expect_places(executor, coordinates, dimension, "point");
+}
 
 /// The values at points; fills in how many are outside. coordinates[point * Dim + axis].
 template <int Dim>
@@ -41,6 +63,8 @@ TransferredField transfer(const Executor& executor, const FieldOnMesh& from, con
                           const ProjectionOptions* projection) {
   const auto old_mesh = make_fixed_mesh<Dim>(executor, from.mesh);
   const auto new_mesh = make_fixed_mesh<Dim>(executor, to);
+  expect_places(executor, from.mesh.coordinates, Dim, "old vertex");
+  expect_places(executor, to.coordinates, Dim, "new vertex");
   const Locator<Dim> locator(executor, old_mesh);
   const Components field{from.field.values, stride_of(from.field)};
   TransferredField result;
@@ -59,22 +83,14 @@ template <int Dim>
 TransferredField sample(const Executor& executor, const FieldOnMesh& from,
                         std::span<const double> coordinates) {
   const auto mesh = make_fixed_mesh<Dim>(executor, from.mesh);
+  expect_places(executor, from.mesh.coordinates, Dim, "vertex");
+  expect_points(executor, coordinates, Dim);
   const Locator<Dim> locator(executor, mesh);
   const Components field{from.field.values, stride_of(from.field)};
   TransferredField result;
   result.field = {Dim, coordinates.size() / Dim, from.field.types, {}, from.field.name};
   result.field.values = interpolated(executor, locator, field, coordinates, result.report);
   return result;
-}
-
-void expect_points(std::span<const double> coordinates, int dimension) {
-  if (coordinates.size() % static_cast<std::size_t>(dimension) != 0)
-    throw InputError("expected " + std::to_string(dimension) +
-                     " coordinates for each point, found " + std::to_string(coordinates.size()) +
-                     " in all");
-  for (const double x : coordinates)
-    if (!(std::abs(x) <= 1e150))  // the square of a distance must be a number, too
-      throw InputError("expected coordinates of points from -1e150 to 1e150");
 }
 
 TransferredField transfer_any(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,
@@ -94,13 +110,13 @@ TransferredField interpolate_field(const Executor& executor, const FieldOnMesh& 
 TransferredField interpolate_at(const Executor& executor, const FieldOnMesh& from,
                                 std::span<const double> coordinates) {
   expect_field_of(from.field, from.mesh);
-  expect_points(coordinates, from.mesh.dimension);
   return from.mesh.dimension == 2 ? sample<2>(executor, from, coordinates)
                                   : sample<3>(executor, from, coordinates);
 }
 
 TransferredField project_field(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,
                                const ProjectionOptions& options) {
+  expect_finite(executor, from.field);
   return transfer_any(executor, from, to, &options);
 }
 

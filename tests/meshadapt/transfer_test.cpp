@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
@@ -290,6 +291,53 @@ TYPED_TEST(TransferIn, DoesNotDependOnThreads) {
   };
   const auto expected = run(1);
   for (const int threads : {2, 3, 4, 8}) EXPECT_EQ(expected, run(threads)) << threads;
+}
+
+/// What an InputError says, "" if there is none.
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TYPED_TEST(TransferIn, RefusesPlacesBeyondReasonEvenWhereNoElementIs) {
+  constexpr int Dim = TypeParam::value;
+  const AnyMesh mesh = holed_grid<Dim>(3, 13);
+  const AnyField field = field_on<Dim>(mesh, linear<Dim>);
+  const std::string which = "new vertex " + std::to_string(mesh.vertex_count() + 1);
+  for (const double x : {std::nan(""), 1e155, -HUGE_VAL}) {
+    AnyMesh other = mesh;
+    other.vertex_reference.push_back(0);
+    other.coordinates.insert(other.coordinates.end(), Dim, x);
+    EXPECT_NE(refusal([&] {
+                interpolate_field(executor, {mesh, field}, other);
+              }).find(which),
+              std::string::npos);
+    EXPECT_NE(refusal([&] {
+                project_field(executor, {mesh, field}, other);
+              }).find(which),
+              std::string::npos);
+    AnyField longer = field;
+    longer.vertex_count++;
+    longer.values.resize(longer.vertex_count * (Dim + 1));
+    EXPECT_THROW(interpolate_field(executor, {other, longer}, mesh), InputError);
+  }
+}
+
+TYPED_TEST(TransferIn, RefusesToProjectWhatIsNoNumber) {
+  constexpr int Dim = TypeParam::value;
+  const AnyMesh mesh = holed_grid<Dim>(3, 13), other = holed_grid<Dim>(6, 13);
+  for (const double value : {std::nan(""), HUGE_VAL}) {
+    AnyField field = field_on<Dim>(mesh, linear<Dim>);
+    field.values[5 * (Dim + 1) + 1] = field.values[9 * (Dim + 1)] = value;
+    EXPECT_NE(refusal([&] {
+                project_field(executor, {mesh, field}, other);
+              }).find("at vertex 6;"),
+              std::string::npos);
+  }
 }
 
 TYPED_TEST(TransferIn, RefusesAFieldOfAnotherMesh) {

@@ -33,14 +33,15 @@ struct TransferredField {
 
 /// The values that the old field, linear in each element, has at the new vertices. Keeps bounds,
 /// not integrals. A vertex outside the old mesh gets the value at the point of it that is closest.
-/// Throws InputError if a mesh is not valid (see make_fixed_mesh) or the field is not of the old
-/// one. Thread safety: one caller; runs on the executor.
+/// Throws InputError if a mesh is not valid (see make_fixed_mesh), a vertex of either is not within
+/// -1e150 to 1e150, or the field is not of the old one. Thread safety: one caller; runs on the
+/// executor.
 TransferredField interpolate_field(const runtime::Executor& executor, const FieldOnMesh& from,
                                    const AnyMesh& to);
 
 /// The same at points of one's own choice, one after another: coordinates[point * dimension +
 /// axis]. The field that is returned has them in place of vertices, and so does the report. Throws
-/// InputError as well if coordinates are not finite or do not come in whole points.
+/// InputError as well if coordinates are not within -1e150 to 1e150 or do not come in whole points.
 /// Thread safety: one caller; runs on the executor.
 TransferredField interpolate_at(const runtime::Executor& executor, const FieldOnMesh& from,
                                 std::span<const double> coordinates);
@@ -59,7 +60,8 @@ struct ProjectionOptions {
 /// meshes cover the same domain, the integral of each component is kept to rounding, with or
 /// without bounds. Where the new mesh reaches beyond the old one, as on curved boundaries, the
 /// interpolated field counts there, and what lies beyond the new mesh is lost: the report says how
-/// much volume that concerns. Throws as above. Thread safety: one caller; runs on the executor.
+/// much volume that concerns. Throws as above, and if a value is not finite, as it would spread.
+/// Thread safety: one caller; runs on the executor.
 TransferredField project_field(const runtime::Executor& executor, const FieldOnMesh& from,
                                const AnyMesh& to, const ProjectionOptions& options = {});
 
