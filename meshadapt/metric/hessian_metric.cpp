@@ -7,6 +7,8 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "mesh/finite_values.hpp"
+#include "mesh/first_bad.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -103,13 +105,16 @@ class HessianMetric {
       throw InputError("metric of a Hessian: expected a tensor for each of the " +
                        std::to_string(mesh_.vertex_count()) + " vertices, found " +
                        std::to_string(hessian_of.size()));
+    const std::size_t bad = first_bad(executor_, hessian_of.size(), [&](std::size_t v) {
+      const auto& m = hessian_of[v].m;
+      return !std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });
+    });
+    if (bad != no_index)
+      throw InputError("metric of a Hessian: expected finite numbers, found others at " +
+                       entity("vertex", bad));
     spectrum_.axes_of.resize(hessian_of.size());
     curvature_of_.resize(hessian_of.size());
     parallel_for(executor_, hessian_of.size(), [&](std::size_t v) {
-      for (const double component : hessian_of[v].m)
-        if (!std::isfinite(component))
-          throw InputError("metric of a Hessian: expected finite numbers, found none at vertex " +
-                           std::to_string(v + 1));
       spectrum_.axes_of[v] = principal_axes(hessian_of[v]);
       for (std::size_t i = 0; i < Dim; ++i)
         curvature_of_[v][i] = std::abs(spectrum_.axes_of[v].value[i]);
@@ -194,6 +199,7 @@ template <int Dim>
 SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
                                   const AnyField& field, const SolutionMetricOptions& options) {
   expect_gradation(options.gradation);
+  expect_finite(executor, field);  // a Hessian spreads it, so another vertex would be named
   const auto mesh = make_fixed_mesh<Dim>(executor, any);
   const std::size_t stride = stride_of(field);
   FittedMetric<Dim> all;

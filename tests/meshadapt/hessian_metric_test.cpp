@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fields.hpp"
@@ -137,8 +138,13 @@ TYPED_TEST(HessianMetricIn, RefusesWhatMakesNoSense) {
   EXPECT_THROW(fit({.complexity = -1}), InputError);
   EXPECT_THROW(fit({.norm = 0.5, .complexity = 10}), InputError);
   EXPECT_THROW(fit({.complexity = 10, .bounds = {.smallest = 2, .largest = 1}}), InputError);
-  scene.hessian_of[7].m[0] = std::nan("");
-  EXPECT_THROW(fit({.complexity = 10}), InputError);
+  for (std::size_t v = 7; v < scene.hessian_of.size(); ++v) scene.hessian_of[v].m[0] = infinity;
+  try {
+    fit({.complexity = 10});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("at vertex 8"), std::string::npos) << error.what();
+  }
   scene.hessian_of.pop_back();
   EXPECT_THROW(fit({.complexity = 10}), InputError);
 }
@@ -182,6 +188,20 @@ TYPED_TEST(HessianMetricIn, EstimatesTheErrorOfAFieldAsTheFitDoes) {
     const auto result = solution_metric(executor, scene.any, scalars(fronts<Dim>(scene.any)),
                                         {.goal = {.norm = norm, .error = 0.01}});
     EXPECT_NEAR(result.fit.error, 0.01, 1e-6) << norm;
+  }
+}
+
+/// The first bad one of the field, not one that its Hessian spreads to.
+TYPED_TEST(HessianMetricIn, NamesTheVertexWithAValueThatIsNoNumber) {
+  constexpr int Dim = TypeParam::value;
+  const Scene<Dim> scene;
+  AnyField field = fronts<Dim>(scene.any);
+  field.values[2 * 5 + 1] = field.values[2 * 8] = std::nan("");
+  try {
+    solution_metric(executor, scene.any, field, {.goal = {.complexity = 1000}});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("at vertex 6;"), std::string::npos) << error.what();
   }
 }
 

@@ -55,7 +55,7 @@ struct SolutionMetric {
 /// Each gets a metric from its Hessian; they are intersected, graded if wanted, and with a
 /// complexity as the goal scaled to it once more. With an error as the goal, it is that of each
 /// before grading. The error reported is the largest, of the metric returned. Throws InputError as
-/// above, or if the field is not of this mesh.
+/// above, or if the field is not of this mesh or has values that are not finite.
 /// Thread safety: one caller; runs on the executor.
 SolutionMetric solution_metric(const runtime::Executor& executor, const AnyMesh& mesh,
                                const AnyField& field, const SolutionMetricOptions& options);
