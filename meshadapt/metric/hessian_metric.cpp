@@ -52,6 +52,15 @@ double extent(const Executor& executor, const FixedMesh<Dim>& mesh) {
   return norm(diagonal);
 }
 
+/// The bounds that hold, those included that are not given.
+template <int Dim>
+SizeBounds bounds_in_force(const Executor& executor, const FixedMesh<Dim>& mesh,
+                           SizeBounds bounds) {
+  if (bounds.anisotropy == 0) bounds.anisotropy = default_anisotropy;
+  if (bounds.largest == 0) bounds.largest = std::max(extent(executor, mesh), bounds.smallest);
+  return bounds;
+}
+
 /// The L^p norm of what has these values at the vertices, none below 0, over the largest of them so
 /// that no power of it leaves the range of numbers.
 template <int Dim>
@@ -74,9 +83,7 @@ class HessianMetric {
                 const HessianMetricOptions& options)
       : executor_(executor), mesh_(mesh), options_(options) {
     expect_options(options_);
-    if (options_.bounds.anisotropy == 0) options_.bounds.anisotropy = default_anisotropy;
-    if (options_.bounds.largest == 0)
-      options_.bounds.largest = std::max(extent(executor, mesh), options_.bounds.smallest);
+    options_.bounds = bounds_in_force(executor, mesh, options_.bounds);
   }
 
   FittedMetric<Dim> fit(const std::vector<Metric<Dim>>& hessian_of) {
@@ -218,9 +225,10 @@ SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
       intersect(executor, all.metric_of, one.metric_of);
   }
   if (options.goal.complexity > 0 && (stride > 1 || options.gradation > 0))
-    all.fit =
-        scale_to_complexity<Dim>(executor, all.metric_of, mesh,
-                                 {options.goal.complexity, options.goal.bounds, options.gradation});
+    all.fit = scale_to_complexity<Dim>(
+        executor, all.metric_of, mesh,
+        {options.goal.complexity, bounds_in_force(executor, mesh, options.goal.bounds),
+         options.gradation});
   else if (options.gradation > 0)
     limit_gradation(executor, all.metric_of, mesh, {.factor = options.gradation});
   for (const auto& hessian_of : hessians)

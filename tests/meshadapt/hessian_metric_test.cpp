@@ -191,6 +191,21 @@ TYPED_TEST(HessianMetricIn, EstimatesTheErrorOfAFieldAsTheFitDoes) {
   }
 }
 
+/// Of which the second is hardly there: to share the complexity with it, the first must be coarser.
+TYPED_TEST(HessianMetricIn, OfSeveralFieldsAsksForNoSizeLargerThanTheMesh) {
+  constexpr int Dim = TypeParam::value;
+  const Scene<Dim> scene;
+  AnyField field = fronts<Dim>(scene.any);
+  for (std::size_t v = 0; v < scene.mesh.vertex_count(); ++v)
+    field.values[2 * v + 1] = std::exp(-300 * scene.mesh.position_of[v][1]);
+  const auto result = solution_metric(executor, scene.any, field, {.goal = {.complexity = 50}});
+  EXPECT_TRUE(result.fit.reached);
+  for (const Metric<Dim>& metric : tensors_of<Dim>(executor, result.metric)) {
+    const auto value = principal_axes(metric).value;
+    EXPECT_GE(*std::min_element(value.begin(), value.end()), (1 - 1e-9) / Dim);  // extent sqrt(d)
+  }
+}
+
 /// The first bad one of the field, not one that its Hessian spreads to.
 TYPED_TEST(HessianMetricIn, NamesTheVertexWithAValueThatIsNoNumber) {
   constexpr int Dim = TypeParam::value;
