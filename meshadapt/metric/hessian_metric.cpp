@@ -171,6 +171,61 @@ class HessianMetric {
   Spectrum<Dim> spectrum_;
 };
 
+/// Whether second derivatives are nothing but the rounding of the values they come from: those of a
+/// linear function are, and a metric of them would be noise. A Hessian H says that the function
+/// departs by d'Hd / 8 from its interpolant along an edge d. Values are rounded by eps/2 of the
+/// largest, more where they are sums, and fits to them amplify that, most where surroundings are
+/// one-sided. Shorter edges near by make the noise of longer ones, as rounding over the square of
+/// an edge does.
+template <int Dim>
+class Roundoff {
+ public:
+  Roundoff(const FixedMesh<Dim>& mesh, const std::vector<double>& value_of)
+      : mesh_(mesh), value_of_(value_of) {}
+
+  bool explains(const Executor& executor, const std::vector<Metric<Dim>>& hessian_of) const {
+    constexpr double amplified = 100 * std::numeric_limits<double>::epsilon();
+    const double largest_value = parallel_reduce(
+        executor, value_of_.size(), 0.0, [&](std::size_t v) { return std::abs(value_of_[v]); },
+        largest_of);
+    std::vector<double> shortest_at(mesh_.vertex_count());  // squared
+    parallel_for(executor, shortest_at.size(),
+                 [&](std::size_t v) { shortest_at[v] = shortest(v); });
+    const double departure = parallel_reduce(
+        executor, hessian_of.size(), 0.0,
+        [&](std::size_t v) { return seen_at(v, hessian_of[v], shortest_at); }, largest_of);
+    return departure <= amplified * largest_value;
+  }
+
+ private:
+  template <class Visit>
+  void each_edge(std::size_t v, Visit&& visit) const {
+    for (const ElementId e : mesh_.elements_of(static_cast<VertexId>(v)))
+      for (const VertexId other : mesh_.corners_of[e])
+        if (other != v) visit(other, mesh_.position_of[other] - mesh_.position_of[v]);
+  }
+
+  double shortest(std::size_t v) const {
+    double least = std::numeric_limits<double>::infinity();
+    each_edge(v, [&](VertexId, const Vector<Dim>& d) { least = std::min(least, dot(d, d)); });
+    return least;
+  }
+
+  /// The largest |d'Hd|, as on a mesh whose edges are as short as those near by.
+  double seen_at(std::size_t v, const Metric<Dim>& hessian,
+                 const std::vector<double>& shortest_at) const {
+    double most = 0, nearby = shortest_at[v];
+    each_edge(v, [&](VertexId other, const Vector<Dim>& d) {
+      most = std::max(most, std::abs(squared_length(hessian, d)));
+      nearby = std::min(nearby, shortest_at[other]);
+    });
+    return most > 0 ? most * (nearby / shortest_at[v]) : 0;
+  }
+
+  const FixedMesh<Dim>& mesh_;
+  const std::vector<double>& value_of_;
+};
+
 /// |H|: the tensor with the absolute values of the eigenvalues.
 template <int Dim>
 Metric<Dim> absolute(const Metric<Dim>& hessian) {
@@ -217,6 +272,8 @@ SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
     parallel_for(executor, value_of.size(),
                  [&](std::size_t v) { value_of[v] = field.values[v * stride + component]; });
     hessians.push_back(recover_hessian<Dim>(executor, mesh, value_of, options.recovery));
+    if (Roundoff<Dim>(mesh, value_of).explains(executor, hessians.back()))
+      hessians.back().assign(mesh.vertex_count(), Metric<Dim>{});
     FittedMetric<Dim> one = hessian_metric<Dim>(executor, mesh, hessians.back(), options.goal);
     all.fit.reached = all.fit.reached && one.fit.reached;
     if (component == 0)

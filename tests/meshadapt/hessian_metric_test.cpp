@@ -206,6 +206,55 @@ TYPED_TEST(HessianMetricIn, OfSeveralFieldsAsksForNoSizeLargerThanTheMesh) {
   }
 }
 
+/// In any direction, with an offset, and with rounding of the sums that it is.
+TYPED_TEST(HessianMetricIn, OfALinearFieldIsUniform) {
+  constexpr int Dim = TypeParam::value;
+  Random random(11);
+  for (int round = 0; round < 24; ++round) {
+    AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 5 + 2 * round : 2 + round / 3));
+    test::jiggle(any, random, 0.3);
+    std::vector<double> value_of;
+    Vector<Dim> slope;
+    for (int axis = 0; axis < Dim; ++axis) slope[axis] = uniform(random, -2, 2);
+    const double thickness = std::pow(10.0, -(round % 4));  // the mesh is stretched, too
+    for (std::size_t v = 0; v < any.vertex_count(); ++v) {
+      double& x = any.coordinates[v * Dim];
+      if (round % 3 == 2) x *= x;  // and graded
+      x *= thickness;
+      value_of.push_back((round % 2 == 0 ? 0 : 100) + dot(slope, position_in<Dim>(any, v)));
+    }
+    for (const Recovery recovery : {Recovery::least_squares, Recovery::double_projection}) {
+      const auto result = solution_metric(executor, any, scalar_field(Dim, value_of),
+                                          {.goal = {.complexity = 1000}, .recovery = recovery});
+      EXPECT_TRUE(result.fit.reached);
+      const auto metric_of = tensors_of<Dim>(executor, result.metric);
+      const auto mesh = make_fixed_mesh<Dim>(executor, any);
+      const double volume = integral<Dim>(executor, mesh, std::vector(any.vertex_count(), 1.0));
+      const double size = std::pow(1000 / volume, -1.0 / Dim);
+      for (const Metric<Dim>& metric : metric_of)
+        ASSERT_LT(difference(metric, isotropic<Dim>(size)), 1e-7) << round;
+    }
+  }
+}
+
+/// However little it is, as long as it is more than rounding.
+TYPED_TEST(HessianMetricIn, SeesTheCurvatureOfAFieldThatIsNearlyLinear) {
+  constexpr int Dim = TypeParam::value;
+  const Scene<Dim> scene;
+  std::vector<double> value_of;
+  for (const Vector<Dim>& x : scene.mesh.position_of)
+    value_of.push_back(x[0] + 2 * x[1] + 1e-9 * std::tanh(10 * (x[0] - 0.5)));
+  const auto result = solution_metric(executor, scene.any, scalar_field(Dim, value_of),
+                                      {.goal = {.complexity = 1000}});
+  double anisotropy = 1;
+  for (const Metric<Dim>& metric : tensors_of<Dim>(executor, result.metric)) {
+    const auto value = principal_axes(metric).value;
+    const auto [low, high] = std::minmax_element(value.begin(), value.end());
+    anisotropy = std::max(anisotropy, std::sqrt(*high / *low));
+  }
+  EXPECT_GT(anisotropy, 5);
+}
+
 /// The first bad one of the field, not one that its Hessian spreads to.
 TYPED_TEST(HessianMetricIn, NamesTheVertexWithAValueThatIsNoNumber) {
   constexpr int Dim = TypeParam::value;

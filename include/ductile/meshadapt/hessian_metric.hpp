@@ -52,7 +52,8 @@ struct SolutionMetric {
 };
 
 /// All in one: the metric that suits every component of every field at the vertices of the mesh.
-/// Each gets a metric from its Hessian; they are intersected, graded if wanted, and with a
+/// Each gets a metric from its Hessian, which counts as 0 where the component is linear everywhere
+/// but for rounding; they are intersected, graded if wanted, and with a
 /// complexity as the goal scaled to it once more. With an error as the goal, it is that of each
 /// before grading. The error reported is the largest, of the metric returned. Throws InputError as
 /// above, or if the field is not of this mesh or has values that are not finite.
