@@ -21,6 +21,11 @@ void expect_coordinates(const AnyMesh& mesh) {
   const std::string dimension = std::to_string(mesh.dimension);
   if (mesh.dimension != 2 && mesh.dimension != 3)
     throw InputError(mesh.name + ": expected dimension 2 or 3, found " + dimension);
+  const std::size_t places = mesh.coordinates.size() / static_cast<std::size_t>(mesh.dimension);
+  if (places > mesh.vertex_count())
+    throw InputError(mesh.name + ": expected a reference in vertex_reference for each of the " +
+                     std::to_string(places) + " vertices that have coordinates, found " +
+                     std::to_string(mesh.vertex_count()));
   if (mesh.coordinates.size() != static_cast<std::size_t>(mesh.dimension) * mesh.vertex_count())
     throw InputError(mesh.name + ": expected " + dimension + " coordinates for each of the " +
                      std::to_string(mesh.vertex_count()) + " vertices, found " +

@@ -7,7 +7,8 @@
 
 namespace ductile::meshadapt {
 
-/// Throws InputError unless the mesh is of dimension 2 or 3 and has all coordinates.
+/// Throws InputError unless the mesh is of dimension 2 or 3 and each vertex has its coordinates and
+/// its reference.
 void expect_coordinates(const AnyMesh& mesh);
 
 /// Throws InputError unless there is a reference for each edge, triangle and tetrahedron.

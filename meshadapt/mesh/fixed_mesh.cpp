@@ -9,6 +9,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
+#include "mesh/indices.hpp"
 
 namespace ductile::meshadapt {
 
@@ -47,14 +48,7 @@ class FixedMeshMaker {
       fail(std::string("expected ") + (Dim == 2 ? "triangles" : "tetrahedra") + ", found none");
     if (any_.vertex_count() >= none || elements.size() >= none / 4)
       fail("too many entities for 32-bit numbers");
-    const std::size_t bad = first_bad(executor_, elements_in<Dim>(any_).size(), [&](std::size_t e) {
-      for (const VertexId v : elements[e])
-        if (v >= any_.vertex_count()) return true;
-      return false;
-    });
-    if (bad != no_index)
-      fail(entity(element_name<Dim>(), bad) + " names a vertex beyond the " +
-           std::to_string(any_.vertex_count()) + " that there are");
+    expect_corners<Dim>(executor_, any_);
   }
 
   void place_vertices() {
@@ -160,6 +154,10 @@ std::array<Vector<Dim>, Dim + 1> hat_gradients(const std::array<Vector<Dim>, Dim
 template <int Dim>
 double integral(const Executor& executor, const FixedMesh<Dim>& mesh,
                 std::span<const double> value_of) {
+  if (value_of.size() != mesh.vertex_count())
+    throw InputError("integral: expected a value for each of the " +
+                     std::to_string(mesh.vertex_count()) + " vertices, found " +
+                     std::to_string(value_of.size()));
   return runtime::parallel_reduce(
       executor, mesh.vertex_count(), 0.0,
       [&](std::size_t v) { return mesh.share_of[v] * value_of[v]; },

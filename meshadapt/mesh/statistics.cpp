@@ -14,6 +14,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/grouping.hpp"
+#include "mesh/indices.hpp"
 #include "mesh/numbering.hpp"
 
 namespace ductile::meshadapt {
@@ -199,8 +200,9 @@ MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const A
   return result;
 }
 
-void expect_lengths(const AnyMesh& mesh, const AnyField* metric) {
+void expect_measurable(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   expect_coordinates(mesh);
+  mesh.dimension == 2 ? expect_corners<2>(executor, mesh) : expect_corners<3>(executor, mesh);
   if (metric == nullptr) return;
   expect_field_of(*metric, mesh);
   if (metric->types != std::vector{AnyField::Type::symmetric})
@@ -214,7 +216,7 @@ void expect_lengths(const AnyMesh& mesh, const AnyField* metric) {
 
 std::vector<double> element_qualities(const Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric) {
-  expect_lengths(mesh, metric);
+  expect_measurable(executor, mesh, metric);
   if (mesh.dimension == 2)
     return qualities<2>(executor, make_sites<2>(executor, mesh, metric),
                         elements_in<2>(mesh).vertices);
@@ -223,7 +225,7 @@ std::vector<double> element_qualities(const Executor& executor, const AnyMesh& m
 }
 
 MeshStatistics measure(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
-  expect_lengths(mesh, metric);
+  expect_measurable(executor, mesh, metric);
   return mesh.dimension == 2 ? measure_in<2>(executor, mesh, metric)
                              : measure_in<3>(executor, mesh, metric);
 }

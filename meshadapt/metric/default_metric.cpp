@@ -10,6 +10,8 @@
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh/indices.hpp"
 #include "metric/metric_of_element.hpp"
 
 namespace ductile::meshadapt {
@@ -49,9 +51,11 @@ struct LogLengths {
   std::vector<std::uint32_t> count;
 };
 
-template <int Corners>
-void add_cells(LogLengths& logs, const AnyMesh& mesh, const Cells<Corners>& cells) {
-  for (const auto& corner : cells.vertices) {
+template <int Dim>
+void add_elements(LogLengths& logs, const AnyMesh& mesh) {
+  for (std::size_t e = 0; e < elements_in<Dim>(mesh).size(); ++e) {
+    if (names_others<Dim>(mesh, e)) refuse_corners<Dim>(mesh, e);
+    const auto& corner = elements_in<Dim>(mesh).vertices[e];
     for (std::size_t i = 0; i < corner.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         const double length = distance(mesh, corner[i], corner[j]);
@@ -102,11 +106,9 @@ AnyField constant_metric(const AnyMesh& mesh, double size) {
 }
 
 AnyField implied_metric(const AnyMesh& mesh) {
+  expect_coordinates(mesh);
   LogLengths logs(mesh.vertex_count());
-  if (mesh.dimension == 2)
-    add_cells(logs, mesh, mesh.triangles);
-  else
-    add_cells(logs, mesh, mesh.tetrahedra);
+  mesh.dimension == 2 ? add_elements<2>(logs, mesh) : add_elements<3>(logs, mesh);
   double sum = 0, count = 0;
   for (std::size_t v = 0; v < logs.sum.size(); ++v) {
     sum += logs.sum[v];

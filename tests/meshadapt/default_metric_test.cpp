@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/meshes.hpp"
@@ -58,6 +60,24 @@ TYPED_TEST(DefaultMetricIn, RefusesLengthsBeyondReason) {
   AnyMesh any = test::make_grid(test::unit_grid(TypeParam::value, 1));
   for (double& x : any.coordinates) x *= 1e80;
   EXPECT_THROW(implied_metric(any), InputError);
+}
+
+TYPED_TEST(DefaultMetricIn, RefusesAMeshThatIsNotComplete) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(TypeParam::value, 2));
+  AnyMesh bare = mesh;
+  bare.vertex_reference.clear();
+  try {
+    implied_metric(bare);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("vertex_reference"), std::string::npos);
+  }
+  AnyMesh cut = mesh;
+  cut.coordinates.pop_back();
+  EXPECT_THROW(implied_metric(cut), InputError);
+  AnyMesh wrong = mesh;
+  elements_in<TypeParam::value>(wrong).vertices[1][1] = 1000000;
+  EXPECT_THROW(implied_metric(wrong), InputError);
 }
 
 /// Rotated, so that what is thin is along no axis, and rounding shows.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <utility>
+#include <vector>
 
 #include "ductile/meshadapt/error.hpp"
 #include "support/meshes.hpp"
@@ -70,6 +71,14 @@ TYPED_TEST(FixedMeshIn, DifferentiatesAndIntegratesLinearFunctionsExactly) {
     for (std::size_t i = 0; i <= Dim; ++i) gradient += value_of[mesh.corners_of[e][i]] * hat[i];
     EXPECT_LT(norm(gradient - slope), 1e-11);
   }
+}
+
+TYPED_TEST(FixedMeshIn, IntegratesOnlyWhatHasAValueAtEachVertex) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 2});
+  const auto mesh = make_fixed_mesh<Dim>(executor, test::make_grid(test::unit_grid(Dim, 2)));
+  EXPECT_THROW(integral<Dim>(executor, mesh, std::vector<double>(mesh.vertex_count() - 1)),
+               InputError);
 }
 
 TYPED_TEST(FixedMeshIn, TurnsInvertedElementsAndRefusesBadOnes) {

@@ -143,6 +143,16 @@ TEST(Statistics, RefuseArraysThatDoNotFit) {
   EXPECT_NE(complaint(nullptr).find("each of the 9 vertices, found 17"), std::string::npos);
 }
 
+TEST(Statistics, RefuseElementsOfVerticesThatAreNotThere) {
+  const runtime::Executor executor({.threads = 2});
+  for (const int dimension : {2, 3}) {
+    AnyMesh mesh = test::make_grid(test::unit_grid(dimension, 2));
+    (dimension == 2 ? mesh.triangles.vertices[3][1] : mesh.tetrahedra.vertices[3][1]) = 5000;
+    EXPECT_THROW(measure(executor, mesh, nullptr), InputError);
+    EXPECT_THROW(element_qualities(executor, mesh, nullptr), InputError);
+  }
+}
+
 TEST(Statistics, AreTheSameAtEachThreadCount) {
   const AnyMesh mesh = grid(60);
   const AnyField metric = implied_metric(mesh);

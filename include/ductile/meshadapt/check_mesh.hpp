@@ -33,7 +33,8 @@ std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& afte
 
 /// Which listed facets cross each other: a line that names the first two, empty if none do. Those
 /// that only touch, or lie in one plane, or do so but for rounding, do not cross. Elements of
-/// positive volume whose boundary does not cross itself do not overlap.
+/// positive volume whose boundary does not cross itself do not overlap. Precondition: all vertices
+/// have coordinates and facets name no others, as check_mesh() says of a mesh.
 /// Takes a logarithm more than linear in the facets. Thread safety: one caller; runs on the
 /// executor.
 std::vector<std::string> check_boundary(const runtime::Executor& executor, const AnyMesh& mesh);

@@ -14,7 +14,8 @@ AnyField constant_metric(const AnyMesh& mesh, double size);
 
 /// Asks at each vertex for the geometric mean of the lengths of its edges, in every direction; a
 /// vertex without any gets the mean of the whole mesh. Throws InputError for lengths beyond the
-/// sizes that a metric may ask for. Thread safety: any thread.
+/// sizes that a metric may ask for, for vertices without coordinates or reference, and for elements
+/// that name others. Thread safety: any thread.
 AnyField implied_metric(const AnyMesh& mesh);
 
 /// The metric that the mesh is adapted to already, stretched as it is: for each element there is

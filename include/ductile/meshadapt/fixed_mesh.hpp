@@ -57,6 +57,7 @@ template <int Dim>
 std::array<Vector<Dim>, Dim + 1> hat_gradients(const std::array<Vector<Dim>, Dim + 1>& points);
 
 /// Integral over the mesh of what is linear in each element and has these values at the vertices.
+/// Throws InputError unless there is one for each.
 template <int Dim>
 double integral(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,
                 std::span<const double> value_of);

@@ -44,7 +44,8 @@ struct MeshStatistics {
 
 /// Measures the triangles of a mesh of dimension 2, the tetrahedra of one of dimension 3. `metric`
 /// is one symmetric tensor per vertex (see metric_of), or null for Euclidean figures. Throws
-/// InputError unless the mesh has all coordinates, and the metric a tensor for each vertex.
+/// InputError unless vertices have coordinates and references, the metric has a tensor for each,
+/// and elements name no others.
 /// Thread safety: one thread; runs on the executor.
 MeshStatistics measure(const runtime::Executor& executor, const AnyMesh& mesh,
                        const AnyField* metric);
