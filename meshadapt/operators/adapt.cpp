@@ -7,7 +7,9 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/team.hpp"
+#include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
+#include "metric/spectrum.hpp"
 #include "operators/processor_level.hpp"
 
 namespace ductile::meshadapt {
@@ -35,17 +37,27 @@ void expect_numbers(const runtime::Executor& executor, const AnyField& metric) {
         std::to_string(bad + 1) + ", found one that is not; correct the metric there");
 }
 
+void expect_options(const AdaptOptions& options) {
+  if (options.iterations < 0)
+    throw InputError("adaptation: expected 0 iterations or more, found " +
+                     std::to_string(options.iterations));
+  for (const double size : {options.smallest_size, options.largest_size})
+    if (!std::isfinite(size))
+      throw InputError("adaptation: expected finite bounds on sizes, or 0 for none");
+  expect_bounds({.smallest = options.smallest_size, .largest = options.largest_size});
+  expect_gradation(options.gradation);
+}
+
 }  // namespace
 
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options) {
+  expect_options(options);
+  expect_coordinates(mesh);
   if (metric.types != std::vector{AnyField::Type::symmetric} ||
       metric.dimension != mesh.dimension || metric.vertex_count != mesh.vertex_count())
     throw InputError(metric.name + ": expected one symmetric tensor for each of the " +
                      std::to_string(mesh.vertex_count()) + " vertices of " + mesh.name);
-  if (mesh.dimension != 2 && mesh.dimension != 3)
-    throw InputError(mesh.name + ": expected dimension 2 or 3, found " +
-                     std::to_string(mesh.dimension));
   AdaptedMesh adapted;
   runtime::with_team(executor, [&] {
     expect_numbers(executor, metric);

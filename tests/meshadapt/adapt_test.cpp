@@ -320,6 +320,32 @@ TEST_P(Adapt, RefusesArraysThatDoNotFitAndValuesThatAreNoMetric) {
   odd = mesh;
   odd.triangles.reference.pop_back();
   expect_refused(odd, metric);
+  odd = mesh;
+  odd.vertex_reference.clear();
+  try {
+    adapt(Executor({.threads = 1}), odd, metric);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("vertex_reference"), std::string::npos);
+  }
+}
+
+TEST_P(Adapt, RefusesOptionsThatMakeNoSense) {
+  const AnyMesh mesh = rich_mesh();
+  const AnyField metric = constant_metric(mesh, 0.5);
+  const auto expect_refused = [&](const AdaptOptions& options) {
+    EXPECT_THROW(adapt(Executor({.threads = 1}), mesh, metric, options), InputError);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  expect_refused({.iterations = -1});
+  for (const double size : {-0.1, nan, infinity}) {
+    expect_refused({.smallest_size = size});
+    expect_refused({.largest_size = size});
+  }
+  expect_refused({.smallest_size = 0.2, .largest_size = 0.1});
+  for (const double gradation : {0.5, nan, infinity}) expect_refused({.gradation = gradation});
+  EXPECT_NO_THROW(adapt(Executor({.threads = 1}), mesh, metric, {.gradation = -1}));
 }
 
 }  // namespace

@@ -23,6 +23,9 @@ struct AdaptProgress {
   std::size_t changes = 0;
 };
 
+/// adapt() refuses iterations, sizes and gradations that make no sense: those that are negative
+/// (but for gradations) or not finite, a smallest size above the largest, a gradation between 0
+/// and 1.
 struct AdaptOptions {
   int iterations = 16;       ///< at most this many rounds of the four kernels, but for those on
                              ///< the way to a metric that is far from the mesh
@@ -76,11 +79,12 @@ struct AdaptedMesh {
 /// Adapts `mesh` to `metric`, which has one symmetric positive definite tensor per vertex (see
 /// metric_field.hpp to get one from a file). With a deterministic executor the result depends on
 /// nothing but the input and the last bits of the C library's exp() and log(), of which glibc has
-/// one version for processors with AVX2 and one for others. Throws InputError for input that is not
-/// a valid mesh, Error if memory runs out. If the executor has a recording, each kernel gets a
-/// section of it: "setup", "coarsen", "refine", "swap", "smooth", "renumber", and "other" for what
-/// is between them.
-/// Thread safety: any thread; the work runs on the executor.
+/// one version for processors with AVX2 and one for others. Throws InputError for options that make
+/// no sense and input that is not a valid mesh; std::bad_alloc if memory runs out,
+/// std::length_error if there would be more entities than 32 bits count. If the executor has a
+/// recording, each kernel gets a section of it: "setup", "coarsen", "refine", "swap", "smooth",
+/// "renumber", and "other" for what is between them. Thread safety: any thread; the work runs on
+/// the executor.
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options = {});
 

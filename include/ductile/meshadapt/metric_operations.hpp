@@ -62,7 +62,7 @@ struct GradationReport {
 /// In each sweep a vertex intersects its metric with those of its neighbours before the sweep, in
 /// the order of their numbers, so the result does not depend on threads or timing. metric_of is
 /// indexed by the vertices of the mesh; the metrics in the mesh are not read. Throws InputError if
-/// the factor is below 1 or not finite, Error if memory runs out.
+/// the factor is below 1 or not finite, std::bad_alloc if memory runs out.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 GradationReport limit_gradation(const runtime::Executor& executor,
