@@ -177,7 +177,9 @@ class Work {
     start();
     meshadapt::bound_sizes(executor_, metric_of_, goal_.bounds);
     if (job_.gradation > 0) grade();
-    return meshadapt::symmetric_field(executor_, metric_of_, job_.output.string());
+    AnyField metric = meshadapt::symmetric_field(executor_, metric_of_, job_.output.string());
+    expect_metric(metric);
+    return metric;
   }
 
   std::string summary() const {
@@ -199,6 +201,18 @@ class Work {
   }
 
  private:
+  /// Throws unless it is one that would be read again.
+  void expect_metric(const AnyField& metric) const {
+    try {
+      meshadapt::metric_of(metric, mesh_);
+    } catch (const meshadapt::InputError& error) {
+      const std::string why = error.what();
+      throw meshadapt::InputError(
+          why.substr(0, why.rfind(';')) +
+          "; ask for one within that, or give -hmin, -hmax or --anisotropy");
+    }
+  }
+
   void start() {
     if (job_.operation == "make") return make();
     if (job_.operation == "implied") return imply();
@@ -243,11 +257,17 @@ class Work {
 
   void check(const meshadapt::MetricFit& fit) {
     if (fit.reached) return;
+    const char* const goal = goal_.error > 0 ? "error" : "complexity";
+    const bool finer = goal_.error > 0 ? !(fit.error <= 2 * goal_.error)
+                                       : !(fit.complexity >= goal_.complexity / 2);
+    if (finer && goal_.bounds.smallest == 0)  // so only the range of numbers is in the way
+      throw meshadapt::InputError(job_.operation +
+                                  ": no metric of sizes from 1e-75 to 1e75 has the " + goal +
+                                  " asked for; ask for another");
     char text[200];
     std::snprintf(text, sizeof text,
                   "no metric within the bounds has the %s asked for; the nearest found has %.6g",
-                  goal_.error > 0 ? "error" : "complexity",
-                  goal_.error > 0 ? fit.error : fit.complexity);
+                  goal, goal_.error > 0 ? fit.error : fit.complexity);
     warnings_.push_back(text);
   }
 

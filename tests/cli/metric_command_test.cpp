@@ -170,6 +170,21 @@ TEST(MetricCommand, Intersects) {
   EXPECT_GT(scene.complexity<2>("i.sol"), scene.complexity<2>("waves2d.sol"));
 }
 
+TEST(MetricCommand, WritesNoMetricThatWouldBeRefused) {
+  const Scene scene("waves2d");
+  scene.folder.write("old.sol", "old metric");
+  for (const char* words :
+       {"make waves2d.mesh f.sol --elements 1e300", "make waves2d.mesh f.sol --error 1e-300",
+        "scale waves2d.mesh waves2d.sol --complexity 1e200",
+        "scale waves2d.mesh waves2d.sol --complexity 1e152",
+        "scale waves2d.mesh waves2d.sol --complexity 1e-300"}) {
+    const Outcome outcome = scene.folder.run(std::string("metric ") + words + " -o old.sol");
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, "sizes from 1e-75 to 1e75")) << outcome.err;
+  }
+  EXPECT_EQ(scene.folder.read("old.sol"), "old metric");
+}
+
 TEST(MetricCommand, TakesTheMetricThatTheMeshImplies) {
   const Scene scene("waves3d");
   EXPECT_EQ(scene.folder.run("metric implied waves3d.mesh -o i.sol").status, 0);
