@@ -1,6 +1,7 @@
 #include "arguments.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -27,20 +28,63 @@ const Option* find(std::span<const Option> options, std::string_view word) {
   return nullptr;
 }
 
-[[noreturn]] void refuse_unknown(std::span<const Option> options, std::string_view word) {
+/// Mmg's options that no command has, without dashes, and what to do instead; the whole of it is in
+/// docs/coming-from-mmg.md.
+struct MmgOption {
+  std::string_view name, instead;
+};
+constexpr std::array<MmgOption, 25> mmg_options{{
+    {"A", "Mmg's, not here: sizes differ between directions where the metric has tensors"},
+    {"d", "Mmg's, not here: -v 2 says more"},
+    {"default", "Mmg's, not here: there are no files of parameters"},
+    {"f", "Mmg's, not here: put sizes that differ by reference into the metric"},
+    {"hgradreq", "Mmg's, not here: -hgrad holds everywhere"},
+    {"in", "Mmg's: here the mesh is given without an option before it"},
+    {"isoref", "Mmg's, not here: level sets must be cut out before"},
+    {"keep-ref", "Mmg's, not here: all references are kept"},
+    {"lag", "Mmg's, not here: meshes are not moved along displacements"},
+    {"ls", "Mmg's, not here: level sets must be cut out before"},
+    {"lssurf", "Mmg's, not here: level sets must be cut out before"},
+    {"nofem", "Mmg's, not here: leave it out"},
+    {"nosizreq", "Mmg's, not here: leave it out, as what is required changes no sizes"},
+    {"nr", "Mmg's, not here: without -hausd all edges stay, with it -ar says which do"},
+    {"nreg", "Mmg's, not here: normals are not smoothed"},
+    {"nsd", "Mmg's, not here: the whole mesh is written"},
+    {"octree", "Mmg's, not here: leave it out"},
+    {"opnbdy", "Mmg's, not here: leave it out, as listed facets are always kept"},
+    {"optim", "Mmg's, not here: leave out -sol, and sizes are kept if no .sol is beside the mesh"},
+    {"optimLES", "Mmg's, not here: --thorough goes on for better shapes"},
+    {"out", "Mmg's: here it is -o"},
+    {"rmc", "Mmg's, not here: no part of a mesh is removed"},
+    {"rn", "Mmg's, not here: leave it out, as what is adapted is renumbered"},
+    {"val", "Mmg's, not here: the list of options has their defaults"},
+    {"xreg", "Mmg's, not here: vertices are not moved to smooth a surface"},
+}};
+
+/// The option whose name is closest to a word, if it is so close that the word may be a slip: one
+/// letter in three, two at most.
+std::string_view nearest_name(std::span<const Option> options, std::string_view word) {
   std::string_view nearest;
   std::size_t least = 3;
   for (const Option& option : options) {
     for (const std::string_view name : {option.name, option.alias}) {
       const std::size_t distance = edit_distance(without_dashes(word), without_dashes(name));
-      if (name.empty() || distance >= std::min(least, without_dashes(name).size())) continue;
+      if (distance >= least || distance > without_dashes(name).size() / 3) continue;
       least = distance;
       nearest = name;
     }
   }
-  std::string message = "unknown option " + std::string(word);
-  if (!nearest.empty()) message += "; did you mean " + std::string(nearest) + "?";
-  throw UsageError(message);
+  return nearest;
+}
+
+[[noreturn]] void refuse_unknown(std::span<const Option> options, std::string_view word) {
+  const std::string message = "unknown option " + std::string(word);
+  for (const MmgOption& option : mmg_options)
+    if (option.name == without_dashes(word))
+      throw UsageError(message + "; " + std::string(option.instead));
+  const std::string_view nearest = nearest_name(options, word);
+  if (nearest.empty()) throw UsageError(message);
+  throw UsageError(message + "; did you mean " + std::string(nearest) + "?");
 }
 
 template <class Number>

@@ -1,8 +1,8 @@
 /// @file
 /// Arguments: a command line taken apart by a table of options. One or two dashes mean the same, so
 /// what Mmg's users type (-hmin 0.1) and GNU's long form (--hmin=0.1) both work. Whatever is wrong
-/// is told by a UsageError that says what was expected and, for an unknown option, which is
-/// nearest.
+/// is told by a UsageError that says what was expected and, for an unknown option, which it may be
+/// a slip of, or what to do instead if it is one of Mmg's.
 #pragma once
 
 #include <map>

@@ -26,6 +26,15 @@ TEST(Program, ShowsItsCommandsAndVersion) {
   }
 }
 
+TEST(Program, SuggestsOptionsOnlyWhereTheyAreClose) {
+  const Folder folder;
+  for (const char* word : {"--foo", "-nr", "-in", "-val", "-x", "-ab"}) {
+    const Outcome outcome = folder.run(std::string("adapt a.mesh ") + word);
+    EXPECT_EQ(outcome.status, 2) << word;
+    EXPECT_FALSE(contains(outcome.err, "did you mean")) << outcome.err;
+  }
+}
+
 TEST(Program, TellsWhatIsWrongWithACommandLine) {
   const Folder folder;
   const auto expect = [&](const char* words, const char* part) {
@@ -37,6 +46,10 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adpat", "did you mean 'adapt'");
   expect("adapt a.mesh -hmn 1", "did you mean -hmin?");
   expect("adapt a.mesh --itertions 1", "did you mean --iterations?");
+  expect("adapt a.mesh -nr", "unknown option -nr; Mmg's, not here: without -hausd all edges stay");
+  expect("adapt a.mesh -in b.mesh", "unknown option -in; Mmg's: here the mesh is given without");
+  expect("adapt a.mesh --val", "unknown option --val; Mmg's");
+  expect("adapt a.mesh -optim", "leave out -sol");
   expect("adapt a.mesh -hmin", "expected X after it, found nothing");
   expect("adapt a.mesh -hmin -hmax 1", "expected X after it, found nothing");
   expect("adapt a.mesh -hmin zero", "a number above 0, found 'zero'");
