@@ -35,6 +35,22 @@ TEST(Program, SuggestsOptionsOnlyWhereTheyAreClose) {
   }
 }
 
+TEST(Program, SaysWhichMeshCannotBeDrawnAndWhatToDo) {
+  const Folder folder;
+  const std::string head = "MeshVersionFormatted 2\nDimension 2\nVertices 3\n";
+  folder.write("bare.mesh", head + "0 0 0\n1 0 0\n0 1 0\nEnd\n");
+  folder.write("vast.mesh", head + "-1e308 0 0\n1e308 0 0\n0 1 0\nTriangles 1\n1 2 3 1\nEnd\n");
+  const Outcome bare = folder.run("view bare.mesh"), vast = folder.run("view vast.mesh");
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_TRUE(contains(bare.err,
+                       "bare.mesh: expected triangles or tetrahedra to draw, found "
+                       "neither; give a mesh"))
+      << bare.err;
+  EXPECT_EQ(vast.status, 2);
+  EXPECT_TRUE(contains(vast.err, "vast.mesh: ")) << vast.err;
+  EXPECT_TRUE(contains(vast.err, "scale the mesh")) << vast.err;
+}
+
 TEST(Program, TellsWhatIsWrongWithACommandLine) {
   const Folder folder;
   const auto expect = [&](const char* words, const char* part) {

@@ -61,7 +61,8 @@ Layout lay_out(const Scene& scene, int size) {
   const double larger = std::max(widest, highest);
   layout.scale = larger > 0 ? layout.size / larger : 1;
   if (!std::isfinite(layout.scale) || !std::isfinite(larger))
-    throw meshadapt::InputError("expected a mesh whose extent is from 1e-300 to 1e300, to draw it");
+    throw meshadapt::InputError(scene.caption +
+                                ": expected an extent from 1e-300 to 1e300; scale the mesh");
   layout.panel_width = std::max(widest * layout.scale, 0.35 * layout.size);
   layout.panel_height = std::max(highest * layout.scale, 1.0);
   const auto panels = static_cast<double>(scene.panels.size());

@@ -119,7 +119,8 @@ Scene make_scene(const runtime::Executor& executor, const AnyMesh& mesh, const A
                  const SceneOptions& options) {
   if (mesh.triangles.size() == 0 && mesh.tetrahedra.size() == 0)
     throw meshadapt::InputError(mesh.name +
-                                ": expected triangles or tetrahedra to draw, found neither");
+                                ": expected triangles or tetrahedra to draw, found neither; give "
+                                "a mesh with some");
   Scene scene;
   scene.caption = caption_of(mesh);
   const Tinting tinting = tint_elements(executor, mesh, metric, options.tint);
