@@ -305,7 +305,7 @@ int run(const Arguments& arguments) {
 
 const Command metric_command{
     "metric",
-    "make|implied|intersect|scale|bound|grade MESH FIELD... -o OUT",
+    "make|implied|intersect|scale|bound|grade MESH [FILE...] -o OUT",
     "makes metrics from fields, and changes them",
     "  make MESH FIELD           the metric in which linear interpolation of all that FIELD has "
     "at\n"
