@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <mutex>
 
@@ -46,13 +47,26 @@ extern "C" void ductile_on_steal_signal(int number, siginfo_t* info, void* conte
   errno = error_before;
 }
 
-/// The highest number that nobody handles, or else the highest; 0 if there are none.
+/// Whether the calling thread does not want it handled: it may wait for it, by sigwait() or a
+/// signalfd, and no handler shows that.
+bool is_blocked(int number) {
+  sigset_t blocked;
+  sigemptyset(&blocked);
+  pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+  return sigismember(&blocked, number) == 1;
+}
+
+/// The highest number that nobody handles, or else the highest; of those that the calling thread
+/// does not block. 0 if there are none.
 int choose_number() {
+  int highest = 0;
   for (int number = SIGRTMAX; number >= SIGRTMIN; --number) {
     struct sigaction action = {};
-    if (sigaction(number, nullptr, &action) == 0 && !has_handler(action)) return number;
+    if (is_blocked(number) || sigaction(number, nullptr, &action) != 0) continue;
+    if (!has_handler(action)) return number;
+    highest = std::max(highest, number);
   }
-  return SIGRTMAX >= SIGRTMIN ? SIGRTMAX : 0;
+  return highest;
 }
 
 }  // namespace
@@ -69,6 +83,8 @@ StealSignal::StealSignal(Handler handler) noexcept {
     loan.handler = handler;
     if (sigaction(number, &action, nullptr) != 0) return;
     loan.number = number;
+  } else if (is_blocked(loan.number)) {
+    return;
   }
   ++loan.users;
   number_ = loan.number;

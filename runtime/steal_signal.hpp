@@ -2,7 +2,8 @@
 /// StealSignal: the loan of a real-time signal while loops steal by signal (private to the
 /// runtime). The number is one without a handler, chosen when the first loop asks; it is given
 /// back, with the disposition it had, when the last one is over. If all numbers have handlers, one
-/// is shared: signals that no thief sent go on to the handler that was there.
+/// is shared: signals that no thief sent go on to the handler that was there. One that the calling
+/// thread blocks is never taken, as the program may wait for it: sigwait(), a signalfd, a timer.
 #pragma once
 
 #include <csignal>
@@ -15,7 +16,8 @@ class StealSignal {
   /// lock-free atomics only.
   using Handler = void (*)(void* sent);
 
-  /// Throws nothing: ask available().
+  /// Throws nothing: ask available(). There is none where the calling thread blocks them all, or
+  /// the one that another loop has on loan.
   explicit StealSignal(Handler handler) noexcept;
   ~StealSignal();
   StealSignal(const StealSignal&) = delete;
