@@ -89,6 +89,13 @@ std::shared_ptr<const Places> make_places(Placement placement) {
   return places->count() == 0 ? nullptr : places;
 }
 
+std::vector<unsigned> processors(const Places& places) {
+  std::vector<unsigned> numbers;
+  for (std::size_t i = 0; i < places.count(); ++i)
+    numbers.push_back(static_cast<unsigned>(hwloc_bitmap_first(places.unit(i))));
+  return numbers;
+}
+
 void ScopedBinding::bind(const Places& places, int thread) noexcept {
   hwloc_bitmap_t before = hwloc_bitmap_alloc();
   if (before == nullptr) return;

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "ductile/runtime/executor.hpp"
 
@@ -15,6 +16,9 @@ namespace ductile::runtime::detail {
 /// topology is hidden. With more threads than units, units are used again. Never throws but
 /// std::bad_alloc.
 std::shared_ptr<const Places> make_places(Placement placement);
+
+/// The system's numbers of these processing units.
+std::vector<unsigned> processors(const Places& places);
 
 /// Binds the calling thread until destruction; does nothing if the system refuses.
 class ScopedBinding {

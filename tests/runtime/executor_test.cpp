@@ -4,12 +4,15 @@
 #include <sched.h>
 #include <unistd.h>
 
-#include <atomic>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <vector>
 
+#include "binding.hpp"
 #include "cgroup.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
@@ -35,28 +38,73 @@ TEST(Executor, RefusesThreadCountsThatMakeNoSense) {
   EXPECT_GE(available_cores(), 1);
 }
 
+/// The masks that each thread has in a loop of which it gets a part.
+std::vector<cpu_set_t> masks(const Executor& executor) {
+  std::vector<cpu_set_t> mask_of(static_cast<std::size_t>(executor.threads()));
+  parallel_for(executor, mask_of.size(),
+               [&](std::size_t) { mask_of[static_cast<std::size_t>(this_thread())] = affinity(); },
+               {.grain = 1, .schedule = Schedule::omp_static});
+  return mask_of;
+}
+
+/// Whether the system lets a thread choose where it runs, among several places.
+bool can_bind() {
+  bool can = false;
+  std::thread([&] {
+    cpu_set_t one = affinity();
+    if (CPU_COUNT(&one) < 2) return;
+    for (std::size_t cpu = 0; CPU_COUNT(&one) > 1; ++cpu) CPU_CLR(cpu, &one);
+    can = sched_setaffinity(0, sizeof one, &one) == 0 && same(affinity(), one);
+  }).join();
+  return can;
+}
+
 TEST(Executor, BindsThreadsForTheLoopAndNoLonger) {
   const cpu_set_t before = affinity();
+  const bool binds = can_bind();
   for (const Placement placement : {Placement::compact, Placement::scatter})
     for (int threads : {1, 2, 3, 8}) {
-      std::vector<cpu_set_t> during(static_cast<std::size_t>(threads), before);
       {
         const Executor executor({.threads = threads, .placement = placement});
-        parallel_for(
-            executor, 1000,
-            [&](std::size_t) { during[static_cast<std::size_t>(this_thread())] = affinity(); },
-            {.grain = 1});
+        const auto during = masks(executor);
         EXPECT_TRUE(same(affinity(), before));
+        const bool bound = binds && threads > 1;  // one thread runs as its caller
+        for (const cpu_set_t& mask : during)
+          EXPECT_TRUE(bound ? CPU_COUNT(&mask) == 1 : same(mask, before));
+        for (std::size_t t = 1; bound && t < during.size(); ++t) {
+          const bool again = t % static_cast<std::size_t>(CPU_COUNT(&before)) == 0;
+          EXPECT_EQ(same(during[t], during[0]), again) << "thread " << t << " of " << threads;
+        }
       }
-      // A thread that got no work, or a system that refuses, leaves the mask as it was.
-      for (const cpu_set_t& mask : during) EXPECT_TRUE(CPU_COUNT(&mask) == 1 || same(mask, before));
-      std::vector<cpu_set_t> after(static_cast<std::size_t>(threads), before);
-      parallel_for(
-          Executor({.threads = threads}), 1000,
-          [&](std::size_t) { after[static_cast<std::size_t>(this_thread())] = affinity(); },
-          {.grain = 1});
-      for (const cpu_set_t& mask : after) EXPECT_TRUE(same(mask, before));
+      for (const cpu_set_t& mask : masks(Executor({.threads = threads})))
+        EXPECT_TRUE(same(mask, before));
     }
+  if (!binds) GTEST_SKIP() << "threads cannot be bound here";
+}
+
+/// A machine that is not there until destruction, for hwloc.
+class Machine {
+ public:
+  explicit Machine(const char* description) { setenv("HWLOC_SYNTHETIC", description, 1); }
+  ~Machine() { unsetenv("HWLOC_SYNTHETIC"); }
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+};
+
+TEST(Places, ArePhysicalCoresBeforeTheirSecondHyperthreads) {
+  using Processors = std::vector<unsigned>;
+  const auto places = [](Placement placement) {
+    return detail::processors(*detail::make_places(placement));
+  };
+  {
+    const Machine two_packages("package:2 core:3 pu:2");
+    EXPECT_EQ(places(Placement::compact), (Processors{0, 2, 4, 6, 8, 10, 1, 3, 5, 7, 9, 11}));
+    EXPECT_EQ(places(Placement::scatter), (Processors{0, 6, 2, 8, 4, 10, 1, 7, 3, 9, 5, 11}));
+  }
+  const Machine cores_alone("pu:3");
+  EXPECT_EQ(places(Placement::compact), (Processors{0, 1, 2}));
+  EXPECT_EQ(places(Placement::scatter), (Processors{0, 1, 2}));
+  EXPECT_EQ(detail::make_places(Placement::none), nullptr);
 }
 
 class Cgroup : public testing::Test {
