@@ -38,7 +38,8 @@ struct SourcedUpdate {
 };
 }  // namespace detail
 
-/// Valid until its DeferredUpdate releases its memory. Copies are as good.
+/// Valid until its DeferredUpdate releases its memory. Copies are as good. One that is made without
+/// a DeferredUpdate can only be assigned to.
 /// Thread safety: the thread that asked for it, while it may defer at all.
 template <class T>
 class Deferrer {

@@ -20,7 +20,9 @@ namespace ductile::runtime {
 enum class Phase : std::uint8_t { conflict, plan, apply, commit, wake, other };
 constexpr std::size_t phase_count = 6;
 
-/// Thread safety: one thread; an executor that records runs one loop at a time.
+/// Thread safety: one thread; an executor that records runs one loop at a time. If there is no
+/// memory left for what is recorded, std::terminate() is called: loops and phases end in
+/// destructors.
 class Recording {
  public:
   /// Costs of one loop, or of the code between two loops.

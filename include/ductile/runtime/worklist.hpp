@@ -2,8 +2,9 @@
 /// Worklist: a bag of items that many threads fill at once and one thread reads back later.
 /// A thread appends to a private batch; publish() places the whole batch by one atomic
 /// fetch-and-add on the common length, without a barrier. The common storage is a row of segments,
-/// so it grows while others publish and nothing moves. collect() makes the items contiguous, and,
-/// on request, sorts them and drops duplicates: then they do not depend on threads or timing.
+/// so it grows while others publish and nothing moves. collect() makes the items contiguous and
+/// sorts them, so that they do not depend on threads or timing, unless they are to be left in the
+/// order of their arrival; on request it drops duplicates.
 #pragma once
 
 #include <algorithm>
