@@ -138,8 +138,11 @@ void colour_again(const G& graph, std::uint32_t v, const Colours<Width>& colours
   colours.set(v, least_free(graph, v, colours));
 }
 
-/// The scheme of Catalyurek et al.: colour, barrier, find the clashes, barrier.
-struct TwoPhase {
+/// When those that clash get other colours.
+enum class Recolouring { at_once, when_all_are_found };
+
+template <Recolouring when>
+struct Speculation {
   static constexpr std::uint32_t marks = 2 * speculative_marks;
   static constexpr bool lengthens = true;  ///< given short words, goes on with long ones
 
@@ -149,15 +152,16 @@ struct TwoPhase {
     const auto colours = words.template as<LongOf<Width>>();
     Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
     for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
-      parallel_for(
-          executor, list.size(),
-          [&](std::size_t i) {
-            prefetch_after(graph, {list.size(), list.data()}, i);
-            if (clashes(graph, list[i], colours, rivals)) clashing.append(list[i]);
-          },
-          speculative_loop);
+      const auto look_at = [&](std::size_t i) {
+        prefetch_after(graph, {list.size(), list.data()}, i);
+        if (!clashes(graph, list[i], colours, rivals)) return;
+        if (when == Recolouring::at_once) colour_again(graph, list[i], colours);
+        clashing.append(list[i]);
+      };
+      parallel_for(executor, list.size(), look_at, speculative_loop);
       clashing.collect();
       list = clashing.take();
+      if (when == Recolouring::at_once) continue;
       parallel_for(
           executor, list.size(), [&](std::size_t i) { colour_again(graph, list[i], colours); },
           speculative_loop);
@@ -165,32 +169,11 @@ struct TwoPhase {
   }
 };
 
+/// The scheme of Catalyurek et al.: colour, barrier, find the clashes, barrier.
+using TwoPhase = Speculation<Recolouring::when_all_are_found>;
+
 /// The scheme of Rokos et al.: who finds a clash recolours at once and is looked at again in the
 /// next round; a barrier separates rounds, none is within.
-struct DetectAgain {
-  static constexpr std::uint32_t marks = 2 * speculative_marks;
-  static constexpr bool lengthens = true;  ///< given short words, goes on with long ones
-
-  template <class Width, Graph G>
-  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> words) {
-    UnsetVector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, words).run();
-    const auto colours = words.template as<LongOf<Width>>();
-    Worklist<std::uint32_t> recoloured(executor, {.order = WorkOrder::arrival});
-    for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
-      parallel_for(
-          executor, list.size(),
-          [&](std::size_t i) {
-            const std::uint32_t v = list[i];
-            prefetch_after(graph, {list.size(), list.data()}, i);
-            if (!clashes(graph, v, colours, rivals)) return;
-            colour_again(graph, v, colours);
-            recoloured.append(v);
-          },
-          speculative_loop);
-      recoloured.collect();
-      list = recoloured.take();
-    }
-  }
-};
+using DetectAgain = Speculation<Recolouring::at_once>;
 
 }  // namespace ductile::runtime::detail
