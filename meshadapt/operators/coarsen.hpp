@@ -1,6 +1,7 @@
 /// @file
 /// Coarsen: collapses edges that are too short. A vertex is moved onto a neighbour and disappears,
 /// with the elements on the edge between them; those left around it are stretched to the neighbour.
+/// run_rounds runs it in surveyed tiles, as collapses change who conflicts with whom.
 #pragma once
 
 #include <optional>

@@ -2,7 +2,7 @@
 /// Refine: splits edges that are too long, all at once. A new vertex near the middle of each, and
 /// every element is cut in halves along its edges, the longest first. How a facet is cut follows
 /// from its own edges alone, so the elements on both sides agree without asking each other, and no
-/// two splits are in each other's way.
+/// two splits are in each other's way: it has loops of its own, and no use for run_rounds.
 #pragma once
 
 #include <array>

@@ -3,7 +3,8 @@
 /// towards the mean of the places where each of its elements would be regular (a Laplacian in
 /// metric space, constrained by quality); where elements stay bad, it climbs towards the place
 /// where the worst of them is best, or all are on the whole. Neighbours never move together, so a
-/// sweep is a Gauss-Seidel iteration, by tiles and colours.
+/// sweep is a Gauss-Seidel iteration. run_rounds runs it in tiles, as conflicts stay; surveyed ones
+/// where few vertices are to move.
 #pragma once
 
 #include <optional>

@@ -3,7 +3,7 @@
 /// flips the edge between two triangles. In 3D it removes an edge, with the best triangulation of
 /// the ring around it (3-2, 4-4 and so on up to seven elements, also on flat boundary), or replaces
 /// the face between two tetrahedra by an edge (2-3); below a smooth patch it cuts poor elements off
-/// (cut_off.hpp).
+/// (cut_off.hpp). run_rounds runs it by reservations: few of all edges and faces act.
 #pragma once
 
 #include <array>

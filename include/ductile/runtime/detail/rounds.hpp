@@ -2,6 +2,31 @@
 /// Rounds: what run_rounds does, round after round, by the strategy that suits the operator.
 #pragma once
 
+// How the headers in here hang together, from this one down:
+//
+//   rounds
+//     coloured_rounds        operators with conflicts()
+//       tiles                if they keep to their neighbours, conflicts stay, and the work is many
+//       surveyed_tiles       if they keep to their neighbours, else, and for what tiles leave
+//         ranked_blocks      of both: blocks that wait for each other, without barriers
+//       batches              if not, or when rounds are checked: class by class of a colouring
+//     reserving_rounds       operators with footprint()
+//       batches              who holds all it has reserved: planned, applied and committed together
+//   operator_check           what run_rounds_checked adds, with opposite_order
+//
+// Colourings (../colouring.hpp chooses) share first_fit and, but for by_priority, take vertices in
+// the order of their numbers:
+//
+//   Serial (in_order)        few vertices, of a round's conflicts or any graph
+//   blocked_colouring        the conflicts of a round; graphs that are not large; parts of graphs
+//   marked_colouring         large graphs; both are deterministic and cut by blocks.hpp
+//   priority_colouring       scattered vertices that are coloured anew, and to compare with
+//   speculative_colouring    on request: published schemes, which depend on timing; threads share
+//                            vertices out by fronts
+//
+// Updates that are deferred lie in buckets and are put in order by source_order; items that are
+// woken lie in a batch for each thread (batch.hpp), then in segments.
+
 #include <cstdint>
 #include <type_traits>
 #include <utility>
