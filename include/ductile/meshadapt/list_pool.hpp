@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -91,12 +92,12 @@ class ListPool {
     T* const begin = arena_->at(slot.begin);
     T* const end = begin + slot.count;
     T* const at = std::find(begin, end, value);
-    if (at == end) return;
+    assert(at != end);
     std::copy(at + 1, end, at);
     --slot.count;
   }
 
-  /// Erases some values and inserts others, both ascending; the former must be in the list.
+  /// Erases some values and inserts others, both ascending; the former must be in the list, too.
   void replace(std::uint32_t index, std::span<const T> gone, std::span<const T> come) {
     Slot& slot = slot_of_[index];
     const auto count = static_cast<std::uint32_t>(slot.count - gone.size() + come.size());
@@ -109,6 +110,7 @@ class ListPool {
         ++next;
       else
         *from++ = *at;
+    assert(next == gone.end());
     // From behind, so that nothing is overwritten that has not been moved.
     T* to = begin + count;
     for (std::size_t i = come.size(); i-- > 0; *--to = come[i])
