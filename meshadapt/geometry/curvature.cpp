@@ -23,14 +23,6 @@ void add_square(Metric<Dim>& sum, double weight, const Vector<Dim>& direction) {
     for (int i = 0; i <= j; ++i) sum.m[at++] += weight * v[i] * v[j];
 }
 
-/// All eigenvalues made positive.
-template <int Dim>
-Metric<Dim> absolute(const Metric<Dim>& tensor) {
-  PrincipalAxes<Dim> axes = principal_axes(tensor);
-  for (double& value : axes.value) value = std::abs(value);
-  return compose(axes);
-}
-
 /// 0 if one of them has no direction.
 double angle_between(const auto& u, const auto& v) {
   const double lengths = norm(u) * norm(v);

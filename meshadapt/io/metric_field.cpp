@@ -2,22 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <span>
 #include <string>
 
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/first_bad.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
 using Type = AnyField::Type;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 [[noreturn]] void fail(const AnyField& field, const std::string& expected,
                        const std::string& advice) {

@@ -1,10 +1,11 @@
 /// @file
 /// What checks of a mesh have in common: the first entity that is not as it should be, on all
-/// threads, and what entities are called.
+/// threads, and what entities and numbers look like in messages.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 
 #include "ductile/runtime/parallel_for.hpp"
@@ -33,6 +34,13 @@ const char* facet_name() {
 /// An entity as files number it, from 1: "triangle 7".
 inline std::string entity(const char* kind, std::size_t index) {
   return std::string(kind) + " " + std::to_string(index + 1);
+}
+
+/// With six digits.
+inline std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
 }
 
 }  // namespace ductile::meshadapt

@@ -226,15 +226,7 @@ class Roundoff {
   const std::vector<double>& value_of_;
 };
 
-/// |H|: the tensor with the absolute values of the eigenvalues.
-template <int Dim>
-Metric<Dim> absolute(const Metric<Dim>& hessian) {
-  PrincipalAxes<Dim> axes = principal_axes(hessian);
-  for (double& value : axes.value) value = std::abs(value);
-  return compose(axes);
-}
-
-/// trace(M^-1 |H|) / (4 (d + 2)).
+/// trace(M^-1 |H|) / (4 (d + 2)); |H| is absolute(H).
 template <int Dim>
 double local_error(const Metric<Dim>& metric, const Metric<Dim>& hessian) {
   const PrincipalAxes<Dim> axes = principal_axes(metric);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -15,6 +14,7 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "mesh/first_bad.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -125,12 +125,6 @@ bool surely_finer(const Metric<Dim>& fine, const Metric<Dim>& coarse, double tol
     }
   }
   return true;
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
 }
 
 double trace(const Metric<2>& a) { return a.m[0] + a.m[2]; }

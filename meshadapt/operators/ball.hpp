@@ -128,7 +128,8 @@ class Ball {
       for (std::size_t l = 0; l < lane_count; ++l) {
         const double weight = block.counts[l] / std::max(0.01F, block.shape[l]);
         // the geometric mean of the facet's size and 1
-        const double square = contraction(site.metric, at_tensor(block.spread, l)) / (2 * Dim - 3);
+        const double square =
+            contraction(site.metric, tensor_at<Dim>(block.spread, l)) / (2 * Dim - 3);
         const Vector<Dim> normal = at(block.normal, l), centre = at(block.centre, l);
         // place = centre + stretch * dual * normal
         const double stretch = weight * height_over_normal(square, normal, dual, site.density);
@@ -150,13 +151,13 @@ class Ball {
     const Block& block = blocks_[element / lane_count];
     const std::size_t l = element % lane_count;
     const Vector<Dim> up = apex.position - origin_ - at(block.centre, l);
-    const Metric<Dim> all = all_edges(at_tensor(block.spread, l), up);
+    const Metric<Dim> all = all_edges(tensor_at<Dim>(block.spread, l), up);
     const auto by = [&](const Metric<Dim>& metric) { return contraction(metric, all); };
     Metric<Dim> judge = apex.metric;
     double density = apex.density;
     for (std::size_t j = Block::judges; j-- > 0;)
       if (!(block.density[j][l] < density)) {
-        judge = at_tensor(block.metric[j], l);
+        judge = tensor_at<Dim>(block.metric[j], l);
         density = block.density[j][l];
       }
     double squares = by(judge);
@@ -167,7 +168,7 @@ class Ball {
         squares = std::max(squares, here);
       };
       ask(apex.metric);
-      for (const auto& metric : block.metric) ask(at_tensor(metric, l));
+      for (const auto& metric : block.metric) ask(tensor_at<Dim>(metric, l));
     }
     const Vector<Dim> normal = at(block.normal, l);
     constexpr double power = Dim == 2 ? 1.0 : 1.5;
@@ -182,11 +183,6 @@ class Ball {
     Vector<Dim> v;
     for (std::size_t i = 0; i < Dim; ++i) v.x[i] = lanes[i][l];
     return v;
-  }
-  static Metric<Dim> at_tensor(const LanesOf<Metric<Dim>::size>& lanes, std::size_t l) {
-    Metric<Dim> m;
-    for (std::size_t i = 0; i < m.m.size(); ++i) m.m[i] = lanes[i][l];
-    return m;
   }
 
   /// By what to multiply dual * normal to get as far up from the centre of a facet, of the mean
@@ -212,11 +208,11 @@ class Ball {
     for (std::size_t l = 0; l < lane_count; ++l) {
       const Vector<Dim> up = offset - at(block.centre, l);
       const double determinant = dot(at(block.normal, l), up);
-      const Metric<Dim> all = all_edges(at_tensor(block.spread, l), up);
+      const Metric<Dim> all = all_edges(tensor_at<Dim>(block.spread, l), up);
       const double by_apex = contraction(apex.metric, all);
       double most = by_apex, squares = by_apex, density = apex.density;
       for (std::size_t j = Block::judges; j-- > 0;) {
-        const double by_other = contraction(at_tensor(block.metric[j], l), all);
+        const double by_other = contraction(tensor_at<Dim>(block.metric[j], l), all);
         squares = block.density[j][l] < density ? squares : by_other;
         density = block.density[j][l] < density ? density : block.density[j][l];
         most = by_other > most ? by_other : most;

@@ -166,18 +166,11 @@ class EdgeSurvey {
     for (std::size_t l = 0; l < lane_count; ++l) {
       Vector<Dim> along;
       for (std::size_t i = 0; i < Dim; ++i) along.x[i] = position[b][i][l] - position[a][i][l];
-      const double at_a = squared_length(at_tensor(metric[a], l), along);
-      const double at_b = squared_length(at_tensor(metric[b], l), along);
+      const double at_a = squared_length(tensor_at<Dim>(metric[a], l), along);
+      const double at_b = squared_length(tensor_at<Dim>(metric[b], l), along);
       const double greater = at_a > at_b ? at_a : at_b;
       bits[l] |= (at_a * at_b < shorter ? short_bit : 0) | (greater < longer ? 0 : long_bit);
     }
-  }
-
-  [[gnu::always_inline]] static Metric<Dim> at_tensor(const LanesOf<Metric<Dim>::size>& lanes,
-                                                      std::size_t l) {
-    Metric<Dim> metric;
-    for (std::size_t i = 0; i < lanes.size(); ++i) metric.m[i] = lanes[i][l];
-    return metric;
   }
 
   [[gnu::always_inline]] static void read(const SiteOfLane& site, LanesOf<Dim>& position,

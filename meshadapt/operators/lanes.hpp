@@ -9,6 +9,8 @@
 #include <cstring>
 #include <functional>
 
+#include "ductile/meshadapt/metric.hpp"
+
 namespace ductile::meshadapt {
 
 inline constexpr std::size_t lane_count = 8;
@@ -18,6 +20,15 @@ using Lanes = LanesIn<double>;      ///< one number of each of so many elements
 using ShapeLanes = LanesIn<float>;  ///< their shapes, as a mesh keeps them
 template <int Size>
 using LanesOf = std::array<Lanes, Size>;  ///< a vector or tensor of each
+
+/// The tensor of one lane.
+template <int Dim>
+[[gnu::always_inline]] inline Metric<Dim> tensor_at(const LanesOf<Metric<Dim>::size>& lanes,
+                                                    std::size_t l) {
+  Metric<Dim> tensor;
+  for (std::size_t i = 0; i < lanes.size(); ++i) tensor.m[i] = lanes[i][l];
+  return tensor;
+}
 
 /// 1 in the first lanes, 0 in those after them.
 inline ShapeLanes first_lanes(std::size_t count) {

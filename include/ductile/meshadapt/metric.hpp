@@ -102,6 +102,14 @@ PrincipalAxes<Dim> principal_axes(const Metric<Dim>& a);
 template <int Dim>
 Metric<Dim> compose(const PrincipalAxes<Dim>& axes);
 
+/// The tensor with the absolute values of the eigenvalues.
+template <int Dim>
+Metric<Dim> absolute(const Metric<Dim>& a) {
+  PrincipalAxes<Dim> axes = principal_axes(a);
+  for (double& value : axes.value) value = std::abs(value);
+  return compose(axes);
+}
+
 /// Matrix logarithm of a positive definite tensor, and the exponential that undoes it.
 template <int Dim>
 Metric<Dim> logarithm(const Metric<Dim>& a);
