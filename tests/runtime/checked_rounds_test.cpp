@@ -357,6 +357,38 @@ TEST(RunRoundsChecked, CatchesMoreFreshNumbersThanDemanded) {
       << message;
 }
 
+/// A vertex may go when the one after it has gone, which wakes it; the last may go at once. Each
+/// holds all there is, so the one with the highest priority goes alone.
+class Queue {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  explicit Queue(std::size_t n) : gone(n) {}
+  std::optional<Plan> plan(Vertex v) const {
+    const bool may_go = v + 1 == gone.size() || gone[v + 1];
+    return may_go && !gone[v] ? std::optional<Plan>(v) : std::nullopt;
+  }
+  void footprint(Vertex v, auto&& visit) const {
+    if (plan(v)) visit(0);
+  }
+  std::size_t resource_count() const { return 1; }
+  void apply(const Plan& v, Commit<Queue>& commit) {
+    gone[v] = 1;
+    if (v > 0) commit.wake(v - 1);
+  }
+  void commit(std::uint32_t, const Update&) {}
+
+  std::vector<std::uint8_t> gone;  // [vertex]
+};
+
+TEST(RunRoundsChecked, TakesWorkThatHasAnItemTwice) {
+  Queue queue(3);
+  run_rounds_checked(Executor(), queue, std::vector<Vertex>{0, 0, 1, 1, 2});
+  EXPECT_EQ(queue.gone, std::vector<std::uint8_t>(3, 1));
+}
+
 /// Items write to what they do not own, which no plan shows; or defer what does not commute.
 class Log {
  public:

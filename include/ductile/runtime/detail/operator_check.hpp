@@ -98,12 +98,14 @@ class OperatorCheck {
   /// `woken`, ascending, come back in the next round.
   void end_round(const Op& op, const std::vector<Item>& woken) {
     if constexpr (requires { Op::forgoes_wakes; }) return;
+    const auto same_item = [](const Item& a, const Item& b) { return !(a < b) && !(b < a); };
     std::sort(considered_.begin(), considered_.end());
+    // Who was in the work twice may be here twice; set_difference would keep one of those woken.
+    considered_.erase(std::unique(considered_.begin(), considered_.end(), same_item),
+                      considered_.end());
     std::vector<Item> left;
     std::set_difference(considered_.begin(), considered_.end(), woken.begin(), woken.end(),
                         std::back_inserter(left));
-    const auto same_item = [](const Item& a, const Item& b) { return !(a < b) && !(b < a); };
-    left.erase(std::unique(left.begin(), left.end(), same_item), left.end());
     for (std::size_t i = 0; i < left.size(); ++i)
       if (!is_void<Op>(op, left[i]) && op.plan(left[i]))
         refuse(ContractRule::woken_if_plannable, left[i], i,
