@@ -7,14 +7,20 @@
 #include <chrono>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "ductile/runtime/balance.hpp"
+#include "ductile/runtime/colouring.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/ordering.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+#include "team.hpp"
 
 namespace ductile::runtime {
 namespace {
@@ -188,6 +194,94 @@ TEST(WithTeam, NumbersThreadsFromZeroToTheLast) {
   std::size_t total = 0;
   for (std::size_t t = 0; t < mine.size(); ++t) total += mine[t];
   EXPECT_EQ(total, 3000U);
+}
+
+TEST(WithTeam, ReturnsWhatTheBodyReturns) {
+  for (const int threads : {1, 2, 5}) {
+    const Executor executor({.threads = threads});
+    EXPECT_EQ(with_team(executor, [] { return std::string("result"); }), "result");
+  }
+}
+
+// ---- Algorithms of many loops form a team by themselves ----
+
+/// Whether the calling thread leads a team of these, or is another that it has called.
+bool in_a_team(const Executor& executor, std::thread::id leader) {
+  return std::this_thread::get_id() != leader || Team::of(executor) != nullptr;
+}
+
+/// Counts how often it was looked at outside of a team.
+struct Ring {
+  const Executor& executor;
+  std::size_t size;
+  std::atomic<int>& outside;
+  std::thread::id leader = std::this_thread::get_id();
+
+  std::size_t vertex_count() const { return size; }
+  void for_each_neighbour(std::uint32_t v, auto&& visit) const {
+    if (!in_a_team(executor, leader)) ++outside;
+    const auto n = static_cast<std::uint32_t>(size);
+    visit((v + 1) % n);
+    visit((v + n - 1) % n);
+  }
+};
+
+TEST(WithTeam, ColouringsFormOne) {
+  const Executor executor({.threads = 3});
+  std::atomic<int> outside = 0;
+  const Ring ring{executor, 20000, outside};
+  Colouring colouring = colour(executor, ring);
+  balance(executor, ring, colouring);
+  std::vector<std::uint32_t> vertices(ring.size / 2);
+  std::iota(vertices.begin(), vertices.end(), 0U);
+  recolour(executor, ring, vertices, colouring);
+  EXPECT_EQ(outside, 0);
+  EXPECT_TRUE(is_proper(executor, ring, colouring));
+  outside = 0;
+  vertices.resize(ring.size);
+  std::iota(vertices.begin(), vertices.end(), 0U);
+  colouring = colour_in_order(executor, ring, vertices);
+  EXPECT_EQ(outside, 0);
+  EXPECT_TRUE(is_proper(executor, ring, colouring));
+}
+
+/// Each item once, by reservations or by colours; asked how many there are between loops.
+struct Visits {
+  using Item = std::uint32_t;
+  using Plan = Item;
+  struct Update {};
+
+  const Executor& executor;
+  std::atomic<int>& outside;
+  std::thread::id leader = std::this_thread::get_id();
+
+  std::optional<Plan> plan(Item item) const { return item; }
+  void apply(const Plan&, auto&) {}
+  void commit(std::uint32_t, const Update&) {}
+  std::size_t count() const {
+    if (!in_a_team(executor, leader)) ++outside;
+    return 1000;
+  }
+};
+struct ReservedVisits : Visits {
+  void footprint(Item item, auto&& visit) const { visit(item); }
+  std::size_t resource_count() const { return count(); }
+};
+struct ColouredVisits : Visits {
+  void conflicts(Item, auto&&) const {}
+  std::size_t item_count() const { return count(); }
+};
+
+TEST(WithTeam, RoundsFormOne) {
+  const Executor executor({.threads = 3});
+  std::atomic<int> outside = 0;
+  std::vector<std::uint32_t> items(1000);
+  std::iota(items.begin(), items.end(), 0U);
+  ReservedVisits reserved{{executor, outside}};
+  EXPECT_EQ(run_rounds(executor, reserved, items).applied, 1000U);
+  ColouredVisits coloured{{executor, outside}};
+  EXPECT_EQ(run_rounds(executor, coloured, items).applied, 1000U);
+  EXPECT_EQ(outside, 0);
 }
 
 }  // namespace

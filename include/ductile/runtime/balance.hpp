@@ -16,6 +16,7 @@
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 
@@ -70,6 +71,32 @@ inline std::uint32_t choose(const ClassSizes& sizes, std::uint32_t v, std::uint3
   return Colouring::none;
 }
 
+/// balance(), in whatever team there is.
+template <Graph G>
+void balance_in_team(const Executor& executor, const G& graph, Colouring& colouring,
+                     const BalanceOptions& options) {
+  PerThread<std::vector<std::uint64_t>> taken(executor);
+  for (std::size_t t = 0; t < taken.size(); ++t) taken[t].resize(colouring.count / 64 + 1);
+  for (int pass = 0; pass < options.most_passes; ++pass) {
+    const ColourClasses classes = colour_classes(executor, colouring);
+    ClassSizes sizes(classes);
+    std::size_t moved = 0;
+    for (std::uint32_t c = 0; c < colouring.count && sizes.room() > 0; ++c) {
+      if (sizes.surplus(c) == 0) continue;
+      const std::span vertices = classes.members(c);
+      std::vector<std::uint32_t> wanted(vertices.size());
+      parallel_for(executor, vertices.size(),
+                   [&](std::size_t i) {
+                     find_taken(graph, vertices[i], colouring.colour_of, taken.mine());
+                     wanted[i] = choose(sizes, vertices[i], colouring.count, taken.mine());
+                   },
+                   {.grain = 256, .serial_below = 1024});
+      moved += sizes.move(executor, vertices, wanted, colouring.colour_of);
+    }
+    if (moved == 0) break;
+  }
+}
+
 }  // namespace detail
 
 /// Moves vertices between classes of a proper colouring until all have about the same size, as far
@@ -79,26 +106,8 @@ inline std::uint32_t choose(const ClassSizes& sizes, std::uint32_t v, std::uint3
 template <Graph G>
 void balance(const Executor& executor, const G& graph, Colouring& colouring,
              const BalanceOptions& options = {}) {
-  PerThread<std::vector<std::uint64_t>> taken(executor);
-  for (std::size_t t = 0; t < taken.size(); ++t) taken[t].resize(colouring.count / 64 + 1);
-  for (int pass = 0; pass < options.most_passes; ++pass) {
-    const ColourClasses classes = colour_classes(executor, colouring);
-    detail::ClassSizes sizes(classes);
-    std::size_t moved = 0;
-    for (std::uint32_t c = 0; c < colouring.count && sizes.room() > 0; ++c) {
-      if (sizes.surplus(c) == 0) continue;
-      const std::span vertices = classes.members(c);
-      std::vector<std::uint32_t> wanted(vertices.size());
-      parallel_for(executor, vertices.size(),
-                   [&](std::size_t i) {
-                     detail::find_taken(graph, vertices[i], colouring.colour_of, taken.mine());
-                     wanted[i] = detail::choose(sizes, vertices[i], colouring.count, taken.mine());
-                   },
-                   {.grain = 256, .serial_below = 1024});
-      moved += sizes.move(executor, vertices, wanted, colouring.colour_of);
-    }
-    if (moved == 0) break;
-  }
+  detail::with_team_for(colouring.colour_of.size(), executor,
+                        [&] { detail::balance_in_team(executor, graph, colouring, options); });
 }
 
 }  // namespace ductile::runtime

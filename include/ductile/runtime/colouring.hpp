@@ -21,6 +21,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 
@@ -126,6 +127,48 @@ std::uint32_t colour_count(const Executor& executor, std::span<const std::uint8_
 /// One more than the greatest colour.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
 
+/// colour() by a method that choose() has chosen.
+template <Graph G>
+Colouring colour_by(const Executor& executor, const G& graph, ColouringMethod method) {
+  const std::size_t n = graph.vertex_count();
+  std::vector<std::uint8_t> bytes(n, Colours<OneByte<>>::none);
+  const bool fits = with_class_of(method, n, [&]<class Method>(Method) {
+    if constexpr (requires { Method::bound_by_memory; }) {
+      return colour_slowly_in_bytes(executor, as_compiled(graph), method, bytes);
+    } else {
+      return colour_in_bytes<Method>(executor, graph, bytes, {n});
+    }
+  });
+  if (fits) return {{bytes.begin(), bytes.end()}, colour_count(executor, bytes)};
+  Colouring colouring{std::vector<std::uint32_t>(n)};
+  colouring.count = colour_in_words(executor, as_compiled(graph), method, colouring.colour_of);
+  return colouring;
+}
+
+/// recolour(), in whatever team there is.
+template <Graph G>
+void recolour_in_team(const Executor& executor, const G& graph,
+                      std::span<const std::uint32_t> vertices, Colouring& colouring) {
+  const LoopOptions loop{.grain = 1024, .serial_below = few_vertices};
+  auto& colour_of = colouring.colour_of;
+  parallel_for(
+      executor, vertices.size(), [&](std::size_t i) { colour_of[vertices[i]] = Colouring::none; },
+      loop);
+  const VertexSet set{vertices.size(), vertices.data()};
+  const Colours<FourBytes<>> colours(colour_of);
+  if (vertices.size() < few_vertices) {
+    Serial::run(executor, graph, set, colours);
+  } else if (vertices.size() < colour_of.size() / 16) {
+    // Scattered vertices hardly wait for each other, and blocks would cost as if all were there.
+    colour_by_priority<AwaitedByPlace>(executor, graph, vertices, colours, outranks);
+  } else {
+    Blocked::run(executor, graph, set, colours);
+  }
+  const auto next = [&](std::size_t i) { return colour_of[vertices[i]] + 1; };
+  const auto greater = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); };
+  colouring.count = parallel_reduce(executor, vertices.size(), colouring.count, next, greater);
+}
+
 }  // namespace detail
 
 /// Colours all vertices. `detect_again` and `two_phase` depend on timing, and on one thread are
@@ -134,21 +177,10 @@ std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32
 template <Graph G>
 Colouring colour(const Executor& executor, const G& graph,
                  ColouringMethod method = ColouringMethod::automatic) {
-  const std::size_t n = graph.vertex_count();
-  std::vector<std::uint8_t> bytes(n, detail::Colours<detail::OneByte<>>::none);
-  method = detail::choose(executor, method, n);
-  const bool fits = detail::with_class_of(method, n, [&]<class Method>(Method) {
-    if constexpr (requires { Method::bound_by_memory; }) {
-      return detail::colour_slowly_in_bytes(executor, detail::as_compiled(graph), method, bytes);
-    } else {
-      return detail::colour_in_bytes<Method>(executor, graph, bytes, {n});
-    }
-  });
-  if (fits) return {{bytes.begin(), bytes.end()}, detail::colour_count(executor, bytes)};
-  Colouring colouring{std::vector<std::uint32_t>(n)};
-  colouring.count =
-      detail::colour_in_words(executor, detail::as_compiled(graph), method, colouring.colour_of);
-  return colouring;
+  method = detail::choose(executor, method, graph.vertex_count());
+  const auto colour_all = [&] { return detail::colour_by(executor, graph, method); };
+  if (method == ColouringMethod::serial) return colour_all();
+  return with_team(executor, colour_all);
 }
 
 /// Colours `vertices` (ascending, each once) anew and leaves the others as they are: those with a
@@ -158,25 +190,8 @@ Colouring colour(const Executor& executor, const G& graph,
 template <Graph G>
 void recolour(const Executor& executor, const G& graph, std::span<const std::uint32_t> vertices,
               Colouring& colouring) {
-  const LoopOptions loop{.grain = 1024, .serial_below = detail::few_vertices};
-  auto& colour_of = colouring.colour_of;
-  parallel_for(
-      executor, vertices.size(), [&](std::size_t i) { colour_of[vertices[i]] = Colouring::none; },
-      loop);
-  const detail::VertexSet set{vertices.size(), vertices.data()};
-  const detail::Colours<detail::FourBytes<>> colours(colour_of);
-  if (vertices.size() < detail::few_vertices) {
-    detail::Serial::run(executor, graph, set, colours);
-  } else if (vertices.size() < colour_of.size() / 16) {
-    // Scattered vertices hardly wait for each other, and blocks would cost as if all were there.
-    detail::colour_by_priority<detail::AwaitedByPlace>(executor, graph, vertices, colours,
-                                                       detail::outranks);
-  } else {
-    detail::Blocked::run(executor, graph, set, colours);
-  }
-  const auto next = [&](std::size_t i) { return colour_of[vertices[i]] + 1; };
-  const auto greater = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); };
-  colouring.count = parallel_reduce(executor, vertices.size(), colouring.count, next, greater);
+  detail::with_team_for(vertices.size(), executor,
+                        [&] { detail::recolour_in_team(executor, graph, vertices, colouring); });
 }
 
 /// Vertices grouped by colour.

@@ -1,7 +1,8 @@
 /// @file
 /// Executor: how parallel work is run: how many threads, where they sit, how loops are shared out,
 /// and whether results may depend on timing. A program makes one and passes it down; the library
-/// has no global state besides it.
+/// has no global state besides it. Threads are OpenMP's, which by default spin where they wait: a
+/// program runs its loops in with_team() (team.hpp), or sets OMP_WAIT_POLICY=passive.
 #pragma once
 
 #include <memory>

@@ -16,6 +16,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 
@@ -84,6 +85,25 @@ struct InOrder {
   }
 };
 
+/// colour_in_order(), in whatever team there is, for an order that names every vertex once.
+template <Graph G>
+Colouring first_fit_in(const Executor& executor, const G& graph,
+                       std::span<const std::uint32_t> order) {
+  Colouring colouring;
+  colouring.colour_of.resize(order.size());
+  const VertexSet vertices{order.size(), order.data()};
+  std::vector<std::uint8_t> bytes(order.size(), Colours<OneByte<>>::none);
+  if (colour_in_bytes<InOrder>(executor, graph, bytes, vertices)) {
+    colouring.count = widen(executor, bytes, colouring.colour_of);
+    return colouring;
+  }
+  const Colours<FourBytes<>> words(colouring.colour_of);
+  std::fill(colouring.colour_of.begin(), colouring.colour_of.end(), Colouring::none);
+  InOrder::run(executor, graph, vertices, words);
+  colouring.count = colour_count(executor, colouring.colour_of);
+  return colouring;
+}
+
 }  // namespace detail
 
 /// All vertices in this order; ties in ascending order, those of smallest_last in an order that is
@@ -120,21 +140,10 @@ std::vector<std::uint32_t> vertex_order(const Executor& executor, const G& graph
 template <Graph G>
 Colouring colour_in_order(const Executor& executor, const G& graph,
                           std::span<const std::uint32_t> order) {
-  Colouring colouring;
-  colouring.colour_of.resize(graph.vertex_count());
-  if (!detail::names_each_once(order, colouring.colour_of.size()))
+  if (!detail::names_each_once(order, graph.vertex_count()))
     throw std::invalid_argument("colour_in_order: expected each vertex once");
-  const detail::VertexSet vertices{order.size(), order.data()};
-  std::vector<std::uint8_t> bytes(order.size(), detail::Colours<detail::OneByte<>>::none);
-  if (detail::colour_in_bytes<detail::InOrder>(executor, graph, bytes, vertices)) {
-    colouring.count = detail::widen(executor, bytes, colouring.colour_of);
-    return colouring;
-  }
-  const detail::Colours<detail::FourBytes<>> words(colouring.colour_of);
-  std::fill(colouring.colour_of.begin(), colouring.colour_of.end(), Colouring::none);
-  detail::InOrder::run(executor, graph, vertices, words);
-  colouring.count = detail::colour_count(executor, colouring.colour_of);
-  return colouring;
+  return detail::with_team_for(order.size(), executor,
+                               [&] { return detail::first_fit_in(executor, graph, order); });
 }
 
 }  // namespace ductile::runtime

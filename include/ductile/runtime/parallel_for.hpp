@@ -3,6 +3,10 @@
 /// it: loops over fixed blocks, deterministic reductions, prefix sums, and per-thread storage.
 /// The first exception thrown in a body reaches the caller after all threads have joined. A loop
 /// started inside another loop runs on the calling thread alone.
+/// A loop outside of a team (team.hpp) starts and joins OpenMP's threads, which by default spin
+/// while they wait: where others use the cores too, it may take as long as the system's time slice,
+/// milliseconds. Whoever runs loops after loops does so in with_team(), or with
+/// OMP_WAIT_POLICY=passive in the environment.
 /// After fork() the child of a process that has run a loop runs loops on one thread only: with
 /// GCC's OpenMP, others wait for ever for threads that the child does not have.
 #pragma once

@@ -26,6 +26,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 
@@ -42,9 +43,9 @@ void sort_integers(const Executor& executor, std::span<T> values, unsigned low) 
   if (threads == 1 || values.size() < few) {
     radix_sort(Executor({.threads = 1}), values, low);
   } else if (values.size() <= most_sampled) {
-    sample_sort(executor, values, low);
+    with_team(executor, [&] { sample_sort(executor, values, low); });
   } else {
-    radix_sort(executor, values, low);
+    with_team(executor, [&] { radix_sort(executor, values, low); });
   }
 }
 
@@ -138,7 +139,8 @@ constexpr bool cheap_to_move =
 
 template <class T>
 void sort_in_place(const Executor& executor, std::span<T> values) {
-  if (executor.threads() > 1 && values.size() > 4096) return merge_sort(executor, values);
+  if (executor.threads() > 1 && values.size() > 4096)
+    return with_team(executor, [&] { merge_sort(executor, values); });
   std::sort(values.begin(), values.end());
 }
 

@@ -38,6 +38,7 @@
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/team.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
@@ -71,10 +72,11 @@ RoundsReport run_all_rounds(const Executor& executor, Op& op, auto first_work,
     report.left = next.size();
     return next;
   };
-  if (goes_on()) {
+  const auto run_while_it_goes_on = [&] {
     UnsetVector<Item> work = run_round(std::move(first_work));
     while (goes_on()) work = run_round(std::move(work));
-  }
+  };
+  if (goes_on()) with_team(executor, run_while_it_goes_on);
   if (recording != nullptr) recording->end_rounds();
   return report;
 }
