@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ductile/runtime/contract.hpp"
+#include "ductile/runtime/detail/expect_operator.hpp"
 #include "ductile/runtime/detail/operator_check.hpp"
 #include "ductile/runtime/detail/rounds.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -28,13 +29,14 @@ namespace ductile::runtime {
 /// Throws ContractBroken, and what the operator throws; the operator's data are then not to be
 /// used. Thread safety: one caller.
 template <class Op, class Work = std::vector<typename Op::Item>>
-requires(ColouredOperator<Op> || ReservingOperator<Op>) &&
-    std::copyable<typename Op::Item>&& std::same_as<typename Work::value_type,
-                                                    typename Op::Item> RoundsReport
-    run_rounds_checked(const Executor& executor, Op& op, Work work,
-                       const RoundsOptions& options = {}) {
-  const Executor alone({.threads = 1, .deterministic = executor.deterministic()});
-  return detail::run_all_rounds<Op, detail::OperatorCheck<Op>>(alone, op, std::move(work), options);
+RoundsReport run_rounds_checked(const Executor& executor, Op& op, Work work,
+                                const RoundsOptions& options = {}) {
+  if constexpr (detail::expect_operator<Op, Work>()) {
+    static_assert(std::copyable<typename Op::Item>, "items of checked rounds can be copied");
+    const Executor alone({.threads = 1, .deterministic = executor.deterministic()});
+    return detail::run_all_rounds<Op, detail::OperatorCheck<Op>>(alone, op, std::move(work),
+                                                                 options);
+  }
 }
 
 }  // namespace ductile::runtime

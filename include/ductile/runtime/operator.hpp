@@ -35,24 +35,45 @@ template <class Op>
 class OppositeOrder;
 }  // namespace detail
 
+/// Items are ordered by operator<; those of which neither is less are one and the same.
+template <class T>
+concept RoundsItem = WorkItem<T> && std::default_initializable<T> && requires(const T& a) {
+  { a < a } -> std::convertible_to<bool>;
+};
+
+template <class Op>
+concept NamesTypes = requires {
+  typename Op::Item;
+  typename Op::Plan;
+  typename Op::Update;
+};
+template <class Op>
+concept Plans = requires(const Op& reader, const typename Op::Item item) {
+  { reader.plan(item) } -> std::same_as<std::optional<typename Op::Plan>>;
+};
+template <class Op>
+concept Applies = requires(Op& op, const typename Op::Plan plan, Commit<Op>& later) {
+  op.apply(plan, later);
+};
+template <class Op>
+concept Commits = requires(Op& op, std::uint32_t owner, typename Op::Update update) {
+  op.commit(owner, std::move(update));
+};
+
 /// What any operator provides. `plan` and the conflict members only read; `apply` writes what the
 /// item owns and defers every other write; `commit` carries one deferred write out, on behalf of
 /// the owner of what it changes. All are called by many threads. Plans and updates are movable;
-/// commit may take an update as Update&&. Items are movable, default-constructible and ordered by
-/// operator<; those of which neither is less are one and the same. Moving must not throw.
+/// commit may take an update as Update&&.
 template <class Op>
-concept Operator = requires(Op& op, const Op& reader, const typename Op::Item item,
-                            const typename Op::Plan plan, typename Op::Update update,
-                            Commit<Op>& later, std::uint32_t owner) {
-  { reader.plan(item) } -> std::same_as<std::optional<typename Op::Plan>>;
-  op.apply(plan, later);
-  op.commit(owner, std::move(update));
-};
+concept Operator =
+    NamesTypes<Op> && RoundsItem<typename Op::Item> && Plans<Op> && Applies<Op> && Commits<Op>;
 
 /// Items are numbers below item_count(); conflicts(item, visit) visits those it may not run beside
 /// (symmetric; repetition is allowed). If applying never changes what conflicts, the operator says
 /// so by a member `keeps_conflicts`; items that were woken then need not leave the round.
 /// Else whoever gets a new conflict must be woken, or have it with one that is woken.
+/// An item is planned when its turn comes. Who waits for it and gets another plan meanwhile is
+/// woken or reconsidered, but with `keeps_conflicts`, or `forgoes_wakes` (checked_rounds.hpp).
 template <class Op>
 concept ColouredOperator = Operator<Op> && std::same_as<typename Op::Item, std::uint32_t> &&
     requires(const Op& op, std::uint32_t item) {

@@ -7,10 +7,10 @@
 /// from its members.
 #pragma once
 
-#include <concepts>
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/detail/expect_operator.hpp"
 #include "ductile/runtime/detail/rounds.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
@@ -18,16 +18,16 @@
 
 namespace ductile::runtime {
 
-/// Applies `op` to `work`, a vector of items, and to whatever it wakes, until nothing is left. A
-/// coloured operator's work has each item once. With a deterministic executor the result does not
-/// depend on threads or timing, provided that the operator keeps its contract. Throws what the
-/// operator throws; the operator's data are then not to be used. Thread safety: one caller; runs on
-/// the executor.
+/// Applies `op`, a ColouredOperator or a ReservingOperator, to `work`, a vector of items, and to
+/// whatever it wakes, until nothing is left, or for most_rounds. A coloured operator's work has
+/// each item once. With a deterministic executor the result does not depend on threads or timing,
+/// provided that the operator keeps its contract. Throws what the operator throws; the operator's
+/// data are then not to be used. Thread safety: one caller; runs on the executor, in a team.
 template <class Op, class Work = std::vector<typename Op::Item>>
-requires(ColouredOperator<Op> || ReservingOperator<Op>) &&
-    std::same_as<typename Work::value_type, typename Op::Item> RoundsReport
-    run_rounds(const Executor& executor, Op& op, Work work, const RoundsOptions& options = {}) {
-  return detail::run_all_rounds(executor, op, std::move(work), options);
+RoundsReport run_rounds(const Executor& executor, Op& op, Work work,
+                        const RoundsOptions& options = {}) {
+  if constexpr (detail::expect_operator<Op, Work>())
+    return detail::run_all_rounds(executor, op, std::move(work), options);
 }
 
 }  // namespace ductile::runtime
