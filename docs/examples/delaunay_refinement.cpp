@@ -135,8 +135,7 @@ void compare(const Arguments& arguments) {
       arguments, [&](const runtime::Executor& executor, runtime::RoundsReport& report) {
         Triangulation refined = start;
         RefineTriangles refine(refined, size);
-        report = runtime::run_rounds(executor, refine, triangles,
-                                     {.most_rounds = 100000, .least_won = 0.5});
+        report = runtime::run_rounds(executor, refine, triangles, {.least_won = 0.5});
         return refined;
       });
   Triangulation serial = start;

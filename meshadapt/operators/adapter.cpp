@@ -75,7 +75,7 @@ constexpr double nothing = 2e-4, little = 5e-3;
 
 /// Swapping takes the worst elements first only within windows, which stay in cache while they are
 /// reserved, planned and applied.
-constexpr RoundsOptions by_windows{.reserving_window = 32768};
+constexpr RoundsOptions by_windows{.most_rounds = 1000, .reserving_window = 32768};
 
 /// Rearranging also collapses edges that are hardly long enough: some would end up too short.
 constexpr double eager = 1.03;

@@ -251,6 +251,35 @@ TEST(RunRounds, StopsAfterTheMostRoundsAllowed) {
   EXPECT_GT(report.left, 0U);
 }
 
+/// An item wakes itself until it has been applied so many times.
+struct Countdown {
+  using Item = Vertex;
+  using Plan = Vertex;
+  struct Update {};
+
+  std::size_t left;
+
+  std::optional<Plan> plan(Vertex v) const {
+    return left > 0 ? std::optional<Plan>(v) : std::nullopt;
+  }
+  void footprint(Vertex v, auto&& visit) const {
+    if (left > 0) visit(v);
+  }
+  std::size_t resource_count() const { return 1; }
+  void apply(const Plan& v, Commit<Countdown>& commit) {
+    --left;
+    commit.wake(v);
+  }
+  void commit(std::uint32_t, const Update&) {}
+};
+
+TEST(RunRounds, GoesOnUntilNothingIsLeft) {
+  Countdown countdown{3000};
+  const RoundsReport report = run_rounds(Executor({.threads = 2}), countdown, all_items(1));
+  EXPECT_EQ(report.applied, 3000U);
+  EXPECT_EQ(report.left, 0U);
+}
+
 // ---- Order of commits, and what goes wrong ----
 
 /// Every item appends itself to one common list, which keeps the order.

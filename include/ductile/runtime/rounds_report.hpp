@@ -3,13 +3,16 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 #include "ductile/runtime/deferred_update.hpp"
 
 namespace ductile::runtime {
 
 struct RoundsOptions {
-  int most_rounds = 1000;                ///< stop there even if work is left
+  /// Stop there even if work is left, and report how much. By default a run goes on until nothing
+  /// is left, which is never if the operator wakes items for ever.
+  int most_rounds = std::numeric_limits<int>::max();
   CommitOrder order = CommitOrder::any;  ///< by_source if an owner's updates do not commute
   /// Colouring: a round goes over its work in windows of at most so many items, one after the
   /// other; 0: all at once. Small windows stay in cache while their classes run; large ones keep
@@ -37,7 +40,7 @@ struct RoundsReport {
                               ///< or as a tile of the same rank has a neighbour
   std::size_t committed = 0;  ///< deferred updates
   std::size_t woken = 0;      ///< items woken, each once a round
-  std::size_t left = 0;       ///< work that most_rounds cut off
+  std::size_t left = 0;       ///< work that most_rounds cut off; 0 unless that is set
 
   double conflict_seconds = 0, plan_seconds = 0, apply_seconds = 0, commit_seconds = 0;
   double wake_seconds = 0;  ///< collecting the next round's work
