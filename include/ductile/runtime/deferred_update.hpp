@@ -67,9 +67,10 @@ class DeferredUpdate {
   Deferrer<T> deferrer() { return lanes_.mine().ready_deferrer(); }
 
   /// Calls f(owner, update) for every update kept, each owner's on one thread, and forgets them.
-  /// Returns how many there were. f may move from an update, and must not defer to this object. An
-  /// exception thrown by f reaches the caller; the updates that were not committed by then are
-  /// dropped. Thread safety: one thread, no loop running.
+  /// Returns how many there were. f may move from an update, and append to a Worklist of the same
+  /// executor, as commit() is a loop; it must not defer to this object. An exception thrown by f
+  /// reaches the caller; the updates that were not committed by then are dropped.
+  /// Thread safety: one thread, no loop running.
   template <class F>
   std::size_t commit(F&& f) {
     find_touched();

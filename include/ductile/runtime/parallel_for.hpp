@@ -40,6 +40,9 @@ extern constinit thread_local int current_thread;  // see this_thread()
 }
 
 /// Index of the calling thread in the running loop, in [0, executor.threads()); 0 outside of one.
+/// In a loop inside another one it is that of the outer loop, also if the inner loop has another
+/// executor, or 0 if that has no such thread: several threads may then be 0 of that executor at
+/// once, and may not share what is PerThread by it.
 inline int this_thread() noexcept { return detail::current_thread; }
 
 /// A loop body without its type: called with disjoint ranges that together cover [0, n).
