@@ -165,6 +165,8 @@ std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name)
 
 void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const std::vector<VtuField>& fields) {
+  expect_coordinates(mesh);
+  expect_references(mesh);
   pugi::xml_document document;
   const pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   add_attribute(declaration, "version", "1.0");

@@ -2,13 +2,18 @@
 /// The whole of adapt() but the choice of its level: from an AnyMesh by way of an Adapter to
 /// another.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
@@ -44,6 +49,41 @@ std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const Any
     bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
   }
   return metric_of;
+}
+
+/// The logarithm of sqrt(det metric), elements in a unit of volume; no less than it is.
+template <int Dim>
+double log_density(const Metric<Dim>& metric) {
+  double trace = 0;
+  for (int i = 0; i < Dim; ++i) trace += metric(i, i);
+  return (std::log(determinant(1 / trace * metric)) + Dim * std::log(trace)) / 2;
+}
+
+/// Logarithms of metrics are interpolated, and this is linear with them: by Jensen's inequality an
+/// element's share of the complexity is at least its volume by the exponential of its mean.
+template <int Dim>
+void expect_countable(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                      const std::vector<Metric<Dim>>& metric_of, const std::string& name) {
+  const auto least = [&](std::size_t e) {
+    std::array<Vector<Dim>, Dim + 1> corner;
+    double mean = 0;
+    for (std::size_t c = 0; c <= Dim; ++c) {
+      const VertexId v = mesh.corners_of[e][c];
+      corner[c] = mesh.site_of[v].position;
+      mean += log_density(metric_of[v]) / (Dim + 1);
+    }
+    return certain_determinant<Dim>(corner) / (Dim == 2 ? 2 : 6) * std::exp(mean);
+  };
+  const double complexity =
+      runtime::parallel_reduce(executor, mesh.element_slots(), 0.0, least, std::plus<>());
+  if (complexity > none) {
+    std::array<char, 32> count{};
+    std::snprintf(count.data(), count.size(), "%.1e", complexity);
+    throw InputError(
+        name + ": asks for more than " + count.data() +
+        " elements on this mesh, and 32-bit numbers cannot count them; expected larger "
+        "sizes (-hmin sets the smallest)");
+  }
 }
 
 template <int Dim>
@@ -106,6 +146,7 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
   const std::size_t fixed = fixed_vertices(executor, mesh);
   auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
+  if (options.insert) expect_countable(executor, mesh, metric_of, metric.name);
   Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
                        std::exchange(metric_of, {}));
   adapter.report().setup_seconds = seconds();

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "ductile/meshadapt/background.hpp"
+#include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/mesh.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "metric/metric_of_element.hpp"
@@ -29,12 +31,16 @@ class MetricPath {
       : executor_(executor),
         background_(background),
         from_(mesh.vertex_slots()),
-        to_(mesh.vertex_slots()) {
+        to_(mesh.vertex_slots()),
+        share_of_(mesh.vertex_slots()) {
     runtime::parallel_for(executor, from_.size(), [&](std::size_t i) {
       const auto v = static_cast<VertexId>(i);
       from_[v] = mean_log_around(mesh, v);
       to_[v] = background.log_metric(v);
+      share_of_[v] = volume_around(mesh, v) / (Dim + 1);
     });
+    const auto elements = static_cast<double>(background.element_count());
+    most_complexity_ = 3 * std::max(complexity_of_elements(Dim, elements), complexity(1));
     const double all = runtime::parallel_reduce(
         executor, from_.size(), 0.0, [&](std::size_t v) { return log_stretch(v); }, std::plus<>());
     const double mean = all / static_cast<double>(std::max<std::size_t>(1, from_.size()));
@@ -44,28 +50,59 @@ class MetricPath {
   int steps() const { return steps_; }
 
   /// Gives the background the metric that comes after so many steps: after all, its own.
-  /// Log-Euclidean, as it interpolates between places.
+  /// Log-Euclidean, as it interpolates between places. Where flat elements lie beside large ones it
+  /// may ask for many more elements than either end has; then all sizes are larger, and stretched
+  /// as much.
   void go_to(int step) {
     const double share = static_cast<double>(step) / steps_;
+    const double too_many = std::max(1.0, complexity(share) / most_complexity_);
+    const double larger = 2 * std::log(too_many) / Dim;
     runtime::parallel_for(executor_, to_.size(), [&](std::size_t v) {
-      Metric<Dim> between = share * to_[v];
-      between += (1 - share) * from_[v];
-      background_.log_metric(static_cast<VertexId>(v)) = step == steps_ ? to_[v] : between;
+      Metric<Dim> metric = between(v, share);
+      for (std::size_t i = 0; i < Dim; ++i) metric.m[i * (i + 3) / 2] -= larger;  // its diagonal
+      background_.log_metric(static_cast<VertexId>(v)) = step == steps_ ? to_[v] : metric;
     });
   }
 
  private:
   static constexpr double longest_step = 3;  ///< of a size, as against that across
 
+  Metric<Dim> between(std::size_t v, double share) const {
+    Metric<Dim> metric = share * to_[v];
+    metric += (1 - share) * from_[v];
+    return metric;
+  }
+
+  /// Of the metric so far on the way.
+  double complexity(double share) const {
+    const auto at_vertex = [&](std::size_t v) {
+      const Metric<Dim> log_metric = between(v, share);
+      double trace = 0;
+      for (int i = 0; i < Dim; ++i) trace += log_metric(i, i);
+      return share_of_[v] * std::exp(trace / 2);
+    };
+    return runtime::parallel_reduce(executor_, to_.size(), 0.0, at_vertex, std::plus<>());
+  }
+
+  static double volume_around(const Mesh<Dim>& mesh, VertexId v) {
+    double sum = 0;
+    for (const ElementId element : mesh.elements_of.of(v))
+      sum += certain_determinant<Dim>(positions(mesh, element)) / (Dim == 2 ? 2 : 6);
+    return sum;
+  }
+
+  static std::array<Vector<Dim>, Dim + 1> positions(const Mesh<Dim>& mesh, ElementId element) {
+    std::array<Vector<Dim>, Dim + 1> corner;
+    for (std::size_t c = 0; c <= Dim; ++c)
+      corner[c] = mesh.site_of[mesh.corners_of[element][c]].position;
+    return corner;
+  }
+
   static Metric<Dim> mean_log_around(const Mesh<Dim>& mesh, VertexId v) {
     Metric<Dim> sum;
     const auto around = mesh.elements_of.of(v);
-    for (const ElementId element : around) {
-      std::array<Vector<Dim>, Dim + 1> corner;
-      for (std::size_t c = 0; c <= Dim; ++c)
-        corner[c] = mesh.site_of[mesh.corners_of[element][c]].position;
-      sum += logarithm(metric_of_element<Dim>(corner));
-    }
+    for (const ElementId element : around)
+      sum += logarithm(metric_of_element<Dim>(positions(mesh, element)));
     return 1 / static_cast<double>(std::max<std::size_t>(1, around.size())) * sum;
   }
 
@@ -81,6 +118,8 @@ class MetricPath {
   const runtime::Executor& executor_;
   Background<Dim>& background_;
   std::vector<Metric<Dim>> from_, to_;  // [vertex of the background], logarithms
+  std::vector<double> share_of_;        // [vertex of the background], of the volume
+  double most_complexity_ = 0;
   int steps_ = 1;
 };
 

@@ -108,6 +108,7 @@ class Refine {
   // ---- 3. New vertices and elements take numbers in order; each element is cut on its own: in
   // refine_write.cpp ----
   void number();
+  void expect_countable() const;
   void grow();
   void write_vertex(std::uint32_t number);
   void write_pieces(std::size_t place, auto&& defer);

@@ -1,6 +1,7 @@
 /// @file
 /// Refine's last stage: new vertices and elements take numbers by prefix sums, and each element is
 /// cut on its own. What is written here is decided before, in refine.cpp.
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -35,10 +36,22 @@ void Refine<Dim>::number() {
   first_vertex_ = static_cast<VertexId>(mesh_.vertex_slots());
   first_element_ = static_cast<ElementId>(mesh_.element_slots());
   report_.applied = runtime::exclusive_scan<std::uint32_t>(executor_, place_of_);
-  const std::uint32_t pieces = runtime::exclusive_scan<std::uint32_t>(executor_, first_piece_);
-  if (std::size_t{first_element_} + pieces >= none)
-    throw std::length_error("a mesh of more elements than 32-bit numbers can count");
-  end_of_elements_ = first_element_ + pieces;
+  expect_countable();
+  end_of_elements_ =
+      first_element_ + runtime::exclusive_scan<std::uint32_t>(executor_, first_piece_);
+}
+
+/// Throws if there are not numbers for all new elements, which first_piece_ still counts one by
+/// one.
+template <int Dim>
+void Refine<Dim>::expect_countable() const {
+  constexpr std::size_t most_pieces = 7;  // beside the first
+  std::size_t end = std::size_t{first_element_} + most_pieces * elements_.size();
+  if (end < none) return;
+  const auto pieces_of = [&](std::size_t i) { return std::size_t{first_piece_[i]}; };
+  end = first_element_ + runtime::parallel_reduce(executor_, elements_.size(), std::size_t{0},
+                                                  pieces_of, std::plus<>());
+  if (end >= none) throw std::length_error("a mesh of more elements than 32-bit numbers can count");
 }
 
 /// Makes what is numbered, and brings the lists of vertices up to date change by change, unless

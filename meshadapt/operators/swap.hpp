@@ -8,6 +8,7 @@
 
 #include <array>
 #include <optional>
+#include <stdexcept>
 
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/run_rounds.hpp"
@@ -74,6 +75,8 @@ class Swap {
   }
   std::array<std::uint32_t, 1> grow(const std::array<std::uint32_t, 1>& total) {
     const auto elements = static_cast<std::uint32_t>(mesh_.element_slots());
+    if (std::size_t{elements} + total[0] >= none)
+      throw std::length_error("a mesh of more elements than 32-bit numbers can count");
     mesh_.grow(executor_, mesh_.vertex_slots(), elements + total[0]);
     return {elements};
   }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
@@ -173,6 +174,30 @@ TEST_P(Adapt, ComesToAMetricFarFromTheMesh) {
   EXPECT_GT(found.share_in_range(), dimension() == 2 ? 0.9 : 0.75);
   EXPECT_GT(found.quality.mean, dimension() == 2 ? 0.85 : 0.7);
   expect_identical(adapted, adapt(Executor({.threads = 3}), mesh, metric));
+}
+
+/// In a mesh of flat and of large elements, what lies between its own metric and one of few
+/// elements would ask for a hundred thousand.
+TEST_P(Adapt, MakesNoDetourByManyElements) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 4));
+  const auto stride = static_cast<std::size_t>(dimension());
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)  // all but the last layer is thin
+    if (double& x = mesh.coordinates[stride * v]; x < 0.9) x *= 1e-8;
+  std::size_t most = 0;
+  const AdaptOptions options{.progress = [&](const AdaptProgress& now) {
+    if (std::string_view(now.step) == "refine") most = std::max(most, now.changes);
+  }};
+  const AdaptedMesh adapted =
+      adapt(Executor({.threads = 2}), mesh, constant_metric(mesh, 0.5), options);
+  EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "");
+  EXPECT_LT(most, 5000U);
+}
+
+TEST_P(Adapt, RefusesToMakeMoreElementsThanCanBeCounted) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 3));
+  for (const double size : {1e-6, 1e-70})
+    EXPECT_THROW(adapt(Executor({.threads = 2}), mesh, constant_metric(mesh, size)), InputError)
+        << size;
 }
 
 /// All elements in the layer are slivers, whatever is done.

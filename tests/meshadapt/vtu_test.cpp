@@ -196,6 +196,14 @@ TEST(Vtu, RefusesAFieldOfAnotherMesh) {
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
+TEST(Vtu, RefusesAMeshThatLacksReferences) {
+  const test::TemporaryFolder folder;
+  AnyMesh mesh = rectangle_mesh({1, 1}, {2, 2});
+  mesh.triangles.reference.pop_back();
+  EXPECT_NE(test::complaint([&] { write_vtu(folder / "a.vtu", mesh, {}); }), "");
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
 // ---- Without memory ----
 
 std::size_t allocations_left = 0;
