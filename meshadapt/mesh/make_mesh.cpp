@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/orientation.hpp"
@@ -342,14 +343,17 @@ class MeshMaker {
              "; remove it or repair the mesh");
       PatchId& mark =
           mesh_.patches_of[facets[f].element][static_cast<std::size_t>(facets[f].facet)];
-      if (mark != 0)
-        fail(entity(facet_name<Dim>(), f) + " is the same as " + facet_name<Dim>() + " " +
-             std::to_string(mark) + "; remove one");
+      if (mark != 0) fail_same(facet_name<Dim>(), f, mark - 1);
       mark = static_cast<PatchId>(f + 1);
       if (facets[f].other != none)
         mesh_.patches_of[facets[f].other][static_cast<std::size_t>(facets[f].other_facet)] = mark;
     }
     return facets;
+  }
+
+  [[noreturn]] void fail_same(const char* kind, std::size_t second, std::size_t first) const {
+    fail(entity(kind, second) + " is the same as " + kind + " " + std::to_string(first + 1) +
+         "; remove one");
   }
 
   /// Finds the elements on both sides of a facet.
@@ -408,7 +412,8 @@ class MeshMaker {
          "--complete-boundary to give unlisted ones reference 0");
   }
 
-  /// Edges that belong to no element, as construction lines do, are left out.
+  /// Edges that belong to no element, as construction lines do, are left out. An edge may be listed
+  /// once only: of two, which reference would it keep?
   std::vector<ListedEdge> listed_edges() {
     std::vector<ListedEdge> edges;
     if constexpr (Dim == 3) {
@@ -416,13 +421,18 @@ class MeshMaker {
       const auto ridge = marked(any_.edges.size(), any_.ridges, "edge");
       std::size_t first_loose = no_index;
       std::vector<ElementId> shell;
+      std::unordered_map<std::uint64_t, std::size_t> number_of;  // by both vertices
       for (std::size_t i = 0; i < any_.edges.size(); ++i) {
         const auto [a, b] = any_.edges.vertices[i];
         shell_of(mesh_, a, b, shell);
-        if (!shell.empty())
-          edges.push_back({a, b, any_.edges.reference[i], required[i], ridge[i]});
-        else if (first_loose == no_index)
-          first_loose = i;
+        if (shell.empty()) {
+          if (first_loose == no_index) first_loose = i;
+          continue;
+        }
+        const auto [at, is_new] =
+            number_of.emplace(std::uint64_t{std::min(a, b)} << 32U | std::max(a, b), i);
+        if (!is_new) fail_same("edge", i, at->second);
+        edges.push_back({a, b, any_.edges.reference[i], required[i], ridge[i]});
       }
       report_loose_edges(any_.edges.size() - edges.size(), first_loose);
     }

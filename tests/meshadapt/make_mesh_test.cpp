@@ -310,6 +310,9 @@ TEST(MakeMesh, RefusesDuplicates) {
   AnyMesh twice = square(2);
   twice.edges.add(twice.edges.vertices[3], 1);
   EXPECT_COMPLAINT(twice, "edge 9 is the same as edge 4");
+  AnyMesh edges = cube(1);
+  edges.edges = {{{0, 1}, {1, 3}, {1, 0}}, {5, 5, 6}};
+  EXPECT_COMPLAINT(edges, "edge 3 is the same as edge 1; remove one");
 }
 
 TEST(MakeMesh, NamesTheFirstElementsOfACrowdInAnyOrder) {
