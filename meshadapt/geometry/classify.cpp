@@ -80,6 +80,7 @@ class Classifier {
     find_patches();
     if (surface_tolerance_ > 0) join_patches();
     if constexpr (Dim == 3) find_curves();
+    mark_faced();
     store_patches();
     if (surface_tolerance_ > 0) keep_surface();
     classify_vertices();
@@ -277,6 +278,61 @@ class Classifier {
         edges.push_back({points(std::array{e.a, e.b}), e.curve, true});
     mesh_.surface = std::make_shared<const Surface<Dim>>(std::move(facets), std::move(edges),
                                                          surface_tolerance_);
+  }
+
+  // ---- Faced patches: pairs that lie against each other, with a rim in common ----
+
+  /// Two patches meet at a side, in 3D in an acute angle.
+  struct Meeting {
+    PatchId p, q;  // p < q
+    Key key;
+    auto operator<=>(const Meeting&) const = default;
+  };
+
+  void mark_faced() {
+    auto meetings = runtime::parallel_collect<Meeting>(executor_, sides_.size(),
+                                                       [&](std::size_t i, auto&& append) {
+                                                         if (begins_run(i))
+                                                           each_meeting(run_at(i), append);
+                                                       });
+    std::sort(meetings.begin(), meetings.end());
+    for (std::size_t begin = 0, end = 0; begin < meetings.size(); begin = end) {
+      const auto [p, q, key] = meetings[begin];
+      while (end < meetings.size() && meetings[end].p == p && meetings[end].q == q) ++end;
+      if (encloses(std::span(meetings).subspan(begin, end - begin)))
+        mesh_.patches[p].faced = mesh_.patches[q].faced = true;
+    }
+  }
+
+  void each_meeting(std::span<const Side> run, auto&& append) const {
+    for (const Side& f : run)
+      for (const Side& g : run) {
+        const PatchId p = facets_[f.facet].patch, q = facets_[g.facet].patch;
+        if (p < q &&
+            (Dim == 2 || folds_back(facets_[f.facet].corners, facets_[g.facet].corners, f.key)))
+          append({p, q, f.key});
+      }
+  }
+
+  /// Is there room between what two patches have in common: is that more than a point, or a line?
+  bool encloses(std::span<const Meeting> rim) const {
+    if constexpr (Dim == 2) return rim.front().key != rim.back().key;
+    const auto at = [&](Key key) { return mesh_.site_of[static_cast<VertexId>(key)].position; };
+    const Vector<Dim> origin = at(rim.front().key);
+    Vector<Dim> farthest{};
+    const auto each_vertex = [&](auto&& visit) {
+      for (const Meeting& meeting : rim)
+        for (const Key v : {meeting.key >> 32U, meeting.key & 0xffffffffU}) visit(at(v) - origin);
+    };
+    each_vertex([&](const Vector<Dim>& d) {
+      if (dot(d, d) > dot(farthest, farthest)) farthest = d;
+    });
+    bool straight = true;
+    const double square = dot(farthest, farthest);
+    each_vertex([&](const Vector<Dim>& d) {
+      straight = straight && norm(d - (dot(d, farthest) / square) * farthest) <= tolerance_;
+    });
+    return !straight;
   }
 
   void store_patches() {

@@ -46,7 +46,7 @@ auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
   for (const Candidate& choice : choices) {
     Plan plan{gone, choice.kept};
     if (!keeps_edges_short(plan, ring, longest) || !keeps_shapes(plan, worst) ||
-        !keeps_surface(plan))
+        !keeps_surface(plan) || !keeps_sides_apart(plan))
       continue;
     plan.crowded = crowded_after(plan, ring);
     return plan;
@@ -173,6 +173,36 @@ bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
     return contains(mesh_.corners_of[e], plan.kept) ||
            meshadapt::keeps_surface(mesh_, e, plan.gone, kept);
   });
+}
+
+/// Where another patch has the same rim, as on both sides of a closed crack, an edge from rim to
+/// rim may be there as well. Both would become one, and the sides grow together. Such an edge is
+/// not made, as the other patch may be changed at the same time.
+template <int Dim>
+bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
+  const auto on_rim = [&](VertexId v) { return mesh_.kind_of[v].freedom < Dim - 1; };
+  if (mesh_.kind_of[plan.gone].freedom == Dim || !on_rim(plan.kept)) return true;
+  const auto ball = mesh_.elements_of.of(plan.gone);
+  const auto is_joined = [&](VertexId v) {  // by a facet at the edge, or along a curve
+    if (Dim == 3 && mesh_.curve_of(plan.gone, v) != 0) return true;
+    return std::any_of(ball.begin(), ball.end(), [&](ElementId e) {
+      const Corners<Dim>& corners = mesh_.corners_of[e];
+      if (!contains(corners, v) || !contains(corners, plan.kept)) return false;
+      for (std::size_t i = 0; i <= Dim; ++i)
+        if (corners[i] != plan.gone && corners[i] != plan.kept && corners[i] != v &&
+            mesh_.patches_of[e][i] != 0)
+          return true;
+      return false;
+    });
+  };
+  for (const ElementId e : ball)
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      if (mesh_.corners_of[e][i] == plan.gone || !mesh_.patches[mesh_.patches_of[e][i]].faced)
+        continue;
+      for (const VertexId v : facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i)))
+        if (v != plan.gone && v != plan.kept && on_rim(v) && !is_joined(v)) return false;
+    }
+  return true;
 }
 
 /// Does this neighbour of the vertex that goes get a short edge to the one that is kept?

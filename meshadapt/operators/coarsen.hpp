@@ -86,6 +86,7 @@ class Coarsen {
   bool keeps_edges_short(const Plan& plan, const Ring& ring, double longest) const;
   bool keeps_shapes(Plan& plan, double worst_before) const;
   bool keeps_surface(const Plan& plan) const;
+  bool keeps_sides_apart(const Plan& plan) const;
 
   bool becomes_crowded(VertexId vertex, const Plan& plan) const;
   EdgeCollapse::Crowded crowded_after(const Plan& plan, const Ring& ring) const;

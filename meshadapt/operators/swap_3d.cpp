@@ -112,6 +112,16 @@ std::optional<Replacement<3>> triangulate(const Mesh<3>& mesh, const Swappable& 
   return result;
 }
 
+/// May this be an edge of a patch? Not if it is there already, on the other side of a boundary that
+/// touches itself, nor if both sides of a closed crack could get it at the same time.
+bool stays_apart(const Mesh<3>& mesh, VertexId a, VertexId b, PatchId patch) {
+  if (mesh.patches[patch].faced && mesh.kind_of[a].freedom < 2 && mesh.kind_of[b].freedom < 2)
+    return false;
+  bool found = false;
+  visit_shell(mesh, a, b, [&](ElementId) { found = true; });
+  return !found;
+}
+
 /// May the edge give way to the elements found? If so, adds what goes with them.
 bool accept_edge_removal(const Mesh<3>& mesh, const Swappable& edge, const Shell& shell,
                          const Ring& ring, Replacement<3>& result) {
@@ -125,6 +135,7 @@ bool accept_edge_removal(const Mesh<3>& mesh, const Swappable& edge, const Shell
   if (ring.open) {
     const VertexId first = ring.vertices.front(), last = ring.vertices.back();
     if (!convex_in_patch(mesh, {edge.a, first, edge.b, last}, patch)) return false;
+    if (!stays_apart(mesh, first, last, patch)) return false;
     result.new_facets = {{edge.a, first, last}, {edge.b, first, last}};
     result.new_patch = patch;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -161,6 +162,69 @@ AnyField sheets(const AnyMesh& mesh, double along, double across) {
         field.values[at] +=
             (1 / (across * across) - 1 / (along * along)) * normal[row] * normal[column];
   return field;
+}
+
+/// With a closed crack inside, whose sides have their rim in common, and reference 9.
+AnyMesh cracked(int dimension) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(dimension, 4));
+  const auto axes = static_cast<std::size_t>(dimension);
+  const auto on_crack = [&](std::uint32_t v, double margin) {
+    const double* at = &mesh.coordinates[v * axes];
+    return at[axes - 1] == 0.5 && std::all_of(at, at + axes - 1, [&](double x) {
+             return std::abs(x - 0.5) < 0.25 + margin;
+           });
+  };
+  std::vector<std::uint32_t> twin(mesh.vertex_count());
+  for (std::uint32_t v = 0; v < twin.size(); ++v) {
+    twin[v] = v;
+    if (!on_crack(v, -0.01)) continue;
+    twin[v] = static_cast<std::uint32_t>(mesh.vertex_count());
+    for (std::size_t i = 0; i < axes; ++i)
+      mesh.coordinates.push_back(mesh.coordinates[v * axes + i]);
+    mesh.vertex_reference.push_back(0);
+  }
+  const auto split = [&](auto& elements, auto& facets) {
+    for (auto& corners : elements.vertices) {
+      const auto is_above = [&](std::uint32_t v) {
+        return mesh.coordinates[v * axes + axes - 1] > 0.5;
+      };
+      const bool above = std::any_of(corners.begin(), corners.end(), is_above);
+      typename std::decay_t<decltype(facets)>::value_type facet;
+      std::size_t count = 0, inside = 0;
+      for (const std::uint32_t v : corners) {
+        if (!on_crack(v, 0.01)) continue;
+        inside += twin[v] != v;
+        facet[count++ % axes] = above ? twin[v] : v;
+      }
+      if (above)
+        for (std::uint32_t& v : corners) v = v < twin.size() ? twin[v] : v;
+      if (count == axes && inside > 0) facets.push_back(facet);
+    }
+  };
+  if (dimension == 2)
+    split(mesh.triangles, mesh.edges.vertices);
+  else
+    split(mesh.tetrahedra, mesh.triangles.vertices);
+  mesh.edges.reference.resize(mesh.edges.size(), 9);
+  mesh.triangles.reference.resize(mesh.triangles.size(), dimension == 2 ? 1 : 9);
+  return mesh;
+}
+
+TEST_P(Adapt, LeavesClosedCracksOpen) {
+  const AnyMesh mesh = cracked(dimension());
+  for (const double size : {0.2, 0.6, 10.0})
+    for (const double tolerance : {0.0, 0.01, 0.1}) {
+      const auto run = [&](int threads) {
+        return adapt(Executor({.threads = threads}), mesh, constant_metric(mesh, size),
+                     {.make = {.surface_tolerance = tolerance}});
+      };
+      const AdaptedMesh adapted = run(2);
+      SCOPED_TRACE(testing::Message() << size << " " << tolerance);
+      EXPECT_EQ(test::joined(check_mesh(Executor({.threads = 1}), adapted.mesh)), "");
+      EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "");
+      EXPECT_EQ(test::joined(check_boundary(Executor({.threads = 1}), adapted.mesh)), "");
+      expect_identical(adapted, run(1));
+    }
 }
 
 /// In which nearly all elements of the mesh are slivers.

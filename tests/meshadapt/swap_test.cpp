@@ -116,6 +116,19 @@ TEST(Swap, RemovesALongEdgeOfAFlatBoundary) {
   EXPECT_EQ(found[0].c, none);
 }
 
+/// Both sides would have the edge 2-3 in common, though no facet.
+TEST(Swap, MakesNoEdgeThatIsThereOnTheOtherSideOfTheBoundary) {
+  auto mesh = mesh_of<3>({{{-1, 0, 0}},
+                          {{1, 0, 0}},
+                          {{0, -0.6, 0}},
+                          {{0, 0.6, 0}},
+                          {{0, 0, 0.8}},
+                          {{-0.5, 0, -0.8}},
+                          {{0.5, 0, -0.8}}},
+                         {{0, 1, 3, 4}, {0, 2, 1, 4}, {3, 2, 5, 6}});
+  EXPECT_TRUE(improvements(mesh).empty());
+}
+
 TEST(Swap, LeavesTheEdgesOfASingleTetrahedronAlone) {
   auto mesh = mesh_of<3>({{{0, 0, 0}}, {{2, 0, 0}}, {{0, 0.5, 0}}, {{0, 0, 0.5}}}, {{0, 1, 2, 3}});
   EXPECT_TRUE(improvements(mesh).empty());

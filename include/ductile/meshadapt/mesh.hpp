@@ -39,6 +39,7 @@ struct Patch {
   bool required = false;  ///< its facets may not change
   bool ridge = false;     ///< 2D: its edges were listed as ridges
   bool smooth = false;
+  bool faced = false;  ///< another lies against it between the same rims: a side of a closed crack
 };
 
 /// A maximal straight chain of edges in 3D: between patches, or listed in the file. A smooth one
