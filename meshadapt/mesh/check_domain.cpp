@@ -16,6 +16,8 @@
 #include "ductile/meshadapt/vector.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/pinches.hpp"
+#include "mesh/scale.hpp"
 
 namespace ductile::meshadapt {
 
@@ -75,62 +77,74 @@ Measures measures(const AnyMesh& mesh) {
                [&](std::size_t f) { return facet_measure<Dim>(mesh, facets.vertices[f]); })};
 }
 
-/// Of each region, by reference, interfaces to others included. Facets between two elements of one
-/// region cancel each other in a sum of hashes, so that hardly any others are left to sort.
+/// One side of a facet: its corners, ascending, and a number of the element's.
 template <int Dim>
-std::map<std::int32_t, double> boundary_measures(const AnyMesh& mesh) {
-  using Side = std::pair<Facet<Dim>, std::int32_t>;  // corners, ascending, and the reference
+using Side = std::pair<Facet<Dim>, std::int32_t>;
+
+/// The sides, sorted, of which the other has another number, or no element. Facets between two
+/// elements of one number cancel each other in a sum of hashes, so that hardly any others are left
+/// to sort.
+template <int Dim, class NumberOf>
+std::vector<Side<Dim>> single_sides(const AnyMesh& mesh, NumberOf number_of) {
   const auto& elements = elements_in<Dim>(mesh);
   const auto for_each_side = [&](auto visit) {
     for (std::size_t e = 0; e < elements.size(); ++e)
       for (int i = 0; i <= Dim; ++i) {
         Facet<Dim> facet = facet_of<Dim>(elements.vertices[e], i);
         std::sort(facet.begin(), facet.end());
-        visit(Side{facet, elements.reference[e]});
+        visit(Side<Dim>{facet, number_of(e)});
       }
   };
   std::vector<std::uint64_t> hashes_at(mesh.vertex_count());  // [lowest corner]
-  for_each_side([&](const Side& side) {
+  for_each_side([&](const Side<Dim>& side) {
     auto hash = static_cast<std::uint64_t>(side.second);
     for (const VertexId v : side.first) hash = runtime::mix64(hash ^ v);
     hashes_at[side.first[0]] ^= hash;
   });
-  std::vector<Side> sides;
-  for_each_side([&](const Side& side) {
+  std::vector<Side<Dim>> sides, single;
+  for_each_side([&](const Side<Dim>& side) {
     if (hashes_at[side.first[0]] != 0) sides.push_back(side);
   });
   std::sort(sides.begin(), sides.end());
-  std::map<std::int32_t, double> sum_of;
   for (std::size_t i = 0; i < sides.size(); ++i)
     if (i + 1 < sides.size() && sides[i] == sides[i + 1])
       ++i;
     else
-      sum_of[sides[i].second] += facet_measure<Dim>(mesh, sides[i].first);
+      single.push_back(sides[i]);
+  return single;
+}
+
+/// The facets of one element only.
+template <int Dim>
+std::vector<Facet<Dim>> boundary_facets(const AnyMesh& mesh) {
+  std::vector<Facet<Dim>> facets;
+  for (const Side<Dim>& side : single_sides<Dim>(mesh, [](std::size_t) { return 0; }))
+    facets.push_back(side.first);
+  return facets;
+}
+
+/// Of each region, by reference, interfaces to others included.
+template <int Dim>
+std::map<std::int32_t, double> boundary_measures(const AnyMesh& mesh) {
+  const auto& reference_of = elements_in<Dim>(mesh).reference;
+  std::map<std::int32_t, double> sum_of;
+  for (const auto& [facet, reference] :
+       single_sides<Dim>(mesh, [&](std::size_t e) { return reference_of[e]; }))
+    sum_of[reference] += facet_measure<Dim>(mesh, facet);
   return sum_of;
 }
 
-/// How far a mesh reaches, and how far its boundary may go astray: what counts as flat is so by
-/// this fraction of the extent (see classify.cpp), and coordinates are rounded.
-struct Scale {
-  double extent = 0, slack = 0;
-};
-
+/// Of the boundary that is not listed.
 template <int Dim>
-Scale scale_of(const AnyMesh& mesh) {
-  Scale scale;
-  if (mesh.coordinates.empty()) return scale;
-  double farthest = 0;
-  for (std::size_t i = 0; i < Dim; ++i) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t at = i; at < mesh.coordinates.size(); at += Dim) {
-      low = std::min(low, mesh.coordinates[at]);
-      high = std::max(high, mesh.coordinates[at]);
-    }
-    scale.extent = std::max(scale.extent, high - low);
-    farthest = std::max({farthest, std::abs(low), std::abs(high)});
-  }
-  scale.slack = 2e-10 * scale.extent + 16 * std::numeric_limits<double>::epsilon() * farthest;
-  return scale;
+double unlisted_measure(const AnyMesh& mesh) {
+  std::vector<Facet<Dim>> listed = facets_in<Dim>(mesh).vertices;
+  for (Facet<Dim>& facet : listed) std::sort(facet.begin(), facet.end());
+  std::sort(listed.begin(), listed.end());
+  double sum = 0;
+  for (const Facet<Dim>& facet : boundary_facets<Dim>(mesh))
+    if (!std::binary_search(listed.begin(), listed.end(), facet))
+      sum += facet_measure<Dim>(mesh, facet);
+  return sum;
 }
 
 /// Says what differs by more than is allowed, with as many digits as show it.
@@ -171,12 +185,45 @@ void compare_regions(const AnyMesh& before, const Measures& old, Measures& now,
 }
 
 template <int Dim>
+void compare_facets(const AnyMesh& before, const Measures& old, Measures& now, double allowed,
+                    std::vector<std::string>& faults) {
+  for (auto [reference, value] : old.facets) {
+    // What was not listed may be by now, see MakeMeshOptions::complete_boundary.
+    if (reference == 0 && std::abs(now.facets[0] - value) > allowed)
+      value += unlisted_measure<Dim>(before);
+    compare("facets of reference " + std::to_string(reference) + " measure ", now.facets[reference],
+            value, allowed, faults);
+  }
+}
+
+void expect_facets(const Measures& old, Measures& now, std::vector<std::string>& faults) {
+  for (const auto& [reference, value] : old.facets)
+    if (!(now.facets[reference] > 0))
+      faults.push_back("facets of reference " + std::to_string(reference) + " are gone");
+}
+
+/// Curves along which the boundary met itself before may be shorter now, or end elsewhere by
+/// rounding; those that bend may be longer.
+template <int Dim>
+void compare_pinches(const AnyMesh& before, const AnyMesh& after, double surface_tolerance,
+                     std::vector<std::string>& faults) {
+  const double now = pinched_length<Dim>(after, listed_facets_at_pinches<Dim>(after));
+  if (now == 0) return;
+  const double expected = pinched_length<Dim>(before, boundary_facets<Dim>(before));
+  if (now <= expected * (surface_tolerance == 0 ? 1 + 1e-6 : 1.5)) return;
+  std::ostringstream text;
+  text << "the boundary meets itself " << (Dim == 2 ? "at vertices, " : "along edges, ") << now
+       << " in all, expected " << expected;
+  faults.push_back(text.str());
+}
+
+template <int Dim>
 std::vector<std::string> check(const AnyMesh& before, const AnyMesh& after,
                                double surface_tolerance) {
   const Measures old = measures<Dim>(before);
   Measures now = measures<Dim>(after);
   const double domain = total(old.regions);
-  // What was not listed before may be listed by now, see MakeMeshOptions::complete_boundary.
+  // What was not listed before may be by now.
   const double boundary = std::max(total(old.facets), total(now.facets));
   const auto [extent, slack] = scale_of<Dim>(before);
   std::vector<std::string> faults;
@@ -186,14 +233,11 @@ std::vector<std::string> check(const AnyMesh& before, const AnyMesh& after,
   compare_regions<Dim>(before, old, now, {allowed, surface_tolerance}, faults);
   // The rim of a patch of facets: two points in 2D, in 3D a line about as long as the mesh.
   const double rim = Dim == 2 ? 2 : 4 * extent;
-  for (const auto& [reference, value] : old.facets) {
-    const std::string what = "facets of reference " + std::to_string(reference);
-    if (surface_tolerance == 0)
-      compare(what + " measure ", now.facets[reference], value, 1e-9 * boundary + slack * rim,
-              faults);
-    else if (!(now.facets[reference] > 0))
-      faults.push_back(what + " are gone");
-  }
+  if (surface_tolerance == 0)
+    compare_facets<Dim>(before, old, now, 1e-9 * boundary + slack * rim, faults);
+  else
+    expect_facets(old, now, faults);
+  compare_pinches<Dim>(before, after, surface_tolerance, faults);
   return faults;
 }
 

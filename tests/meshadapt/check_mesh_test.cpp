@@ -239,6 +239,74 @@ TEST(CheckDomain, FindsRegionsThatAreGoneOrNew) {
   }
 }
 
+TEST(CheckDomain, ExpectsReference0OfWhatWasNotListed) {
+  for (const int dimension : {2, 3}) {
+    AnyMesh after = box(dimension);
+    auto& reference_of = dimension == 2 ? after.edges.reference : after.triangles.reference;
+    std::fill(reference_of.begin(), reference_of.end(), 0);
+    AnyMesh before = after;
+    const auto leave_one = [](auto& facets) {
+      facets.vertices.resize(1);
+      facets.reference.resize(1);
+    };
+    dimension == 2 ? leave_one(before.edges) : leave_one(before.triangles);
+    // An interface is not boundary, and need not be listed.
+    const auto drop_interface = [&](auto& facets, double half) {
+      std::size_t kept = 0;
+      for (std::size_t f = 0; f < facets.size(); ++f) {
+        bool inside = true;
+        for (const std::uint32_t v : facets.vertices[f])
+          inside = inside && after.coordinates[v * static_cast<std::size_t>(dimension)] == half;
+        if (inside) continue;
+        facets.vertices[kept] = facets.vertices[f];
+        facets.reference[kept++] = 0;
+      }
+      facets.vertices.resize(kept);
+      facets.reference.resize(kept);
+    };
+    dimension == 2 ? drop_interface(after.edges, 0.5) : drop_interface(after.triangles, 0.5);
+    EXPECT_EQ(test::joined(check_domain(before, after)), "");
+    dimension == 2 ? after.edges.vertices.pop_back() : after.triangles.vertices.pop_back();
+    reference_of.pop_back();
+    EXPECT_NE(test::joined(check_domain(before, after)).find("facets of reference 0 measure"),
+              std::string::npos);
+  }
+}
+
+/// Two elements that have an edge in common, or two of their own there: in 2D a vertex.
+AnyMesh two_at_an_edge(int dimension, bool common) {
+  AnyMesh mesh;
+  mesh.dimension = dimension;
+  const std::uint32_t a = common ? 0 : (dimension == 2 ? 5U : 6U), b = common ? 1 : 7;
+  if (dimension == 2) {
+    mesh.coordinates = {0, 0, 1, 0, 0, 1, -1, 0, 0, -1, 0, 0};
+    mesh.triangles = {{{0, 1, 2}, {a, 3, 4}}, {0, 0}};
+    mesh.edges = {{{0, 1}, {1, 2}, {2, 0}, {a, 3}, {3, 4}, {4, a}}, std::vector(6, 0)};
+  } else {
+    mesh.coordinates = {0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 2};
+    mesh.tetrahedra = {{{0, 2, 3, 1}, {a, 4, 5, b}}, {0, 0}};
+    mesh.triangles.vertices = {{0, 2, 3}, {0, 2, 1}, {2, 3, 1}, {3, 0, 1},
+                               {a, 4, 5}, {a, 4, b}, {4, 5, b}, {5, a, b}};
+    mesh.triangles.reference.assign(8, 0);
+  }
+  mesh.vertex_reference.assign(mesh.coordinates.size() / static_cast<std::size_t>(dimension), 0);
+  return mesh;
+}
+
+TEST(CheckDomain, FindsWhereTheBoundaryMeetsItself) {
+  for (const int dimension : {2, 3})
+    for (const double tolerance : {0.0, 0.1}) {
+      const AnyMesh apart = two_at_an_edge(dimension, false);
+      const AnyMesh joined = two_at_an_edge(dimension, true);
+      EXPECT_EQ(test::joined(check_domain(apart, apart, tolerance)), "");
+      EXPECT_EQ(test::joined(check_domain(joined, joined, tolerance)), "");
+      EXPECT_EQ(test::joined(check_domain(joined, apart, tolerance)), "");
+      EXPECT_EQ(test::joined(check_domain(apart, joined, tolerance)),
+                dimension == 2 ? "\n  the boundary meets itself at vertices, 1 in all, expected 0"
+                               : "\n  the boundary meets itself along edges, 2 in all, expected 0");
+    }
+}
+
 TEST(CheckDomain, FindsNothingWhereThereIsNothing) {
   AnyMesh nothing;
   nothing.dimension = 2;

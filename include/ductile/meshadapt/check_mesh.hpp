@@ -25,7 +25,9 @@ std::vector<std::string> check_mesh(const runtime::Executor& executor, const Any
 /// and to what the boundary can go astray, in thin domains and far from the origin the greater of
 /// the two: 2e-10 of the extent and the rounding of coordinates. What adaptation must never change.
 /// With a surface tolerance (see MakeMeshOptions) the whole, and each region, may differ by as much
-/// as boundaries that far away make it, and boundaries only have to be there still. Throws
+/// as boundaries that far away make it, and boundaries only have to be there still. Nor may the
+/// boundary of `after` meet itself, at vertices in 2D or along edges in 3D, where that of `before`
+/// did not. Boundary that `before` does not list counts as of reference 0, if it lists some. Throws
 /// InputError unless both meshes are of one dimension and have all coordinates and references.
 /// Linear in the meshes. Thread safety: any thread.
 std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
