@@ -1,13 +1,17 @@
 /// @file
-/// The check that the boundary of a mesh does not cross itself.
+/// The check that the boundary of a mesh does not cross itself, but for what rounding does to
+/// points that two facets share, or that lie on both sides of a closed crack.
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <utility>
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/box_index.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/problems.hpp"
+#include "mesh/scale.hpp"
 
 namespace ductile::meshadapt {
 
@@ -18,6 +22,7 @@ class CrossingFacets {
  public:
   explicit CrossingFacets(const AnyMesh& mesh)
       : mesh_(mesh),
+        slack_(scale_of<Dim>(mesh).slack),
         index_(facets().size(), [&](std::size_t f) { return box_around(points(f)); }) {}
 
   std::size_t size() const { return facets().size(); }
@@ -29,7 +34,9 @@ class CrossingFacets {
     index_.each_meeting(box_around(here), [&](std::size_t g) {
       if (g <= f || g >= first) return;
       const std::array<Vector<Dim>, Dim> there = points(g);
-      if (crosses(f, here, g, there) || (Dim == 3 && crosses(g, there, f, here))) first = g;
+      if ((crosses(f, here, g, there) || (Dim == 3 && crosses(g, there, f, here))) &&
+          depth(here, there) > slack_)
+        first = g;
     });
     return first;
   }
@@ -89,7 +96,40 @@ class CrossingFacets {
            std::all_of(side.begin(), side.end(), [&](int s) { return s == side[0]; });
   }
 
+  /// By how far one of two facets that cross would have to be moved so that they do not. Facets are
+  /// apart if their shadows on some line are: one along a normal or, in 3D, across an edge of each.
+  static double depth(const Points& f, const Points& g) {
+    double least = std::numeric_limits<double>::infinity();
+    const auto look_along = [&](const Vector<Dim>& direction) {
+      const double length = norm(direction);
+      if (!(length > 0)) return;
+      const auto [low_f, high_f] = shadow(f, f[0], direction);
+      const auto [low_g, high_g] = shadow(g, f[0], direction);
+      least = std::min(least, std::min(high_f - low_g, high_g - low_f) / length);
+    };
+    look_along(facet_normal(f));
+    look_along(facet_normal(g));
+    if constexpr (Dim == 3)
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+          look_along(cross(f[(i + 1) % 3] - f[i], g[(j + 1) % 3] - g[j]));
+    return least;
+  }
+
+  /// From where to where points lie along a direction, seen from an origin.
+  static std::pair<double, double> shadow(const Points& points, const Vector<Dim>& origin,
+                                          const Vector<Dim>& direction) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vector<Dim>& point : points) {
+      const double along = dot(point - origin, direction);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+    return {low, high};
+  }
+
   const AnyMesh& mesh_;
+  double slack_;  // of depth(), which rounding may make as large
   BoxIndex<Dim> index_;
 };
 

@@ -381,10 +381,42 @@ TEST(CheckBoundary, FindsFacetsThatCross) {
     EXPECT_EQ(test::joined(check_mesh(executor, two_with_tips(dimension, 1e-9))), "");
     EXPECT_EQ(test::joined(check_boundary(executor, two_with_tips(dimension, -1e-9))), "");
     EXPECT_EQ(test::joined(check_boundary(executor, two_with_tips(dimension, 0))), "") << "touches";
-    const auto found = test::joined(check_boundary(executor, two_with_tips(dimension, 1e-9)));
+    EXPECT_EQ(test::joined(check_boundary(executor, two_with_tips(dimension, 1e-10))), "");
+    const auto found = test::joined(check_boundary(executor, two_with_tips(dimension, 1e-8)));
     EXPECT_NE(found.find(dimension == 2 ? "edge 2 crosses edge 5" : "triangle 2 crosses triangle"),
               std::string::npos)
         << found;
+  }
+}
+
+/// Two elements on a common slanted line or plane, with no vertex in common. One has a corner in
+/// the middle of the other's facet, which is this deep in that.
+AnyMesh closed_crack(int dimension, double depth) {
+  AnyMesh mesh;
+  mesh.dimension = dimension;
+  const double in = 1.0 / 3 - depth;  // on the diagonal, where the sum of coordinates is 1
+  if (dimension == 2) {
+    mesh.coordinates = {0, 0, 1, 0, 0, 1, 0.5 - depth, 0.5 - depth, 1.5, -0.5, 1, 1, -0.5, 1.5};
+    mesh.triangles = {{{0, 1, 2}, {3, 4, 5}, {3, 5, 6}}, {0, 0, 0}};
+    mesh.edges = {{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 6}, {6, 3}}, std::vector(7, 0)};
+  } else {
+    mesh.coordinates = {0,  0,  0,  1,   0,   0,    0,    1,   0,   0, 0, 1,
+                        in, in, in, 0.9, 0.8, -0.7, -0.8, 0.9, 0.9, 1, 1, 1};
+    mesh.tetrahedra = {{{0, 1, 2, 3}, {4, 5, 6, 7}}, {0, 0}};
+    mesh.triangles.vertices = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3},
+                               {4, 5, 6}, {4, 5, 7}, {5, 6, 7}, {6, 4, 7}};
+    mesh.triangles.reference.assign(8, 0);
+  }
+  mesh.vertex_reference.assign(mesh.coordinates.size() / static_cast<std::size_t>(dimension), 0);
+  return mesh;
+}
+
+TEST(CheckBoundary, LetsBothSidesOfACrackCrossByRounding) {
+  for (const int dimension : {2, 3}) {
+    for (const double depth : {0.0, 1e-16, 1e-13, 1e-10, -1e-10})
+      EXPECT_EQ(test::joined(check_boundary(executor, closed_crack(dimension, depth))), "")
+          << depth;
+    EXPECT_NE(test::joined(check_boundary(executor, closed_crack(dimension, 1e-8))), "");
   }
 }
 
