@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "ductile/meshadapt/vector.hpp"
@@ -28,14 +29,22 @@ std::array<Joint<Dim>, Dim> joints_of(const Facet<Dim>& facet) {
   }
 }
 
-/// The joints that have not two facets, sorted, and how many they have.
+/// The joints that have not two facets, sorted, and how many they have. They are put into buckets
+/// by their first vertex.
 template <int Dim>
-std::vector<std::pair<Joint<Dim>, std::size_t>> odd_joints(const std::vector<Facet<Dim>>& facets) {
-  std::vector<Joint<Dim>> joints;
-  joints.reserve(Dim * facets.size());
-  for (const Facet<Dim>& facet : facets)
-    for (const Joint<Dim>& joint : joints_of<Dim>(facet)) joints.push_back(joint);
-  std::sort(joints.begin(), joints.end());
+std::vector<std::pair<Joint<Dim>, std::size_t>> odd_joints(const std::vector<Facet<Dim>>& facets,
+                                                           std::size_t vertex_count) {
+  const auto each_joint = [&](auto visit) {
+    for (const Facet<Dim>& facet : facets)
+      for (const Joint<Dim>& joint : joints_of<Dim>(facet)) visit(joint);
+  };
+  std::vector<std::size_t> begin(vertex_count + 2);  // [vertex + 1], and while they are filled
+  each_joint([&](const Joint<Dim>& joint) { ++begin[joint[0] + 2]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Joint<Dim>> joints(Dim * facets.size());
+  each_joint([&](const Joint<Dim>& joint) { joints[begin[joint[0] + 1]++] = joint; });
+  for (std::size_t v = 0; v < vertex_count; ++v)
+    std::sort(joints.data() + begin[v], joints.data() + begin[v + 1]);
   std::vector<std::pair<Joint<Dim>, std::size_t>> odd;
   for (std::size_t i = 0, end = 0; i < joints.size(); i = end) {
     while (end < joints.size() && joints[end] == joints[i]) ++end;
@@ -49,7 +58,7 @@ std::vector<std::pair<Joint<Dim>, std::size_t>> odd_joints(const std::vector<Fac
 template <int Dim>
 std::vector<Facet<Dim>> listed_facets_at_pinches(const AnyMesh& mesh) {
   const auto& listed = facets_in<Dim>(mesh).vertices;
-  const auto odd = odd_joints<Dim>(listed);
+  const auto odd = odd_joints<Dim>(listed, mesh.vertex_count());
   if (odd.empty()) return {};
   const auto is_odd = [&](const Joint<Dim>& joint) {
     const auto at = std::lower_bound(odd.begin(), odd.end(), std::pair(joint, std::size_t{0}));
@@ -83,7 +92,7 @@ std::vector<Facet<Dim>> listed_facets_at_pinches(const AnyMesh& mesh) {
 template <int Dim>
 double pinched_length(const AnyMesh& mesh, const std::vector<Facet<Dim>>& boundary) {
   double sum = 0;
-  for (const auto& [joint, count] : odd_joints<Dim>(boundary)) {
+  for (const auto& [joint, count] : odd_joints<Dim>(boundary, mesh.vertex_count())) {
     if (count < 3) continue;  // one with one facet here has another that is at no pinch
     double length = 1;
     if constexpr (Dim == 3)
