@@ -63,16 +63,16 @@ constexpr bool expect_strategy() {
 /// Whether run_rounds can run this operator on this work; if not, after a message.
 template <class Op, class Work>
 constexpr bool expect_operator() {
-  if constexpr (!expect_members<Op>()) {
-    return false;
-  } else if constexpr (!expect_strategy<Op>()) {
-    return false;
-  } else {
-    // Those that are to run are moved out of it.
-    constexpr bool has_items = std::constructible_from<std::span<typename Op::Item>, Work&>;
-    static_assert(has_items, "the work is a vector of the operator's Item");
-    return has_items;
+  bool complete = false;
+  if constexpr (expect_members<Op>()) {
+    if constexpr (expect_strategy<Op>()) {
+      // Those that are to run are moved out of it.
+      complete = std::constructible_from<std::span<typename Op::Item>, Work&>;
+      static_assert(std::constructible_from<std::span<typename Op::Item>, Work&>,
+                    "the work is a vector of the operator's Item");
+    }
   }
+  return complete;
 }
 
 }  // namespace ductile::runtime::detail
