@@ -55,7 +55,9 @@ auto Background<Dim>::sample(const Vector<Dim>& point, ElementId near) const -> 
   const WalkEnd<Dim> end = walk<Dim>({{corners_of_, position_of_}, neighbours_}, point, near);
   ElementId host = end.element;
   Weights<Dim> weight = end.weight;
-  if (!end.inside && *std::min_element(weight.begin(), weight.end()) < -rounding) {
+  // Not so either if they are no numbers, as of an element that is flat but for rounding.
+  const auto is_near = [&](double w) { return w >= -rounding; };
+  if (!end.inside && !std::all_of(weight.begin(), weight.end(), is_near)) {
     const ClosestPoint<Dim> found = closest(point);
     host = found.element;
     weight = found.weight;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -86,6 +87,28 @@ TYPED_TEST(BackgroundIn, GivesTheMetricOfAVertexThere) {
     const auto sample = scene.background->sample(scene.mesh.site_of[v].position, 0);
     EXPECT_LT(difference(scene.metric_of[v], sample.metric), 1e-8);
     EXPECT_TRUE(contains(scene.mesh.corners_of[sample.host], v));
+  }
+}
+
+/// Whose barycentric weights are no numbers.
+TYPED_TEST(BackgroundIn, GivesAMetricWhereAnElementIsFlatByRounding) {
+  constexpr int Dim = TypeParam::value;
+  Random random(11);
+  Scene<Dim> scene(random);
+  const Executor executor({.threads = 1});
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  Mesh<Dim> mesh = make_mesh<Dim>(executor, scene.any, {}, neighbours, warnings);
+  for (std::size_t v = 0; v < scene.metric_of.size(); ++v) mesh.site_of[v] = scene.mesh.site_of[v];
+  const ElementId flat = 17;
+  const Corners<Dim> corners = mesh.corners_of[flat];
+  mesh.site_of[corners[Dim]].position = mesh.site_of[corners[0]].position;
+  const Background<Dim> background(executor, mesh, std::move(neighbours));
+  for (int i = 0; i < 100; ++i) {
+    Vector<Dim> point;
+    for (double& x : point.x) x = uniform(random, 0, 1);
+    for (const double component : background.sample(point, flat).metric.m)
+      EXPECT_TRUE(std::isfinite(component)) << i;
   }
 }
 
