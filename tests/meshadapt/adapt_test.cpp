@@ -8,6 +8,8 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -241,20 +243,19 @@ TEST_P(Adapt, ComesToAMetricFarFromTheMesh) {
 }
 
 /// In a mesh of flat and of large elements, what lies between its own metric and one of few
-/// elements would ask for a hundred thousand.
+/// elements may ask for a hundred thousand, as it does here in 3D.
 TEST_P(Adapt, MakesNoDetourByManyElements) {
   AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 4));
-  const auto stride = static_cast<std::size_t>(dimension());
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)  // all but the last layer is thin
-    if (double& x = mesh.coordinates[stride * v]; x < 0.9) x *= 1e-8;
-  std::size_t most = 0;
-  const AdaptOptions options{.progress = [&](const AdaptProgress& now) {
-    if (std::string_view(now.step) == "refine") most = std::max(most, now.changes);
+  for (double& x : mesh.coordinates)  // all but the last layers are thin
+    if (x < 0.9) x *= 1e-6;
+  const AdaptOptions options{.progress = [](const AdaptProgress& now) {
+    if (std::string_view(now.step) == "refine" && now.changes > 5000)
+      throw std::runtime_error(std::to_string(now.changes) + " edges are split");
   }};
-  const AdaptedMesh adapted =
-      adapt(Executor({.threads = 2}), mesh, constant_metric(mesh, 0.5), options);
+  AdaptedMesh adapted;
+  ASSERT_NO_THROW(adapted =
+                      adapt(Executor({.threads = 2}), mesh, constant_metric(mesh, 0.5), options));
   EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "");
-  EXPECT_LT(most, 5000U);
 }
 
 TEST_P(Adapt, RefusesToMakeMoreElementsThanCanBeCounted) {
