@@ -1,7 +1,7 @@
 /// @file
 /// SectionReader: what the sections of a GMF file hold, the same for text and binary files, which
 /// differ only in the cursor that takes the numbers. Sections may come in any order, so indices are
-/// checked against the counts when all are read (check_indices).
+/// checked against the counts when all are read, by finish().
 #pragma once
 
 #include <cstddef>

@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <string>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
 #include "geometry/curvature.hpp"
+#include "mesh/first_bad.hpp"
 #include "operators/adapter.hpp"
 #include "operators/processor_level.hpp"
 
@@ -76,14 +76,10 @@ void expect_countable(const runtime::Executor& executor, const Mesh<Dim>& mesh,
   };
   const double complexity =
       runtime::parallel_reduce(executor, mesh.element_slots(), 0.0, least, std::plus<>());
-  if (complexity > none) {
-    std::array<char, 32> count{};
-    std::snprintf(count.data(), count.size(), "%.1e", complexity);
-    throw InputError(
-        name + ": asks for more than " + count.data() +
-        " elements on this mesh, and 32-bit numbers cannot count them; expected larger "
-        "sizes (-hmin sets the smallest)");
-  }
+  if (complexity > none)
+    throw InputError(name + ": asks for more than " + number(complexity) +
+                     " elements on this mesh, and 32-bit numbers cannot count them; expected "
+                     "larger sizes (-hmin sets the smallest)");
 }
 
 template <int Dim>

@@ -17,12 +17,13 @@ class Places;
 
 /// How the iterations of a loop are shared among threads.
 enum class Schedule {
-  automatic,         ///< whichever measured best for the loop at hand
+  automatic,         ///< stealing by atomics, which measured best in every shape of loop
   omp_static,        ///< OpenMP's static: equal contiguous parts
   omp_dynamic,       ///< OpenMP's dynamic with the loop's grain
   omp_guided,        ///< OpenMP's guided with the loop's grain
   steal_by_signal,   ///< an idle thread interrupts the one with most work left, which gives half
-                     ///< away; nanosleep() and the like in a body may end early, with EINTR
+                     ///< away; nanosleep() and the like in a body may end early, with EINTR. By
+                     ///< atomics where the caller blocks all real-time signals
   steal_by_atomics,  ///< an idle thread takes half of a victim's range by compare-and-swap
 };
 
