@@ -1,0 +1,28 @@
+/// @file
+/// A campaign: trials one after the other on all cores until time is over, with a summary.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "trial.hpp"
+
+namespace ductile::campaign {
+
+struct Campaign {
+  Settings settings;
+  std::uint64_t seed = 1;
+  double minutes = 1;
+  std::uint64_t first = 0;           ///< number of the first case
+  std::uint64_t count = UINT64_MAX;  ///< how many at most
+  std::string kind;                  ///< only cases of this kind; all if empty
+  std::filesystem::path folder;      ///< failing cases stay here
+  int workers = 1;                   ///< processes side by side
+  double restless_allowed = 0.05;    ///< share of those adapted three times
+};
+
+/// Runs it and prints what was found. Returns whether all was right.
+bool run_campaign(const Campaign& campaign);
+
+}  // namespace ductile::campaign

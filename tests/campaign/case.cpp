@@ -1,0 +1,261 @@
+#include "case.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+
+#include "geometry.hpp"
+#include "metrics.hpp"
+#include "place.hpp"
+#include "shapes.hpp"
+
+namespace ductile::campaign {
+namespace {
+
+enum class Asks { anything, strong, unlimited, bounds, nothing, one_size };
+
+struct Kind {
+  const char* name;
+  Shape (*shape)(Random&);
+  Asks asks = Asks::anything;
+  double tolerant = 0.3;  ///< the share with -hausd, of bodies that are curved
+};
+
+const std::array<Kind, 17> kinds = {{{"random", random_body},
+                                     {"voids", plate_with_voids, Asks::anything, 0.85},
+                                     {"crack", crack, Asks::anything, 0.8},
+                                     {"round", round_body, Asks::anything, 0.7},
+                                     {"thin-wall", thin_wall, Asks::anything, 0.85},
+                                     {"sheets", sheets, Asks::anything, 0.85},
+                                     {"contact", contact, Asks::anything, 0.8},
+                                     {"inclusion", inclusion, Asks::anything, 0.8},
+                                     {"few-digits", flat_body},
+                                     {"short-required", short_edges, Asks::one_size},
+                                     {"tiny", tiny_body},
+                                     {"far-away", random_body},
+                                     {"required", random_body},
+                                     {"strong", random_body, Asks::strong, 0.1},
+                                     {"unlimited", random_body, Asks::unlimited, 0.1},
+                                     {"bounds", random_body, Asks::bounds, 0.1},
+                                     {"stretched", layered_box, Asks::nothing}}};
+
+std::string number(double value) {
+  std::array<char, 40> text;
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
+
+class CaseMaker {
+ public:
+  CaseMaker(const Kind& kind, std::uint64_t seed) : kind_(kind), random_(seed) {
+    case_.kind = kind.name;
+  }
+
+  Case make() {
+    Shape shape = kind_.shape(random_);
+    while (!all_positive(shape.mesh)) shape = kind_.shape(random_);  // a map failed
+    mesh() = std::move(shape.mesh);
+    length_ = shape.length;
+    case_.promise.touching = shape.touching;
+    choose_regions(random_, mesh());
+    if (is("short-required")) require_bottom();
+    put_somewhere(shape.robust);
+    if (!is("short-required")) list_and_require();
+    choose_metric();
+    choose_tolerance(shape.curved);
+    choose_options();
+    return std::move(case_);
+  }
+
+ private:
+  Mesh& mesh() { return case_.mesh; }
+  bool is(const std::string& name) const { return case_.kind == name; }
+  template <class... Words>
+  void option(const Words&... words) {
+    (case_.options.push_back(words), ...);
+  }
+  bool has(const std::string& word) const {
+    return std::find(case_.options.begin(), case_.options.end(), word) != case_.options.end();
+  }
+
+  // ---- Where it is and what is listed ----
+
+  void put_somewhere(bool robust) {
+    if (is("few-digits")) {
+      case_.unrounded = mesh();
+      scale_ = put_with_few_digits(random_, mesh(), *case_.unrounded, case_.promise.rounding);
+      if (case_.promise.rounding == 0) case_.unrounded.reset();
+    } else if (is("far-away") || (robust && random_.chance(0.1))) {
+      scale_ = put_far_away(random_, mesh());
+    } else if (random_.chance(0.3)) {
+      scale_ = put_turned(random_, mesh());
+    }
+  }
+
+  void list_and_require() {
+    const std::uint64_t seed = random_.bits();
+    list_all_facets(seed, mesh());
+    if (case_.unrounded) {
+      case_.unrounded->facets() = mesh().facets();
+      case_.unrounded->elements() = mesh().elements();
+    }
+    if (!is("few-digits") && !is("strong") && random_.chance(is("required") ? 1 : 0.2))
+      require_some(random_, mesh());
+    if (!is("few-digits") && random_.chance(0.06)) {
+      unlist_some(random_, mesh());
+      case_.promise.unlisted_boundary = true;
+    }
+  }
+
+  void require_bottom() {
+    const std::size_t low = mesh().dimension == 2 ? 1 : 2;
+    list_facets(mesh(), true,
+                [&](const Point&, const Point& normal) { return normal[low] < -0.9 ? 1 : 2; });
+    auto& required = mesh().lists[mesh().dimension == 2 ? "RequiredEdges" : "RequiredTriangles"];
+    for (std::size_t i = 0; i < mesh().facets().size(); ++i)
+      if (mesh().facets().reference[i] == 1) required.push_back(static_cast<int>(i));
+  }
+
+  // ---- What is asked for ----
+
+  void choose_metric() {
+    switch (kind_.asks) {
+      case Asks::strong:
+        take(strong_metric(random_, mesh()));
+        break;
+      case Asks::unlimited:
+        take(unlimited_metric(random_, mesh()));
+        option("-hmax", number(metric_.size * random_.uniform(1, 3)));
+        if (random_.chance(0.5)) option("-hmin", number(metric_.size * random_.uniform(0.1, 0.9)));
+        break;
+      case Asks::bounds:
+        take(uniform_metric(random_, mesh()));
+        extreme_bounds();
+        break;
+      case Asks::one_size:
+        ask_for_one_size();
+        break;
+      default:
+        if (is("stretched") ? random_.chance(0.8) : random_.chance(0.05)) return;
+        if (random_.chance(0.15)) {
+          ask_for_one_size();
+          return;
+        }
+        take(random_metric(random_, mesh()));
+    }
+  }
+
+  void take(MetricCase made) {
+    metric_ = std::move(made);
+    case_.metric = metric_.field;
+    case_.refusals = metric_.refusals;
+  }
+
+  void ask_for_one_size() {
+    metric_ = uniform_metric(random_, mesh());
+    double size = metric_.size;
+    if (is("short-required")) {
+      // As long as the edges of the bottom are, but for the short one.
+      size = random_.uniform(0.9, 1.1) * scale_ / static_cast<double>(bottom_count());
+      case_.promise.longest_edge = 2;
+    }
+    option("-hsiz", number(size));
+  }
+
+  double bottom_count() {
+    const double count = static_cast<double>(
+        mesh().list(mesh().dimension == 2 ? "RequiredEdges" : "RequiredTriangles").size());
+    return mesh().dimension == 2 ? count - 1 : std::round(std::sqrt(count / 2));
+  }
+
+  /// Bounds of no sense: they may be refused, by a line that names them, or keep to sizes that can
+  /// be read again.
+  void extreme_bounds() {
+    const double power = random_.uniform(60, 308);
+    if (random_.chance(0.5)) option("-hmin", number(std::pow(10, -power)));
+    if (random_.chance(0.5) || case_.options.empty()) option("-hmax", number(std::pow(10, power)));
+    case_.refusals = {"hmin", "hmax"};
+    case_.rests = false;
+  }
+
+  // ---- Options ----
+
+  void choose_tolerance(bool curved) {
+    if (is("short-required") || !random_.chance(curved ? kind_.tolerant : 0.15)) return;
+    double tolerance = length_ * scale_ * random_.power(-1, 1);
+    if (is("random") || is("far-away") || is("round"))
+      tolerance = box_of(mesh().points).extent() * random_.power(-4, -1);
+    option("-hausd", number(tolerance));
+    case_.promise.tolerance = std::stod(case_.options.back());
+    if (random_.chance(0.25))
+      option("-ar", number(random_.pick({1.0, 20.0, 44.0, 46.0, 60.0, 89.0})));
+  }
+
+  void choose_options() {
+    if (!is("short-required")) choose_gradation();
+    if (kind_.asks == Asks::anything && case_.metric) choose_bounds();
+    if (!is("short-required"))
+      for (const char* word : {"-nosurf", "-noswap", "-nomove", "-noinsert", "--thorough"})
+        if (random_.chance(0.06)) option(word);
+    if (has("-nosurf")) case_.promise.tolerance = 0;
+    if (random_.chance(0.04)) {
+      option("--racing");
+      case_.deterministic = false;
+    }
+    if (!is("short-required") && random_.chance(0.05))
+      option("--iterations", std::to_string(random_.between(1, 5)));
+    if (case_.promise.unlisted_boundary || random_.chance(0.05)) option("--complete-boundary");
+    for (const char* word : {"-noswap", "-nomove", "-noinsert", "--iterations", "-nosurf"})
+      if (has(word)) case_.rests = false;
+  }
+
+  void choose_gradation() {
+    const bool both = case_.promise.tolerance > 0 && is("inclusion");
+    if (!random_.chance(both ? 0.7 : 0.2)) return;
+    // With a tolerance, sizes at curved boundaries follow from it; more elements than a campaign
+    // has time for are not asked for.
+    const double least = box_of(mesh().points).extent() * (mesh().dimension == 2 ? 1e-4 : 3e-3);
+    if (case_.promise.tolerance > 0 && case_.promise.tolerance < least) return;
+    option("-hgrad", number(metric_.smooth ? random_.pick({1.05, 1.3, 1.3, 2.0, 5.0})
+                                           : random_.pick({1.3, 2.0, 5.0})));
+  }
+
+  void choose_bounds() {
+    if (random_.chance(0.1)) {
+      case_.promise.shortest_size = metric_.size * random_.power(-3, 0);
+      option("-hmin", number(case_.promise.shortest_size));
+    }
+    if (random_.chance(0.1)) {
+      case_.promise.largest_size = metric_.size * random_.power(0.1, 3);
+      option("-hmax", number(case_.promise.largest_size));
+    }
+  }
+
+  const Kind& kind_;
+  Random random_;
+  Case case_;
+  MetricCase metric_;
+  double length_ = 0.1;
+  double scale_ = 1;
+};
+
+}  // namespace
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds) names.emplace_back(kind.name);
+  return names;
+}
+
+Case make_case(std::uint64_t seed, std::uint64_t count, const std::string& name) {
+  const Kind* kind = &kinds[count % kinds.size()];
+  if (!name.empty()) {
+    const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                    [&](const Kind& other) { return name == other.name; });
+    if (found == kinds.end()) throw std::invalid_argument("no kind of cases '" + name + "'");
+    kind = &*found;
+  }
+  return CaseMaker(*kind, seed * 0x100000001b3U + count).make();
+}
+
+}  // namespace ductile::campaign

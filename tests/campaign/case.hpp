@@ -1,0 +1,37 @@
+/// @file
+/// Case: one random adaptation, made from a seed alone: a mesh, perhaps a metric, the options of
+/// `ductile adapt`, and what must hold of the outcome.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "check.hpp"
+#include "mesh.hpp"
+
+namespace ductile::campaign {
+
+struct Case {
+  std::string kind;
+  Mesh mesh;
+  std::optional<Field> metric;
+  std::vector<std::string> options;  ///< of `ductile adapt`, without files and --threads
+  Promise promise;
+  /// A message that has one of these words in it may take the place of a mesh.
+  std::vector<std::string> refusals;
+  /// The same before it was rounded; the number of elements must be about the same.
+  std::optional<Mesh> unrounded;
+  bool deterministic = true;  ///< the same bytes are expected at any number of threads
+  bool rests = true;          ///< adapting the result again is expected to change little
+};
+
+/// The names of all kinds of cases.
+std::vector<std::string> kind_names();
+
+/// The case of this number; numbers that follow each other go through all kinds. If `kind` is
+/// given, all are of that.
+Case make_case(std::uint64_t seed, std::uint64_t number, const std::string& kind = "");
+
+}  // namespace ductile::campaign

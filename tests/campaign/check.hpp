@@ -1,0 +1,48 @@
+/// @file
+/// The checker: what is wrong with an adapted mesh, if anything, a line each that begins with the
+/// kind of fault. It shares no code with the library, decides by exact signs where rounding could
+/// matter, and needs no more than the meshes and what the case promises.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh.hpp"
+
+namespace ductile::campaign {
+
+/// What the adapted mesh must keep to. Lengths are in the units of the mesh.
+struct Promise {
+  double tolerance = 0;  ///< how far curved boundaries may move (-hausd); 0: not at all
+  double rounding = 0;   ///< by how much the input's coordinates were rounded when it was written
+  bool unlisted_boundary = false;  ///< boundary facets that are not listed count as of reference 0
+  bool touching = false;           ///< vertices of the input may coincide
+  double shortest_size = 0;        ///< bounds of the metric that is written; 0: none
+  double largest_size = 0;
+  double longest_edge = 0;  ///< in the metric, of edges that are not required; 0: not checked
+};
+
+using Faults = std::vector<std::string>;
+
+/// Is it a mesh: indices, volumes, facets, lists?
+Faults check_structure(const Mesh& mesh, bool unlisted_boundary = false);
+
+/// Is the domain the same: topology, areas and volumes by reference, boundary by reference?
+Faults check_domain(const Mesh& before, const Mesh& after, const Promise& promise);
+
+/// Are boundary and interfaces where they were, up to the tolerance, and the other way round?
+Faults check_surface(const Mesh& before, const Mesh& after, const Promise& promise);
+
+/// Do elements overlap, or does the boundary cross itself?
+Faults check_overlaps(const Mesh& mesh);
+
+/// Are required entities and corners there, with their references, and still marked?
+Faults check_required(const Mesh& before, const Mesh& after);
+
+/// Is the metric positive definite (exactly) and within its bounds, are edges as short as promised?
+Faults check_metric(const Mesh& mesh, const Field& metric, const Promise& promise);
+
+/// All of the above; after a fault of structure, nothing else.
+Faults check_all(const Mesh& before, const Mesh& after, const Promise& promise);
+
+}  // namespace ductile::campaign

@@ -1,0 +1,36 @@
+/// @file
+/// Random metrics on a mesh: sizes and tensors of many kinds, scaled so that the right answer has
+/// some tens to some thousands of elements.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh.hpp"
+#include "random.hpp"
+
+namespace ductile::campaign {
+
+struct MetricCase {
+  Field field;
+  bool smooth = true;  ///< sizes grow slowly enough for any -hgrad
+  double size = 1;     ///< about what edges are asked for, the geometric mean over the mesh
+  /// The smallest size along an axis; what -hmin may be near.
+  double smallest = 1;
+  bool unlimited = false;             ///< some sizes have no limit: -hmax has to give one
+  std::vector<std::string> refusals;  ///< what the program may say instead of adapting
+};
+
+/// Any kind: sizes or tensors; constant, graded, turning, in layers, with jumps, as noise.
+MetricCase random_metric(Random& random, const Mesh& mesh);
+
+/// Sizes that differ by up to 1e8, exactly that among them.
+MetricCase strong_metric(Random& random, const Mesh& mesh);
+
+/// Sizes without a limit at some or all vertices: eigenvalues 0, sizes 1e300 or infinite.
+MetricCase unlimited_metric(Random& random, const Mesh& mesh);
+
+/// One size everywhere.
+MetricCase uniform_metric(Random& random, const Mesh& mesh);
+
+}  // namespace ductile::campaign

@@ -1,0 +1,33 @@
+/// @file
+/// One trial: a case is written to files, the program adapts it, and what it wrote is checked.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "case.hpp"
+
+namespace ductile::campaign {
+
+struct Settings {
+  std::filesystem::path program;  ///< ductile
+  double limit_s = 20;            ///< of each run
+  bool all_checks = false;        ///< closure and other numbers of threads for each case
+};
+
+enum class Verdict { right, refused, wrong, crash, timeout };
+
+struct Outcome {
+  Verdict verdict = Verdict::right;
+  Faults faults;        ///< a line each; what was wrong, or the message of a refusal
+  double seconds = 0;   ///< of the longest run
+  bool rested = true;   ///< the third call changed less than 2 % of elements
+  bool closed = false;  ///< was adapted again, so that `rested` says something
+};
+
+/// Runs the case in `folder`, which keeps all files and a script `run.sh` that repeats the calls.
+/// `seed` decides what is checked beyond the first call.
+Outcome try_case(const Case& tried, std::uint64_t seed, const std::filesystem::path& folder,
+                 const Settings& settings);
+
+}  // namespace ductile::campaign
