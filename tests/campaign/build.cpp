@@ -146,6 +146,38 @@ void keep_largest_part(Mesh& mesh) {
   filter(mesh, kept);
 }
 
+struct Void {
+  Cell outer;               ///< the tetrahedron that it is in
+  std::size_t first_point;  ///< of its four corners
+  std::size_t first_part;   ///< of the elements around it
+  double share;
+};
+
+/// Puts the corners of a void at random places in its tetrahedron, each nearer to the corner that
+/// it belongs to the larger the share, if that leaves all elements around it positive.
+void distort_void(Random& random, Mesh& mesh, const Void& hole) {
+  const std::vector<Point> alike(
+      mesh.points.begin() + static_cast<std::ptrdiff_t>(hole.first_point), mesh.points.end());
+  for (int tries = 0; tries < 60; ++tries) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<double, 4> weight;
+      double sum = 0;
+      for (double& one : weight) sum += one = random.unit();
+      sum += 4 * hole.share * random.unit();
+      weight[i] += sum - (weight[0] + weight[1] + weight[2] + weight[3]);
+      Point at = {0, 0, 0};
+      for (std::size_t j = 0; j < 4; ++j) at = at + (weight[j] / sum) * corner(mesh, hole.outer, j);
+      mesh.points[hole.first_point + i] = at;
+    }
+    const auto& elements = mesh.elements().corners;
+    if (std::all_of(elements.begin() + static_cast<std::ptrdiff_t>(hole.first_part), elements.end(),
+                    [&](const Cell& part) { return orientation(mesh, part) > 0; }))
+      return;
+  }
+  std::copy(alike.begin(), alike.end(),
+            mesh.points.begin() + static_cast<std::ptrdiff_t>(hole.first_point));
+}
+
 }  // namespace
 
 std::vector<double> even_lines(int count, double length) {
@@ -216,10 +248,10 @@ std::vector<int> cut(Mesh& mesh, const std::function<bool(const std::vector<Poin
   return origin;
 }
 
-void hollow(Mesh& mesh, std::size_t element, double share) {
-  Cell outer = mesh.elements().corners[element];
-  const int reference = mesh.elements().reference[element];
+void hollow(Mesh& mesh, std::size_t element, double share, Random* random) {
+  const Cell outer = mesh.elements().corners[element];
   const Point middle = centre(mesh, outer);
+  const std::size_t first_point = mesh.points.size(), first_part = mesh.elements().size();
   std::map<int, int> inner;
   for (const int vertex : outer) {
     inner[vertex] = static_cast<int>(mesh.points.size());
@@ -227,8 +259,6 @@ void hollow(Mesh& mesh, std::size_t element, double share) {
                           share * (mesh.points[static_cast<std::size_t>(vertex)] - middle));
     mesh.point_reference.push_back(0);
   }
-  std::vector<char> kept(mesh.elements().size(), 1);
-  kept[element] = 0;
   for (const Cell& facet : facets_of_element(mesh, outer)) {
     std::array<int, 3> v = {facet[0], facet[1], facet[2]};
     std::sort(v.begin(), v.end());  // sides that two facets share are cut along the same diagonal
@@ -237,10 +267,12 @@ void hollow(Mesh& mesh, std::size_t element, double share) {
                                         {v[0], inner[v[0]], inner[v[1]], inner[v[2]]}}};
     for (Cell part : parts) {
       if (orientation(mesh, part) < 0) std::swap(part[0], part[1]);
-      mesh.elements().add(part, reference);
-      kept.push_back(1);
+      mesh.elements().add(part, mesh.elements().reference[element]);
     }
   }
+  if (random != nullptr) distort_void(*random, mesh, {outer, first_point, first_part, share});
+  std::vector<char> kept(mesh.elements().size(), 1);
+  kept[element] = 0;
   filter(mesh, kept);
 }
 
@@ -262,12 +294,13 @@ void split_edge(Mesh& mesh, const std::array<int, 2>& edge, double share) {
   }
 }
 
-void jitter(Random& random, Mesh& mesh, double amount) {
+void jitter(Random& random, Mesh& mesh, const Jitter& how) {
   std::vector<char> fixed(mesh.points.size(), 0);
   for (const Facet& facet : facets_of(mesh))
     if (facet.on_boundary())
       for (const int vertex : facet.corners)
-        if (vertex >= 0) fixed[static_cast<std::size_t>(vertex)] = 1;
+        if (vertex >= 0 && static_cast<std::size_t>(vertex) < how.boundary_from)
+          fixed[static_cast<std::size_t>(vertex)] = 1;
   std::vector<double> shortest(mesh.points.size(), 1e300);
   std::vector<std::vector<std::size_t>> elements_of(mesh.points.size());
   for (std::size_t i = 0; i < mesh.elements().size(); ++i)
@@ -284,7 +317,7 @@ void jitter(Random& random, Mesh& mesh, double amount) {
     const Point old = mesh.points[i];
     for (int axis = 0; axis < mesh.dimension; ++axis)
       mesh.points[i][static_cast<std::size_t>(axis)] +=
-          amount * shortest[i] * random.uniform(-1, 1);
+          how.amount * shortest[i] * random.uniform(-1, 1);
     for (const std::size_t element : elements_of[i])
       if (orientation(mesh, mesh.elements().corners[element]) <= 0) {
         mesh.points[i] = old;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -37,15 +38,21 @@ void remove_pinches(Mesh& mesh);
 std::vector<int> cut(Mesh& mesh, const std::function<bool(const std::vector<Point>&)>& is_cut);
 
 /// Takes a part of one tetrahedron out, which is like the whole and `share` times as long, so that
-/// its facets stay apart from those of the tetrahedron.
-void hollow(Mesh& mesh, std::size_t element, double share);
+/// its facets stay apart from those of the tetrahedron. With `random`, its corners are then put at
+/// random places in the tetrahedron.
+void hollow(Mesh& mesh, std::size_t element, double share, Random* random = nullptr);
 
 /// Puts a vertex at `share` of the edge from a to b, in all elements that have the edge.
 void split_edge(Mesh& mesh, const std::array<int, 2>& edge, double share);
 
-/// Moves inner vertices at random by up to `amount` of their shortest edge, unless that would turn
-/// an element.
-void jitter(Random& random, Mesh& mesh, double amount);
+struct Jitter {
+  double amount = 0;  ///< of the shortest edge of each vertex
+  /// Vertices of the boundary from this one on move as well.
+  std::size_t boundary_from = SIZE_MAX;
+};
+
+/// Moves inner vertices at random, unless that would turn an element.
+void jitter(Random& random, Mesh& mesh, const Jitter& how);
 
 /// Moves all vertices; false, and the mesh as it was, if an element would not be positive.
 bool map(Mesh& mesh, const std::function<Point(const Point&)>& to);

@@ -69,6 +69,7 @@ class CaseMaker {
 
  private:
   Mesh& mesh() { return case_.mesh; }
+  bool faces_itself() const { return is("voids") || is("sheets") || is("thin-wall"); }
   bool is(const std::string& name) const { return case_.kind == name; }
   template <class... Words>
   void option(const Words&... words) {
@@ -137,7 +138,7 @@ class CaseMaker {
         break;
       default:
         if (is("stretched") ? random_.chance(0.8) : random_.chance(0.05)) return;
-        if (random_.chance(0.15)) {
+        if (random_.chance(faces_itself() ? 0.75 : 0.15)) {
           ask_for_one_size();
           return;
         }
@@ -154,6 +155,9 @@ class CaseMaker {
   void ask_for_one_size() {
     metric_ = uniform_metric(random_, mesh());
     double size = metric_.size;
+    // Where sides face each other, sizes from their distance to that of the body are the hard ones.
+    if (faces_itself()) size = scale_ * random_.power(std::min(-0.3, std::log10(length_) + 0.3), 0);
+    size = std::max(size, metric_.size);
     if (is("short-required")) {
       // As long as the edges of the bottom are, but for the short one.
       size = random_.uniform(0.9, 1.1) * scale_ / static_cast<double>(bottom_count());
@@ -211,7 +215,7 @@ class CaseMaker {
 
   void choose_gradation() {
     const bool both = case_.promise.tolerance > 0 && is("inclusion");
-    if (!random_.chance(both ? 0.7 : 0.2)) return;
+    if (!random_.chance(both ? 0.7 : faces_itself() ? 0.08 : 0.2)) return;
     // With a tolerance, sizes at curved boundaries follow from it; more elements than a campaign
     // has time for are not asked for.
     const double least = box_of(mesh().points).extent() * (mesh().dimension == 2 ? 1e-4 : 3e-3);

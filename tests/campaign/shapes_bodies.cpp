@@ -143,7 +143,7 @@ Shape random_body(Random& random) {
   Shape shape;
   const int dimension = random.chance(0.55) ? 2 : 3;
   shape.mesh = make_grid(random, random_grid(random, dimension));
-  jitter(random, shape.mesh, random.pick({0.0, 0.15, 0.3}));
+  jitter(random, shape.mesh, {random.pick({0.0, 0.15, 0.3})});
   if (random.chance(0.65)) carve(random, shape.mesh);
   shape.curved = warp(random, shape.mesh);
   return shape;
@@ -153,7 +153,7 @@ Shape flat_body(Random& random) {
   Shape shape;
   const int dimension = random.chance(0.5) ? 2 : 3;
   shape.mesh = make_grid(random, random_grid(random, dimension));
-  jitter(random, shape.mesh, random.pick({0.0, 0.2}));
+  jitter(random, shape.mesh, {random.pick({0.0, 0.2})});
   return shape;
 }
 

@@ -57,7 +57,7 @@ void hollow_some(Random& random, Mesh& mesh, int count) {
   }
   // hollow() renumbers what comes after the element, so that the last goes first.
   for (auto at = chosen.rbegin(); at != chosen.rend(); ++at)
-    hollow(mesh, *at, random.uniform(0.2, 0.97));
+    hollow(mesh, *at, random.uniform(0.2, 0.97), random.chance(0.8) ? &random : nullptr);
 }
 
 /// Cells (i, j) of which no two are neighbours, none at the rim.
@@ -147,6 +147,7 @@ Shape plate_with_voids(Random& random) {
   const double thickness = random.power(-2, -0.7);
   Grid grid = plate_grid(random, 3, even_lines(random.between(1, 2), thickness));
   shape.mesh = make_grid(random, grid);
+  jitter(random, shape.mesh, {0.3});
   hollow_some(random, shape.mesh, random.between(1, 5));
   bend(random, shape.mesh, 0.3);
   shape.curved = true;  // thin tetrahedra have facets that turn by a few degrees
