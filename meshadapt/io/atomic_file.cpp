@@ -9,11 +9,13 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <new>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include "ductile/meshadapt/error.hpp"
+#include "io/give_names.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -27,10 +29,6 @@ bool may_have(std::size_t bytes) {
   rlimit limit{};
   return ::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
          bytes <= limit.rlim_cur;
-}
-
-fs::path folder_of(const fs::path& path) {
-  return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
 constexpr int most_links = 40;
@@ -126,23 +124,8 @@ void expect_usable_name(const fs::path& path) {
                      "; change its permissions or choose another name");
 }
 
-/// The name of a new file beside `path`. create(name) makes it, or says no and why in errno; not if
-/// there is one, so that no two writers share one.
-template <class Create>
-fs::path create_beside(const fs::path& path, const Create& create) {
-  const std::string stem =
-      path.filename().string().substr(0, 200) + ".ductile-tmp-" + std::to_string(::getpid()) + "-";
-  for (int number = 0;; ++number) {
-    fs::path temporary = folder_of(path) / (stem + std::to_string(number));
-    if (create(temporary)) return temporary;
-    if (errno != EEXIST || number > 10000)
-      throw InputError(path.string() + ": cannot create a file in folder " +
-                       folder_of(path).string() + ", " + reason(errno) + "; choose another folder");
-  }
-}
-
 fs::path create_temporary(const fs::path& path) {
-  return create_beside(path, [](const fs::path& name) {
+  return create_beside(path, "tmp", [](const fs::path& name) {
     std::FILE* const file = std::fopen(name.c_str(), "wbx");
     return file != nullptr && std::fclose(file) == 0;
   });
@@ -186,11 +169,13 @@ OutputFile::OutputFile(fs::path path)
   if (is_written_directly(path_))
     temporary_ = path_;
   else if (file_ = open_unnamed(folder_of(path_)); !file_)
-    temporary_ = create_temporary(path_);
+    take_temporary_name([&] { return create_temporary(path_); });
   if (!file_) file_ = open_directly(temporary_);
   if (!file_) {
-    const std::string why = reason(errno);
+    const int code = errno;
     discard();
+    if (code == ENOMEM) throw std::bad_alloc();
+    const std::string why = reason(code);
     throw InputError(path_.string() + ": cannot write, " + why + "; choose another folder");
   }
   std::setvbuf(file_, nullptr, _IONBF, 0);
@@ -204,6 +189,7 @@ OutputFile::~OutputFile() { discard(); }
 
 void OutputFile::fail(const char* action) const {
   const int code = errno;
+  if (code == ENOMEM) throw std::bad_alloc();
   throw Error(path_.string() + ": cannot " + action + ", " + reason(code) + " after " +
               std::to_string(flushed_) + " bytes; " +
               (code == EFBIG ? "raise the limit of file sizes (ulimit -f)"
@@ -230,26 +216,43 @@ void OutputFile::flush() {
   if (broken_) fail("write");
 }
 
-void OutputFile::close() {
+void OutputFile::finish() {
   if (!file_) return;
   if (broken_) fail("finish");
   flush();
-  if (temporary_.empty()) take_name();
+  if (!writes_directly()) {
+    if (!bring_to_disk(::fileno(file_))) fail("bring to disk");
+    return;
+  }
   errno = 0;
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("close");
 }
 
-void OutputFile::take_name() {
-  const std::string open = name_of_descriptor(::fileno(file_));
-  temporary_ = create_beside(path_, [&](const fs::path& name) {
-    return ::linkat(AT_FDCWD, open.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
-  });
+template <class Take>
+void OutputFile::take_temporary_name(const Take& take) {
+  const runtime::HeldSignals held;
+  temporary_ = take();
+  vanishing_.emplace(temporary_.c_str());
+}
+
+void OutputFile::close() {
+  if (writes_directly()) return;
+  if (temporary_.empty())
+    take_temporary_name([&] {
+      const std::string open = name_of_descriptor(::fileno(file_));
+      return create_beside(path_, "tmp", [&](const fs::path& name) {
+        return ::linkat(AT_FDCWD, open.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+      });
+    });
+  errno = 0;
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("close");
 }
 
 void OutputFile::discard() noexcept {
   if (file_) std::fclose(std::exchange(file_, nullptr));
   std::error_code ignored;
   if (!done_ && !writes_directly() && !temporary_.empty()) fs::remove(temporary_, ignored);
+  vanishing_.reset();
 }
 
 // ---- Several files ----
@@ -267,17 +270,15 @@ OutputFile& AtomicOutputs::stage(const fs::path& path) {
 }
 
 void AtomicOutputs::commit() {
-  for (const auto& file : files_) file->close();
-  std::string in_place;
+  for (const auto& file : files_) file->finish();
+  const runtime::HeldSignals held;
+  std::vector<CompleteFile> unit;
   for (const auto& file : files_) {
-    std::error_code error;
-    if (!file->writes_directly()) fs::rename(file->temporary_, file->path_, error);
-    if (error)
-      throw Error(file->path_.string() + ": cannot put the finished file in place, " +
-                  error.message() + (in_place.empty() ? "" : "; in place already:" + in_place));
-    file->done_ = true;
-    in_place.append(" ").append(file->path_.string());
+    file->close();
+    if (!file->writes_directly()) unit.push_back({file->temporary_, file->path_});
   }
+  give_names(unit);
+  for (const auto& file : files_) file->done_ = true;
   files_.clear();
 }
 
@@ -286,6 +287,7 @@ void check_writable(const fs::path& path) {
   if (is_written_directly(path)) return;
   const fs::path target = resolve_links(path);
   std::error_code ignored;
+  const runtime::HeldSignals held;
   fs::remove(create_temporary(target), ignored);
 }
 

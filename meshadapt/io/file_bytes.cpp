@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <new>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 
@@ -18,9 +21,16 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
+/// Of a file that is not there, because a process was killed while it replaced it.
+std::string where_it_is(const std::string& name, int code) {
+  const auto left = code == ENOENT ? left_of(name) : std::vector<fs::path>();
+  return left.empty() ? "" : ", and a run that was ended left " + left.front().string();
+}
+
 [[noreturn]] void fail_to_read(const std::string& name, int code) {
+  if (code == ENOMEM) throw std::bad_alloc();
   throw InputError(name + ": cannot read the file, " + std::generic_category().message(code) +
-                   "; check its name and permissions");
+                   where_it_is(name, code) + "; check its name and permissions");
 }
 
 /// Enlarges the memory for what is read; the size of a pipe is not known in advance.

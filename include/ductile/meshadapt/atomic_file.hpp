@@ -2,18 +2,22 @@
 /// AtomicOutputs: output files that appear whole or not at all. Each one has no name while it is
 /// written, or, where the file system has no such files, a temporary one beside its place,
 /// `NAME.ductile-tmp-PID-N`; commit() gives all of them their names when every byte of every one is
-/// on its way to disk. Until then, and after an error or an interrupt, the files that were there
-/// before are untouched. What is no regular file (/dev/null, a pipe) is written directly, and so is
-/// what a name such as /dev/stdout or /dev/fd/3 stands for, where it is a regular file, too.
+/// on disk. Until then, and after an error or an interrupt, the files that were there before are
+/// untouched. Signals that end the process remove temporary files, and wait while names are given
+/// (runtime/termination.hpp). What is no regular file (/dev/null, a pipe) is written directly, and
+/// so is what a name such as /dev/stdout or /dev/fd/3 stands for, where it is a regular file, too.
 #pragma once
 
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "ductile/runtime/termination.hpp"
 
 namespace ductile::meshadapt {
 
@@ -46,14 +50,17 @@ class OutputFile {
  private:
   friend class AtomicOutputs;
   void flush();
-  void close();
-  void take_name();
+  void finish();  ///< brings all of it to disk, or to whoever reads it
+  void close();   ///< gives it a temporary name, if it has none
+  template <class Take>
+  void take_temporary_name(const Take& take);
   void discard() noexcept;
   [[noreturn]] void fail(const char* action) const;
   bool writes_directly() const { return temporary_ == path_; }
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< empty while the file has no name
+  std::filesystem::path temporary_;                  ///< empty while the file has no name
+  std::optional<runtime::VanishingFile> vanishing_;  ///< of that name
   std::unique_ptr<char[]> buffer_;
   std::size_t used_ = 0;
   std::size_t flushed_ = 0;
@@ -76,14 +83,20 @@ class AtomicOutputs {
   /// it names is replaced. Throws InputError where check_writable would, or when `path` is staged.
   OutputFile& stage(const std::filesystem::path& path);
 
-  /// Closes every file, then moves each to its place. Throws Error: if a file could
-  /// not be written to its end, nothing was renamed; if a rename fails, the text names what is in
-  /// place already.
+  /// Brings every file to disk, then moves each to its place. The old files of all but the first
+  /// that was staged are set aside before: a process that is killed meanwhile may leave the first
+  /// one, old or new, without the others, but never old ones beside new ones. Throws Error: if a
+  /// file could not be written to its end, or a rename fails, the old files are in place, except
+  /// where the text names what new ones are.
   void commit();
 
  private:
   std::vector<std::unique_ptr<OutputFile>> files_;
 };
+
+/// The files beside `path` that hold what it held or was to hold, because a process that wrote it
+/// was killed.
+std::vector<std::filesystem::path> left_of(const std::filesystem::path& path);
 
 /// Whether a file could be written at `path`, to be asked before long work: throws InputError if
 /// the path is empty or a folder, or if its folder is missing or refuses a new file.
