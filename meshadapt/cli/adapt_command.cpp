@@ -244,6 +244,13 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::option
   outputs.commit();
 }
 
+std::string what_was_done(const Job& job, const AdaptSummary& summary) {
+  std::string text = to_text(summary, job.verbosity > 1), written;
+  for (const fs::path& path : outputs_of(job))
+    written += (written.empty() ? "written: " : ", ") + path.string();
+  return text + written + "\n";
+}
+
 int work(const Executor& executor, const Job& job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
@@ -263,14 +270,9 @@ int work(const Executor& executor, const Job& job) {
        .surface_tolerance = job.adapt.make.lock_boundary ? 0 : job.adapt.make.surface_tolerance});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   print_warnings(warnings, job.verbosity);
+  const std::string said = job.verbosity > 0 ? what_was_done(job, summary) : std::string();
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string());
-  if (job.verbosity > 0) {
-    std::printf("%s", to_text(summary, job.verbosity > 1).c_str());
-    std::string written;
-    for (const fs::path& path : outputs_of(job))
-      written += (written.empty() ? "written: " : ", ") + path.string();
-    std::printf("%s\n", written.c_str());
-  }
+  std::fputs(said.c_str(), stdout);  // no memory is taken now that the outputs are there
   return done;
 }
 

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "arguments.hpp"
+#include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
@@ -23,7 +24,13 @@ std::optional<fs::path> metric_beside(const fs::path& mesh) {
     fs::path candidate = mesh;
     candidate.replace_extension(ending);
     std::error_code ignored;
-    if (candidate != mesh && fs::exists(candidate, ignored)) return candidate;
+    if (candidate == mesh) continue;
+    if (fs::exists(candidate, ignored)) return candidate;
+    const auto left = meshadapt::left_of(candidate);
+    if (!left.empty())
+      throw meshadapt::InputError(
+          candidate.string() + ": is not there, and a run that was ended left " +
+          left.front().string() + "; rename that, or remove it to do without a metric");
   }
   return std::nullopt;
 }

@@ -16,7 +16,8 @@ namespace ductile::cli {
 /// Prints each as "ductile: warning: ..." on standard error, unless `verbosity` is 0.
 void print_warnings(const meshadapt::Warnings& warnings, int verbosity = 1);
 
-/// The metric file beside a mesh: NAME.sol, else NAME.solb, if it is there.
+/// The metric file beside a mesh: NAME.sol, else NAME.solb, if it is there. Throws InputError where
+/// it is not, because a run was killed while it replaced it.
 std::optional<std::filesystem::path> metric_beside(const std::filesystem::path& mesh);
 
 /// NAME.o.mesh or NAME.o.meshb beside the input, binary as it is.

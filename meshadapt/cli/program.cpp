@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "version.hpp"
@@ -90,16 +91,13 @@ int dispatch(std::span<const std::string> words) {
   return command->run(Arguments(command->options, words.subspan(1)));
 }
 
-int tell(const std::string& message, int status) {
-  std::fprintf(stderr, "ductile: %s\n", message.c_str());
+/// Takes no memory, which there may be none of.
+int tell(const char* message, int status) noexcept {
+  std::fprintf(stderr, "ductile: %s\n", message);
   return status;
 }
 
-}  // namespace
-
-std::span<const Command* const> commands() { return all_commands; }
-
-int run_program(std::span<const std::string> words) {
+int run_words(std::span<const std::string> words) {
   try {
     const int status = dispatch(words);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
@@ -107,11 +105,22 @@ int run_program(std::span<const std::string> words) {
     return status;
   } catch (const UsageError& error) {
     const bool known = !words.empty() && find_command(words[0]);
-    return tell((known ? words[0] + ": " : std::string()) + error.what() +
-                    (known ? " (ductile help " + words[0] + " lists the options)" : ""),
+    return tell(((known ? words[0] + ": " : std::string()) + error.what() +
+                 (known ? " (ductile help " + words[0] + " lists the options)" : ""))
+                    .c_str(),
                 misused);
   } catch (const meshadapt::InputError& error) {
     return tell(error.what(), misused);
+  }
+}
+
+}  // namespace
+
+std::span<const Command* const> commands() { return all_commands; }
+
+int run_program(int argument_count, const char* const* argument) noexcept {
+  try {
+    return run_words(std::vector<std::string>(argument + 1, argument + argument_count));
   } catch (const std::bad_alloc&) {
     return tell("out of memory; allow more (-m) or take a smaller mesh", failed);
   } catch (const std::exception& error) {

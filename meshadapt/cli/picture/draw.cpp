@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "../files.hpp"
+#include "apart.hpp"
 #include "ductile/meshadapt/error.hpp"
 
 namespace ductile::cli {
@@ -227,7 +228,9 @@ void draw_legend(cairo_t* pen, const Legend& legend, Place place) {
 void draw_scene(cairo_t* pen, const Scene& scene, const Layout& layout, PictureFormat format) {
   cairo_set_source_rgb(pen, 1, 1, 1);
   cairo_paint(pen);
-  cairo_select_font_face(pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  // Cairo's own letters: pictures are the same whatever fonts there are, and the library that looks
+  // for others may not end when memory runs out.
+  cairo_select_font_face(pen, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(pen, layout.text);
   cairo_set_source_rgb(pen, 0, 0, 0);
   write(pen, layout.margin, layout.margin + 0.4 * layout.text, as_utf8(scene.caption));
@@ -271,6 +274,14 @@ void expect_success(cairo_status_t status) {
                            cairo_status_to_string(status));
 }
 
+/// Of a pen that has written.
+void expect_success(cairo_t* pen) {
+  expect_success(cairo_status(pen));
+  expect_success(cairo_font_face_status(cairo_get_font_face(pen)));
+  expect_success(cairo_scaled_font_status(cairo_get_scaled_font(pen)));
+  expect_success(cairo_surface_status(cairo_get_target(pen)));
+}
+
 /// Paints several times as large, then reduces: the only antialiasing without seams.
 std::string draw_png(const Scene& scene, const Layout& layout) {
   const int zoom = layout.size <= 2500 ? 3 : 1;
@@ -282,7 +293,7 @@ std::string draw_png(const Scene& scene, const Layout& layout) {
   expect_success(cairo_status(pen.get()));
   cairo_scale(pen.get(), zoom, zoom);
   draw_scene(pen.get(), scene, layout, PictureFormat::png);
-  expect_success(cairo_status(pen.get()));  // an error makes all that follows draw nothing
+  expect_success(pen.get());  // an error makes all that follows draw nothing
   cairo_surface_flush(large.get());
   const Surface small(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height),
                       cairo_surface_destroy);
@@ -309,7 +320,7 @@ std::string draw_svg(const Scene& scene, const Layout& layout) {
         cairo_surface_destroy);
     const Pen pen(cairo_create(surface.get()), cairo_destroy);
     draw_scene(pen.get(), scene, layout, PictureFormat::svg);
-    expect_success(cairo_status(pen.get()));
+    expect_success(pen.get());
     cairo_surface_finish(surface.get());
     expect_success(cairo_surface_status(surface.get()));
   }
@@ -320,7 +331,9 @@ std::string draw_svg(const Scene& scene, const Layout& layout) {
 
 std::string draw(const Scene& scene, PictureFormat format, int size) {
   const Layout layout = lay_out(scene, size);
-  return format == PictureFormat::png ? draw_png(scene, layout) : draw_svg(scene, layout);
+  return apart([&] {
+    return format == PictureFormat::png ? draw_png(scene, layout) : draw_svg(scene, layout);
+  });
 }
 
 }  // namespace ductile::cli
