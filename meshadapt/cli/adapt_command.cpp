@@ -166,13 +166,14 @@ Job read_job(const Arguments& arguments) {
   return job;
 }
 
-AnyField choose_metric(const Job& job, const AnyMesh& mesh, meshadapt::Warnings& warnings) {
+AnyField choose_metric(const Executor& executor, const Job& job, const AnyMesh& mesh,
+                       meshadapt::Warnings& warnings) {
   if (job.size) return meshadapt::constant_metric(mesh, *job.size);
   if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings);
   warnings.push_back(mesh.name +
                      ": no metric given (-sol) or found beside it; adapting to the sizes"
                      " that the mesh has");
-  return meshadapt::implied_metric(mesh);
+  return meshadapt::default_metric(executor, mesh);
 }
 
 /// One line on standard error, rewritten in place; gone when the work is done.
@@ -255,7 +256,7 @@ int work(const Executor& executor, const Job& job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
   const AnyMesh mesh = meshadapt::read_mesh(job.input, &warnings);
-  const AnyField metric = choose_metric(job, mesh, warnings);
+  const AnyField metric = choose_metric(executor, job, mesh, warnings);
   const AnyField field = job.field_in ? read_fields(*job.field_in, mesh, warnings) : AnyField{};
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);
@@ -289,8 +290,9 @@ const Command adapt_command{
     "MESH [-sol METRIC] [-o OUT]",
     "adapts a mesh to a metric",
     "The metric is a size or a tensor at each vertex; edges get a length of about one in it.\n"
-    "Without any, the sizes that the mesh has are kept. The metric at the new vertices is written\n"
-    "beside the adapted mesh. Old output files stay as they are until the new ones are complete.",
+    "Without any, the sizes that the mesh has are kept, stretched as they are. The metric at the\n"
+    "new vertices is written beside the adapted mesh. Old output files stay as they are until the\n"
+    "new ones are complete.",
     options,
     run};
 

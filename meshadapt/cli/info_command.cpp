@@ -39,7 +39,7 @@ Validity check_in(const Executor& executor, const AnyMesh& mesh, const AnyField*
   try {
     meshadapt::Neighbours<Dim> neighbours;
     meshadapt::make_mesh<Dim>(executor, mesh, {}, neighbours, validity.warnings);
-    if (metric == nullptr) meshadapt::implied_metric(mesh);
+    if (metric == nullptr) meshadapt::default_metric(executor, mesh);
   } catch (const meshadapt::InputError& error) {
     validity.reason = error.what();
   }

@@ -1,7 +1,11 @@
 #include "ductile/meshadapt/default_metric.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -9,6 +13,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/indices.hpp"
@@ -81,6 +86,125 @@ void expect_sizes(const AnyMesh& mesh, const std::vector<double>& size_of) {
                    "; scale the mesh");
 }
 
+/// The size that the mesh has at each vertex, alike in all directions.
+std::vector<double> sizes_of(const AnyMesh& mesh) {
+  expect_coordinates(mesh);
+  LogLengths logs(mesh.vertex_count());
+  mesh.dimension == 2 ? add_elements<2>(logs, mesh) : add_elements<3>(logs, mesh);
+  double sum = 0, count = 0;
+  for (std::size_t v = 0; v < logs.sum.size(); ++v) {
+    sum += logs.sum[v];
+    count += logs.count[v];
+  }
+  const double overall = count > 0 ? std::exp(sum / count) : 1;
+  std::vector<double> size_of(mesh.vertex_count(), overall);
+  for (std::size_t v = 0; v < size_of.size(); ++v)
+    if (logs.count[v] > 0) size_of[v] = std::exp(logs.sum[v] / logs.count[v]);
+  expect_sizes(mesh, size_of);
+  return size_of;
+}
+
+/// The elements around each vertex, in ascending order: around[first[vertex]] up to
+/// around[first[vertex + 1]].
+struct ElementsAround {
+  std::vector<std::size_t> first;
+  std::vector<ElementId> around;
+
+  template <std::size_t N>
+  ElementsAround(const std::vector<std::array<VertexId, N>>& corners_of, std::size_t vertices)
+      : first(vertices + 1), around(N * corners_of.size()) {
+    for (const auto& corners : corners_of)
+      for (const VertexId v : corners) ++first[v];
+    std::exclusive_scan(first.begin(), first.end(), first.begin(), std::size_t{0});
+    std::vector<std::size_t> next(first);
+    for (std::size_t e = 0; e < corners_of.size(); ++e)
+      for (const VertexId v : corners_of[e]) around[next[v]++] = static_cast<ElementId>(e);
+  }
+  std::span<const ElementId> of(std::size_t vertex) const {
+    return {around.data() + first[vertex], first[vertex + 1] - first[vertex]};
+  }
+};
+
+/// A logarithm of a metric without the little stretch that isotropic meshes have by chance; its
+/// determinant stays.
+template <int Dim>
+Metric<Dim> without_little_stretch(const Metric<Dim>& log_metric) {
+  PrincipalAxes<Dim> axes = principal_axes(log_metric);
+  const auto [least, most] = std::minmax_element(axes.value.begin(), axes.value.end());
+  const double log_stretch = (*most - *least) / 2;  // of sizes
+  const double t = std::clamp(log_stretch / std::numbers::ln2 - 1, 0.0, 1.0);
+  const double kept = t * t * (3 - 2 * t);
+  const double mean = std::accumulate(axes.value.begin(), axes.value.end(), 0.0) / Dim;
+  for (double& value : axes.value) value = mean + kept * (value - mean);
+  return compose(axes);
+}
+
+template <int Dim>
+class DefaultMetric {
+ public:
+  DefaultMetric(const runtime::Executor& executor, const AnyMesh& mesh)
+      : executor_(executor),
+        size_of_(sizes_of(mesh)),  // which checks the mesh, too
+        mesh_(mesh),
+        around_(elements_in<Dim>(mesh).vertices, mesh.vertex_count()),
+        log_of_(elements_in<Dim>(mesh).size()),
+        volume_of_(log_of_.size()) {
+    runtime::parallel_for(executor_, log_of_.size(), [&](std::size_t e) {
+      const auto corner = points(e);
+      volume_of_[e] = std::abs(plain_determinant(corner));
+      if (volume_of_[e] > 0) log_of_[e] = logarithm(metric_of_element<Dim>(corner));
+    });
+  }
+
+  AnyField field() const {
+    std::vector<Metric<Dim>> metric_of(mesh_.vertex_count());
+    runtime::parallel_for(executor_, metric_of.size(),
+                          [&](std::size_t v) { metric_of[v] = metric_at(v); });
+    return symmetric_field(executor_, metric_of, mesh_.name);
+  }
+
+ private:
+  std::array<Vector<Dim>, Dim + 1> points(std::size_t element) const {
+    std::array<Vector<Dim>, Dim + 1> corner;
+    for (std::size_t i = 0; i <= Dim; ++i)
+      corner[i] = position_in<Dim>(mesh_, elements_in<Dim>(mesh_).vertices[element][i]);
+    return corner;
+  }
+
+  Metric<Dim> metric_at(std::size_t v) const {
+    double volume = 0;
+    for (const ElementId e : around_.of(v)) volume += volume_of_[e];
+    if (!(volume > 0)) return isotropic<Dim>(size_of_[v]);
+    Metric<Dim> mean;
+    for (const ElementId e : around_.of(v))
+      if (volume_of_[e] > 0) mean += volume_of_[e] / volume * log_of_[e];
+    const Metric<Dim> shape = exponential(without_little_stretch(mean));
+    return std::exp(-2 * mean_log_length(shape, v)) * shape;
+  }
+
+  /// Of the edges that a vertex has in its elements.
+  double mean_log_length(const Metric<Dim>& metric, std::size_t v) const {
+    double sum = 0;
+    int count = 0;
+    for (const ElementId e : around_.of(v))
+      for (const VertexId w : elements_in<Dim>(mesh_).vertices[e]) {
+        const double square =
+            squared_length(metric, position_in<Dim>(mesh_, w) - position_in<Dim>(mesh_, v));
+        if (!(square > 0)) continue;  // v itself, or where it is but for rounding
+        sum += std::log(square) / 2;
+        ++count;
+      }
+    return count > 0 ? sum / count : 0;
+  }
+
+  const runtime::Executor& executor_;
+  std::vector<double> size_of_;  // [vertex]
+  const AnyMesh& mesh_;
+  ElementsAround around_;
+  std::vector<Metric<Dim>> log_of_;  // [element], unset where the element is flat
+  std::vector<double> volume_of_;    // [element], times 2 or 6
+};
+
 template <int Dim>
 AnyField implied_tensors_in(const runtime::Executor& executor, const AnyMesh& any) {
   const auto mesh = make_fixed_mesh<Dim>(executor, any);
@@ -105,22 +229,12 @@ AnyField constant_metric(const AnyMesh& mesh, double size) {
   return isotropic_field(mesh, std::vector<double>(mesh.vertex_count(), size));
 }
 
-AnyField implied_metric(const AnyMesh& mesh) {
-  expect_coordinates(mesh);
-  LogLengths logs(mesh.vertex_count());
-  mesh.dimension == 2 ? add_elements<2>(logs, mesh) : add_elements<3>(logs, mesh);
-  double sum = 0, count = 0;
-  for (std::size_t v = 0; v < logs.sum.size(); ++v) {
-    sum += logs.sum[v];
-    count += logs.count[v];
-  }
-  const double overall = count > 0 ? std::exp(sum / count) : 1;
-  std::vector<double> size_of(mesh.vertex_count(), overall);
-  for (std::size_t v = 0; v < size_of.size(); ++v)
-    if (logs.count[v] > 0) size_of[v] = std::exp(logs.sum[v] / logs.count[v]);
-  expect_sizes(mesh, size_of);
-  return isotropic_field(mesh, size_of);
+AnyField default_metric(const runtime::Executor& executor, const AnyMesh& mesh) {
+  return mesh.dimension == 2 ? DefaultMetric<2>(executor, mesh).field()
+                             : DefaultMetric<3>(executor, mesh).field();
 }
+
+AnyField implied_metric(const AnyMesh& mesh) { return isotropic_field(mesh, sizes_of(mesh)); }
 
 AnyField implied_tensors(const runtime::Executor& executor, const AnyMesh& mesh) {
   return mesh.dimension == 2 ? implied_tensors_in<2>(executor, mesh)

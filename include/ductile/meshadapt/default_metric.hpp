@@ -1,7 +1,6 @@
 /// @file
 /// The metrics to adapt to when the user has none: one size everywhere, or the sizes that the mesh
-/// has already, in all directions alike or as they are. All give one symmetric tensor per vertex,
-/// as metric_of does.
+/// has already. All give one symmetric tensor per vertex, as metric_of does.
 #pragma once
 
 #include "ductile/meshadapt/any_mesh.hpp"
@@ -11,6 +10,17 @@ namespace ductile::meshadapt {
 
 /// Asks for edges of this length everywhere. Thread safety: any thread.
 AnyField constant_metric(const AnyMesh& mesh, double size);
+
+/// What the program adapts a mesh to when no metric is given: the sizes that the mesh has, in the
+/// directions in which it has them, so that stretched elements and layers stay and the number of
+/// elements is about the same. At each vertex it has the shape of implied_tensors(), and in it the
+/// geometric mean of the lengths of the vertex's edges is 1. Where sizes differ by less than a
+/// factor of 2 between the directions, as they do by chance in any isotropic mesh, it is isotropic;
+/// up to a factor of 4 it is partly so. Elements need not have a volume: flat ones count for
+/// nothing. A vertex without elements gets the mean size of the whole mesh. Throws InputError for
+/// lengths beyond the sizes that a metric may ask for, for vertices without coordinates or
+/// reference, and for elements that name others. Thread safety: one caller; runs on the executor.
+AnyField default_metric(const runtime::Executor& executor, const AnyMesh& mesh);
 
 /// Asks at each vertex for the geometric mean of the lengths of its edges, in every direction; a
 /// vertex without any gets the mean of the whole mesh. Throws InputError for lengths beyond the
