@@ -3,139 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
-#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "geometry/bends.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
-
-/// Adds weight * v v' of the unit vector in a direction; nothing if there is none.
-template <int Dim>
-void add_square(Metric<Dim>& sum, double weight, const Vector<Dim>& direction) {
-  const double length = norm(direction);
-  if (!(length > 0)) return;
-  const Vector<Dim> v = (1 / length) * direction;
-  std::size_t at = 0;
-  for (int j = 0; j < Dim; ++j)
-    for (int i = 0; i <= j; ++i) sum.m[at++] += weight * v[i] * v[j];
-}
-
-/// 0 if one of them has no direction.
-double angle_between(const auto& u, const auto& v) {
-  const double lengths = norm(u) * norm(v);
-  return lengths > 0 ? std::acos(std::clamp(dot(u, v) / lengths, -1.0, 1.0)) : 0;
-}
-
-/// The facets of one smooth patch around a vertex, by their other corners.
-template <int Dim>
-struct Fan {
-  PatchId patch;
-  std::vector<std::array<VertexId, Dim - 1>> facets;
-};
-
-template <int Dim>
-class VertexCurvature {
- public:
-  VertexCurvature(const Mesh<Dim>& mesh, VertexId vertex) : mesh_(mesh), vertex_(vertex) {}
-
-  /// Calls visit(curvature, edges) for each smooth patch at the vertex: a tensor, positive
-  /// semidefinite, and the edges from the vertex that it was found by.
-  void each(auto&& visit) {
-    find_fans();
-    for (const Fan<Dim>& fan : fans_) {
-      edges_.clear();
-      if constexpr (Dim == 2) {
-        if (fan.facets.size() == 2) visit(curvature(fan), edges_);
-      } else {
-        visit(absolute(curvature(fan)), edges_);
-      }
-    }
-  }
-
- private:
-  Vector<Dim> to(VertexId v) const {
-    return mesh_.site_of[v].position - mesh_.site_of[vertex_].position;
-  }
-
-  void find_fans() {
-    for (const ElementId e : mesh_.elements_of.of(vertex_))
-      for (std::size_t i = 0; i <= Dim; ++i) {
-        const PatchId patch = mesh_.patches_of[e][i];
-        if (!mesh_.patches[patch].smooth || mesh_.corners_of[e][i] == vertex_) continue;
-        const Facet<Dim> facet = facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i));
-        std::array<VertexId, Dim - 1> others{};
-        std::copy_if(facet.begin(), facet.end(), others.begin(),
-                     [&](VertexId v) { return v != vertex_; });
-        std::sort(others.begin(), others.end());
-        add(patch, others);
-      }
-  }
-
-  /// Once, though an interface is seen from both sides.
-  void add(PatchId patch, const std::array<VertexId, Dim - 1>& others) {
-    auto fan = std::find_if(fans_.begin(), fans_.end(),
-                            [&](const Fan<Dim>& f) { return f.patch == patch; });
-    if (fan == fans_.end()) fan = fans_.insert(fans_.end(), {patch, {}});
-    if (std::find(fan->facets.begin(), fan->facets.end(), others) == fan->facets.end())
-      fan->facets.push_back(others);
-  }
-
-  /// Of two edges: the turn over half of their length.
-  Metric<Dim> curvature(const Fan<Dim>& fan) requires(Dim == 2) {
-    const Vector<2> before = to(fan.facets[0][0]), after = to(fan.facets[1][0]);
-    const Vector<2> along = after - before;
-    edges_.push_back(before);
-    edges_.push_back(after);
-    Metric<2> result;
-    const double turn = angle_between(-1.0 * before, after);
-    add_square(result, 2 * turn / (norm(before) + norm(after)), along);
-    return result;
-  }
-
-  /// Of the facets: the turn across each edge between two of them, over the part of its length and
-  /// of the area that is the vertex's.
-  Metric<Dim> curvature(const Fan<Dim>& fan) requires(Dim == 3) {
-    std::vector<Vector<3>> normals;  // as long as the facets are large, all to one side
-    Vector<3> sum{};
-    for (const auto& [a, b] : fan.facets) {
-      Vector<3> normal = cross(to(a), to(b));
-      if (dot(normal, sum) < 0) normal *= -1;
-      sum += normal;
-      normals.push_back(normal);
-    }
-    Metric<3> total;
-    double area = 0;
-    for (std::size_t f = 0; f < fan.facets.size(); ++f) {
-      area += norm(normals[f]) / 2;
-      for (std::size_t g = 0; g < f; ++g) {
-        const VertexId shared = shared_by(fan.facets[f], fan.facets[g]);
-        if (shared == none) continue;
-        const Vector<3> edge = to(shared), across = cross(sum, edge);
-        const VertexId beyond = fan.facets[g][fan.facets[g][0] == shared ? 1 : 0];
-        const double turn =
-            std::copysign(angle_between(normals[f], normals[g]), dot(to(beyond), normals[f]));
-        add_square(total, turn * norm(edge) / 2, across);
-        edges_.push_back(edge);
-      }
-    }
-    if (area > 0) total *= 3 / area;
-    return total;
-  }
-
-  static VertexId shared_by(const std::array<VertexId, 2>& f, const std::array<VertexId, 2>& g) {
-    for (const VertexId v : f)
-      if (v == g[0] || v == g[1]) return v;
-    return none;
-  }
-
-  const Mesh<Dim>& mesh_;
-  VertexId vertex_;
-  std::vector<Fan<Dim>> fans_;
-  std::vector<Vector<Dim>> edges_;
-};
 
 /// By how much a metric has to be multiplied so that it measures no less than a tensor.
 template <int Dim>
@@ -151,22 +28,173 @@ double excess(const Metric<Dim>& tensor, const Metric<Dim>& metric) {
   return *std::max_element(values.begin(), values.end());
 }
 
+template <int Dim>
+double largest_value(const Metric<Dim>& tensor) {
+  const auto values = principal_axes(tensor).value;
+  return *std::max_element(values.begin(), values.end());
+}
+
+/// No less than the largest of the absolute eigenvalues.
+template <int Dim>
+double frobenius_norm(const Metric<Dim>& tensor) {
+  double sum = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) sum += tensor(i, j) * tensor(i, j);
+  return std::sqrt(sum);
+}
+
+/// A tensor after the least rotation that takes one unit vector to another, not the opposite one.
+template <int Dim>
+Metric<Dim> turned(const Metric<Dim>& tensor, const Vector<Dim>& from, const Vector<Dim>& to) {
+  const Vector<Dim> sum = from + to;
+  const double scale = 1 / (1 + dot(from, to));
+  std::array<Vector<Dim>, Dim> axis;  // where each comes from
+  for (int i = 0; i < Dim; ++i) {
+    axis[static_cast<std::size_t>(i)][i] = 1;
+    axis[static_cast<std::size_t>(i)] += 2 * to[i] * from - (scale * sum[i]) * sum;
+  }
+  Metric<Dim> result;
+  std::size_t at = 0;
+  for (std::size_t j = 0; j < Dim; ++j) {
+    const Vector<Dim> seen = product(tensor, axis[j]);
+    for (std::size_t i = 0; i <= j; ++i) result.m[at++] = dot(axis[i], seen);
+  }
+  return result;
+}
+
+/// Is it at a rim that bends nowhere itself, as at the end of an arc?
+template <int Dim>
+bool ends_across(const BendNode<Dim>& node) {
+  return node.at_rim && frobenius_norm(node.turn) <= 1e-7 * std::pow(node.area, (Dim - 2) / 2.0);
+}
+
+/// How a smooth patch bends around a node, up to a distance to which chords stay close to it.
+template <int Dim>
+class Surroundings {
+ public:
+  Surroundings(const Mesh<Dim>& mesh, const Bends<Dim>& bends, double tolerance)
+      : mesh_(mesh), bends_(bends), tolerance_(tolerance), seen_(bends.nodes.size(), none) {}
+
+  /// A tensor in which edges as long as the boundary allows have length 1, if it can say so within
+  /// `reach`; one that is too small where they may be longer.
+  Metric<Dim> sizes_at(std::uint32_t node, double reach) {
+    front_.clear();
+    found_.clear();
+    interior_ = at_rim_ = {};
+    normal_ = bends_.nodes[node].normal;
+    origin_ = position(node);
+    see(node, node);
+    Metric<Dim> curvature;
+    for (double distance = 0; !front_.empty() && found_.size() < most_nodes;) {
+      std::pop_heap(front_.begin(), front_.end(), farther);
+      const auto [away, nearest] = front_.back();
+      front_.pop_back();
+      distance = away;
+      if (distance > reach) break;
+      take(node, nearest, distance);
+      curvature = (interior_.area > 0 ? interior_ : at_rim_).curvature();
+      if (is_enough(frobenius_norm(curvature), distance) &&
+          is_enough(largest_value(absolute(curvature)), distance))
+        break;
+    }
+    return sizes(absolute(curvature));
+  }
+
+ private:
+  /// What so many vertices say is not better for more.
+  static constexpr std::size_t most_nodes = 100;
+  /// Of chords as long as may be, up to where the surface is looked at from their ends: where
+  /// edges are as long, this reaches the next vertices, among which what bends to and fro cancels.
+  static constexpr double chords = 1.25;
+  struct Part {
+    Metric<Dim> turn;
+    double area = 0;
+    Metric<Dim> curvature() const { return area > 0 ? (1 / area) * turn : turn; }
+  };
+  using Place = std::pair<double, std::uint32_t>;  // distance, node
+
+  static bool farther(const Place& a, const Place& b) { return a > b; }
+  const Vector<Dim>& position(std::uint32_t node) const {
+    return mesh_.site_of[bends_.nodes[node].vertex].position;
+  }
+
+  void see(std::uint32_t from, std::uint32_t node) {
+    if (std::exchange(seen_[node], from) == from) return;
+    front_.emplace_back(norm(position(node) - origin_), node);
+    std::push_heap(front_.begin(), front_.end(), farther);
+  }
+
+  void take(std::uint32_t from, std::uint32_t node, double distance) {
+    found_.emplace_back(distance, node);
+    const BendNode<Dim>& found = bends_.nodes[node];
+    Part& part = found.at_rim ? at_rim_ : interior_;
+    const double side = dot(found.normal, normal_) < 0 ? -1 : 1;
+    part.turn += side * turned(found.turn, side * found.normal, normal_);
+    part.area += found.area;
+    const auto& [offset, neighbour] = bends_.next;
+    for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i) see(from, neighbour[i]);
+  }
+
+  /// Is the distance that of the chords that a curvature allows, see bound_curved_sizes()?
+  bool is_enough(double curvature, double distance) const {
+    return curvature * distance * distance >= 8 * tolerance_ * chords * chords;
+  }
+
+  /// Not smaller than the flat parts around: to divide these brings nothing closer.
+  Metric<Dim> sizes(Metric<Dim> curvature) const {
+    const double most = largest_value(curvature);
+    if (!(most > 0)) return {};
+    const double chord = std::sqrt(8 * tolerance_ / most);
+    double least = 2 * tolerance_;
+    for (const auto& [distance, node] : found_)
+      if (distance <= chord / 2 || found_.size() < 8) {
+        least = std::max(least, bends_.nodes[node].width);
+        const auto& [offset, neighbour] = bends_.next;
+        for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
+          least = std::max(least, norm(position(neighbour[i]) - position(node)));
+      }
+    const double scale = std::min(1.0, chord / least);
+    curvature *= scale * scale / (8 * tolerance_);
+    return curvature;
+  }
+
+  const Mesh<Dim>& mesh_;
+  const Bends<Dim>& bends_;
+  double tolerance_;
+  std::vector<std::uint32_t> seen_;  // [node], from which it was seen last
+  std::vector<Place> front_, found_;
+  Part interior_, at_rim_;
+  Vector<Dim> normal_, origin_;
+};
+
 }  // namespace
 
 template <int Dim>
 void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
                         std::vector<Metric<Dim>>& metric_of) {
-  runtime::parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
-    const auto vertex = static_cast<VertexId>(v);
-    if (!mesh.vertex_alive(vertex) || mesh.kind_of[v].freedom == Dim) return;
-    double factor = 1;
-    VertexCurvature<Dim>(mesh, vertex).each([&](Metric<Dim> sizes, const auto& edges) {
-      sizes *= 1 / (8 * tolerance);
-      double longest = 1;  // squared, of the edges that there are
-      for (const auto& edge : edges) longest = std::max(longest, squared_length(sizes, edge));
-      factor = std::max(factor, excess(sizes, metric_of[v]) / longest);
-    });
-    if (factor > 1 && std::isfinite(factor)) metric_of[v] *= factor;
+  constexpr double flat = 0.02;  // of the tolerance: a tenth of the longest chord on an arc
+  const Bends<Dim> bends(executor, mesh, flat * tolerance);
+  const auto& nodes = bends.nodes;
+  std::vector<double> factor_of(nodes.size(), 1);
+  const std::size_t block_size = std::max<std::size_t>(1024, nodes.size() / 64);
+  runtime::parallel_for_blocks(
+      executor, nodes.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
+        Surroundings<Dim> surroundings(mesh, bends, tolerance);
+        for (std::size_t n = begin; n < end; ++n) {
+          if (ends_across(nodes[n])) continue;
+          const Metric<Dim>& metric = metric_of[nodes[n].vertex];
+          const auto values = principal_axes(metric).value;
+          const double largest = 1 / std::sqrt(*std::min_element(values.begin(), values.end()));
+          const auto sizes = surroundings.sizes_at(static_cast<std::uint32_t>(n), largest);
+          const double factor = excess(sizes, metric);
+          if (factor > 1 && std::isfinite(factor)) factor_of[n] = factor;
+        }
+      });
+  std::vector<double> most(metric_of.size(), 1);
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    most[nodes[n].vertex] = std::max(most[nodes[n].vertex], factor_of[n]);
+  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
+    if (most[v] > 1) metric_of[v] *= most[v];
   });
 }
 

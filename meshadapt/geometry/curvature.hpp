@@ -12,10 +12,12 @@ namespace ductile::meshadapt {
 
 /// Makes metrics finer, in all directions alike, at vertices of smooth patches, so that edges there
 /// are no longer than chords that stay within the tolerance of them: one of length h is k h^2 / 8
-/// from an arc of curvature k. Not so fine that the edges that the mesh has there would be too
-/// long. Curvature is that of the turns from facet to facet around the vertex (Cohen-Steiner &
-/// Morvan, "Restricted Delaunay triangulations and normal cycle", SoCG 2003). Linear in the mesh.
-/// Thread safety: one caller; runs on the executor.
+/// from an arc of curvature k. Curvature is the mean over all that is no farther away than 1.25
+/// such chords, or than the sizes asked for, so that it does not depend on how the facets are cut,
+/// and what a single facet does cancels. Sizes are not smaller than the edges that the mesh has
+/// there or the flat parts that the patch is made of, where these are larger than the chords: to
+/// divide them would bring nothing closer. They are never smaller than twice the tolerance. Linear
+/// in the mesh but for a logarithm. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
                         std::vector<Metric<Dim>>& metric_of);

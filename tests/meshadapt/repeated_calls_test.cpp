@@ -1,0 +1,187 @@
+/// @file
+/// Adapts meshes with curved boundaries again and again, each time what came out before, with sizes
+/// that grow from what their boundaries ask for: it must not get finer and finer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "support/meshes.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+using test::Random;
+
+const Executor executor({.threads = 2});
+
+/// Makes the squares around the axis of the unit square or cube, widened to [-1, 1], circles up to
+/// this fraction of it, and what is around them a transition to the square.
+void round_off(AnyMesh& mesh, double radius) {
+  const auto size = static_cast<std::size_t>(mesh.dimension);
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += size) {
+    double &x = mesh.coordinates[at], &y = mesh.coordinates[at + 1];
+    x = 2 * x - 1;
+    y = 2 * y - 1;
+    const double from_axis = std::hypot(x, y), square = std::max(std::abs(x), std::abs(y));
+    if (!(from_axis > 0)) continue;
+    const double round = square / from_axis;
+    const double share = radius < 1 ? std::clamp((square - radius) / (1 - radius), 0.0, 1.0) : 0;
+    x *= share + (1 - share) * round;
+    y *= share + (1 - share) * round;
+  }
+}
+
+/// Two regions: inside a circle or a cylinder and around it; or only what is around.
+AnyMesh cylinder_in_box(int dimension, int n, bool hollow) {
+  test::Grid grid = test::unit_grid(dimension, n);
+  grid.region = [=](const test::Cell& cell) {
+    const auto inside = [&](int c) { return c >= n / 4 && c < n - n / 4; };
+    return inside(cell[0]) && inside(cell[1]) ? (hollow ? 0 : 2) : 1;
+  };
+  AnyMesh mesh = test::make_grid(grid);
+  round_off(mesh, 1 - 2 * (n / 4) / static_cast<double>(n));
+  return mesh;
+}
+
+AnyMesh disc(int n) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(2, n));
+  round_off(mesh, 1);
+  std::fill(mesh.edges.reference.begin(), mesh.edges.reference.end(), 1);
+  return mesh;
+}
+
+AnyMesh ball(int n) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(3, n));
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += 3) {
+    double* p = &mesh.coordinates[at];
+    for (int i = 0; i < 3; ++i) p[i] = 2 * p[i] - 1;
+    const double radius = std::hypot(p[0], p[1], p[2]);
+    const double cube = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+    for (int i = 0; i < 3 && radius > 0; ++i) p[i] *= cube / radius;
+  }
+  std::fill(mesh.triangles.reference.begin(), mesh.triangles.reference.end(), 1);
+  return mesh;
+}
+
+/// A part of a torus, of radius 3 and a tube of radius 1.
+AnyMesh bent_tube(int n, double angle) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(3, n));
+  round_off(mesh, 1);
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += 3) {
+    double* p = &mesh.coordinates[at];
+    const double radius = 3 + p[0], turn = angle * p[2];
+    p[0] = radius * std::cos(turn);
+    p[2] = radius * std::sin(turn);
+  }
+  for (std::int32_t& reference : mesh.triangles.reference) reference = std::max(reference, 4);
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += 3)  // the map mirrors
+    mesh.coordinates[at + 1] *= -1;
+  return mesh;
+}
+
+/// A few elements: vertices of one or two cells, all of them moved.
+AnyMesh random_mesh(int dimension, Random& random) {
+  for (;;) {
+    test::Grid grid = test::unit_grid(dimension, 1 + static_cast<int>(test::below(random, 2)));
+    grid.region =
+        test::random_regions(random(), 1 + static_cast<int>(test::below(random, 2)), true);
+    AnyMesh mesh = test::make_grid(grid);
+    if (mesh.coordinates.empty()) continue;
+    const AnyMesh before = mesh;
+    for (double& x : mesh.coordinates) x += test::uniform(random, -0.12, 0.12);
+    if (check_mesh(executor, mesh).empty()) return mesh;
+  }
+}
+
+std::size_t element_count(const AnyMesh& mesh) {
+  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+}
+
+struct Request {
+  double size;  ///< 0: that of the mesh
+  double tolerance;
+  double gradation = 1.3;
+};
+
+void settles(AnyMesh mesh, const Request& request) {
+  AdaptOptions options;
+  options.gradation = request.gradation;
+  options.make.surface_tolerance = request.tolerance;
+  std::size_t first = 0;
+  std::string counts;
+  for (int call = 0; call < 10; ++call) {
+    const AnyField metric =
+        request.size > 0 ? constant_metric(mesh, request.size) : implied_metric(mesh);
+    const auto start = std::chrono::steady_clock::now();
+    AdaptedMesh result = adapt(executor, mesh, metric, options);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    mesh = std::move(result.mesh);
+    if (call == 0) first = element_count(mesh);
+    counts += " " + std::to_string(element_count(mesh));
+    ASSERT_LT(seconds.count(), 20) << counts;  // on a busy machine; alone, a tenth of it
+    ASSERT_LT(element_count(mesh), 1.2 * static_cast<double>(first) + 20) << counts;
+  }
+}
+
+TEST(RepeatedCalls, OnDiscsAndRings) {
+  for (const double tolerance : {0.03, 0.005, 0.001})
+    for (const double size : {0.0, 0.1, 0.4}) {
+      SCOPED_TRACE("tolerance " + std::to_string(tolerance) + ", size " + std::to_string(size));
+      settles(disc(10), {size, tolerance});
+      settles(cylinder_in_box(2, 16, true), {size, tolerance});
+      settles(cylinder_in_box(2, 16, false), {size, tolerance});
+    }
+}
+
+TEST(RepeatedCalls, OnACylinderInABox) {
+  for (const double tolerance : {0.05, 0.01, 0.002})
+    for (const double size : {0.0, 0.2, 0.5}) {
+      SCOPED_TRACE("tolerance " + std::to_string(tolerance) + ", size " + std::to_string(size));
+      settles(cylinder_in_box(3, 8, false), {size, tolerance});
+      settles(cylinder_in_box(3, 8, true), {size, tolerance});
+    }
+}
+
+TEST(RepeatedCalls, OnABall) {
+  for (const double tolerance : {0.05, 0.01, 0.002})
+    for (const double size : {0.0, 0.25, 0.5}) {
+      SCOPED_TRACE("tolerance " + std::to_string(tolerance) + ", size " + std::to_string(size));
+      settles(ball(10), {size, tolerance});
+    }
+}
+
+/// Not with the sizes that it has: these grow so fast around the tube that what limits their growth
+/// makes them smaller each time, without any tolerance, too.
+TEST(RepeatedCalls, OnATorus) {
+  for (const double tolerance : {0.05, 0.01})
+    for (const double size : {0.4, 1.0}) {
+      SCOPED_TRACE("tolerance " + std::to_string(tolerance) + ", size " + std::to_string(size));
+      settles(bent_tube(10, 4), {size, tolerance});
+    }
+}
+
+TEST(RepeatedCalls, OnAFewElements) {
+  Random random(7);
+  for (int trial = 0; trial < 60; ++trial) {
+    const int dimension = 2 + trial % 2;
+    AnyMesh mesh = random_mesh(dimension, random);
+    const double tolerance = std::pow(10.0, test::uniform(random, -4, -1));
+    const double size = test::chance(random, 0.5) ? 0 : test::uniform(random, 0.08, 0.5);
+    SCOPED_TRACE("trial " + std::to_string(trial) + ", " + std::to_string(element_count(mesh)) +
+                 " elements, tolerance " + std::to_string(tolerance) + ", size " +
+                 std::to_string(size));
+    settles(std::move(mesh), {size, tolerance});
+  }
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
