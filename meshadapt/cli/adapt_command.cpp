@@ -197,24 +197,15 @@ class ProgressLine {
   bool shown_;
 };
 
-/// Where boundaries may move they may not cross, either, unless they did before.
-std::vector<std::string> faults_of(const Executor& executor, const AnyMesh& before,
-                                   const AnyMesh& after, double surface_tolerance) {
-  auto faults = meshadapt::check_mesh(executor, after);
-  if (faults.empty()) faults = meshadapt::check_domain(before, after, surface_tolerance);
-  if (!faults.empty() || surface_tolerance == 0) return faults;
-  faults = meshadapt::check_boundary(executor, after);
-  if (!faults.empty() && !meshadapt::check_boundary(executor, before).empty()) faults.clear();
-  return faults;
-}
-
 AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const AnyMesh& mesh,
                                 const AnyField& metric) {
   const ProgressLine line(job.verbosity > 0 && stderr_is_terminal());
   AdaptOptions adapt = job.adapt;
   adapt.progress = [&line](const meshadapt::AdaptProgress& progress) { line.show(progress); };
   AdaptedMesh adapted = meshadapt::adapt(executor, mesh, metric, adapt);
-  const auto faults = faults_of(executor, mesh, adapted.mesh, job.adapt.make.surface_tolerance);
+  if (adapted.report.checked) return adapted;
+  const auto faults =
+      meshadapt::check_adapted(executor, mesh, adapted.mesh, job.adapt.make.surface_tolerance);
   if (!faults.empty())
     throw meshadapt::Error("the adapted mesh is not valid (" + faults.front() +
                            "); nothing was written; please report this with its input");

@@ -16,6 +16,7 @@
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 #include "geometry/surface.hpp"
+#include "geometry/touching.hpp"
 
 namespace ductile::meshadapt {
 
@@ -67,7 +68,9 @@ class Classifier {
       : executor_(executor),
         mesh_(mesh),
         facets_(std::move(facets)),
-        tolerance_(flatness * extent(executor, mesh)),
+        extent_(extent(executor, mesh)),
+        tolerance_(flatness * extent_),
+        options_(options),
         surface_tolerance_(options.surface_tolerance),
         least_turn_(std::cos(options.ridge_angle * std::numbers::pi / 180)) {
     if constexpr (Dim == 3)
@@ -78,7 +81,10 @@ class Classifier {
 
   void run() {
     find_patches();
-    if (surface_tolerance_ > 0) join_patches();
+    if (surface_tolerance_ > 0) {
+      find_kept(options_.keep_facets_at);
+      join_patches();
+    }
     if constexpr (Dim == 3) find_curves();
     mark_faced();
     store_patches();
@@ -226,6 +232,21 @@ class Classifier {
 
   // ---- Smooth patches: flat ones that turn little where they meet ----
 
+  /// Where the boundary lies against itself both sides keep the facets they have, lest they cross.
+  void find_kept(const std::vector<VertexId>& more) {
+    constexpr double touch = 1e-8;  // of the extent
+    std::vector<Facet<Dim>> boundary;
+    for (const TaggedFacet<Dim>& facet : facets_)
+      if (facet.other == none) boundary.push_back(facet.corners);
+    kept_ = touching_vertices<Dim>(executor_, mesh_, boundary, touch * extent_);
+    for (const VertexId v : more) kept_[v] = 1;
+  }
+
+  bool keeps_shape(const TaggedFacet<Dim>& facet) const {
+    return std::any_of(facet.corners.begin(), facet.corners.end(),
+                       [&](VertexId v) { return kept_[v] != 0; });
+  }
+
   void join_patches() {
     std::vector<PatchId> joined(mesh_.patches.size());  // [patch], another of the same, or itself
     std::iota(joined.begin(), joined.end(), 0);
@@ -235,7 +256,9 @@ class Classifier {
     };
     for (const Side& side : sides_) {
       const std::uint32_t f = side.facet, g = across_[f][side.number];
-      if (g == none || g < f || mesh_.patches[facets_[f].patch].required) continue;
+      if (g == none || g < f || mesh_.patches[facets_[f].patch].required ||
+          keeps_shape(facets_[f]) || keeps_shape(facets_[g]))
+        continue;
       const PatchId p = find(facets_[f].patch), q = find(facets_[g].patch);
       if (p == q || !turns_little(facets_[f].corners, facets_[g].corners, side.key)) continue;
       joined[std::max(p, q)] = std::min(p, q);
@@ -516,13 +539,16 @@ class Classifier {
   const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
   std::vector<TaggedFacet<Dim>> facets_;
-  double tolerance_;                  // of flatness
+  double extent_;     // of the mesh
+  double tolerance_;  // of flatness
+  const MakeMeshOptions& options_;
   double surface_tolerance_;          // of what is not flat; 0 if nothing is to be smooth
   double least_turn_;                 // cosine of the angle from which on edges are ridges
   runtime::UnsetVector<Side> sides_;  // sorted
   using Others = std::array<std::uint32_t, Dim>;
   runtime::FilledArray<Others> across_;         // [facet][side], the other facet or none
   std::unordered_map<Key, ListedEdge> listed_;  // 3D
+  std::vector<std::uint8_t> kept_;              // [vertex], whether facets there keep their shape
   std::vector<CurveEdge> curve_edges_;
   std::unordered_map<VertexId, std::vector<std::uint32_t>> edges_at_;
 };

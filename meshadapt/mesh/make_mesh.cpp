@@ -58,6 +58,12 @@ class MeshMaker {
     if (!(angle > 0 && angle < 90))
       throw InputError("expected a ridge angle between 0 and 90 degrees, found " +
                        std::to_string(angle));
+    const auto& kept = options_.keep_facets_at;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      if (kept[i] >= any_.vertex_count())
+        throw InputError("keep_facets_at[" + std::to_string(i) + "]: expected a vertex below " +
+                         std::to_string(any_.vertex_count()) + ", found " +
+                         std::to_string(kept[i]));
   }
 
   [[noreturn]] void fail(const std::string& what) const {

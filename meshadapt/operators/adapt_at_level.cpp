@@ -20,6 +20,7 @@
 #include "mesh/first_bad.hpp"
 #include "operators/adapter.hpp"
 #include "operators/processor_level.hpp"
+#include "operators/rescue.hpp"
 
 #ifndef DUCTILE_LEVEL  // which is only given where this is compiled once more
 #define DUCTILE_LEVEL as_built
@@ -28,6 +29,16 @@
 namespace ductile::meshadapt {
 
 namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// The metrics of the field within the sizes and the growth that the options allow.
 template <int Dim>
@@ -129,33 +140,65 @@ void count_curved_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh
   report.curved_edges_short = total.shorter;
 }
 
+/// An adapted mesh, and whether its boundary may have met itself on the way.
+struct Attempt {
+  AdaptedMesh adapted;
+  bool may_meet;
+};
+
 template <int Dim>
-AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
-                     const AdaptOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
+bool has_faced_patches(const Mesh<Dim>& mesh) {
+  return std::any_of(mesh.patches.begin(), mesh.patches.end(),
+                     [](const Patch<Dim>& patch) { return patch.faced; });
+}
+
+template <int Dim>
+Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
+                   const AdaptOptions& options) {
+  const Stopwatch watch;
   if (auto* recording = executor.recording()) recording->begin_section("setup");
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
+  const bool may_meet = mesh.surface || has_faced_patches(mesh);
   const std::size_t fixed = fixed_vertices(executor, mesh);
   auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
   if (options.insert) expect_countable(executor, mesh, metric_of, metric.name);
   Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
                        std::exchange(metric_of, {}));
-  adapter.report().setup_seconds = seconds();
+  adapter.report().setup_seconds = watch.seconds();
   if (auto* recording = executor.recording()) recording->begin_section("other");
   adapter.run();
   mesh = adapter.take_mesh();
   count_curved_edges(executor, mesh, adapter.report());
   auto [adapted, metric_on_it] = take_apart(executor, std::move(mesh));
-  AdaptedMesh result{std::move(adapted), std::move(metric_on_it), adapter.report()};
-  result.report.warnings = std::move(warnings);
-  result.report.fixed_vertices = fixed;
-  result.report.total_seconds = seconds();
+  Attempt result{{std::move(adapted), std::move(metric_on_it), adapter.report()}, may_meet};
+  result.adapted.report.warnings = std::move(warnings);
+  result.adapted.report.fixed_vertices = fixed;
   return result;
+}
+
+template <int Dim>
+AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
+                     const AdaptOptions& options) {
+  const Stopwatch watch;
+  Rescue<Dim> rescue(executor, any, options.make);
+  AdaptOptions again = options;
+  while (true) {
+    auto [result, may_meet] = adapt_once<Dim>(executor, any, metric, again);
+    if (!may_meet && rescue.attempts() == 0) {
+      result.report.total_seconds = watch.seconds();
+      return std::move(result);
+    }
+    if (rescue.accepts(result.mesh)) {
+      result.report.attempts = rescue.attempts();
+      result.report.checked = rescue.is_right();
+      rescue.warn(result.report.warnings);
+      result.report.total_seconds = watch.seconds();
+      return std::move(result);
+    }
+    again.make = rescue.options();
+  }
 }
 
 }  // namespace

@@ -63,6 +63,10 @@ struct AdaptReport {
   /// Edges of the adapted mesh on curved boundaries that may change
   /// (MakeMeshOptions::surface_tolerance), and those of them that are shorter than 1/sqrt 2.
   std::size_t curved_edges = 0, curved_edges_short = 0;
+  /// How many times the input was adapted. Where check_adapted() finds something wrong with curved
+  /// boundaries, it is adapted again, and facets near there are kept.
+  int attempts = 1;
+  bool checked = false;  ///< check_adapted() was asked, and the mesh is right
   std::vector<std::string> warnings;
   /// What the kernels were compiled for: "as built", "x86-64-v3" or "x86-64-v4". The library may
   /// hold them for several processors and uses the best that this one can run.

@@ -43,6 +43,24 @@ std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& afte
 /// executor.
 std::vector<std::string> check_boundary(const runtime::Executor& executor, const AnyMesh& mesh);
 
+/// How the topology of `after` differs from that of `before`, a line each; empty if it does not. Of
+/// the whole and of the elements of each reference that both have are compared: the number of
+/// connected parts, that of connected parts of the boundary around them, and its Euler
+/// characteristic; the last two also where the boundary is cut up along all edges, in 2D at all
+/// vertices, at which it meets itself. Boundary that `before` does not list counts as well; that of
+/// `after` is listed, as check_mesh() says. Throws InputError unless both meshes are of one
+/// dimension and have all coordinates, references and vertices.
+/// Nearly linear in the meshes. Thread safety: one caller; runs on the executor.
+std::vector<std::string> check_topology(const runtime::Executor& executor, const AnyMesh& before,
+                                        const AnyMesh& after);
+
+/// What is wrong with an adapted mesh, by the first of these checks that finds something:
+/// check_mesh(), check_domain(), check_topology() and, if the boundary may move, check_boundary(),
+/// unless the boundary of `before` crosses itself, too. Throws what they throw.
+/// Thread safety: one caller; runs on the executor.
+std::vector<std::string> check_adapted(const runtime::Executor& executor, const AnyMesh& before,
+                                       const AnyMesh& after, double surface_tolerance = 0);
+
 /// As check_mesh() above for a mesh that is being adapted, entities numbered from 0 as in memory.
 /// Checked as well: the lists of vertices agree with the corners of elements, shapes are up to
 /// date, facets carry the same patch on both sides, patches are flat, curves straight, and what

@@ -4,6 +4,7 @@
 /// turned the same way, every facet shared by at most two elements, the boundary listed.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct MakeMeshOptions {
   /// Facets, or edges of a curve, that turn by as many degrees where they meet meet at a ridge, or
   /// a corner, which stays. Those that turn by less are curved. More than 0, less than 90.
   double ridge_angle = 45;
+  /// Vertices at which curved boundaries keep the facets they have all the same. Indices, from 0.
+  std::vector<std::uint32_t> keep_facets_at = {};
 };
 
 /// Classifies vertices and finds patches and curves; metrics are left unset, hosts are the element

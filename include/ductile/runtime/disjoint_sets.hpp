@@ -1,0 +1,65 @@
+/// @file
+/// DisjointSets: numbers that many threads put together into sets, such as the parts of a graph
+/// that hang together. Each set is a tree whose root is its lowest number, so that what comes out
+/// does not depend on who was first.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/unset_vector.hpp"
+
+namespace ductile::runtime {
+
+class DisjointSets {
+ public:
+  /// n sets, of one number each. Throws std::bad_alloc.
+  DisjointSets(const Executor& executor, std::size_t n)
+      : parent_(make_unset_vector<std::uint32_t>(executor, n)) {
+    parallel_for(
+        executor, n, [&](std::size_t i) { parent_[i] = static_cast<std::uint32_t>(i); },
+        few_nanoseconds);
+  }
+
+  std::size_t size() const { return parent_.size(); }
+
+  /// Makes one set of the two that have a and b. Nearly constant time. Thread safety: any thread.
+  void unite(std::uint32_t a, std::uint32_t b) {
+    while (true) {
+      a = root(a);
+      b = root(b);
+      if (a == b) return;
+      if (a < b) std::swap(a, b);
+      std::uint32_t expected = a;
+      if (word(a).compare_exchange_strong(expected, b, std::memory_order_relaxed)) return;
+    }
+  }
+
+  /// The lowest number of the set that has this one. Thread safety: any thread, after the loop that
+  /// called unite().
+  std::uint32_t lowest(std::uint32_t a) { return root(a); }
+
+ private:
+  // Relaxed: a parent is the only datum, it only ever becomes a lower number of the same set, and
+  // the barrier at the end of the loop comes before whoever asks for what came out.
+  std::atomic_ref<std::uint32_t> word(std::uint32_t i) { return std::atomic_ref(parent_[i]); }
+
+  /// Halves the way there for those who come next.
+  std::uint32_t root(std::uint32_t i) {
+    while (true) {
+      std::uint32_t parent = word(i).load(std::memory_order_relaxed);
+      if (parent == i) return i;
+      const std::uint32_t next = word(parent).load(std::memory_order_relaxed);
+      if (next != parent) word(i).compare_exchange_weak(parent, next, std::memory_order_relaxed);
+      i = next;
+    }
+  }
+
+  UnsetVector<std::uint32_t> parent_;  // [number], a lower one of its set, or itself at a root
+};
+
+}  // namespace ductile::runtime

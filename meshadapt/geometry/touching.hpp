@@ -1,0 +1,31 @@
+/// @file
+/// touching_vertices: where the boundary of a mesh lies against itself, as the two sides of a
+/// closed crack do, or bodies that touch along a curve.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::meshadapt {
+
+/// Of these boundary facets, the vertices that are within a distance of a facet that has not got
+/// them, and the corners of such facets: flags, by vertex. A logarithm more than linear in the
+/// facets. Thread safety: one caller; runs on the executor.
+template <int Dim>
+std::vector<std::uint8_t> touching_vertices(const runtime::Executor& executor,
+                                            const Mesh<Dim>& mesh,
+                                            const std::vector<Facet<Dim>>& facets, double within);
+
+extern template std::vector<std::uint8_t> touching_vertices<2>(const runtime::Executor&,
+                                                               const Mesh<2>&,
+                                                               const std::vector<Facet<2>>&,
+                                                               double);
+extern template std::vector<std::uint8_t> touching_vertices<3>(const runtime::Executor&,
+                                                               const Mesh<3>&,
+                                                               const std::vector<Facet<3>>&,
+                                                               double);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,54 @@
+/// @file
+/// Topology of a mesh: of how many parts its regions and their boundaries consist, and Euler
+/// characteristics. Adaptation keeps all of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "mesh/boundary_surface.hpp"
+
+namespace ductile::meshadapt {
+
+/// Of the elements of one reference, or of all. In 3D the Euler characteristic of the region is
+/// that of its boundary, less half of that of the sheets; in 2D it is the number of parts, less
+/// that of sheets beyond one for each.
+struct RegionTopology {
+  std::optional<std::int32_t> reference;  ///< none: all elements
+  std::size_t parts = 0;                  ///< of its elements, which share vertices
+  std::size_t boundary_parts = 0;         ///< of the facets around it, which share vertices
+  std::size_t sheets = 0;                 ///< ... if the boundary is cut up where it meets itself
+  std::int64_t euler = 0;                 ///< of the boundary
+  std::int64_t euler_of_sheets = 0;       ///< of the boundary cut up
+  friend bool operator==(const RegionTopology&, const RegionTopology&) = default;
+};
+
+/// Of all elements and, if there are several references, of the elements of each, by reference.
+/// Nearly linear in the mesh. Precondition: indices are in range.
+/// Thread safety: one caller; runs on the executor.
+template <int Dim>
+std::vector<RegionTopology> topology_of(const runtime::Executor& executor, const AnyMesh& mesh,
+                                        BoundaryFrom from);
+
+/// How the topology of `after`, whose boundary is listed, differs from that of `before`, a line
+/// for each region and number; empty if it does not.
+/// Thread safety: one caller; runs on the executor.
+template <int Dim>
+std::vector<std::string> topology_faults(const runtime::Executor& executor, const AnyMesh& before,
+                                         const AnyMesh& after);
+
+extern template std::vector<RegionTopology> topology_of<2>(const runtime::Executor&, const AnyMesh&,
+                                                           BoundaryFrom);
+extern template std::vector<RegionTopology> topology_of<3>(const runtime::Executor&, const AnyMesh&,
+                                                           BoundaryFrom);
+extern template std::vector<std::string> topology_faults<2>(const runtime::Executor&,
+                                                            const AnyMesh&, const AnyMesh&);
+extern template std::vector<std::string> topology_faults<3>(const runtime::Executor&,
+                                                            const AnyMesh&, const AnyMesh&);
+
+}  // namespace ductile::meshadapt
