@@ -16,6 +16,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "io/give_names.hpp"
+#include "io/output_place.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -107,6 +108,7 @@ fs::path place_of(const fs::path& path) {
 
 void expect_usable_name(const fs::path& path) {
   if (path.empty()) throw InputError("expected the name of an output file, found an empty one");
+  expect_name_to_lead_somewhere(path);
   std::error_code error;
   const std::string name = path.string();
   if (!path.has_filename() || fs::is_directory(path, error))
@@ -122,6 +124,7 @@ void expect_usable_name(const fs::path& path) {
   if (fs::exists(path, error) && ::access(path.c_str(), W_OK) != 0)
     throw InputError(name + ": cannot write, " + reason(errno) +
                      "; change its permissions or choose another name");
+  if (!is_device(path)) expect_replaceable(resolve_links(path));
 }
 
 fs::path create_temporary(const fs::path& path) {

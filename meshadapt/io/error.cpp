@@ -1,6 +1,50 @@
 #include "ductile/meshadapt/error.hpp"
 
+#include <cstddef>
+#include <cstdio>
+
 namespace ductile::meshadapt {
+
+namespace {
+
+std::string escaped(char c) {
+  switch (c) {
+    case '\n':
+      return "\\n";
+    case '\r':
+      return "\\r";
+    case '\t':
+      return "\\t";
+    default: {
+      char text[5];
+      std::snprintf(text, sizeof text, "\\x%02x",
+                    static_cast<unsigned>(static_cast<unsigned char>(c)));
+      return text;
+    }
+  }
+}
+
+/// How many bytes of a control character in UTF-8 are here: those of ASCII have one, others two.
+std::size_t control_bytes(std::string_view text, std::size_t at) {
+  const auto byte = static_cast<unsigned char>(text[at]);
+  if (byte < 0x20 || byte == 0x7f) return 1;
+  if (byte != 0xc2 || at + 1 == text.size()) return 0;
+  const auto second = static_cast<unsigned char>(text[at + 1]);
+  return second >= 0x80 && second < 0xa0 ? 2 : 0;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t controls = control_bytes(text, at);
+    if (controls == 0) result += text[at++];
+    for (; controls > 0; --controls) result += escaped(text[at++]);
+  }
+  return result;
+}
 
 Error::~Error() = default;
 InputError::~InputError() = default;

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -140,6 +141,49 @@ TEST(AtomicOutputs, RefusePlacesThatCannotBeWritten) {
               std::string::npos);
   }
   EXPECT_NO_THROW(check_writable({folder / "a", folder / "b", "/dev/null"}));
+}
+
+TEST(AtomicOutputs, RefuseNamesThatLeadNowhere) {
+  const test::TemporaryFolder folder;
+  const auto complaint = [](const fs::path& path) {
+    std::string at_stage = test::complaint([&] { AtomicOutputs().stage(path); });
+    EXPECT_EQ(test::complaint([&] { check_writable(path); }), at_stage);
+    return at_stage;
+  };
+  fs::create_symlink("self", folder / "self");
+  fs::create_symlink("b", folder / "a");
+  fs::create_symlink(folder / "a", folder / "b");
+  for (const fs::path& path : {folder / "self", folder / "a", folder / "b", folder / "a" / "c"})
+    EXPECT_NE(complaint(path).find(path.string() + ": cannot write, the name is a link that leads"),
+              std::string::npos);
+  fs::create_symlink(std::string(300, 'n'), folder / "long");
+  fs::path deep = folder / "deep";
+  while (deep.string().size() < 5000) deep /= std::string(200, 'd');
+  for (const fs::path& path : {folder / std::string(256, 'n'), folder / "long", deep})
+    EXPECT_NE(complaint(path).find("longer than the system takes"), std::string::npos);
+  fs::create_symlink("none", folder / "dangling");
+  EXPECT_NO_THROW(check_writable(folder / "dangling"));
+  EXPECT_NO_THROW(check_writable(folder / std::string(255, 'n')));
+}
+
+/// As in /tmp, with a file of another user's.
+TEST(AtomicOutputs, RefuseToReplaceWhatOnlyItsOwnerMay) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root may be two users";
+  const test::TemporaryFolder folder;
+  fs::permissions(folder / "", fs::perms::all | fs::perms::sticky_bit);
+  test::put_bytes(folder / "a", "old");
+  fs::permissions(folder / "a", fs::perms::all);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (setuid(65534) != 0) _exit(2);
+    const std::string text = test::complaint([&] { check_writable(folder / "a"); });
+    check_writable(folder / "b");
+    _exit(text.find("only its owner may replace it") == std::string::npos ? 1 : 0);
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_NO_THROW(check_writable(folder / "a"));
 }
 
 /// To the system the folder above is that of where the link leads.

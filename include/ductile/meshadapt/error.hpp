@@ -6,14 +6,20 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ductile::meshadapt {
 
+/// The text with control characters, which names of files may have, written as \n or \x1b: it stays
+/// one line and changes nothing in a terminal. Thread safety: any thread.
+std::string printable(std::string_view text);
+
 /// Something outside the program failed: the disk is full, memory ran out, a result is not valid.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// The text is made printable.
+  explicit Error(std::string_view text) : std::runtime_error(printable(text)) {}
   ~Error() override;  // defined in one place, as the type then is, whoever throws it
 };
 
