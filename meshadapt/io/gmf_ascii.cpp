@@ -64,8 +64,9 @@ std::string_view AsciiCursor::word() {
   return result;
 }
 
-/// Exponents written with D by Fortran, numbers too small for a double (0 then); else an error.
-double AsciiCursor::unusual_real() {
+/// Exponents written with D by Fortran, numbers too small for a double (0 then) and, if they may
+/// be, infinite or too large for one; else an error.
+double AsciiCursor::unusual_real(bool infinite) {
   at_ = last_;
   const std::string_view found = peek();
   std::string_view digits = found;
@@ -80,11 +81,13 @@ double AsciiCursor::unusual_real() {
       error != std::errc::invalid_argument && after == number_end && number.size() == digits.size();
   if (is_number && error == std::errc::result_out_of_range && is_tiny(number))
     value = 0;
+  else if (is_number && error == std::errc::result_out_of_range && infinite)
+    value = number.starts_with('-') ? -HUGE_VAL : HUGE_VAL;
   else if (is_number && error == std::errc::result_out_of_range)
     fail("expected a number below 1.8e308 in " + record_name(section_, record_) + ", found " +
          quoted(found) + "; correct it");
-  else if (!is_number || !std::isfinite(value))
-    fail_word("a finite number");
+  else if (!is_number || std::isnan(value) || (!infinite && std::isinf(value)))
+    fail_word(infinite ? "a number" : "a finite number");
   at_ = last_ + found.size();
   return value;
 }

@@ -24,7 +24,8 @@ class AsciiCursor {
   // ---- Numbers ----
   /// The next number; throws InputError if there is none, or one that does not fit.
   std::int64_t integer();
-  double real();
+  double real() { return real(false); }
+  double real_or_infinite() { return real(true); }
   std::int64_t small_integer() { return integer(); }
   std::int64_t count() { return integer(); }
 
@@ -37,6 +38,8 @@ class AsciiCursor {
   char rest_of_line_begins_with() const;
   /// Takes the rest of the line.
   void skip_line();
+  /// Takes a string in quotation marks, which ends with its line if not before.
+  void skip_quoted();
   /// Whether text ends in the middle of a line, as where a file was cut.
   bool ends_within_a_line() const { return end_ != begin_ && !ends_line(end_[-1]); }
 
@@ -70,7 +73,8 @@ class AsciiCursor {
   std::string where(const char* at) const;
   [[noreturn]] void fail_at(const char* at, const std::string& text) const;
   [[noreturn]] void fail_word(const char* expected);
-  double unusual_real();
+  double real(bool infinite);
+  double unusual_real(bool infinite);
 
   const char* begin_;
   const char* end_;
@@ -89,6 +93,13 @@ inline char AsciiCursor::rest_of_line_begins_with() const {
 
 inline void AsciiCursor::skip_line() {
   while (at_ != end_ && !ends_line(*at_)) ++at_;
+}
+
+inline void AsciiCursor::skip_quoted() {
+  skip_space();
+  const char* const opened = at_;
+  while (at_ != end_ && !ends_line(*at_) && (at_ == opened || *at_ != '"')) ++at_;
+  if (at_ != end_ && *at_ == '"') ++at_;
 }
 
 inline void AsciiCursor::skip_space() {
@@ -120,14 +131,14 @@ inline std::int64_t AsciiCursor::integer() {
   return value;
 }
 
-inline double AsciiCursor::real() {
+inline double AsciiCursor::real(bool infinite) {
   skip_space();
   last_ = at_;
   skip_plus();
   double value = 0;
   const auto [after, error] = std::from_chars(at_, end_, value);
   if (error != std::errc{} || !at_word_end(after) || value - value != 0) [[unlikely]]
-    return unusual_real();
+    return unusual_real(infinite);
   at_ = after;
   return value;
 }

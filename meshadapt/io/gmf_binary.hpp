@@ -27,6 +27,7 @@ class BinaryCursor {
   // ---- Numbers: the caller has made sure of their bytes by enter_records ----
   std::int64_t integer() { return wide_ ? load<std::int64_t>() : load<std::int32_t>(); }
   double real() { return single_ ? static_cast<double>(load<float>()) : load<double>(); }
+  double real_or_infinite() { return real(); }
   /// Numbers in a section's head; throw InputError at the end of the file.
   std::int64_t small_integer();
   std::int64_t count();

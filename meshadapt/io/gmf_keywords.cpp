@@ -134,7 +134,9 @@ Keyword keyword_named(std::string_view name) {
 std::string_view similar_name(std::string_view name) {
   const std::string wanted = lower(name);
   for (const std::string_view candidate : name_table)
-    if (!candidate.empty() && differ_by_one(wanted, lower(candidate))) return candidate;
+    if (!candidate.empty() && role_of(keyword_named(candidate)) != Role::other &&
+        differ_by_one(wanted, lower(candidate)))
+      return candidate;
   return {};
 }
 

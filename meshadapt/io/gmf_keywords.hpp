@@ -41,7 +41,8 @@ std::string_view name_of(Keyword keyword);
 /// The keyword of that name, Keyword::none if there is none. Names match case and all.
 Keyword keyword_named(std::string_view name);
 
-/// The name that a mistyped one probably stands for, empty if none comes close.
+/// The name of a section that counts that a mistyped one probably stands for, empty if none comes
+/// close.
 std::string_view similar_name(std::string_view name);
 
 Role role_of(Keyword keyword);

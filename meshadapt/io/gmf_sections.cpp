@@ -166,7 +166,7 @@ void SectionReader<Cursor>::read_field(std::uint64_t count) {
   double* value = field.values.data();
   for (std::size_t vertex = 0; vertex < count; ++vertex) {
     in_.record(vertex);
-    for (std::size_t component = 0; component < stride; ++component) *value++ = read_real();
+    for (std::size_t component = 0; component < stride; ++component) *value++ = read_value();
   }
 }
 
@@ -193,6 +193,15 @@ double SectionReader<Cursor>::read_real() {
   const double number = in_.real();
   if (!std::isfinite(number)) [[unlikely]]
     in_.fail_number("a finite number", std::to_string(number));
+  return number;
+}
+
+template <class Cursor>
+double SectionReader<Cursor>::read_value() {
+  if (!target_.infinite) return read_real();
+  const double number = in_.real_or_infinite();
+  if (std::isnan(number)) [[unlikely]]
+    in_.fail_number("a number", std::to_string(number));
   return number;
 }
 

@@ -14,6 +14,7 @@
 #include "gmf_ascii.hpp"
 #include "gmf_binary.hpp"
 #include "gmf_keywords.hpp"
+#include "gmf_left_out.hpp"
 #include "gmf_place.hpp"
 
 namespace ductile::meshadapt::gmf {
@@ -23,10 +24,14 @@ struct Target {
   AnyMesh* mesh = nullptr;
   AnyField* field = nullptr;
   Warnings* warnings = nullptr;
+  bool infinite = false;  ///< take infinite values of a field
 
   int& dimension() const { return mesh ? mesh->dimension : field->dimension; }
   void warn(const std::string& text) const {
-    if (warnings) warnings->push_back(text);
+    if (warnings) warnings->push_back(printable(text));
+  }
+  void warn_of(const LeftOut& left_out) const {
+    if (const std::string text = left_out.warning(); !text.empty()) warn(text);
   }
 };
 
@@ -58,6 +63,7 @@ class SectionReader {
   std::uint32_t read_index();
   std::int32_t read_reference();
   double read_real();
+  double read_value();
   void expect_once(Keyword keyword) const;
   void expect_below(Keyword keyword, const std::uint32_t* indices, std::uint64_t per_record,
                     std::size_t limit, Keyword counted) const;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/flatten.hpp"
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
@@ -44,8 +45,11 @@ class FixedMeshMaker {
       fail("expected dimension " + std::to_string(Dim) + ", found " +
            std::to_string(any_.dimension));
     expect_coordinates(any_);
-    if (elements.empty())
-      fail(std::string("expected ") + (Dim == 2 ? "triangles" : "tetrahedra") + ", found none");
+    if (elements.empty()) {
+      const std::string instead = Dim == 3 ? instead_of_tetrahedra(any_) : "";
+      fail(std::string("expected ") + (Dim == 2 ? "triangles" : "tetrahedra") + ", found none" +
+           (instead.empty() ? "" : ", " + instead));
+    }
     if (any_.vertex_count() >= none || elements.size() >= none / 4)
       fail("too many entities for 32-bit numbers");
     expect_corners<Dim>(executor_, any_);

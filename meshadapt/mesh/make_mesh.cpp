@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/flatten.hpp"
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
@@ -16,6 +17,7 @@
 #include "mesh/array_lengths.hpp"
 #include "mesh/facet_key.hpp"
 #include "mesh/first_bad.hpp"
+#include "mesh/listed_twice.hpp"
 
 namespace ductile::meshadapt {
 
@@ -89,8 +91,11 @@ class MeshMaker {
     expect_references(any_);
     const auto& cells = elements_in<Dim>(any_);
     if (any_.dimension != Dim) fail("the mesh has the wrong dimension");
-    if (cells.size() == 0)
-      fail(std::string("no ") + element_name<Dim>() + " in the mesh; there is nothing to adapt");
+    if (cells.size() == 0) {
+      const std::string instead = Dim == 3 ? instead_of_tetrahedra(any_) : "";
+      fail(std::string("no ") + element_name<Dim>() + " in the mesh" +
+           (instead.empty() ? "; there is nothing to adapt" : ", " + instead));
+    }
     if (Dim == 2 && any_.tetrahedra.size() != 0) fail("tetrahedra in a mesh of dimension 2");
     if (any_.vertex_count() >= none || cells.size() >= none / 4)
       fail("too many entities for 32-bit numbers");
@@ -198,22 +203,35 @@ class MeshMaker {
     return meshadapt::orientation<Dim>(p);
   }
 
-  /// Turns all elements over if the first points the wrong way; all must then agree.
+  /// Turns over what has a negative volume. Whether it was only listed the other way round shows
+  /// at its neighbours: an element that is inverted in space lies on their side of a facet then.
   void orient() {
-    const int sign = orientation(0);
-    const std::size_t bad = first_bad(executor_, mesh_.element_slots(), [&](std::size_t e) {
-      const int own = orientation(e);
-      return own == 0 || own != sign;
+    const std::size_t count = mesh_.element_slots();
+    const auto turned = [&](std::size_t e) { return orientation(e) <= 0; };
+    if (first_bad(executor_, count, turned) == no_index) return;
+    const std::size_t flat =
+        first_bad(executor_, count, [&](std::size_t e) { return orientation(e) == 0; });
+    if (flat != no_index)
+      fail(entity(element_name<Dim>(), flat) + " has no volume; remove or repair it");
+    turned_.resize(count);
+    parallel_for(executor_, count, [&](std::size_t e) {
+      turned_[e] = turned(e);
+      if (turned_[e] != 0) std::swap(mesh_.corners_of[e][0], mesh_.corners_of[e][1]);
     });
-    if (bad != no_index && orientation(bad) == 0)
-      fail(entity(element_name<Dim>(), bad) + " has no volume; remove or repair it");
-    if (bad != no_index)
-      fail(entity(element_name<Dim>(), bad) + " is inverted with respect to " +
-           element_name<Dim>() + " 1; repair the mesh or swap two of its vertices");
-    if (sign > 0) return;
-    warnings_.push_back(any_.name + ": all elements were inverted; they have been reoriented");
-    parallel_for(executor_, mesh_.element_slots(),
-                 [&](std::size_t e) { std::swap(mesh_.corners_of[e][0], mesh_.corners_of[e][1]); });
+    report_turned();
+  }
+
+  void report_turned() {
+    const auto turned = std::count(turned_.begin(), turned_.end(), 1);
+    const auto first = std::find(turned_.begin(), turned_.end(), 1) - turned_.begin();
+    if (turned == std::ssize(turned_))
+      warnings_.push_back(any_.name + ": all elements were inverted; they have been reoriented");
+    else
+      warnings_.push_back(any_.name + ": " + std::to_string(turned) + " of " +
+                          std::to_string(turned_.size()) +
+                          " elements were listed the other way round and have been turned; the "
+                          "first is " +
+                          entity(element_name<Dim>(), static_cast<std::size_t>(first)));
   }
 
   void report_unused_vertices() {
@@ -324,8 +342,16 @@ class MeshMaker {
       if (crowd[i].first == crowd[i - 1].first)
         fail(both(crowd[i - 1].second, crowd[i].second) + " are the same element; remove one");
     const ElementId other = crowd[0].second == element ? crowd[1].second : crowd[0].second;
+    if (crowd.size() == 2 && !turned_.empty() && turned_[element] != turned_[other])
+      fail_inverted(turned_[element] != 0 ? element : other,
+                    turned_[element] != 0 ? other : element);
     fail(both(element, other) + " overlap, or share " + (Dim == 2 ? "an edge" : "a triangle") +
          " with a third; a facet may belong to two elements at most, one on each side");
+  }
+
+  [[noreturn]] void fail_inverted(ElementId element, ElementId neighbour) const {
+    fail(entity(element_name<Dim>(), element) + " is inverted: it overlaps " + element_name<Dim>() +
+         " " + std::to_string(neighbour + 1) + ", which it shares a facet with; repair the mesh");
   }
 
   // ---- Facets and edges ----
@@ -343,23 +369,35 @@ class MeshMaker {
           {}, cells.reference[f], true, required[f] || options_.lock_boundary, ridge[f]};
       attach(facets[f]);
     });
+    ListedTwice twice(facet_name<Dim>(), cells.reference);
     for (std::size_t f = 0; f < facets.size(); ++f) {
       if (facets[f].element == none)
         fail(entity(facet_name<Dim>(), f) + " is not a facet of any " + element_name<Dim>() +
              "; remove it or repair the mesh");
       PatchId& mark =
           mesh_.patches_of[facets[f].element][static_cast<std::size_t>(facets[f].facet)];
-      if (mark != 0) fail_same(facet_name<Dim>(), f, mark - 1);
+      if (mark != 0) {
+        twice.add(mark - 1, f);
+        merge(facets[mark - 1].data, facets[f].data);
+        facets[f].element = none;  // to be taken out
+        continue;
+      }
       mark = static_cast<PatchId>(f + 1);
       if (facets[f].other != none)
         mesh_.patches_of[facets[f].other][static_cast<std::size_t>(facets[f].other_facet)] = mark;
     }
+    if (!twice.empty()) {
+      std::erase_if(facets, [](const TaggedFacet<Dim>& facet) { return facet.element == none; });
+      warnings_.push_back(any_.name + ": " + twice.warning());
+    }
     return facets;
   }
 
-  [[noreturn]] void fail_same(const char* kind, std::size_t second, std::size_t first) const {
-    fail(entity(kind, second) + " is the same as " + kind + " " + std::to_string(first + 1) +
-         "; remove one");
+  /// What is listed twice is all that either one is; its reference is that of the first.
+  template <class Listed>
+  static void merge(Listed& first, const Listed& again) {
+    first.required = first.required || again.required;
+    first.ridge = first.ridge || again.ridge;
   }
 
   /// Finds the elements on both sides of a facet.
@@ -418,29 +456,37 @@ class MeshMaker {
          "--complete-boundary to give unlisted ones reference 0");
   }
 
-  /// Edges that belong to no element, as construction lines do, are left out. An edge may be listed
-  /// once only: of two, which reference would it keep?
+  /// Edges that belong to no element, as construction lines do, are left out.
   std::vector<ListedEdge> listed_edges() {
     std::vector<ListedEdge> edges;
     if constexpr (Dim == 3) {
       const auto required = marked(any_.edges.size(), any_.required_edges, "edge");
       const auto ridge = marked(any_.edges.size(), any_.ridges, "edge");
-      std::size_t first_loose = no_index;
+      std::size_t first_loose = no_index, loose = 0;
       std::vector<ElementId> shell;
-      std::unordered_map<std::uint64_t, std::size_t> number_of;  // by both vertices
+      std::vector<std::size_t> number_of;                          // [edge taken], as listed
+      std::unordered_map<std::uint64_t, std::size_t> index_among;  // by both vertices
+      ListedTwice twice("edge", any_.edges.reference);
       for (std::size_t i = 0; i < any_.edges.size(); ++i) {
         const auto [a, b] = any_.edges.vertices[i];
         shell_of(mesh_, a, b, shell);
         if (shell.empty()) {
-          if (first_loose == no_index) first_loose = i;
+          if (loose++ == 0) first_loose = i;
           continue;
         }
-        const auto [at, is_new] =
-            number_of.emplace(std::uint64_t{std::min(a, b)} << 32U | std::max(a, b), i);
-        if (!is_new) fail_same("edge", i, at->second);
-        edges.push_back({a, b, any_.edges.reference[i], required[i], ridge[i]});
+        const ListedEdge edge{a, b, any_.edges.reference[i], required[i], ridge[i]};
+        const auto [at, is_new] = index_among.emplace(
+            std::uint64_t{std::min(a, b)} << 32U | std::max(a, b), edges.size());
+        if (is_new) {
+          edges.push_back(edge);
+          number_of.push_back(i);
+        } else {
+          twice.add(number_of[at->second], i);
+          merge(edges[at->second], edge);
+        }
       }
-      report_loose_edges(any_.edges.size() - edges.size(), first_loose);
+      if (!twice.empty()) warnings_.push_back(any_.name + ": " + twice.warning());
+      report_loose_edges(loose, first_loose);
     }
     return edges;
   }
@@ -459,6 +505,7 @@ class MeshMaker {
   Neighbours<Dim>& neighbours_;
   std::vector<std::string>& warnings_;
   Mesh<Dim> mesh_;
+  std::vector<std::uint8_t> turned_;  // [element], 1 if it had to be; empty: none had
 };
 
 }  // namespace

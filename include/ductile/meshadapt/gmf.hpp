@@ -15,16 +15,23 @@
 namespace ductile::meshadapt {
 
 /// Reads a mesh. Every index in it is in range, every coordinate finite; nothing else is checked.
-/// A mesh of dimension 3 that lies in one plane z = constant and has no tetrahedra becomes one of
-/// dimension 2. Sections with other data (normals, solutions, ...) are left out, each with a line
-/// in `warnings` if that is given. Throws InputError ("FILE:LINE: expected, found; what to do";
-/// in binary files the byte and section) for a file that cannot be read, breaks the format, or has
-/// cells other than edges, triangles and tetrahedra.
+/// A mesh of dimension 3 that lies in a coordinate plane and has no tetrahedra becomes one of
+/// dimension 2, see flatten(). Sections with other data (normals, solutions, what only bamg or
+/// ParMmg knows, any other word) are left out, all with one line in `warnings` if that is given.
+/// Throws InputError ("FILE:LINE: expected, found; what to do"; in binary files the byte and
+/// section) for a file that cannot be read, breaks the format, has cells other than edges,
+/// triangles and tetrahedra, or a section whose name is one letter away from theirs.
 AnyMesh read_mesh(const std::filesystem::path& path, Warnings* warnings = nullptr);
+
+struct ReadFieldOptions {
+  /// Take infinite values, too, as of sizes that metric_of is to bound.
+  bool infinite = false;
+};
 
 /// Reads the fields at the vertices (section SolAtVertices), all values finite. Otherwise as
 /// read_mesh. That it belongs to a mesh is for the caller to check, see metric_of.
-AnyField read_field(const std::filesystem::path& path, Warnings* warnings = nullptr);
+AnyField read_field(const std::filesystem::path& path, Warnings* warnings = nullptr,
+                    const ReadFieldOptions& options = {});
 
 struct GmfOptions {
   /// 1: floats of 4 bytes in binary; 2: doubles; 3: files past 2 GiB; 4: 64-bit numbers.

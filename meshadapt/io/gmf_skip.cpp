@@ -1,0 +1,84 @@
+#include "gmf_skip.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+
+namespace ductile::meshadapt::gmf {
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool is_number(std::string_view word) {
+  return std::any_of(word.begin(), word.end(), is_digit) &&
+         word.find_first_not_of("+-.0123456789eEdD") == std::string_view::npos;
+}
+
+/// Numbers that are none are written as words.
+bool is_no_number(std::string_view word) {
+  std::string lower(word.substr(0, 9));
+  for (char& c : lower) c = static_cast<char>(c | 0x20);
+  return lower == "nan" || lower == "inf" || lower == "infinity";
+}
+
+/// Whether the next word begins a section: nothing else is in its line, or a number or a string.
+bool section_ahead(const AsciiCursor& in) {
+  AsciiCursor ahead = in;
+  if (!is_section_name(ahead.word())) return false;
+  const char next = ahead.rest_of_line_begins_with();
+  return next == '\0' || is_digit(next) || std::string_view("\"+-.").find(next) < 4;
+}
+
+}  // namespace
+
+bool is_section_name(std::string_view word) {
+  return !word.empty() && is_letter(word[0]) && !is_no_number(word) &&
+         std::all_of(word.begin(), word.end(),
+                     [](char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '-'; });
+}
+
+std::optional<std::uint64_t> count_ahead(AsciiCursor& in) {
+  const std::string_view word = in.peek();
+  std::uint64_t count = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return count;
+}
+
+void skip_lines(AsciiCursor& in, std::uint64_t count) {
+  for (; count > 0 && !in.peek().empty(); --count) {
+    if (keyword_named(in.peek()) != Keyword::none) {
+      AsciiCursor ahead = in;
+      ahead.word();
+      const char next = ahead.rest_of_line_begins_with();
+      if (next == '\0' || is_digit(next)) return;
+    }
+    in.skip_line();
+  }
+}
+
+void skip_section(AsciiCursor& in) {
+  for (;;) {
+    const std::string_view next = in.peek();
+    if (next.empty() || section_ahead(in)) return;
+    if (next.starts_with('"'))
+      in.skip_quoted();
+    else if (is_number(next))
+      in.word();
+    else
+      in.skip_line();
+  }
+}
+
+void skip_geometry(AsciiCursor& in) {
+  if (in.peek() == "\"\"") {
+    in.word();
+    const Keyword next = keyword_named(in.peek());
+    if (next == Keyword::version || next == Keyword::dimension)
+      while (!in.peek().empty() && keyword_named(in.word()) != Keyword::end) continue;
+  }
+  skip_section(in);
+}
+
+}  // namespace ductile::meshadapt::gmf

@@ -1,0 +1,119 @@
+#include "ductile/meshadapt/flatten.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "mesh/array_lengths.hpp"
+#include "mesh/first_bad.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
+
+/// Where the corners of triangles and edges lie along one axis.
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  double width() const { return high - low; }
+  double magnitude() const { return std::max(std::abs(low), std::abs(high)); }
+};
+
+template <int Corners>
+void extend(std::array<Range, 3>& range_of, const AnyMesh& mesh, const Cells<Corners>& cells) {
+  for (const auto& corners : cells.vertices)
+    for (const std::uint32_t vertex : corners) {
+      if (vertex >= mesh.vertex_count()) continue;  // for others to say
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double x = mesh.coordinates[3 * std::size_t{vertex} + axis];
+        range_of[axis].low = std::min(range_of[axis].low, x);
+        range_of[axis].high = std::max(range_of[axis].high, x);
+      }
+    }
+}
+
+std::array<Range, 3> ranges(const AnyMesh& mesh) {
+  std::array<Range, 3> range_of;  // [axis]
+  extend(range_of, mesh, mesh.triangles);
+  extend(range_of, mesh, mesh.edges);
+  return range_of;
+}
+
+/// The coordinate that varies least; of several, the last.
+std::size_t flattest(const std::array<Range, 3>& range_of) {
+  std::size_t best = 2;
+  for (const std::size_t axis : {std::size_t{1}, std::size_t{0}})
+    if (range_of[axis].width() < range_of[best].width()) best = axis;
+  return best;
+}
+
+double extent(const std::array<Range, 3>& range_of) {
+  double widest = 0;
+  for (const Range& range : range_of) widest = std::max(widest, range.width());
+  return widest;
+}
+
+/// A surface that is thicker is one; whatever is taken for flat could not be adapted otherwise.
+bool is_flat(const std::array<Range, 3>& range_of, std::size_t axis) {
+  constexpr double share = 1e-6, single = 2 * std::numeric_limits<float>::epsilon();
+  const double across = extent(range_of);
+  const double rounding = std::min(single * range_of[axis].magnitude(), 100 * share * across);
+  return range_of[axis].width() <= share * across + rounding;
+}
+
+bool is_surface(const AnyMesh& mesh) {
+  return mesh.dimension == 3 && mesh.tetrahedra.size() == 0 && mesh.triangles.size() != 0;
+}
+
+void drop(AnyMesh& mesh, std::size_t axis) {
+  double* to = mesh.coordinates.data();
+  for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)
+    if (i % 3 != axis) *to++ = mesh.coordinates[i];
+  mesh.coordinates.resize(2 * mesh.vertex_count());
+  mesh.dimension = 2;
+  mesh.dropped_axis = static_cast<int>(axis);
+}
+
+std::string what_was_dropped(const Range& range, std::size_t axis) {
+  const std::string name = axis_names[axis];
+  std::string text = "Dimension is 3, but all triangles lie in " + name + " = " +
+                     number(range.low + range.width() / 2);
+  if (range.width() > 0) text += " up to " + number(range.width() / 2);
+  text += "; taken as a mesh of dimension 2";
+  if (axis == 2) return text;
+  return text + " with the coordinates " + (axis == 0 ? "y" : "x") + " and z";
+}
+
+}  // namespace
+
+void flatten(AnyMesh& mesh, Warnings* warnings) {
+  if (!is_surface(mesh)) return;
+  expect_coordinates(mesh);
+  const std::array<Range, 3> range_of = ranges(mesh);
+  const std::size_t axis = is_flat(range_of, 2) ? 2 : flattest(range_of);
+  if (!is_flat(range_of, axis)) return;
+  drop(mesh, axis);
+  if (warnings)
+    warnings->push_back(printable(mesh.name + ": " + what_was_dropped(range_of[axis], axis)));
+}
+
+std::string instead_of_tetrahedra(const AnyMesh& mesh) {
+  if (!is_surface(mesh)) return {};
+  const std::array<Range, 3> range_of = ranges(mesh);
+  const std::size_t axis = flattest(range_of);
+  const std::string plane = std::string(axis_names[axis]) + " = constant";
+  const std::string text = "only " + std::to_string(mesh.triangles.size()) + " triangles";
+  if (is_flat(range_of, axis))
+    return text + " in a plane " + plane + "; give them as a mesh of dimension 2 (flatten)";
+  return text + " in no plane x, y or z = constant (" + axis_names[axis] + " varies least, by " +
+         number(range_of[axis].width()) +
+         "); a surface is adapted as the boundary of tetrahedra, a plane mesh when turned into z = "
+         "0";
+}
+
+}  // namespace ductile::meshadapt
