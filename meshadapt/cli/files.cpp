@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 void print_warnings(const meshadapt::Warnings& warnings, int verbosity) {
   if (verbosity <= 0) return;
   for (const std::string& warning : warnings)
-    std::fprintf(stderr, "ductile: warning: %s\n", warning.c_str());
+    std::fprintf(stderr, "ductile: warning: %s\n", meshadapt::printable(warning).c_str());
 }
 
 std::optional<fs::path> metric_beside(const fs::path& mesh) {
@@ -54,8 +54,10 @@ void expect_no_input(const fs::path& output, const std::vector<fs::path>& inputs
 }
 
 meshadapt::AnyField read_metric(const fs::path& path, const meshadapt::AnyMesh& mesh,
-                                meshadapt::Warnings& warnings) {
-  return meshadapt::metric_of(meshadapt::read_field(path, &warnings), mesh);
+                                meshadapt::Warnings& warnings,
+                                const meshadapt::SizeBounds& bounds) {
+  const meshadapt::ReadFieldOptions options{.infinite = true};
+  return meshadapt::metric_of(meshadapt::read_field(path, &warnings, options), mesh, bounds);
 }
 
 meshadapt::AnyField read_fields(const fs::path& path, const meshadapt::AnyMesh& mesh,

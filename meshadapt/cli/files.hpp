@@ -10,6 +10,7 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
 
 namespace ductile::cli {
 
@@ -30,9 +31,10 @@ std::filesystem::path field_beside(const std::filesystem::path& mesh);
 void expect_no_input(const std::filesystem::path& output,
                      const std::vector<std::filesystem::path>& inputs);
 
-/// Reads a field and checks that it is a metric of this mesh.
+/// Reads a field and checks that it is a metric of this mesh, within bounds that hold before.
 meshadapt::AnyField read_metric(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,
-                                meshadapt::Warnings& warnings);
+                                meshadapt::Warnings& warnings,
+                                const meshadapt::SizeBounds& bounds = {});
 
 /// Reads fields at the vertices and checks that they are of this mesh.
 meshadapt::AnyField read_fields(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,

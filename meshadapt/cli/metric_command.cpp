@@ -223,7 +223,7 @@ class Work {
   }
 
   std::vector<Metric<Dim>> metrics(const fs::path& path) {
-    return meshadapt::tensors_of<Dim>(executor_, read_metric(path, mesh_, warnings_));
+    return meshadapt::tensors_of<Dim>(executor_, read_metric(path, mesh_, warnings_, goal_.bounds));
   }
 
   void make() {
@@ -287,7 +287,9 @@ void work(const Executor& executor, const Job& job, const AnyMesh& mesh,
   const std::string summary = work.summary();  // which may find fault with the mesh: before writing
   print_warnings(warnings, job.verbosity);
   meshadapt::write_field(job.output, metric);
-  if (job.verbosity > 0) std::printf("%s\nwritten: %s\n", summary.c_str(), job.output.c_str());
+  if (job.verbosity > 0)
+    std::printf("%s\nwritten: %s\n", summary.c_str(),
+                meshadapt::printable(job.output.string()).c_str());
 }
 
 int run(const Arguments& arguments) {

@@ -1,12 +1,13 @@
 #include "ductile/meshadapt/metric_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <span>
 #include <string>
 
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/first_bad.hpp"
+#include "metric/judge_metric.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -45,24 +46,12 @@ void expect_one_metric(const AnyField& field, const AnyMesh& mesh) {
          "give the field of this mesh");
 }
 
-/// A lower bound of smallest over largest eigenvalue that takes no iteration; 0 or not a number
-/// where it says nothing. By det = product of eigenvalues and the arithmetic-geometric mean.
-double eigenvalue_ratio_bound(const Metric<2>& m) {
-  const double trace = m.m[0] + m.m[2];
-  return m.m[0] > 0 ? determinant(m) / (trace * trace) : 0;
-}
-double eigenvalue_ratio_bound(const Metric<3>& m) {
-  const double trace = m.m[0] + m.m[2] + m.m[5];
-  const bool minors_positive = m.m[0] > 0 && m.m[0] * m.m[2] - m.m[1] * m.m[1] > 0;
-  return minors_positive ? 4 * determinant(m) / (trace * trace * trace) : 0;
-}
-
 template <int Dim>
 void expect_metric(const AnyField& field, std::size_t vertex, const Metric<Dim>& metric) {
-  double trace = 0;
-  for (int i = 0; i < Dim; ++i) trace += metric(i, i);
-  const bool within = trace > 1e-120 && trace < 1e120;
-  if (within && eigenvalue_ratio_bound(metric) > 1e-12) return;
+  if (is_metric(metric)) return;
+  for (const double component : metric.m)
+    if (!std::isfinite(component))
+      fail_at(field, vertex, "a tensor of finite numbers", number(component));
   const auto values = principal_axes(metric).value;
   const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
   if (!(*smallest > 0))
@@ -77,40 +66,72 @@ void expect_metric(const AnyField& field, std::size_t vertex, const Metric<Dim>&
             number(shortest) + " to " + number(longest));
 }
 
+/// A size that is none by itself, but large or small, is the bound. A size of 0 is none at all.
+double within_bounds(double size, const SizeBounds& bounds) {
+  if (size > largest_size && bounds.largest > 0) return bounds.largest;
+  if (size > 0 && size < smallest_size && bounds.smallest > 0) return bounds.smallest;
+  return size;
+}
+
 template <int Dim>
-void append_isotropic(AnyField& result, const AnyField& field, std::size_t vertex) {
-  const double size = field.values[vertex];
+void append_isotropic(AnyField& result, const AnyField& field, std::size_t vertex,
+                      const SizeBounds& bounds) {
+  const double size = within_bounds(field.values[vertex], bounds);
   if (!(size >= smallest_size && size <= largest_size))
     fail_at(field, vertex, "a size from 1e-75 to 1e75", number(size));
   const Metric<Dim> metric = isotropic<Dim>(size);
   result.values.insert(result.values.end(), metric.m.begin(), metric.m.end());
 }
 
+/// Which components of a tensor in space are those in a coordinate plane, and which lead out of it.
+struct PlanePart {
+  std::array<std::size_t, 3> in;
+  std::array<std::size_t, 2> out;
+};
+constexpr std::array<PlanePart, 3> plane_without{
+    // [axis]
+    {{{2, 4, 5}, {1, 3}}, {{0, 3, 5}, {1, 4}}, {{0, 1, 2}, {3, 4}}}};
+
+/// The part in the plane of a flat mesh of a tensor in space.
+Metric<2> plane_part(const AnyField& field, std::size_t vertex, int dropped_axis) {
+  constexpr double rounding = 1e-6;
+  const PlanePart& part = plane_without.at(static_cast<std::size_t>(dropped_axis));
+  const double* values = &field.values[vertex * Metric<3>::size];
+  const double trace = std::abs(values[0]) + std::abs(values[2]) + std::abs(values[5]);
+  for (const std::size_t out : part.out)
+    if (!(std::abs(values[out]) <= rounding * trace))
+      fail_at(field, vertex, "a tensor without components out of the plane, as the mesh is flat",
+              number(values[part.out[0]]) + " and " + number(values[part.out[1]]));
+  return {{values[part.in[0]], values[part.in[1]], values[part.in[2]]}};
+}
+
 template <int Dim>
-void append_tensor(AnyField& result, const AnyField& field, std::size_t vertex) {
-  const std::size_t stride = stride_of(field);
-  const std::span<const double> values(field.values.data() + vertex * stride, stride);
-  if (stride > Metric<Dim>::size && (values[3] != 0 || values[4] != 0))
-    fail_at(field, vertex, "a tensor without components out of the plane, as the mesh is flat",
-            number(values[3]) + " and " + number(values[4]));
+void append_tensor(AnyField& result, const AnyField& field, std::size_t vertex,
+                   const SizeBounds& bounds, int dropped_axis) {
   Metric<Dim> metric;
-  std::copy_n(values.begin(), metric.m.size(), metric.m.begin());
+  if constexpr (Dim == 2)
+    if (field.dimension == 3) metric = plane_part(field, vertex, dropped_axis);
+  if (field.dimension == Dim)
+    std::copy_n(&field.values[vertex * Metric<Dim>::size], metric.m.size(), metric.m.begin());
+  if (has_bounds(bounds) && !is_metric(metric)) metric = meshadapt::within_bounds(metric, bounds);
   expect_metric(field, vertex, metric);
   result.values.insert(result.values.end(), metric.m.begin(), metric.m.end());
 }
 
 template <int Dim>
-void append_metrics(AnyField& result, const AnyField& field) {
+void append_metrics(AnyField& result, const AnyField& field, const SizeBounds& bounds,
+                    int dropped_axis) {
   for (std::size_t vertex = 0; vertex < field.vertex_count; ++vertex)
     if (field.types[0] == Type::scalar)
-      append_isotropic<Dim>(result, field, vertex);
+      append_isotropic<Dim>(result, field, vertex, bounds);
     else
-      append_tensor<Dim>(result, field, vertex);
+      append_tensor<Dim>(result, field, vertex, bounds, dropped_axis);
 }
 
 }  // namespace
 
-AnyField metric_of(const AnyField& field, const AnyMesh& mesh) {
+AnyField metric_of(const AnyField& field, const AnyMesh& mesh, const SizeBounds& bounds) {
+  expect_bounds(bounds);
   expect_one_metric(field, mesh);
   AnyField result;
   result.name = field.name;
@@ -118,7 +139,8 @@ AnyField metric_of(const AnyField& field, const AnyMesh& mesh) {
   result.vertex_count = field.vertex_count;
   result.types = {Type::symmetric};
   result.values.reserve(field.vertex_count * stride_of(result));
-  mesh.dimension == 2 ? append_metrics<2>(result, field) : append_metrics<3>(result, field);
+  mesh.dimension == 2 ? append_metrics<2>(result, field, bounds, mesh.dropped_axis)
+                      : append_metrics<3>(result, field, bounds, mesh.dropped_axis);
   return result;
 }
 

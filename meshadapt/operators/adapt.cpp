@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -9,6 +10,7 @@
 #include "ductile/runtime/team.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
+#include "metric/judge_metric.hpp"
 #include "metric/spectrum.hpp"
 #include "operators/processor_level.hpp"
 
@@ -37,6 +39,30 @@ void expect_numbers(const runtime::Executor& executor, const AnyField& metric) {
         std::to_string(bad + 1) + ", found one that is not; correct the metric there");
 }
 
+/// The metric with those tensors that are none within the bounds, if there are such; nothing if the
+/// metric can be taken as it is. They are bounded before they are judged.
+template <int Dim>
+std::optional<AnyField> within_bounds(const runtime::Executor& executor, const AnyField& metric,
+                                      const SizeBounds& bounds) {
+  const auto tensor = [](const AnyField& field, std::size_t v) {
+    Metric<Dim> one;
+    std::copy_n(&field.values[v * one.m.size()], one.m.size(), one.m.begin());
+    return one;
+  };
+  const bool all_good = first_bad(executor, metric.vertex_count, [&](std::size_t v) {
+                          return !is_metric(tensor(metric, v));
+                        }) == no_index;
+  if (all_good) return std::nullopt;
+  AnyField bounded = metric;
+  runtime::parallel_for(executor, metric.vertex_count, [&](std::size_t v) {
+    const Metric<Dim> one = tensor(metric, v);
+    if (is_metric(one)) return;
+    const Metric<Dim> better = meshadapt::within_bounds(one, bounds);
+    std::copy_n(better.m.begin(), better.m.size(), &bounded.values[v * better.m.size()]);
+  });
+  return bounded;
+}
+
 void expect_options(const AdaptOptions& options) {
   if (options.iterations < 0)
     throw InputError("adaptation: expected 0 iterations or more, found " +
@@ -60,8 +86,14 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const 
                      std::to_string(mesh.vertex_count()) + " vertices of " + mesh.name);
   AdaptedMesh adapted;
   runtime::with_team(executor, [&] {
-    expect_numbers(executor, metric);
-    adapted = adapt_at(usable_levels().front(), executor, mesh, metric, options);
+    const SizeBounds bounds{options.smallest_size, options.largest_size};
+    std::optional<AnyField> bounded;
+    if (has_bounds(bounds) && metric.values.size() == stride_of(metric) * metric.vertex_count)
+      bounded = mesh.dimension == 2 ? within_bounds<2>(executor, metric, bounds)
+                                    : within_bounds<3>(executor, metric, bounds);
+    const AnyField& judged = bounded ? *bounded : metric;
+    expect_numbers(executor, judged);
+    adapted = adapt_at(usable_levels().front(), executor, mesh, judged, options);
   });
   return adapted;
 }

@@ -9,6 +9,7 @@
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {
@@ -23,11 +24,13 @@ inline constexpr double largest_anisotropy = 1e8;
 
 /// Makes one symmetric tensor per vertex of a field that is either one scalar, the size h wanted,
 /// which gives the metric 1/h^2 in every direction, or one symmetric tensor. Of a field of
-/// dimension 3 for a mesh that read_mesh found flat, the part in the plane is taken. Throws
-/// InputError, naming file and vertex (from 1, as in the file), unless there is a value for each
-/// vertex, sizes are positive, tensors positive definite, and no size or anisotropy is beyond
-/// reason. Thread safety: any thread.
-AnyField metric_of(const AnyField& field, const AnyMesh& mesh);
+/// dimension 3 for a mesh that read_mesh found flat, the part in the plane is taken. Where a value
+/// is no metric by itself, bounds hold before it is judged: with a largest size, one that is
+/// infinite is that, and so is the size along an axis of eigenvalue 0. Other values stay as they
+/// are. Throws InputError, naming file and vertex (from 1, as in the file), unless there is a value
+/// for each vertex, sizes are positive, tensors positive definite, and no size or anisotropy is
+/// beyond reason. Thread safety: any thread.
+AnyField metric_of(const AnyField& field, const AnyMesh& mesh, const SizeBounds& bounds = {});
 
 /// Throws InputError unless the field has the dimension of the mesh, a value for each vertex, and
 /// as many components as its types say. Thread safety: any thread.
