@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -6,14 +8,15 @@
 #include <utility>
 
 #include "adapt_report.hpp"
+#include "carried_fields.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
-#include "ductile/meshadapt/transfer.hpp"
 #include "ductile/meshadapt/vtu.hpp"
 #include "files.hpp"
+#include "mmg_options.hpp"
 #include "run_in_team.hpp"
 #include "system.hpp"
 
@@ -28,7 +31,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 24> options{{
+constexpr std::array<Option, 24> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
@@ -53,31 +56,46 @@ constexpr std::array<Option, 24> options{{
     {"--vtu", "FILE", "writes the adapted mesh for ParaView, too"},
     {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},
     {"--no-metric", "", "writes no metric beside the adapted mesh"},
-    {"--field", "FIELD", "carries fields to the adapted mesh: OUT.FIELD.sol, integrals kept"},
+    {"--field", "FIELD", "carries fields to OUT.FIELD.sol, integrals kept; may be given again"},
     {"--interpolate", "", "carries fields by their values, whatever becomes of integrals"},
 }};
+
+/// Those, and those of Mmg that are not needed.
+constexpr auto options = [] {
+  std::array<Option, own_options.size() + mmg_options.size()> all;
+  const auto rest = std::copy(own_options.begin(), own_options.end(), all.begin());
+  std::copy(mmg_options.begin(), mmg_options.end(), rest);
+  return all;
+}();
 
 /// All that the command line says, checked before any file is read.
 struct Job {
   fs::path input, output;
-  std::optional<fs::path> metric_in, metric_out, json, vtu, field_in, field_out;
+  std::optional<fs::path> metric_in, metric_out, json, vtu;
+  CarriedFields fields;
+  std::string unneeded;  // options of Mmg's
   std::optional<double> size;
   std::optional<std::size_t> memory;  // bytes
   AdaptOptions adapt;
   int verbosity = 1;
   int threads = 0;
   bool racing = false;
-  bool interpolate = false;
 };
 
 bool is_mesh_name(const fs::path& path) {
   return path.extension() == ".mesh" || path.extension() == ".meshb";
 }
 
+fs::path only_mesh(const Arguments& arguments) {
+  std::vector<std::string> meshes = arguments.operands();
+  if (const auto mesh = arguments.text("-in")) meshes.push_back(*mesh);
+  if (meshes.size() != 1)
+    throw UsageError("expected one mesh, found " + std::to_string(meshes.size()));
+  return meshes[0];
+}
+
 void set_files(Job& job, const Arguments& arguments) {
-  if (arguments.operands().size() != 1)
-    throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
-  job.input = arguments.operands()[0];
+  job.input = only_mesh(arguments);
   job.output = default_output(job.input);
   if (const auto out = arguments.text("-o")) job.output = *out;
   if (!is_mesh_name(job.output))
@@ -87,14 +105,7 @@ void set_files(Job& job, const Arguments& arguments) {
   job.vtu = arguments.text("--vtu");
   if (job.vtu && job.vtu->extension() != ".vtu")
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
-  job.field_in = arguments.text("--field");
-  job.interpolate = arguments.has("--interpolate");
-  if (job.interpolate && !job.field_in)
-    throw UsageError("option --interpolate: expected --field as well");
-  if (job.field_in)
-    job.field_out = field_beside(job.output)
-                        .replace_extension("." + job.field_in->stem().string() +
-                                           field_beside(job.output).extension().string());
+  job.fields = CarriedFields(arguments, job.output);
   job.size = arguments.positive("-hsiz");
   if (job.size && (*job.size < 1e-75 || *job.size > 1e75))
     throw UsageError("option -hsiz: expected a size from 1e-75 to 1e75, found '" +
@@ -102,7 +113,11 @@ void set_files(Job& job, const Arguments& arguments) {
   job.metric_in = arguments.text("-sol");
   if (job.size && job.metric_in)
     throw UsageError("options -hsiz and -sol: expected one of them, found both");
-  if (!job.size && !job.metric_in) job.metric_in = metric_beside(job.input);
+  if (arguments.has("-optim") && (job.size || job.metric_in))
+    throw UsageError(std::string("options -optim and ") + (job.size ? "-hsiz" : "-sol") +
+                     ": expected one of them, found both");
+  if (!job.size && !job.metric_in && !arguments.has("-optim"))
+    job.metric_in = metric_beside(job.input);
 }
 
 void set_options(AdaptOptions& adapt, const Arguments& arguments) {
@@ -122,34 +137,34 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   adapt.make.lock_boundary = arguments.has("-nosurf");
   adapt.make.surface_tolerance = arguments.positive("-hausd").value_or(0);
   adapt.make.ridge_angle = arguments.positive("-ar").value_or(adapt.make.ridge_angle);
-  if (arguments.has("-ar") && adapt.make.surface_tolerance == 0)
-    throw UsageError("option -ar: expected -hausd with it, without which all edges stay");
   if (adapt.make.ridge_angle >= 90)
     throw UsageError("option -ar: expected an angle of less than 90 degrees, found '" +
                      *arguments.text("-ar") + "'");
+  if (arguments.has("-nr")) adapt.make.ridge_angle = std::nextafter(90.0, 0.0);
   adapt.make.complete_boundary = arguments.has("--complete-boundary");
   if (const auto n = arguments.integer("--iterations", 1, 1000)) adapt.iterations = *n;
 }
 
 std::vector<fs::path> outputs_of(const Job& job) {
   std::vector<fs::path> paths = {job.output};
-  for (const auto& path : {job.metric_out, job.field_out, job.vtu, job.json})
+  if (job.metric_out) paths.push_back(*job.metric_out);
+  paths.insert(paths.end(), job.fields.outputs().begin(), job.fields.outputs().end());
+  for (const auto& path : {job.vtu, job.json})
     if (path) paths.push_back(*path);
   return paths;
 }
 
 /// A mesh may be adapted in place, with its metric; else what was read stays as it is.
 void expect_inputs_to_stay(const Job& job) {
-  std::vector<fs::path> inputs = {job.input}, fields;
-  for (const auto& path : {job.metric_in, job.field_in})
-    if (path) fields.push_back(*path);
+  std::vector<fs::path> inputs = {job.input}, fields = job.fields.inputs();
+  if (job.metric_in) fields.push_back(*job.metric_in);
   inputs.insert(inputs.end(), fields.begin(), fields.end());
   for (const auto& path : {job.json, job.vtu})
     if (path) expect_no_input(*path, inputs);
   std::error_code ignored;
   if (fs::equivalent(job.output, job.input, ignored)) return;
-  for (const auto& path : {job.metric_out, job.field_out})
-    if (path) expect_no_input(*path, fields);
+  if (job.metric_out) expect_no_input(*job.metric_out, fields);
+  for (const fs::path& path : job.fields.outputs()) expect_no_input(path, fields);
 }
 
 Job read_job(const Arguments& arguments) {
@@ -161,6 +176,7 @@ Job read_job(const Arguments& arguments) {
   job.racing = arguments.has("--racing");
   if (const auto megabytes = arguments.integer("-m", 1, 1 << 30))
     job.memory = static_cast<std::size_t>(*megabytes) << 20U;
+  job.unneeded = unneeded_mmg_options(arguments);
   expect_inputs_to_stay(job);
   meshadapt::check_writable(outputs_of(job));
   return job;
@@ -169,7 +185,9 @@ Job read_job(const Arguments& arguments) {
 AnyField choose_metric(const Executor& executor, const Job& job, const AnyMesh& mesh,
                        meshadapt::Warnings& warnings) {
   if (job.size) return meshadapt::constant_metric(mesh, *job.size);
-  if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings);
+  if (job.metric_in)
+    return read_metric(*job.metric_in, mesh, warnings,
+                       {job.adapt.smallest_size, job.adapt.largest_size});
   warnings.push_back(mesh.name +
                      ": no metric given (-sol) or found beside it; adapting to the sizes"
                      " that the mesh has");
@@ -212,24 +230,15 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
   return adapted;
 }
 
-std::optional<AnyField> carry_field(const Executor& executor, const Job& job,
-                                    const meshadapt::FieldOnMesh& from, const AnyMesh& to) {
-  if (!job.field_in) return std::nullopt;
-  return job.interpolate ? meshadapt::interpolate_field(executor, from, to).field
-                         : meshadapt::project_field(executor, from, to).field;
-}
-
-void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::optional<AnyField>& field,
+void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector<AnyField>& carried,
                    const std::string& json) {
   meshadapt::AtomicOutputs outputs;
   meshadapt::write_mesh(outputs, job.output, adapted.mesh);
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
-  if (field) meshadapt::write_field(outputs, *job.field_out, *field);
+  job.fields.write(outputs, carried);
   if (job.vtu) {
     auto fields = meshadapt::vtu_fields(adapted.metric, "metric");
-    if (field)
-      for (auto& carried : meshadapt::vtu_fields(*field, as_utf8(job.field_in->stem().string())))
-        fields.push_back(std::move(carried));
+    for (auto& field : job.fields.vtu_fields(carried)) fields.push_back(std::move(field));
     meshadapt::write_vtu(outputs, *job.vtu, adapted.mesh, fields);
   }
   if (job.json) outputs.stage(*job.json).write(json);
@@ -240,19 +249,20 @@ std::string what_was_done(const Job& job, const AdaptSummary& summary) {
   std::string text = to_text(summary, job.verbosity > 1), written;
   for (const fs::path& path : outputs_of(job))
     written += (written.empty() ? "written: " : ", ") + path.string();
-  return text + written + "\n";
+  return text + meshadapt::printable(written) + "\n";
 }
 
 int work(const Executor& executor, const Job& job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
+  if (!job.unneeded.empty()) warnings.push_back(job.unneeded);
   const AnyMesh mesh = meshadapt::read_mesh(job.input, &warnings);
   const AnyField metric = choose_metric(executor, job, mesh, warnings);
-  const AnyField field = job.field_in ? read_fields(*job.field_in, mesh, warnings) : AnyField{};
+  const CarriedFields::Values fields = job.fields.read(mesh, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);
   adapted.mesh.name = job.output.string();
-  const auto carried = carry_field(executor, job, {mesh, field}, adapted.mesh);
+  const auto carried = job.fields.carry(executor, mesh, fields, adapted.mesh);
   const AdaptSummary summary = summarise(
       executor, mesh, metric, adapted,
       {.before = job.json || job.verbosity > 1,

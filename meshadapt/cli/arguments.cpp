@@ -1,9 +1,10 @@
 #include "arguments.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+
+#include "mmg_options.hpp"
 
 namespace ductile::cli {
 
@@ -15,9 +16,20 @@ std::string_view without_dashes(std::string_view word) {
   return word;
 }
 
+template <class Number>
+std::optional<Number> parse(std::string_view text) {
+  Number value{};
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 /// Whether a word asks for an option: "-" is a file and "-1" a number.
 bool looks_like_option(std::string_view word) {
-  return word.size() > 1 && word[0] == '-' && !(word[1] >= '0' && word[1] <= '9') && word[1] != '.';
+  if (word.size() < 2 || word[0] != '-') return false;
+  const bool begins_as_number = (word[1] >= '0' && word[1] <= '9') || word[1] == '.';
+  return !begins_as_number || !parse<double>(word);
 }
 
 const Option* find(std::span<const Option> options, std::string_view word) {
@@ -28,45 +40,13 @@ const Option* find(std::span<const Option> options, std::string_view word) {
   return nullptr;
 }
 
-/// Mmg's options that no command has, without dashes, and what to do instead; the whole of it is in
-/// docs/coming-from-mmg.md.
-struct MmgOption {
-  std::string_view name, instead;
-};
-constexpr std::array<MmgOption, 25> mmg_options{{
-    {"A", "Mmg's, not here: sizes differ between directions where the metric has tensors"},
-    {"d", "Mmg's, not here: -v 2 says more"},
-    {"default", "Mmg's, not here: there are no files of parameters"},
-    {"f", "Mmg's, not here: put sizes that differ by reference into the metric"},
-    {"hgradreq", "Mmg's, not here: -hgrad holds everywhere"},
-    {"in", "Mmg's: here the mesh is given without an option before it"},
-    {"isoref", "Mmg's, not here: level sets must be cut out before"},
-    {"keep-ref", "Mmg's, not here: all references are kept"},
-    {"lag", "Mmg's, not here: meshes are not moved along displacements"},
-    {"ls", "Mmg's, not here: level sets must be cut out before"},
-    {"lssurf", "Mmg's, not here: level sets must be cut out before"},
-    {"nofem", "Mmg's, not here: leave it out"},
-    {"nosizreq", "Mmg's, not here: leave it out, as what is required changes no sizes"},
-    {"nr", "Mmg's, not here: without -hausd all edges stay, with it -ar says which do"},
-    {"nreg", "Mmg's, not here: normals are not smoothed"},
-    {"nsd", "Mmg's, not here: the whole mesh is written"},
-    {"octree", "Mmg's, not here: leave it out"},
-    {"opnbdy", "Mmg's, not here: leave it out, as listed facets are always kept"},
-    {"optim", "Mmg's, not here: leave out -sol, and sizes are kept if no .sol is beside the mesh"},
-    {"optimLES", "Mmg's, not here: --thorough goes on for better shapes"},
-    {"out", "Mmg's: here it is -o"},
-    {"rmc", "Mmg's, not here: no part of a mesh is removed"},
-    {"rn", "Mmg's, not here: leave it out, as what is adapted is renumbered"},
-    {"val", "Mmg's, not here: the list of options has their defaults"},
-    {"xreg", "Mmg's, not here: vertices are not moved to smooth a surface"},
-}};
-
 /// The option whose name is closest to a word, if it is so close that the word may be a slip: one
 /// letter in three, two at most.
 std::string_view nearest_name(std::span<const Option> options, std::string_view word) {
   std::string_view nearest;
   std::size_t least = 3;
   for (const Option& option : options) {
+    if (option.help.empty()) continue;
     for (const std::string_view name : {option.name, option.alias}) {
       const std::size_t distance = edit_distance(without_dashes(word), without_dashes(name));
       if (distance >= least || distance > without_dashes(name).size() / 3) continue;
@@ -79,21 +59,11 @@ std::string_view nearest_name(std::span<const Option> options, std::string_view 
 
 [[noreturn]] void refuse_unknown(std::span<const Option> options, std::string_view word) {
   const std::string message = "unknown option " + std::string(word);
-  for (const MmgOption& option : mmg_options)
-    if (option.name == without_dashes(word))
-      throw UsageError(message + "; " + std::string(option.instead));
+  const std::string_view instead = instead_of_mmg_option(without_dashes(word));
+  if (!instead.empty()) throw UsageError(message + "; " + std::string(instead));
   const std::string_view nearest = nearest_name(options, word);
   if (nearest.empty()) throw UsageError(message);
   throw UsageError(message + "; did you mean " + std::string(nearest) + "?");
-}
-
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number value{};
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 [[noreturn]] void refuse_value(std::string_view name, const std::string& expected,
@@ -145,6 +115,10 @@ void Arguments::take(std::span<const Option> options, std::span<const std::strin
     if (equals != std::string::npos) throw UsageError("option " + name + " takes no value");
   } else if (equals != std::string::npos) {
     value = word.substr(equals + 1);
+  } else if (option->value.starts_with('[')) {
+    if (at + 1 < words.size() && parse<double>(words[at + 1])) value = words[++at];
+    values_of_[std::string(option->name)].push_back(value);
+    return;
   } else if (at + 1 < words.size() &&
              !(looks_like_option(words[at + 1]) && find(options, words[at + 1]))) {
     value = words[++at];
@@ -152,15 +126,20 @@ void Arguments::take(std::span<const Option> options, std::span<const std::strin
   if (!option->value.empty() && value.empty())
     throw UsageError("option " + name + ": expected " + std::string(option->value) +
                      " after it, found nothing");
-  value_of_[std::string(option->name)] = value;
+  values_of_[std::string(option->name)].push_back(value);
 }
 
-bool Arguments::has(std::string_view name) const { return value_of_.contains(name); }
+bool Arguments::has(std::string_view name) const { return values_of_.contains(name); }
 
 std::optional<std::string> Arguments::text(std::string_view name) const {
-  const auto found = value_of_.find(name);
-  if (found == value_of_.end()) return std::nullopt;
-  return found->second;
+  const auto found = values_of_.find(name);
+  if (found == values_of_.end()) return std::nullopt;
+  return found->second.back();
+}
+
+std::vector<std::string> Arguments::texts(std::string_view name) const {
+  const auto found = values_of_.find(name);
+  return found == values_of_.end() ? std::vector<std::string>{} : found->second;
 }
 
 std::optional<double> Arguments::number(std::string_view name) const {

@@ -24,8 +24,8 @@ class UsageError : public meshadapt::InputError {
 
 struct Option {
   std::string_view name;     ///< with its dashes, as help shows it
-  std::string_view value;    ///< what follows it, e.g. FILE; empty for a flag
-  std::string_view help;     ///< one line
+  std::string_view value;    ///< what follows it, e.g. FILE; empty for a flag; [N]: maybe a number
+  std::string_view help;     ///< one line; empty: not shown
   std::string_view alias{};  ///< another name, with its dashes
 };
 
@@ -40,6 +40,8 @@ class Arguments {
   /// The last value given to the option of this name (as in the table).
   bool has(std::string_view name) const;
   std::optional<std::string> text(std::string_view name) const;
+  /// All that were given to it, in order.
+  std::vector<std::string> texts(std::string_view name) const;
   /// Throw UsageError unless the value is such a number, inside the range.
   std::optional<double> positive(std::string_view name) const;
   std::optional<double> number(std::string_view name) const;
@@ -49,7 +51,7 @@ class Arguments {
   void take(std::span<const Option> options, std::span<const std::string> words, std::size_t& at);
 
   std::vector<std::string> operands_;
-  std::map<std::string, std::string, std::less<>> value_of_;  // [option as in the table]
+  std::map<std::string, std::vector<std::string>, std::less<>> values_of_;  // [as in the table]
 };
 
 /// Least number of letters to insert, remove, replace or exchange with the next to turn a into b.

@@ -72,6 +72,7 @@ int run(const Arguments& arguments) {
     throw UsageError("option --version-of-file: " + to.string() + " takes none");
   const meshadapt::GmfOptions form{.version =
                                        arguments.integer("--version-of-file", 1, 4).value_or(0)};
+  meshadapt::check_writable(to);
   meshadapt::Warnings warnings;
   if (field) {
     const meshadapt::AnyField values = meshadapt::read_field(from, &warnings);

@@ -72,7 +72,7 @@ void print_kind(const char* kind, const References& reference, std::size_t requi
 }
 
 void print_counts(const AnyMesh& mesh) {
-  std::printf("%s: dimension %d\n", mesh.name.c_str(), mesh.dimension);
+  std::printf("%s: dimension %d\n", meshadapt::printable(mesh.name).c_str(), mesh.dimension);
   print_kind("vertices", mesh.vertex_reference, mesh.required_vertices.size());
   print_kind("edges", mesh.edges.reference, mesh.required_edges.size());
   print_kind("triangles", mesh.triangles.reference, mesh.required_triangles.size());
@@ -124,8 +124,10 @@ int work(const Executor& executor, const Arguments& arguments) {
 int run(const Arguments& arguments) {
   if (arguments.operands().size() != 1)
     throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
-  if (const auto json = arguments.text("--json"))
+  if (const auto json = arguments.text("--json")) {
     expect_no_input(*json, {arguments.operands()[0], arguments.text("-sol").value_or("")});
+    meshadapt::check_writable(*json);
+  }
   return run_in_team({.threads = arguments.integer("--threads", 1, 4096).value_or(0)},
                      [&](const Executor& executor) { return work(executor, arguments); });
 }

@@ -39,6 +39,7 @@ void print_help(const Command& command) {
   if (!command.details.empty()) std::printf("%s\n", std::string(command.details).c_str());
   std::printf("\nOptions (one or two dashes mean the same):\n");
   for (const Option& option : command.options) {
+    if (option.help.empty()) continue;
     std::string left(option.name);
     if (!option.alias.empty()) left += ", " + std::string(option.alias);
     if (!option.value.empty()) left += " " + std::string(option.value);

@@ -62,10 +62,14 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adpat", "did you mean 'adapt'");
   expect("adapt a.mesh -hmn 1", "did you mean -hmin?");
   expect("adapt a.mesh --itertions 1", "did you mean --iterations?");
-  expect("adapt a.mesh -nr", "unknown option -nr; Mmg's, not here: without -hausd all edges stay");
-  expect("adapt a.mesh -in b.mesh", "unknown option -in; Mmg's: here the mesh is given without");
-  expect("adapt a.mesh --val", "unknown option --val; Mmg's");
-  expect("adapt a.mesh -optim", "leave out -sol");
+  for (const char* refused :
+       {"3dMedit", "A", "f", "lag", "ls", "lssurf", "nreg", "nsd", "optimLES", "xreg"})
+    expect(("adapt a.mesh -" + std::string(refused) + " 1").c_str(),
+           ("unknown option -" + std::string(refused) + "; Mmg's, not here: ").c_str());
+  expect("adapt a.mesh -in b.mesh", "expected one mesh, found 2");
+  expect("adapt a.mesh -optim -hsiz 1", "options -optim and -hsiz: expected one of them");
+  expect("adapt a.mesh -optim -sol a.sol", "options -optim and -sol: expected one of them");
+  expect("info a.mesh -nofem", "unknown option -nofem; Mmg's: ductile adapt takes it");
   expect("adapt a.mesh -hmin", "expected X after it, found nothing");
   expect("adapt a.mesh -hmin -hmax 1", "expected X after it, found nothing");
   expect("adapt a.mesh -hmin zero", "a number above 0, found 'zero'");

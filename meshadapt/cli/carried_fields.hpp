@@ -1,0 +1,52 @@
+/// @file
+/// CarriedFields: the fields that `adapt` takes along to the new mesh, each in a file of its own.
+/// All go at once, as to find which elements overlap takes most of the time.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "arguments.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/atomic_file.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/vtu.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::cli {
+
+class CarriedFields {
+ public:
+  CarriedFields() = default;
+  /// Throws UsageError if options do not go together, or two fields would go into one file.
+  CarriedFields(const Arguments& arguments, const std::filesystem::path& output);
+
+  const std::vector<std::filesystem::path>& inputs() const { return inputs_; }
+  /// OUT.FIELD.sol for each FIELD, wherever that is.
+  const std::vector<std::filesystem::path>& outputs() const { return outputs_; }
+
+  struct Values {
+    meshadapt::AnyField all;                  ///< the fields in all files, side by side
+    std::vector<std::size_t> field_count_of;  ///< [file]
+  };
+  /// Throws InputError unless they are fields of this mesh.
+  Values read(const meshadapt::AnyMesh& mesh, meshadapt::Warnings& warnings) const;
+
+  /// One for each file, at the vertices of the mesh `to`.
+  std::vector<meshadapt::AnyField> carry(const runtime::Executor& executor,
+                                         const meshadapt::AnyMesh& from, const Values& values,
+                                         const meshadapt::AnyMesh& to) const;
+
+  void write(meshadapt::AtomicOutputs& outputs,
+             const std::vector<meshadapt::AnyField>& carried) const;
+  std::vector<meshadapt::VtuField> vtu_fields(
+      const std::vector<meshadapt::AnyField>& carried) const;
+
+ private:
+  std::vector<std::filesystem::path> inputs_, outputs_;  // [file]
+  bool interpolate_ = false;
+};
+
+}  // namespace ductile::cli

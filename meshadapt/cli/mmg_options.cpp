@@ -1,0 +1,48 @@
+#include "mmg_options.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+struct Refused {
+  std::string_view name, instead;
+};
+constexpr std::array<Refused, 11> refused{{
+    {"3dMedit", "Mmg's, not here: flat meshes of dimension 3 are read, and written in dimension 2"},
+    {"A", "Mmg's, not here: sizes differ between directions where the metric has tensors"},
+    {"f", "Mmg's, not here: put sizes that differ by reference into the metric"},
+    {"lag", "Mmg's, not here: meshes are not moved along displacements"},
+    {"ls", "Mmg's, not here: level sets must be cut out before"},
+    {"lssurf", "Mmg's, not here: level sets must be cut out before"},
+    {"nreg", "Mmg's, not here: normals are not smoothed"},
+    {"nsd", "Mmg's, not here: the whole mesh is written"},
+    {"optimLES", "Mmg's, not here: --thorough goes on for better shapes"},
+    {"out", "Mmg's: here it is -o"},
+    {"xreg", "Mmg's, not here: vertices are not moved to smooth a surface"},
+}};
+
+}  // namespace
+
+std::string_view instead_of_mmg_option(std::string_view name) {
+  for (const Refused& option : refused)
+    if (option.name == name) return option.instead;
+  for (const Option& option : mmg_options)
+    if (option.name.substr(1) == name) return "Mmg's: ductile adapt takes it and needs none";
+  return {};
+}
+
+std::string unneeded_mmg_options(const Arguments& arguments) {
+  std::string list;
+  const auto add = [&list](std::string_view name) {
+    list += (list.empty() ? "" : ", ") + std::string(name);
+  };
+  for (const Option& option : mmg_options)
+    if (arguments.has(option.name)) add(option.name);
+  if (arguments.has("-ar") && !arguments.has("-hausd")) add("-ar (without -hausd all edges stay)");
+  if (list.empty()) return {};
+  if (arguments.has("-nr") && arguments.has("-hausd"))
+    list += " (no edge that turns by less than 90 degrees stays)";
+  return "Mmg's options that need not be given here: " + list;
+}
+
+}  // namespace ductile::cli

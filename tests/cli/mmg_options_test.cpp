@@ -1,0 +1,68 @@
+#include "mmg_options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "program.hpp"
+
+namespace ductile::cli {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+TEST(MmgOptions, AreTakenWithOneWarningAndChangeNothing) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  ASSERT_EQ(folder.run("adapt waves2d.mesh -o plain.mesh").err, "");
+  for (const char* words :
+       {"-nofem", "-opnbdy", "-nosizreq", "-keep-ref", "-d", "-val", "-default", "-nr", "-octree 8",
+        "-rn", "-rn 0", "-hgradreq -1", "-isoref 10", "-rmc", "-rmc 1e-3", "-ar 30",
+        "-nofem -opnbdy -nosizreq -keep-ref -d -val -default -nr -octree 8 -rn 1 -hgradreq 1.3"}) {
+    const Outcome outcome = folder.run("adapt waves2d.mesh -o mmg.mesh " + std::string(words));
+    EXPECT_EQ(outcome.status, 0) << words << ": " << outcome.err;
+    EXPECT_EQ(lines(outcome.err), 1) << words << ": " << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "warning: Mmg's options that need not be given here: -"))
+        << outcome.err;
+    EXPECT_EQ(folder.read("mmg.mesh"), folder.read("plain.mesh")) << words;
+  }
+  const Outcome in = folder.run("adapt -in waves2d.mesh -out mmg.mesh -v 0 -nofem");
+  EXPECT_EQ(in.status, 0);
+  EXPECT_EQ(in.err, "");
+  EXPECT_EQ(folder.read("mmg.mesh"), folder.read("plain.mesh"));
+}
+
+/// A number after -rn belongs to it, a mesh does not.
+TEST(MmgOptions, LeaveTheMeshWhereANumberMayBeMissing) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  EXPECT_EQ(folder.run("adapt -rn waves2d.mesh -noinsert -nomove -noswap -o o.mesh").status, 0);
+  EXPECT_EQ(folder.run("adapt -rn 1 waves2d.mesh -noinsert -nomove -noswap -o o.mesh").status, 0);
+}
+
+/// Whatever metric lies beside the mesh.
+TEST(MmgOptions, OptimKeepsTheSizesThatTheMeshHas) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const Outcome outcome = folder.run("adapt waves2d.mesh -optim -o optim.mesh");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "adapting to the sizes that the mesh has")) << outcome.err;
+  std::filesystem::rename(folder.path() / "waves2d.sol", folder.path() / "away.sol");
+  ASSERT_EQ(folder.run("adapt waves2d.mesh -o plain.mesh").status, 0);
+  EXPECT_EQ(folder.read("optim.mesh"), folder.read("plain.mesh"));
+}
+
+TEST(MmgOptions, AreNotShownInHelp) {
+  const Folder folder;
+  const Outcome help = folder.run("help adapt");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_FALSE(contains(help.out, "-nofem"));
+}
+
+}  // namespace
+}  // namespace ductile::cli
