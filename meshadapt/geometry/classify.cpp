@@ -15,6 +15,8 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/unset_vector.hpp"
+#include "geometry/faced.hpp"
+#include "geometry/facet_sides.hpp"
 #include "geometry/surface.hpp"
 #include "geometry/touching.hpp"
 
@@ -24,28 +26,6 @@ namespace {
 
 /// Flat and straight mean: within this fraction of the mesh's extent of one plane or line.
 constexpr double flatness = 1e-10;
-
-/// Key of what two facets of a patch share: a vertex in 2D, an edge in 3D.
-using Key = std::uint64_t;
-Key edge_key(VertexId a, VertexId b) { return Key{std::min(a, b)} << 32U | std::max(a, b); }
-
-template <int Dim, class Visit>
-void each_side(const Facet<Dim>& facet, Visit visit) {
-  if constexpr (Dim == 2) {
-    visit(Key{facet[0]});
-    visit(Key{facet[1]});
-  } else {
-    for (std::size_t i = 0; i < 3; ++i) visit(edge_key(facet[i], facet[(i + 1) % 3]));
-  }
-}
-
-/// Normal of a facet, as long as the facet is large.
-template <int Dim>
-Vector<Dim> normal_of(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
-  std::array<Vector<Dim>, Dim> p;
-  for (std::size_t i = 0; i < p.size(); ++i) p[i] = mesh.site_of[facet[i]].position;
-  return facet_normal(p);
-}
 
 template <int Dim>
 double extent(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
@@ -72,10 +52,10 @@ class Classifier {
         tolerance_(flatness * extent_),
         options_(options),
         surface_tolerance_(options.surface_tolerance),
-        least_turn_(std::cos(options.ridge_angle * std::numbers::pi / 180)) {
+        least_turn_(std::cos(options.ridge_angle * std::numbers::pi / 180)),
+        sides_(executor, facets_) {
     if constexpr (Dim == 3)
       for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
-    sort_sides();
     find_neighbours();
   }
 
@@ -86,7 +66,7 @@ class Classifier {
       join_patches();
     }
     if constexpr (Dim == 3) find_curves();
-    mark_faced();
+    mark_faced_patches(executor_, mesh_, facets_, sides_, tolerance_);
     store_patches();
     if (surface_tolerance_ > 0) keep_surface();
     classify_vertices();
@@ -95,48 +75,14 @@ class Classifier {
  private:
   // ---- Sides: what facets share ----
 
-  /// One facet's side.
-  struct Side {
-    Key key;
-    std::uint32_t facet;
-    std::uint8_t number;  // among the facet's
-    auto operator<=>(const Side&) const = default;
-  };
-
-  void sort_sides() {
-    sides_ = runtime::make_unset_vector<Side>(executor_, Dim * facets_.size());
-    runtime::parallel_for(executor_, facets_.size(), [&](std::size_t f) {
-      std::uint8_t number = 0;
-      each_side<Dim>(facets_[f].corners, [&](Key key) {
-        sides_[Dim * f + number] = {key, static_cast<std::uint32_t>(f), number};
-        ++number;
-      });
-    });
-    runtime::parallel_sort(executor_, std::span(sides_));
-  }
-
-  /// The facets at a side that begins here, in order.
-  std::span<const Side> run_at(std::size_t begin) const {
-    std::size_t end = begin + 1;
-    while (end < sides_.size() && sides_[end].key == sides_[begin].key) ++end;
-    return std::span(sides_).subspan(begin, end - begin);
-  }
-  bool begins_run(std::size_t i) const { return i == 0 || sides_[i - 1].key != sides_[i].key; }
-
-  std::span<const Side> facets_at(Key key) const {
-    const auto at = std::lower_bound(sides_.begin(), sides_.end(), Side{key, 0, 0});
-    if (at == sides_.end() || at->key != key) return {};
-    return run_at(static_cast<std::size_t>(at - sides_.begin()));
-  }
-
   /// Sets across_, where a side does not separate patches by itself.
   void find_neighbours() {
     std::array<std::uint32_t, Dim> nobody;
     nobody.fill(none);
     across_.resize(executor_, facets_.size(), nobody);
     runtime::parallel_for(executor_, sides_.size(), [&](std::size_t i) {
-      if (!begins_run(i)) return;
-      const auto both = run_at(i);
+      if (!sides_.begins_run(i)) return;
+      const auto both = sides_.run_at(i);
       if (both.size() != 2 || separates(both[0].key) || !fit(both[0], both[1])) return;
       across_[both[0].facet][both[0].number] = both[1].facet;
       across_[both[1].facet][both[1].number] = both[0].facet;
@@ -144,12 +90,12 @@ class Classifier {
   }
 
   /// May one patch have both of two facets with this side, if they are in its plane?
-  bool fit(const Side& f, const Side& g) const {
+  bool fit(const FacetSide& f, const FacetSide& g) const {
     return agree(f.facet, g.facet) &&
-           !folds_back(facets_[f.facet].corners, facets_[g.facet].corners, f.key);
+           !folds_back<Dim>(mesh_, facets_[f.facet].corners, facets_[g.facet].corners, f.key);
   }
 
-  bool separates(Key key) const {
+  bool separates(SideKey key) const {
     if constexpr (Dim == 3) return listed_.contains(key);
     const VertexKind& kind = mesh_.kind_of[static_cast<VertexId>(key)];
     return kind.corner || kind.required;
@@ -208,28 +154,6 @@ class Classifier {
     return std::abs(dot(own, normal)) > 0.9 * norm(own);
   }
 
-  /// Do two facets of one plane lie on the same side of what they share? So it is at the tip of a
-  /// slit, where the boundary turns back.
-  bool folds_back(const Facet<Dim>& f, const Facet<Dim>& g, Key key) const {
-    return dot(away_from(f, key), away_from(g, key)) > 0;
-  }
-
-  /// From a side of a facet into the facet, at a right angle.
-  Vector<Dim> away_from(const Facet<Dim>& facet, Key key) const {
-    const auto at = [&](VertexId v) { return mesh_.site_of[v].position; };
-    if constexpr (Dim == 2) {
-      const auto shared = static_cast<VertexId>(key);
-      return at(facet[0] == shared ? facet[1] : facet[0]) - at(shared);
-    } else {
-      const auto a = static_cast<VertexId>(key >> 32U), b = static_cast<VertexId>(key);
-      VertexId third = facet[0];
-      for (const VertexId v : facet)
-        if (v != a && v != b) third = v;
-      const Vector<3> side = at(b) - at(a), inwards = at(third) - at(a);
-      return inwards - (dot(inwards, side) / dot(side, side)) * side;
-    }
-  }
-
   // ---- Smooth patches: flat ones that turn little where they meet ----
 
   /// Where the boundary lies against itself both sides keep the facets they have, lest they cross.
@@ -254,7 +178,7 @@ class Classifier {
       while (joined[p] != p) p = joined[p] = joined[joined[p]];
       return p;
     };
-    for (const Side& side : sides_) {
+    for (const FacetSide& side : sides_) {
       const std::uint32_t f = side.facet, g = across_[f][side.number];
       if (g == none || g < f || mesh_.patches[facets_[f].patch].required ||
           keeps_shape(facets_[f]) || keeps_shape(facets_[g]))
@@ -268,13 +192,13 @@ class Classifier {
   }
 
   /// Does a smooth patch have an edge here, or in 2D a corner, that fades out elsewhere?
-  bool is_sharp(std::span<const Side> both) const {
+  bool is_sharp(std::span<const FacetSide> both) const {
     const TaggedFacet<Dim>&f = facets_[both[0].facet], &g = facets_[both[1].facet];
     return mesh_.patches[f.patch].smooth && !turns_little(f.corners, g.corners, both[0].key);
   }
 
-  bool turns_little(const Facet<Dim>& f, const Facet<Dim>& g, Key key) const {
-    const Vector<Dim> u = away_from(f, key), v = away_from(g, key);
+  bool turns_little(const Facet<Dim>& f, const Facet<Dim>& g, SideKey key) const {
+    const Vector<Dim> u = away_from<Dim>(mesh_, f, key), v = away_from<Dim>(mesh_, g, key);
     return dot(u, v) < -least_turn_ * norm(u) * norm(v);
   }
 
@@ -303,61 +227,6 @@ class Classifier {
                                                          surface_tolerance_);
   }
 
-  // ---- Faced patches: pairs that lie against each other, with a rim in common ----
-
-  /// Two patches meet at a side, in 3D in an acute angle.
-  struct Meeting {
-    PatchId p, q;  // p < q
-    Key key;
-    auto operator<=>(const Meeting&) const = default;
-  };
-
-  void mark_faced() {
-    auto meetings = runtime::parallel_collect<Meeting>(executor_, sides_.size(),
-                                                       [&](std::size_t i, auto&& append) {
-                                                         if (begins_run(i))
-                                                           each_meeting(run_at(i), append);
-                                                       });
-    std::sort(meetings.begin(), meetings.end());
-    for (std::size_t begin = 0, end = 0; begin < meetings.size(); begin = end) {
-      const auto [p, q, key] = meetings[begin];
-      while (end < meetings.size() && meetings[end].p == p && meetings[end].q == q) ++end;
-      if (encloses(std::span(meetings).subspan(begin, end - begin)))
-        mesh_.patches[p].faced = mesh_.patches[q].faced = true;
-    }
-  }
-
-  void each_meeting(std::span<const Side> run, auto&& append) const {
-    for (const Side& f : run)
-      for (const Side& g : run) {
-        const PatchId p = facets_[f.facet].patch, q = facets_[g.facet].patch;
-        if (p < q &&
-            (Dim == 2 || folds_back(facets_[f.facet].corners, facets_[g.facet].corners, f.key)))
-          append({p, q, f.key});
-      }
-  }
-
-  /// Is there room between what two patches have in common: is that more than a point, or a line?
-  bool encloses(std::span<const Meeting> rim) const {
-    if constexpr (Dim == 2) return rim.front().key != rim.back().key;
-    const auto at = [&](Key key) { return mesh_.site_of[static_cast<VertexId>(key)].position; };
-    const Vector<Dim> origin = at(rim.front().key);
-    Vector<Dim> farthest{};
-    const auto each_vertex = [&](auto&& visit) {
-      for (const Meeting& meeting : rim)
-        for (const Key v : {meeting.key >> 32U, meeting.key & 0xffffffffU}) visit(at(v) - origin);
-    };
-    each_vertex([&](const Vector<Dim>& d) {
-      if (dot(d, d) > dot(farthest, farthest)) farthest = d;
-    });
-    bool straight = true;
-    const double square = dot(farthest, farthest);
-    each_vertex([&](const Vector<Dim>& d) {
-      straight = straight && norm(d - (dot(d, farthest) / square) * farthest) <= tolerance_;
-    });
-    return !straight;
-  }
-
   void store_patches() {
     runtime::parallel_for(executor_, facets_.size(), [&](std::size_t i) {
       const TaggedFacet<Dim>& f = facets_[i];
@@ -380,19 +249,19 @@ class Classifier {
     }
   };
 
-  std::vector<PatchId> patches_at(Key key) const {
+  std::vector<PatchId> patches_at(SideKey key) const {
     std::vector<PatchId> patches;
-    for (const Side& side : facets_at(key)) patches.push_back(facets_[side.facet].patch);
+    for (const FacetSide& side : sides_.at(key)) patches.push_back(facets_[side.facet].patch);
     std::sort(patches.begin(), patches.end());
     return patches;
   }
 
   void find_curves() {
     mesh_.curves.assign(1, {});
-    auto keys =
-        runtime::parallel_collect<Key>(executor_, sides_.size(), [&](std::size_t i, auto&& append) {
-          if (!begins_run(i)) return;
-          const auto both = run_at(i);
+    auto keys = runtime::parallel_collect<SideKey>(
+        executor_, sides_.size(), [&](std::size_t i, auto&& append) {
+          if (!sides_.begins_run(i)) return;
+          const auto both = sides_.run_at(i);
           if (both.size() != 2 || facets_[both[0].facet].patch != facets_[both[1].facet].patch ||
               is_sharp(both))
             append(both[0].key);
@@ -400,7 +269,7 @@ class Classifier {
     for (const auto& [key, edge] : listed_) keys.push_back(key);
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    for (const Key key : keys) add_curve_edge(key);
+    for (const SideKey key : keys) add_curve_edge(key);
     for (std::uint32_t e = 0; e < curve_edges_.size(); ++e)
       if (curve_edges_[e].curve == 0) grow_curve(e);
     for (const CurveEdge& e : curve_edges_) {
@@ -409,7 +278,7 @@ class Classifier {
     }
   }
 
-  void add_curve_edge(Key key) {
+  void add_curve_edge(SideKey key) {
     CurveEdge edge{
         static_cast<VertexId>(key >> 32U), static_cast<VertexId>(key), {}, patches_at(key)};
     if (const auto found = listed_.find(key); found != listed_.end()) {
@@ -507,11 +376,12 @@ class Classifier {
     if (patches.empty() && links == 0) {
       kind.freedom = Dim;
     } else if (patches.size() == 1 && links == 0 &&
-               (Dim == 3 || (facet_count == 2 && !is_sharp(facets_at(v))))) {
+               (Dim == 3 ? is_met_once(v, facet_count)
+                         : facet_count == 2 && !is_sharp(sides_.at(v)))) {
       kind.freedom = Dim - 1;
       mesh_.entity_of[v] = patches[0];
     } else if constexpr (Dim == 3) {
-      if (!on_one_curve(v, patches)) return;
+      if (!on_one_curve(v, patches) || !is_met_once(v, facet_count)) return;
       kind.freedom = 1;
       mesh_.entity_of[v] = mesh_.links_of.of(v)[0].curve;
     }
@@ -523,6 +393,30 @@ class Classifier {
     auto along = patches_at(edge_key(v, links[0].to));
     along.erase(std::unique(along.begin(), along.end()), along.end());
     return along == patches;
+  }
+
+  /// Are all facets around a vertex connected there, by facets or along its curve? What bends may
+  /// touch itself at a vertex; what is flat has another patch there.
+  bool is_met_once(VertexId v, std::size_t facet_count) const {
+    if (surface_tolerance_ == 0 || facet_count == 0) return true;
+    if constexpr (Dim == 3) {
+      const auto links = mesh_.links_of.of(v);
+      if (!links.empty()) {
+        std::size_t count = 0;
+        for (const FacetSide& side : sides_.at(edge_key(v, links[0].to)))
+          count += facets_around(mesh_, facets_, sides_, v, side);
+        return count == facet_count;
+      }
+      for (const ElementId e : mesh_.elements_of.of(v))
+        for (std::size_t i = 0; i < 4; ++i) {
+          if (mesh_.patches_of[e][i] == 0 || mesh_.corners_of[e][i] == v) continue;
+          const Facet<3> facet = facet_of<3>(mesh_.corners_of[e], static_cast<int>(i));
+          const VertexId other = facet[0] == v ? facet[1] : facet[0];
+          return facets_around(mesh_, facets_, sides_, v, sides_.at(edge_key(v, other))[0]) ==
+                 facet_count;
+        }
+    }
+    return true;
   }
 
   bool touches_required(VertexId v, const std::vector<PatchId>& patches) const {
@@ -542,13 +436,13 @@ class Classifier {
   double extent_;     // of the mesh
   double tolerance_;  // of flatness
   const MakeMeshOptions& options_;
-  double surface_tolerance_;          // of what is not flat; 0 if nothing is to be smooth
-  double least_turn_;                 // cosine of the angle from which on edges are ridges
-  runtime::UnsetVector<Side> sides_;  // sorted
+  double surface_tolerance_;  // of what is not flat; 0 if nothing is to be smooth
+  double least_turn_;         // cosine of the angle from which on edges are ridges
+  FacetSides<Dim> sides_;
   using Others = std::array<std::uint32_t, Dim>;
-  runtime::FilledArray<Others> across_;         // [facet][side], the other facet or none
-  std::unordered_map<Key, ListedEdge> listed_;  // 3D
-  std::vector<std::uint8_t> kept_;              // [vertex], whether facets there keep their shape
+  runtime::FilledArray<Others> across_;             // [facet][side], the other facet or none
+  std::unordered_map<SideKey, ListedEdge> listed_;  // 3D
+  std::vector<std::uint8_t> kept_;  // [vertex], whether facets there keep their shape
   std::vector<CurveEdge> curve_edges_;
   std::unordered_map<VertexId, std::vector<std::uint32_t>> edges_at_;
 };

@@ -15,9 +15,9 @@
 
 namespace ductile::meshadapt {
 
-/// Of the elements of one reference, or of all. In 3D the Euler characteristic of the region is
-/// that of its boundary, less half of that of the sheets; in 2D it is the number of parts, less
-/// that of sheets beyond one for each.
+/// Of the elements of one reference, or of all. Where the boundary does not meet itself, the Euler
+/// characteristic of the region is half of that of its boundary in 3D, and in 2D twice the number
+/// of its parts, less that of the boundary's.
 struct RegionTopology {
   std::optional<std::int32_t> reference;  ///< none: all elements
   std::size_t parts = 0;                  ///< of its elements, which share vertices

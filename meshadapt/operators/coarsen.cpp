@@ -177,11 +177,13 @@ bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
 
 /// Where another patch has the same rim, as on both sides of a closed crack, an edge from rim to
 /// rim may be there as well. Both would become one, and the sides grow together. Such an edge is
-/// not made, as the other patch may be changed at the same time.
+/// not made, as the other patch may be changed at the same time. Nor is a triangle from rim to rim
+/// to rim, which might be all that is left of both.
 template <int Dim>
 bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
   const auto on_rim = [&](VertexId v) { return mesh_.kind_of[v].freedom < Dim - 1; };
   if (mesh_.kind_of[plan.gone].freedom == Dim || !on_rim(plan.kept)) return true;
+  if (ends_curve(plan)) return false;
   const auto ball = mesh_.elements_of.of(plan.gone);
   const auto is_joined = [&](VertexId v) {  // by a facet at the edge, or along a curve
     if (Dim == 3 && mesh_.curve_of(plan.gone, v) != 0) return true;
@@ -199,10 +201,44 @@ bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
     for (std::size_t i = 0; i <= Dim; ++i) {
       if (mesh_.corners_of[e][i] == plan.gone || !mesh_.patches[mesh_.patches_of[e][i]].faced)
         continue;
-      for (const VertexId v : facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i)))
-        if (v != plan.gone && v != plan.kept && on_rim(v) && !is_joined(v)) return false;
+      std::size_t joined = 0;
+      bool at_kept = false;
+      for (const VertexId v : facet_of<Dim>(mesh_.corners_of[e], static_cast<int>(i))) {
+        at_kept = at_kept || v == plan.kept;
+        if (v == plan.gone || v == plan.kept || !on_rim(v)) continue;
+        if (!is_joined(v)) return false;
+        ++joined;
+      }
+      if (Dim == 3 && (at_kept ? joins_rim(plan, e, i) : joined == 2)) return false;
     }
   return true;
+}
+
+/// Would a curve on a patch that another one faces become a single edge? Another curve between the
+/// same ends might as well, as do the lips of a crack.
+template <int Dim>
+bool Coarsen<Dim>::ends_curve(const Plan& plan) const {
+  const auto is_end = [&](VertexId v) { return mesh_.kind_of[v].freedom == 0; };
+  if (Dim == 2 || mesh_.kind_of[plan.gone].freedom != 1 || !is_end(plan.kept)) return false;
+  for (const CurveLink& link : mesh_.links_of.of(plan.gone))
+    if (!is_end(link.to)) return false;
+  const auto ball = mesh_.elements_of.of(plan.gone);
+  return std::any_of(ball.begin(), ball.end(), [&](ElementId e) {
+    for (std::size_t i = 0; i <= Dim; ++i)
+      if (mesh_.corners_of[e][i] != plan.gone && mesh_.patches[mesh_.patches_of[e][i]].faced)
+        return true;
+    return false;
+  });
+}
+
+/// Would the third side of a facet at the edge, opposite to the vertex that goes, be on the rim
+/// then? It may be that of a triangle that is all of the patch, and of the other one.
+template <int Dim>
+bool Coarsen<Dim>::joins_rim(const Plan& plan, ElementId element, std::size_t facet) const {
+  if (Dim == 2 || mesh_.kind_of[plan.gone].freedom != 1) return false;
+  for (const VertexId v : facet_of<Dim>(mesh_.corners_of[element], static_cast<int>(facet)))
+    if (v != plan.gone && v != plan.kept && mesh_.curve_of(plan.gone, v) != 0) return true;
+  return false;
 }
 
 /// Does this neighbour of the vertex that goes get a short edge to the one that is kept?

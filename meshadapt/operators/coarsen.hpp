@@ -87,6 +87,8 @@ class Coarsen {
   bool keeps_shapes(Plan& plan, double worst_before) const;
   bool keeps_surface(const Plan& plan) const;
   bool keeps_sides_apart(const Plan& plan) const;
+  bool ends_curve(const Plan& plan) const;
+  bool joins_rim(const Plan& plan, ElementId element, std::size_t facet) const;
 
   bool becomes_crowded(VertexId vertex, const Plan& plan) const;
   EdgeCollapse::Crowded crowded_after(const Plan& plan, const Ring& ring) const;

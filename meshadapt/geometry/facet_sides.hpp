@@ -1,0 +1,136 @@
+/// @file
+/// FacetSides: which boundary and interface facets meet where, by their sides: the vertices of an
+/// edge in 2D, the edges of a triangle in 3D.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/unset_vector.hpp"
+#include "geometry/classify.hpp"
+
+namespace ductile::meshadapt {
+
+/// Of what facets share: a vertex in 2D, the ends of an edge in 3D, the lower in the upper half.
+using SideKey = std::uint64_t;
+inline SideKey edge_key(VertexId a, VertexId b) {
+  return SideKey{std::min(a, b)} << 32U | std::max(a, b);
+}
+
+template <int Dim, class Visit>
+void each_side(const Facet<Dim>& facet, Visit visit) {
+  if constexpr (Dim == 2) {
+    visit(SideKey{facet[0]});
+    visit(SideKey{facet[1]});
+  } else {
+    for (std::size_t i = 0; i < 3; ++i) visit(edge_key(facet[i], facet[(i + 1) % 3]));
+  }
+}
+
+/// One facet's side.
+struct FacetSide {
+  SideKey key;
+  std::uint32_t facet;
+  std::uint8_t number;  // among the facet's
+  auto operator<=>(const FacetSide&) const = default;
+};
+
+/// Of all facets, sorted.
+template <int Dim>
+class FacetSides {
+ public:
+  FacetSides(const runtime::Executor& executor, const std::vector<TaggedFacet<Dim>>& facets)
+      : sides_(runtime::make_unset_vector<FacetSide>(executor, Dim * facets.size())) {
+    runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
+      std::uint8_t number = 0;
+      each_side<Dim>(facets[f].corners, [&](SideKey key) {
+        sides_[Dim * f + number] = {key, static_cast<std::uint32_t>(f), number};
+        ++number;
+      });
+    });
+    runtime::parallel_sort(executor, std::span(sides_));
+  }
+
+  std::size_t size() const { return sides_.size(); }
+  auto begin() const { return sides_.begin(); }
+  auto end() const { return sides_.end(); }
+
+  /// The facets at a side that begins here, in order.
+  std::span<const FacetSide> run_at(std::size_t begin) const {
+    std::size_t end = begin + 1;
+    while (end < sides_.size() && sides_[end].key == sides_[begin].key) ++end;
+    return std::span(sides_).subspan(begin, end - begin);
+  }
+  bool begins_run(std::size_t i) const { return i == 0 || sides_[i - 1].key != sides_[i].key; }
+
+  std::span<const FacetSide> at(SideKey key) const {
+    const auto at = std::lower_bound(sides_.begin(), sides_.end(), FacetSide{key, 0, 0});
+    if (at == sides_.end() || at->key != key) return {};
+    return run_at(static_cast<std::size_t>(at - sides_.begin()));
+  }
+
+ private:
+  runtime::UnsetVector<FacetSide> sides_;
+};
+
+/// Normal of a facet; its length is the edge's length in 2D, twice the area in 3D.
+template <int Dim>
+Vector<Dim> normal_of(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
+  std::array<Vector<Dim>, Dim> p;
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = mesh.site_of[facet[i]].position;
+  return facet_normal(p);
+}
+
+/// From a side of a facet into the facet, at a right angle.
+template <int Dim>
+Vector<Dim> away_from(const Mesh<Dim>& mesh, const Facet<Dim>& facet, SideKey key) {
+  const auto at = [&](VertexId v) { return mesh.site_of[v].position; };
+  if constexpr (Dim == 2) {
+    const auto shared = static_cast<VertexId>(key);
+    return at(facet[0] == shared ? facet[1] : facet[0]) - at(shared);
+  } else {
+    const auto a = static_cast<VertexId>(key >> 32U), b = static_cast<VertexId>(key);
+    VertexId third = facet[0];
+    for (const VertexId v : facet)
+      if (v != a && v != b) third = v;
+    const Vector<3> side = at(b) - at(a), inwards = at(third) - at(a);
+    return inwards - (dot(inwards, side) / dot(side, side)) * side;
+  }
+}
+
+/// Do two facets of one plane lie on the same side of what they share? So it is at the tip of a
+/// slit, where the boundary turns back.
+template <int Dim>
+bool folds_back(const Mesh<Dim>& mesh, const Facet<Dim>& f, const Facet<Dim>& g, SideKey key) {
+  return dot(away_from<Dim>(mesh, f, key), away_from<Dim>(mesh, g, key)) > 0;
+}
+
+/// How many triangles follow each other around a vertex, from one and away from a side of it, up to
+/// a curve, or where not two triangles have a side, or to the first again.
+inline std::size_t facets_around(const Mesh<3>& mesh, const std::vector<TaggedFacet<3>>& facets,
+                                 const FacetSides<3>& sides, VertexId vertex,
+                                 const FacetSide& first) {
+  std::size_t count = 0;
+  std::uint32_t at = first.facet;
+  SideKey from = first.key;
+  do {
+    ++count;
+    VertexId next = none;  // the triangle's corner on its other side at the vertex
+    for (const VertexId v : facets[at].corners)
+      if (v != vertex && edge_key(vertex, v) != from) next = v;
+    from = edge_key(vertex, next);
+    const auto both = sides.at(from);
+    if (both.size() != 2 || mesh.curve_of(vertex, next) != 0) break;
+    at = both[0].facet == at ? both[1].facet : both[0].facet;
+  } while (at != first.facet);
+  return count;
+}
+
+}  // namespace ductile::meshadapt
