@@ -106,6 +106,8 @@ void leave_out(BinaryCursor& in, SectionReader<BinaryCursor>& sections, Keyword 
   if (gmf::role_of(keyword) == Role::other_cells)
     sections.refuse_other_cells(keyword,
                                 gmf::has_count(keyword) ? sections.read_count(keyword) : 1);
+  else if (gmf::has_count(keyword) && in.section_bytes() == 0 && in.chain_ended_without_end())
+    sections.read_count(keyword);  // which is not there: this may have been End
   const std::string name(gmf::name_of(keyword));
   left_out.add(where, name.empty() ? "keyword " + std::to_string(in.code()) : name,
                " (" + std::to_string(in.section_bytes()) + " bytes)");

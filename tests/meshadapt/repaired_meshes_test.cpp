@@ -13,6 +13,7 @@
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/runtime/team.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt {
@@ -45,10 +46,12 @@ template <int Dim>
 Made make(const AnyMesh& any) {
   const Executor executor({.threads = 2});
   Made made;
-  Neighbours<Dim> neighbours;
-  auto mesh = make_mesh<Dim>(executor, any, {}, neighbours, made.warnings);
-  for (auto& site : mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
-  made.mesh = take_apart(executor, std::move(mesh)).mesh;
+  runtime::with_team(executor, [&] {
+    Neighbours<Dim> neighbours;
+    auto mesh = make_mesh<Dim>(executor, any, {}, neighbours, made.warnings);
+    for (auto& site : mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
+    made.mesh = take_apart(executor, std::move(mesh)).mesh;
+  });
   return made;
 }
 
