@@ -15,6 +15,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "team.hpp"
+#include "threads_to_be_had.hpp"
 
 namespace ductile::runtime {
 
@@ -82,8 +83,8 @@ inline std::size_t everyone_of(const Executor& executor) {
 }
 
 /// Calls work(thread) on the first `wanted` threads of the caller's team, or else of one of
-/// OpenMP's, of executor.threads() threads or fewer. Its size does not follow the loop's: OpenMP
-/// runtimes end and create threads when it changes.
+/// OpenMP's, of executor.threads() threads or fewer, or alone (threads_to_be_had.hpp). Its size
+/// does not follow the loop's: OpenMP runtimes end and create threads when it changes.
 template <class Work>
 void run_team(const Executor& executor, Turnout turnout, std::size_t wanted, Work&& work) {
   auto as_member = [&](int thread) {
@@ -95,12 +96,14 @@ void run_team(const Executor& executor, Turnout turnout, std::size_t wanted, Wor
     return team->run({[](void* context, int thread) { (*static_cast<Member*>(context))(thread); },
                       &as_member, turnout, static_cast<std::uint32_t>(wanted)});
   }
-#pragma omp parallel num_threads(executor.threads())
-  {
-    const int thread = omp_get_thread_num();
+  const auto come = [&](int thread) {
     const detail::ScopedBinding binding(executor.places(), thread);
     if (static_cast<std::size_t>(thread) < wanted) as_member(thread);
-  }
+  };
+  const int threads = threads_to_be_had(executor.threads());
+  if (!takes_a_region(threads)) return come(0);
+#pragma omp parallel num_threads(threads)
+  come(omp_get_thread_num());
 }
 
 void run_omp_static(const Executor& executor, Loop& loop);

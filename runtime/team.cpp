@@ -151,20 +151,22 @@ void run_with_team(const Executor& executor, TeamBody body, void* context) {
     return body(context);
   Team team(executor);
   FirstError error;
-#pragma omp parallel num_threads(executor.threads())
-  {
-    const int thread = omp_get_thread_num();
+  const auto come = [&](int thread, int size) {
     const detail::ScopedBinding binding(executor.places(), thread);
-    if (thread != 0) {
-      team.serve(thread);
-    } else {
-      const Team::Leading leading(team, omp_get_num_threads());
-      try {
-        body(context);
-      } catch (...) {
-        error.keep_current();
-      }
+    if (thread != 0) return team.serve(thread);
+    const Team::Leading leading(team, size);
+    try {
+      body(context);
+    } catch (...) {
+      error.keep_current();
     }
+  };
+  const int threads = threads_to_be_had(executor.threads());
+  if (!takes_a_region(threads)) {
+    come(0, 1);
+  } else {
+#pragma omp parallel num_threads(threads)
+    come(omp_get_thread_num(), omp_get_num_threads());
   }
   error.rethrow();
 }
