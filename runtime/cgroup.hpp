@@ -12,4 +12,8 @@ namespace ductile::runtime {
 double cgroup_cpu_limit(const std::filesystem::path& mount,
                         const std::filesystem::path& membership) noexcept;
 
+/// The same of bytes of memory, without what is swapped out.
+double cgroup_memory_limit(const std::filesystem::path& mount,
+                           const std::filesystem::path& membership) noexcept;
+
 }  // namespace ductile::runtime

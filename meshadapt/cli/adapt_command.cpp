@@ -15,6 +15,7 @@
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/vtu.hpp"
+#include "ductile/runtime/memory.hpp"
 #include "files.hpp"
 #include "mmg_options.hpp"
 #include "run_in_team.hpp"
@@ -215,10 +216,17 @@ class ProgressLine {
   bool shown_;
 };
 
+/// Of what may be held, which is the machine's memory unless less is given; 0 if that is not known.
+std::size_t memory_left(std::optional<std::size_t> given) {
+  const std::size_t most = given ? *given : runtime::most_memory(), held = runtime::held_memory();
+  return most == 0 ? 0 : most - std::min(held, most - 1);
+}
+
 AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const AnyMesh& mesh,
                                 const AnyField& metric) {
   const ProgressLine line(job.verbosity > 0 && stderr_is_terminal());
   AdaptOptions adapt = job.adapt;
+  adapt.memory_limit = memory_left(job.memory);
   adapt.progress = [&line](const meshadapt::AdaptProgress& progress) { line.show(progress); };
   AdaptedMesh adapted = meshadapt::adapt(executor, mesh, metric, adapt);
   if (adapted.report.checked) return adapted;

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/memory.hpp"
 #include "files.hpp"
 #include "report.hpp"
-#include "system.hpp"
 
 namespace ductile::cli {
 
@@ -170,7 +170,7 @@ AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
                        .report = after.report,
                        .threads = executor.threads(),
                        .deterministic = executor.deterministic()};
-  summary.peak_memory = peak_memory();
+  summary.peak_memory = runtime::peak_memory();
   if (options.before) summary.before.statistics = measure(executor, before, &metric);
   if (options.after) summary.after.statistics = measure(executor, after.mesh, &after.metric);
   if (options.expects_lengths && summary.after.statistics)

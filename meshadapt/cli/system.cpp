@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "ductile/runtime/memory.hpp"
+
 namespace ductile::cli {
 
 namespace {
@@ -24,21 +26,11 @@ std::size_t writable_addresses() {
 
 }  // namespace
 
-std::size_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-#ifdef __APPLE__
-  return static_cast<std::size_t>(usage.ru_maxrss);
-#else
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-#endif
-}
-
 void limit_memory(std::size_t bytes) {
-  const std::size_t held = peak_memory(), more = bytes > held ? bytes - held : 0;
+  const std::size_t held = runtime::peak_memory(), more = bytes > held ? bytes - held : 0;
   rlimit limit{};
   getrlimit(RLIMIT_DATA, &limit);
-  limit.rlim_cur = std::min<rlim_t>(writable_addresses() + more, limit.rlim_max);
+  limit.rlim_cur = std::min<rlim_t>(writable_addresses() + more, limit.rlim_cur);
   setrlimit(RLIMIT_DATA, &limit);
 }
 

@@ -6,9 +6,6 @@
 
 namespace ductile::cli {
 
-/// Most memory that this process has held so far, in bytes.
-std::size_t peak_memory();
-
 /// From here on, taking more memory than this, what the process holds now included, fails, with
 /// std::bad_alloc. Addresses that threads hold for their stacks are not taken for memory.
 void limit_memory(std::size_t bytes);

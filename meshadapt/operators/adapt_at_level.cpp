@@ -17,7 +17,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/recording.hpp"
 #include "geometry/curvature.hpp"
-#include "mesh/first_bad.hpp"
+#include "metric/demand.hpp"
 #include "operators/adapter.hpp"
 #include "operators/processor_level.hpp"
 #include "operators/rescue.hpp"
@@ -62,35 +62,17 @@ std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const Any
   return metric_of;
 }
 
-/// The logarithm of sqrt(det metric), elements in a unit of volume; no less than it is.
+/// Of what the metric asks for, that there can be so much of it.
 template <int Dim>
-double log_density(const Metric<Dim>& metric) {
-  double trace = 0;
-  for (int i = 0; i < Dim; ++i) trace += metric(i, i);
-  return (std::log(determinant(1 / trace * metric)) + Dim * std::log(trace)) / 2;
-}
-
-/// Logarithms of metrics are interpolated, and this is linear with them: by Jensen's inequality an
-/// element's share of the complexity is at least its volume by the exponential of its mean.
-template <int Dim>
-void expect_countable(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                      const std::vector<Metric<Dim>>& metric_of, const std::string& name) {
-  const auto least = [&](std::size_t e) {
-    std::array<Vector<Dim>, Dim + 1> corner;
-    double mean = 0;
-    for (std::size_t c = 0; c <= Dim; ++c) {
-      const VertexId v = mesh.corners_of[e][c];
-      corner[c] = mesh.site_of[v].position;
-      mean += log_density(metric_of[v]) / (Dim + 1);
-    }
-    return certain_determinant<Dim>(corner) / (Dim == 2 ? 2 : 6) * std::exp(mean);
-  };
-  const double complexity =
-      runtime::parallel_reduce(executor, mesh.element_slots(), 0.0, least, std::plus<>());
-  if (complexity > none)
-    throw InputError(name + ": asks for more than " + number(complexity) +
-                     " elements on this mesh, and 32-bit numbers cannot count them; expected "
-                     "larger sizes (-hmin sets the smallest)");
+void expect_possible(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                     const std::vector<Metric<Dim>>& metric_of, const std::string& name,
+                     const AdaptOptions& options) {
+  if (!options.insert) return;
+  constexpr int enough_to_refine = 6;
+  const double complexity = complexity_of_demand(executor, mesh, metric_of);
+  expect_countable(name, complexity);
+  if (options.memory_limit > 0 && options.iterations >= enough_to_refine)
+    expect_room(name, Dim, complexity, options.memory_limit);
 }
 
 template <int Dim>
@@ -163,7 +145,7 @@ Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const 
   const bool may_meet = mesh.surface || has_faced_patches(mesh);
   const std::size_t fixed = fixed_vertices(executor, mesh);
   auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
-  if (options.insert) expect_countable(executor, mesh, metric_of, metric.name);
+  expect_possible(executor, mesh, metric_of, metric.name, options);
   Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
                        std::exchange(metric_of, {}));
   adapter.report().setup_seconds = watch.seconds();

@@ -149,5 +149,18 @@ TEST_F(Cgroup, ReadsTheFirstVersionToo) {
   EXPECT_EQ(limit(), 2.5);
 }
 
+TEST_F(Cgroup, LimitsMemoryInBothVersions) {
+  const auto memory = [&] { return cgroup_memory_limit(root_ / "sys", root_ / "membership"); };
+  EXPECT_EQ(memory(), 0);
+  write("membership", "4:memory:/x\n0::/a/b\n");
+  write("sys/a/b/memory.max", "max\n");
+  write("sys/memory/x/memory.limit_in_bytes", "9223372036854771712\n");
+  EXPECT_EQ(memory(), 0);
+  write("sys/a/memory.max", "3000000000\n");
+  EXPECT_EQ(memory(), 3e9);
+  write("sys/memory/x/memory.limit_in_bytes", "2000000000\n");
+  EXPECT_EQ(memory(), 2e9);
+}
+
 }  // namespace
 }  // namespace ductile::runtime

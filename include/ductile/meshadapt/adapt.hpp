@@ -3,6 +3,7 @@
 /// swapping, refining and smoothing. AnyMesh in, AnyMesh out; the dimension is found there.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -34,10 +35,13 @@ struct AdaptOptions {
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
                              ///< limit_gradation), from what make.surface_tolerance allows on
                              ///< curved boundaries; 0 or less: as given. Mmg's default is 1.3
-  bool thorough = false;     ///< better shapes and lengths for more time (docs/performance.md)
-  bool move = true;          ///< smooth vertices
-  bool swap = true;          ///< swap edges and faces
-  bool insert = true;        ///< split and collapse edges
+  std::size_t memory_limit =
+      0;                  ///< bytes that adapt() may take; metrics that ask for more elements
+                          ///< than certainly fit are refused before the work; 0: no limit
+  bool thorough = false;  ///< better shapes and lengths for more time (docs/performance.md)
+  bool move = true;       ///< smooth vertices
+  bool swap = true;       ///< swap edges and faces
+  bool insert = true;     ///< split and collapse edges
   Rules rules = {};
   MakeMeshOptions make = {};
   std::function<void(const AdaptProgress&)> progress = {};  ///< called on the calling thread
@@ -84,7 +88,8 @@ struct AdaptedMesh {
 /// metric_field.hpp to get one from a file). With a deterministic executor the result depends on
 /// nothing but the input and the last bits of the C library's exp() and log(), of which glibc has
 /// one version for processors with AVX2 and one for others. Throws InputError for options that make
-/// no sense and input that is not a valid mesh; std::bad_alloc if memory runs out,
+/// no sense and input that is not a valid mesh; Error if the elements that the metric asks for
+/// would take more memory than options.memory_limit; std::bad_alloc if memory runs out,
 /// std::length_error if there would be more entities than 32 bits count. If the executor has a
 /// recording, each kernel gets a section of it: "setup", "coarsen", "refine", "swap", "smooth",
 /// "renumber", and "other" for what is between them. Thread safety: any thread; the work runs on
