@@ -38,14 +38,14 @@ TEST_F(Memory, IsTheProgramsOwnWhateverItsParentHolds) {
 TEST_F(Memory, IsRefusedOnlyWhereItIsTooLittle) {
   for (const auto& [words, kind] :
        std::vector<std::pair<std::string, std::string>>{{"s.mesh -hsiz 0.004", "triangles"},
-                                                        {"s.mesh -hsiz 0.005", "triangles"},
-                                                        {"t.mesh -hsiz 0.045", "tetrahedra"}}) {
+                                                        {"s.mesh -hsiz 0.003", "triangles"},
+                                                        {"t.mesh -hsiz 0.035", "tetrahedra"}}) {
     ASSERT_EQ(adapt(words), 0) << errors_of(folder_);
     const std::size_t taken = megabytes_told();
     std::filesystem::remove(folder_.path() / "o.mesh");
-    EXPECT_EQ(adapt(words + " -m " + std::to_string(2 * taken)), 0) << errors_of(folder_);
+    EXPECT_EQ(adapt(words + " -m " + std::to_string(4 * taken)), 0) << errors_of(folder_);
     std::filesystem::remove(folder_.path() / "o.mesh");
-    EXPECT_EQ(adapt(words + " -m " + std::to_string(taken / 3)), 1);
+    EXPECT_EQ(adapt(words + " -m " + std::to_string(taken / 2)), 1);
     const std::string said = errors_of(folder_);
     EXPECT_NE(said.find(kind + " on this mesh, which would take about "), std::string::npos)
         << said;
