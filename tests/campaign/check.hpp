@@ -39,7 +39,8 @@ Faults check_overlaps(const Mesh& mesh);
 /// Are required entities and corners there, with their references, and still marked?
 Faults check_required(const Mesh& before, const Mesh& after);
 
-/// Is the metric positive definite (exactly) and within its bounds, are edges as short as promised?
+/// Is the metric positive definite (but for its rounding) and within its bounds, are edges as short
+/// as promised?
 Faults check_metric(const Mesh& mesh, const Field& metric, const Promise& promise);
 
 /// All of the above; after a fault of structure, nothing else.

@@ -302,9 +302,9 @@ TEST_P(Checker, SeesMetricsThatAreNone) {
   EXPECT_EQ(check_metric(good_, good, {}), Faults{});
   EXPECT_EQ(check_metric(good_, good, {.shortest_size = 0.5, .largest_size = 0.5}), Faults{});
   Field bad = good;
-  bad.values[1] = 4;  // singular, exactly
+  bad.values[1] = 4 * (1 + 1e-14);
   EXPECT_TRUE(mentions(check_metric(good_, bad, {}), "1 tensors that are not positive definite"));
-  bad.values[1] = std::nextafter(4, 0);  // definite, but for all that doubles could say of it
+  bad.values[1] = 4;  // singular, but for what rounding may have taken
   EXPECT_EQ(check_metric(good_, bad, {}), Faults{});
   EXPECT_TRUE(mentions(check_metric(good_, good, {.shortest_size = 0.51}), "sizes below -hmin"));
   EXPECT_TRUE(mentions(check_metric(good_, good, {.largest_size = 0.49}), "sizes above -hmax"));
@@ -329,6 +329,16 @@ TEST(ExactSigns, AreRightWhereDoublesCannotTell) {
     EXPECT_EQ(orientation(a, b, {7, 5, 1}, {x, 0.5, 0}) == 0, i == 0) << i;
     EXPECT_EQ(orientation(b, a, {x, 0.5, 0}), i > 0 ? 1 : i < 0 ? -1 : 0) << i;
   }
+}
+
+TEST(ExactSigns, TellDefiniteTensorsFromSingularOnes) {
+  const std::array<double, 6> singular = {4, 4, 4, 0, 0, 1};
+  std::array<double, 6> tensor = singular;
+  EXPECT_FALSE(is_positive_definite(tensor.data(), 2));
+  EXPECT_FALSE(is_positive_definite(tensor.data(), 3));
+  tensor[1] = std::nextafter(4, 0);  // definite, but for all that doubles could say of it
+  EXPECT_TRUE(is_positive_definite(tensor.data(), 2));
+  EXPECT_TRUE(is_positive_definite(tensor.data(), 3));
 }
 
 TEST(ExactSigns, HoldAtAnyScale) {

@@ -67,7 +67,7 @@ class Trial {
     if (!check("out", 1, adapted)) return outcome_;
     check_unrounded(adapted);
     if (settings_.all_checks || random_.chance(0.2)) check_threads(threads);
-    if (settings_.all_checks || random_.chance(0.25)) check_info();
+    if (settings_.all_checks || case_.metric || random_.chance(0.25)) check_info();
     if (settings_.all_checks || random_.chance(0.25)) check_closure(adapted);
     return outcome_;
   }

@@ -1,0 +1,90 @@
+// Any bytes as a file of fields: read or refused in words; what is read is written and read again
+// to the same thing; as a metric it is refused, or positive definite and accepted again.
+
+#include <cmath>
+#include <cstring>
+
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/vtu.hpp"
+#include "oracle.hpp"
+
+namespace ductile::fuzz {
+namespace {
+
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using meshadapt::GmfOptions;
+
+void expect_whole(const AnyField& field) {
+  expect(field.dimension == 2 || field.dimension == 3, "the dimension");
+  expect(field.values.size() == field.vertex_count * stride_of(field), "the number of values");
+  for (const double value : field.values) expect(std::isfinite(value), "a value is not finite");
+}
+
+void expect_round_trip(const AnyField& field, std::size_t choice) {
+  static MemoryFile file;
+  file.set(nullptr, 0);
+  GmfOptions options;
+  options.form = choice % 2 == 0 ? GmfOptions::Form::ascii : GmfOptions::Form::binary;
+  options.version = static_cast<int>(2 + choice / 2 % 3);
+  options.byte_order = choice / 6 % 2 == 0 ? std::endian::little : std::endian::big;
+  write_field(file.path(), field, options);
+  const AnyField again = meshadapt::read_field(file.path());
+  expect(again.dimension == field.dimension && again.vertex_count == field.vertex_count &&
+             again.types == field.types && again.values.size() == field.values.size(),
+         "another field after writing and reading");
+  expect(field.values.empty() ||
+             std::memcmp(again.values.data(), field.values.data(), 8 * field.values.size()) == 0,
+         "other values after writing and reading");
+}
+
+/// Vertices of the field's dimension, as many as it has values for.
+AnyMesh mesh_of(const AnyField& field) {
+  AnyMesh mesh;
+  mesh.dimension = field.dimension;
+  mesh.coordinates.assign(field.vertex_count * static_cast<std::size_t>(field.dimension), 0);
+  mesh.vertex_reference.assign(field.vertex_count, 0);
+  mesh.name = "m";
+  return mesh;
+}
+
+void use_as_metric(const AnyField& field) {
+  const AnyMesh mesh = mesh_of(field);
+  AnyField metric;
+  try {
+    metric = meshadapt::metric_of(field, mesh);
+  } catch (const meshadapt::InputError& error) {
+    expect_message(error.what());
+    return;
+  }
+  expect_whole(metric);
+  try {
+    meshadapt::metric_of(metric, mesh);
+  } catch (const meshadapt::InputError& error) {
+    fail(std::string("a metric that was accepted is refused: ") + error.what());
+  }
+}
+
+}  // namespace
+}  // namespace ductile::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  using namespace ductile;
+  static fuzz::MemoryFile file;
+  if (size == 0) return 0;
+  file.set(bytes, size);
+  meshadapt::Warnings warnings;
+  try {
+    const meshadapt::AnyField field = meshadapt::read_field(file.path(), &warnings);
+    fuzz::expect_messages(warnings);
+    fuzz::expect_whole(field);
+    fuzz::expect_round_trip(field, size + bytes[size / 2]);
+    fuzz::use_as_metric(field);
+    for (const auto& one : meshadapt::vtu_fields(field, "x"))
+      fuzz::expect(!one.name.empty(), "a field without a name");
+  } catch (const meshadapt::InputError& error) {
+    fuzz::expect_message_of(file.path(), error.what());
+  }
+  return 0;
+}

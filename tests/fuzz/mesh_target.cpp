@@ -1,0 +1,130 @@
+// Any bytes as a mesh file: read or refused in words; what is read is written and read again to the
+// same thing, checked, made into a mesh that can be adapted, and written for ParaView.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/statistics.hpp"
+#include "ductile/meshadapt/vtu.hpp"
+#include "oracle.hpp"
+
+namespace ductile::fuzz {
+namespace {
+
+using meshadapt::AnyMesh;
+using meshadapt::GmfOptions;
+
+template <int Corners>
+void expect_cells(const meshadapt::Cells<Corners>& cells, std::size_t vertices) {
+  expect(cells.vertices.size() == cells.reference.size(), "a cell without a reference");
+  for (const auto& cell : cells.vertices)
+    for (const auto vertex : cell) expect(vertex < vertices, "a corner out of range");
+}
+
+void expect_list(const std::vector<std::uint32_t>& list, std::size_t limit) {
+  for (const auto index : list) expect(index < limit, "an index out of range");
+}
+
+void expect_whole(const AnyMesh& mesh, std::size_t bytes) {
+  const std::size_t vertices = mesh.vertex_count();
+  expect(mesh.dimension == 2 || mesh.dimension == 3, "the dimension");
+  expect(vertices > 0, "no vertices");
+  expect(mesh.coordinates.size() == vertices * static_cast<std::size_t>(mesh.dimension),
+         "the number of coordinates");
+  for (const double x : mesh.coordinates) expect(std::isfinite(x), "a coordinate is not finite");
+  expect_cells(mesh.edges, vertices);
+  expect_cells(mesh.triangles, vertices);
+  expect_cells(mesh.tetrahedra, vertices);
+  expect_list(mesh.corners, vertices);
+  expect_list(mesh.required_vertices, vertices);
+  expect_list(mesh.ridges, mesh.edges.size());
+  expect_list(mesh.required_edges, mesh.edges.size());
+  expect_list(mesh.required_triangles, mesh.triangles.size());
+  expect_list(mesh.required_tetrahedra, mesh.tetrahedra.size());
+  const std::size_t held = 8 * mesh.coordinates.capacity() + 12 * mesh.edges.vertices.capacity() +
+                           16 * mesh.triangles.vertices.capacity() +
+                           20 * mesh.tetrahedra.vertices.capacity();
+  expect(held < 4096 + 16 * bytes, "memory out of proportion to the file");
+}
+
+/// In a form that the input chooses.
+void expect_round_trip(const AnyMesh& mesh, std::size_t choice) {
+  static MemoryFile file;
+  file.set(nullptr, 0);
+  GmfOptions options;
+  options.form = choice % 2 == 0 ? GmfOptions::Form::ascii : GmfOptions::Form::binary;
+  options.version = static_cast<int>(2 + choice / 2 % 3);
+  options.byte_order = choice / 6 % 2 == 0 ? std::endian::little : std::endian::big;
+  write_mesh(file.path(), mesh, options);
+  AnyMesh again = meshadapt::read_mesh(file.path());
+  expect(again.coordinates.size() == mesh.coordinates.size() &&
+             std::memcmp(again.coordinates.data(), mesh.coordinates.data(),
+                         8 * mesh.coordinates.size()) == 0,
+         "other coordinates after writing and reading");
+  again.name = mesh.name;
+  again.coordinates = mesh.coordinates;  // -0 == 0 was decided bit by bit
+  expect(again == mesh, "another mesh after writing and reading");
+}
+
+template <int Dim>
+void make(const AnyMesh& mesh) {
+  for (const double tolerance : {0.0, 0.01}) {
+    meshadapt::MakeMeshOptions options;
+    options.complete_boundary = true;
+    options.surface_tolerance = tolerance;
+    meshadapt::Neighbours<Dim> neighbours;
+    meshadapt::Warnings warnings;
+    try {
+      meshadapt::Mesh<Dim> made =
+          meshadapt::make_mesh<Dim>(executor(), mesh, options, neighbours, warnings);
+      const auto back = meshadapt::take_apart<Dim>(executor(), std::move(made));
+      expect(meshadapt::check_mesh(executor(), back.mesh).empty(),
+             "a mesh that was made is no mesh");
+    } catch (const meshadapt::InputError& error) {
+      expect_message(error.what());
+    }
+    expect_messages(warnings);
+  }
+}
+
+void use(const AnyMesh& mesh) {
+  const auto faults = meshadapt::check_mesh(executor(), mesh);
+  expect_messages(faults);
+  if (faults.empty()) {
+    expect(meshadapt::check_domain(mesh, mesh).empty(), "a mesh whose domain is not its own");
+    expect_messages(meshadapt::check_boundary(executor(), mesh));
+  }
+  meshadapt::measure(executor(), mesh, nullptr);
+  if (mesh.dimension == 2)
+    make<2>(mesh);
+  else
+    make<3>(mesh);
+  static MemoryFile vtu;
+  vtu.set(nullptr, 0);
+  meshadapt::write_vtu(vtu.path(), mesh);
+}
+
+}  // namespace
+}  // namespace ductile::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  using namespace ductile;
+  static fuzz::MemoryFile file;
+  if (size == 0) return 0;
+  file.set(bytes, size);
+  meshadapt::Warnings warnings;
+  try {
+    const meshadapt::AnyMesh mesh = meshadapt::read_mesh(file.path(), &warnings);
+    fuzz::expect_messages(warnings);
+    fuzz::expect_whole(mesh, size);
+    fuzz::expect_round_trip(mesh, size + bytes[size / 2]);
+    fuzz::use(mesh);
+  } catch (const meshadapt::InputError& error) {
+    fuzz::expect_message_of(file.path(), error.what());
+  }
+  return 0;
+}

@@ -1,0 +1,166 @@
+// Any bytes as numbers of a metric and of the options that go with it, on a small mesh, in C++:
+// what is out of range is refused in words, what is accepted is accepted again after bounds and
+// gradation, and a mesh that was adapted to it is one.
+
+#include <cmath>
+#include <cstring>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/complexity.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
+#include "oracle.hpp"
+
+namespace ductile::fuzz {
+namespace {
+
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+
+constexpr double most_elements = 300;  // so that thousands of inputs a second are tried
+
+/// Numbers from bytes; when they are used up, they begin again.
+class Numbers {
+ public:
+  Numbers(const std::uint8_t* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
+
+  unsigned byte() {
+    const unsigned value = bytes_[at_ % size_];
+    ++at_;
+    return value;
+  }
+  /// A plain number, one of any size, or the bits of a double as they come.
+  double number() {
+    const unsigned way = byte();
+    if (way < 96) return static_cast<double>(byte()) / 64 - (way < 16 ? 1 : 0);
+    if (way < 192) return std::pow(10.0, static_cast<double>(byte()) * 2.4 - 305);
+    std::uint64_t bits = 0;
+    for (int i = 0; i < 8; ++i) bits = bits << 8 | byte();
+    double value = 0;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+
+ private:
+  const std::uint8_t* bytes_;
+  std::size_t size_;
+  std::size_t at_ = 0;
+};
+
+AnyMesh small_mesh(Numbers& numbers) {
+  const int n = 1 + static_cast<int>(numbers.byte() % 3);
+  AnyMesh mesh = numbers.byte() % 2 == 0 ? meshadapt::rectangle_mesh({1, 1}, {n, 2})
+                                         : meshadapt::box_mesh({1, 1, 1}, {n, 1, 1});
+  mesh.name = "mesh";
+  return mesh;
+}
+
+AnyField some_field(Numbers& numbers, const AnyMesh& mesh) {
+  AnyField field;
+  field.dimension = mesh.dimension;
+  field.vertex_count = mesh.vertex_count();
+  field.types = {numbers.byte() % 4 == 0 ? AnyField::Type::scalar : AnyField::Type::symmetric};
+  field.name = "metric";
+  const bool alike = numbers.byte() % 4 != 0;  // the same everywhere
+  const std::size_t stride = stride_of(field);
+  for (std::size_t i = 0; i < field.vertex_count * stride; ++i)
+    field.values.push_back(alike && i >= stride ? field.values[i - stride] : numbers.number());
+  // Mostly tensors that are definite: random components hardly ever are.
+  if (numbers.byte() % 8 != 0 && stride > 1)
+    for (std::size_t i = 0; i < field.values.size(); ++i) {
+      const std::size_t component = i % stride;
+      const bool diagonal = component == 0 || component == 2 || component == 5;
+      field.values[i] = diagonal ? std::abs(field.values[i]) : 0.1 * field.values[i];
+    }
+  return field;
+}
+
+template <int Dim>
+double elements_asked_for(const AnyMesh& mesh, const AnyField& metric) {
+  const auto tensors = meshadapt::tensors_of<Dim>(executor(), metric);
+  const auto fixed = meshadapt::make_fixed_mesh<Dim>(executor(), mesh);
+  return meshadapt::complexity<Dim>(executor(), fixed, tensors) * (Dim == 2 ? 2.35 : 11);
+}
+
+/// Bounds and gradation as numbers say; what they leave must be a metric still.
+template <int Dim>
+void change(Numbers& numbers, const AnyMesh& mesh, const AnyField& metric) {
+  auto tensors = meshadapt::tensors_of<Dim>(executor(), metric);
+  try {
+    const meshadapt::SizeBounds bounds = {numbers.number(), numbers.number(), numbers.number()};
+    meshadapt::bound_sizes<Dim>(executor(), tensors, bounds);
+    const auto fixed = meshadapt::make_fixed_mesh<Dim>(executor(), mesh);
+    meshadapt::GradationOptions gradation;
+    gradation.factor = numbers.number();
+    gradation.sweeps = 100;
+    meshadapt::limit_gradation<Dim>(executor(), tensors, fixed, gradation);
+  } catch (const meshadapt::InputError& error) {
+    expect_message(error.what());
+    return;
+  }
+  try {
+    meshadapt::metric_of(meshadapt::symmetric_field<Dim>(executor(), tensors, "changed"), mesh);
+  } catch (const meshadapt::InputError& error) {
+    fail(std::string("a metric that was bounded and graded is refused: ") + error.what());
+  }
+}
+
+meshadapt::AdaptOptions some_options(Numbers& numbers) {
+  meshadapt::AdaptOptions options;
+  options.iterations = 4;
+  if (numbers.byte() % 4 == 0) options.smallest_size = numbers.number();
+  if (numbers.byte() % 4 == 0) options.largest_size = numbers.number();
+  if (numbers.byte() % 4 == 0) options.gradation = numbers.number();
+  if (numbers.byte() % 4 == 0) options.make.surface_tolerance = numbers.number();
+  if (numbers.byte() % 4 == 0) options.make.ridge_angle = numbers.number();
+  return options;
+}
+
+void adapt(Numbers& numbers, const AnyMesh& mesh, const AnyField& metric) {
+  const meshadapt::AdaptOptions options = some_options(numbers);
+  try {
+    // A smaller number of elements than the metric asks for is all that bounds may lead to here.
+    if (options.largest_size > 0 && options.largest_size < 0.2) return;
+    if (options.gradation >= 1 && options.gradation < 1.2) return;
+    const auto adapted = meshadapt::adapt(executor(), mesh, metric, options);
+    expect(meshadapt::check_mesh(executor(), adapted.mesh).empty(), "an adapted mesh is no mesh");
+    expect(meshadapt::check_domain(mesh, adapted.mesh, options.make.surface_tolerance).empty(),
+           "an adapted mesh has another domain");
+    meshadapt::metric_of(adapted.metric, adapted.mesh);
+  } catch (const meshadapt::InputError& error) {
+    expect_message(error.what());
+  }
+}
+
+template <int Dim>
+void use(Numbers& numbers, const AnyMesh& mesh, const AnyField& field) {
+  AnyField metric;
+  try {
+    metric = meshadapt::metric_of(field, mesh);
+  } catch (const meshadapt::InputError& error) {
+    expect_message(error.what());
+    // Tensors that no file may hold, straight from C++: refused as well.
+    if (field.types[0] == AnyField::Type::symmetric) adapt(numbers, mesh, field);
+    return;
+  }
+  change<Dim>(numbers, mesh, metric);
+  if (elements_asked_for<Dim>(mesh, metric) < most_elements) adapt(numbers, mesh, metric);
+}
+
+}  // namespace
+}  // namespace ductile::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  using namespace ductile::fuzz;
+  if (size == 0) return 0;
+  Numbers numbers(bytes, size);
+  const ductile::meshadapt::AnyMesh mesh = small_mesh(numbers);
+  const ductile::meshadapt::AnyField field = some_field(numbers, mesh);
+  if (mesh.dimension == 2)
+    use<2>(numbers, mesh, field);
+  else
+    use<3>(numbers, mesh, field);
+  return 0;
+}

@@ -1,0 +1,75 @@
+// In place of libFuzzer, for builds without it: tries the files named, and a number of damaged
+// copies of each, always the same ones. replay COPIES FILE...
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <vector>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size);
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+void try_bytes(const Bytes& bytes) { LLVMFuzzerTestOneInput(bytes.data(), bytes.size()); }
+
+/// With some bytes changed, doubled, taken out, or the end cut off.
+Bytes damaged(Bytes bytes, std::mt19937_64& random) {
+  for (auto changes = 1 + random() % 4; changes > 0 && !bytes.empty(); --changes) {
+    const auto at = static_cast<std::ptrdiff_t>(random() % bytes.size());
+    const auto length = static_cast<std::ptrdiff_t>(random() % 16);
+    const auto end =
+        bytes.end() - bytes.begin() < at + length ? bytes.end() : bytes.begin() + at + length;
+    switch (random() % 8) {
+      case 0:
+        bytes.erase(bytes.begin() + at, end);
+        break;
+      case 1: {
+        const Bytes part(bytes.begin() + at, end);
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(random() % bytes.size()),
+                     part.begin(), part.end());
+        break;
+      }
+      case 2:
+        if (random() % 4 == 0) bytes.resize(static_cast<std::size_t>(at) + 1);
+        break;
+      case 3:
+        bytes[static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(random());
+        break;
+      default:
+        bytes[static_cast<std::size_t>(at)] =
+            static_cast<std::uint8_t>("0123456789-.e \n#"[random() % 16]);
+    }
+  }
+  return bytes;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count < 3) {
+    std::fputs("replay COPIES FILE...\n", stderr);
+    return 2;
+  }
+  const long copies = std::strtol(words[1], nullptr, 10);
+  long tried = 0;
+  for (int i = 2; i < count; ++i) {
+    std::ifstream file(words[i], std::ios::binary);
+    const Bytes bytes{std::istreambuf_iterator<char>(file), {}};
+    if (bytes.empty()) {
+      std::fprintf(stderr, "replay: nothing to read in %s\n", words[i]);
+      return 2;
+    }
+    std::mt19937_64 random(static_cast<std::uint64_t>(i));
+    try_bytes(bytes);
+    for (long copy = 0; copy < copies; ++copy) try_bytes(damaged(bytes, random));
+    tried += 1 + copies;
+  }
+  std::printf("%ld inputs\n", tried);
+  return 0;
+}
