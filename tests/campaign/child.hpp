@@ -15,7 +15,8 @@ struct Ending {
   std::string message;  ///< what it wrote to standard error, its first 4,000 bytes
 };
 
-/// `words[0]` is the program; standard output goes nowhere. It runs in `folder`.
+/// `words[0]` is the program; standard output goes nowhere. It runs in `folder`. It times out when
+/// it has used `limit_s` of processor time, all threads together, or five times that has gone by.
 Ending run(const std::vector<std::string>& words, const std::filesystem::path& folder,
            double limit_s);
 

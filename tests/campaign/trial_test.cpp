@@ -37,7 +37,7 @@ class CampaignTrial : public testing::Test {
     write("program", "#!/bin/sh\n" + script);
     fs::permissions(folder_ / "program", fs::perms::owner_all);
     return try_case(tried, 1, folder_ / "case",
-                    {.program = folder_ / "program", .limit_s = 1, .all_checks = true});
+                    {.program = folder_ / "program", .limit_s = 0.5, .all_checks = true});
   }
 
   /// One that a copy of the input is a right answer to.
@@ -93,6 +93,7 @@ TEST_F(CampaignTrial, ChildrenEndAsTheyDo) {
   EXPECT_EQ(how("kill -SEGV $$").how, Ending::How::crashed);
   EXPECT_EQ(how("exit 77").how, Ending::How::crashed);
   EXPECT_EQ(how("sleep 20").how, Ending::How::timed_out);
+  EXPECT_EQ(how("while :; do :; done").how, Ending::How::timed_out);
   EXPECT_EQ(how("exec 2>&-; sleep 20 & exit 0").how, Ending::How::exited);
 }
 
