@@ -173,7 +173,7 @@ class Trial {
       if (!adapt("in", "threads", threads, case_.options)) return;
       for (const std::string ending : {".mesh", ".sol"})
         if (contents(folder_ / ("out" + ending)) != contents(folder_ / ("threads" + ending)))
-          fail(Verdict::wrong, "determinism: another " + ending + " than on " + used);
+          fail(Verdict::wrong, "determinism: not the same on " + used);
     }
     prefix_.clear();
   }
