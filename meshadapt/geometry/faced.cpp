@@ -94,19 +94,19 @@ runtime::UnsetVector<Meeting> meetings_against(const runtime::Executor& executor
   constexpr double opposite = -(1 - 1e-8);
   const auto corners = corners_of_boundary(executor, facets);
   const auto vertex = [&](std::size_t i) { return corners[i] >> 32U; };
-  const auto facet = [&](std::size_t i) -> const TaggedFacet<3>& {
-    return facets[static_cast<std::uint32_t>(corners[i])];
-  };
-  const auto outwards = [&](const TaggedFacet<3>& f) {
-    const Vector<3> normal = normal_of<3>(mesh, facet_of<3>(mesh.corners_of[f.element], f.facet));
-    return (1 / norm(normal)) * normal;
-  };
+  const auto facet = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
+  auto outwards = runtime::make_unset_vector<Vector<3>>(executor, facets.size());  // of length 1
+  runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
+    const Corners<3>& corners_there = mesh.corners_of[facets[f].element];
+    const Vector<3> normal = normal_of<3>(mesh, facet_of<3>(corners_there, facets[f].facet));
+    outwards[f] = (1 / norm(normal)) * normal;
+  });
   return runtime::parallel_collect<Meeting>(
       executor, corners.size(), [&](std::size_t i, auto&& append) {
         for (std::size_t j = i + 1; j < corners.size() && vertex(j) == vertex(i); ++j) {
-          const auto [p, q] = std::minmax(facet(i).patch, facet(j).patch);
-          if (p != q && dot(outwards(facet(i)), outwards(facet(j))) < opposite)
-            append({p, q, vertex(i)});
+          const std::uint32_t f = facet(i), g = facet(j);
+          const auto [p, q] = std::minmax(facets[f].patch, facets[g].patch);
+          if (p != q && dot(outwards[f], outwards[g]) < opposite) append({p, q, vertex(i)});
         }
       });
 }

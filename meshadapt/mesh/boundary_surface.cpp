@@ -120,9 +120,9 @@ void BoundarySurface<Dim>::find_joints(const runtime::Executor& executor) {
 template <int Dim>
 void BoundarySurface<Dim>::connect(const runtime::Executor& executor) {
   runtime::parallel_for(executor, sides_.size(), [&](std::size_t s) {
+    const auto first = static_cast<std::uint32_t>(index_of(sides_[s], 0));
     for (std::size_t i = 1; i < Dim; ++i)
-      parts_.unite(static_cast<std::uint32_t>(index_of(sides_[s], 0)),
-                   static_cast<std::uint32_t>(index_of(sides_[s], i)));
+      parts_.unite(first, static_cast<std::uint32_t>(index_of(sides_[s], i)));
   });
   runtime::parallel_for(executor, joints_.size(), [&](std::size_t j) {
     if ((j == 0 || !joints_[j - 1].is_at(joints_[j])) && end_of_run(j) - j == 2)
