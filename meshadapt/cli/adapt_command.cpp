@@ -107,10 +107,7 @@ void set_files(Job& job, const Arguments& arguments) {
   if (job.vtu && job.vtu->extension() != ".vtu")
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
   job.fields = CarriedFields(arguments, job.output);
-  job.size = arguments.positive("-hsiz");
-  if (job.size && (*job.size < 1e-75 || *job.size > 1e75))
-    throw UsageError("option -hsiz: expected a size from 1e-75 to 1e75, found '" +
-                     *arguments.text("-hsiz") + "'");
+  job.size = arguments.size("-hsiz");
   job.metric_in = arguments.text("-sol");
   if (job.size && job.metric_in)
     throw UsageError("options -hsiz and -sol: expected one of them, found both");
@@ -122,8 +119,8 @@ void set_files(Job& job, const Arguments& arguments) {
 }
 
 void set_options(AdaptOptions& adapt, const Arguments& arguments) {
-  adapt.smallest_size = arguments.positive("-hmin").value_or(0);
-  adapt.largest_size = arguments.positive("-hmax").value_or(0);
+  adapt.smallest_size = arguments.size("-hmin").value_or(0);
+  adapt.largest_size = arguments.size("-hmax").value_or(0);
   if (adapt.largest_size > 0 && adapt.smallest_size > adapt.largest_size)
     throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
   const double gradation = arguments.number("-hgrad").value_or(0);  // as in Mmg, 0 or less: none
@@ -136,7 +133,7 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   adapt.swap = !arguments.has("-noswap");
   adapt.insert = !arguments.has("-noinsert");
   adapt.make.lock_boundary = arguments.has("-nosurf");
-  adapt.make.surface_tolerance = arguments.positive("-hausd").value_or(0);
+  adapt.make.surface_tolerance = arguments.size("-hausd").value_or(0);
   adapt.make.ridge_angle = arguments.positive("-ar").value_or(adapt.make.ridge_angle);
   if (adapt.make.ridge_angle >= 90)
     throw UsageError("option -ar: expected an angle of less than 90 degrees, found '" +

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "ductile/meshadapt/metric_field.hpp"
 #include "mmg_options.hpp"
 
 namespace ductile::cli {
@@ -157,6 +158,13 @@ std::optional<double> Arguments::positive(std::string_view name) const {
   if (!parsed || !std::isfinite(*parsed) || *parsed <= 0)
     refuse_value(name, "a number above 0", *value);
   return parsed;
+}
+
+std::optional<double> Arguments::size(std::string_view name) const {
+  const std::optional<double> value = positive(name);
+  if (value && (*value < meshadapt::smallest_size || *value > meshadapt::largest_size))
+    refuse_value(name, "a size from 1e-75 to 1e75", *text(name));
+  return value;
 }
 
 std::optional<int> Arguments::integer(std::string_view name, int least, int most) const {

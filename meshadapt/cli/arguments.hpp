@@ -45,6 +45,8 @@ class Arguments {
   /// Throw UsageError unless the value is such a number, inside the range.
   std::optional<double> positive(std::string_view name) const;
   std::optional<double> number(std::string_view name) const;
+  /// A length that a metric may ask for.
+  std::optional<double> size(std::string_view name) const;
   std::optional<int> integer(std::string_view name, int least, int most) const;
 
  private:

@@ -41,7 +41,7 @@ Validity check_in(const Executor& executor, const AnyMesh& mesh, const AnyField*
     meshadapt::make_mesh<Dim>(executor, mesh, {}, neighbours, validity.warnings);
     if (metric == nullptr) meshadapt::default_metric(executor, mesh);
   } catch (const meshadapt::InputError& error) {
-    validity.reason = error.what();
+    validity.reason = error.in_file();
   }
   return validity;
 }

@@ -129,14 +129,9 @@ void set_goal(Job& job, const Arguments& arguments) {
 
 void set_limits(Job& job, const Arguments& arguments) {
   auto& bounds = job.fit.goal.bounds;
-  bounds.smallest = arguments.positive("-hmin").value_or(0);
-  bounds.largest = arguments.positive("-hmax").value_or(0);
+  bounds.smallest = arguments.size("-hmin").value_or(0);
+  bounds.largest = arguments.size("-hmax").value_or(0);
   bounds.anisotropy = arguments.positive("--anisotropy").value_or(0);
-  for (const std::string_view name : {"-hmin", "-hmax"})  // as -hsiz of adapt
-    if (const auto size = arguments.positive(name); size && (*size < 1e-75 || *size > 1e75))
-      throw UsageError("option " + std::string(name) +
-                       ": expected a size from 1e-75 to 1e75, found '" + *arguments.text(name) +
-                       "'");
   if (bounds.largest > 0 && bounds.smallest > bounds.largest)
     throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
   if (bounds.anisotropy > 0 && bounds.anisotropy < 1)
@@ -206,7 +201,7 @@ class Work {
     try {
       meshadapt::metric_of(metric, mesh_);
     } catch (const meshadapt::InputError& error) {
-      const std::string why = error.what();
+      const std::string why = error.in_file();
       throw meshadapt::InputError(
           why.substr(0, why.rfind(';')) +
           "; ask for one within that, or give -hmin, -hmax or --anisotropy");

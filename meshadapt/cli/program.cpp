@@ -111,7 +111,7 @@ int run_words(std::span<const std::string> words) {
                     .c_str(),
                 misused);
   } catch (const meshadapt::InputError& error) {
-    return tell(error.what(), misused);
+    return tell(error.in_file(), misused);
   }
 }
 

@@ -2,6 +2,9 @@
 /// The check that the boundary of a mesh does not cross itself.
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "geometry/crossing_facets.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh/first_bad.hpp"
+#include "mesh/indices.hpp"
 #include "mesh/problems.hpp"
 
 namespace ductile::meshadapt {
@@ -24,6 +27,11 @@ std::vector<std::string> check(const runtime::Executor& executor, const AnyMesh&
 }  // namespace
 
 std::vector<std::string> check_boundary(const runtime::Executor& executor, const AnyMesh& mesh) {
+  expect_coordinates(mesh);
+  if (mesh.dimension == 2)
+    expect_vertices(mesh, mesh.edges, "edges.vertices", "edge");
+  else
+    expect_vertices(mesh, mesh.triangles, "triangles.vertices", "triangle");
   return mesh.dimension == 2 ? check<2>(executor, mesh) : check<3>(executor, mesh);
 }
 

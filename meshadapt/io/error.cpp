@@ -47,6 +47,11 @@ std::string printable(std::string_view text) {
 }
 
 Error::~Error() = default;
+
+InputError::InputError(const std::string& what, const std::string& in_file)
+    : Error(what), in_file_(std::make_shared<const std::string>(in_file)) {}
 InputError::~InputError() = default;
+
+const char* InputError::in_file() const noexcept { return in_file_ ? in_file_->c_str() : what(); }
 
 }  // namespace ductile::meshadapt

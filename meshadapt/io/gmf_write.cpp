@@ -7,6 +7,8 @@
 
 #include "ductile/meshadapt/gmf.hpp"
 #include "gmf_sink.hpp"
+#include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -21,30 +23,40 @@ using Form = GmfOptions::Form;
 // ---- What is fit for a file ----
 
 void expect(bool holds, const std::string& name, const std::string& text) {
-  if (!holds) throw Error(name + ": cannot be written: " + text);
+  if (!holds) throw InputError(name + ": cannot be written: " + text);
 }
 
 void expect_finite(const std::vector<double>& values, std::size_t stride, const GmfOptions& options,
-                   const std::string& name) {
+                   const std::string& name, const std::string& array) {
   const double largest = options.version == 1 && options.form == Form::binary
                              ? double{std::numeric_limits<float>::max()}
                              : std::numeric_limits<double>::max();
   const auto wrong = std::find_if(values.begin(), values.end(),
                                   [&](double value) { return !(std::abs(value) <= largest); });
   if (wrong == values.end()) return;
-  const std::size_t vertex = static_cast<std::size_t>(wrong - values.begin()) / stride;
-  expect(false, name,
-         "expected a finite number within the range of the version at vertex " +
-             std::to_string(vertex + 1) + ", found " + std::to_string(*wrong));
+  const auto at = static_cast<std::size_t>(wrong - values.begin());
+  refuse(name +
+         ": cannot be written: expected a finite number within the range of the version at " +
+         Wording(array + "[" + std::to_string(at) + "], vertex " + std::to_string(at / stride),
+                 "vertex " + std::to_string(at / stride + 1)) +
+         ", found " + number(*wrong));
 }
 
-void expect_below(const std::uint32_t* indices, std::size_t count, std::size_t limit,
-                  const std::string& name, Keyword keyword) {
+struct Indices {
+  const std::uint32_t* data;
+  std::size_t count, per_entity;
+};
+
+void expect_below(const Indices& those, std::size_t limit, const std::string& name,
+                  Keyword keyword) {
+  const auto [indices, count, per_entity] = those;
   const auto* wrong =
       std::find_if(indices, indices + count, [&](std::uint32_t i) { return i >= limit; });
-  expect(wrong == indices + count, name,
-         "an index in " + std::string(gmf::name_of(keyword)) + " is not below " +
-             std::to_string(limit));
+  if (wrong == indices + count) return;
+  const auto at = static_cast<std::size_t>(wrong - indices) / per_entity;
+  const std::string section(gmf::name_of(keyword));
+  refuse(name + ": cannot be written: " + entry(section, section, at) + " names " +
+         index_word(*wrong) + ", beyond the " + std::to_string(limit) + " that there are");
 }
 
 // ---- The sections of a mesh ----
@@ -90,17 +102,17 @@ void expect_fit(const AnyMesh& mesh, const GmfOptions& options, const std::strin
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
   expect(mesh.coordinates.size() == dimension * mesh.vertex_count(), name,
          "coordinates and references of vertices differ in number");
-  expect_finite(mesh.coordinates, dimension, options, name);
+  expect_finite(mesh.coordinates, dimension, options, name, "coordinates");
   for_each_cells(mesh, [&]<int Corners>(Keyword keyword, const Cells<Corners>& cells) {
     expect(cells.vertices.size() == cells.reference.size(), name,
            "cells and references differ in number");
     if (cells.size() != 0)
-      expect_below(cells.vertices[0].data(), Corners * cells.size(), mesh.vertex_count(), name,
-                   keyword);
+      expect_below({cells.vertices[0].data(), Corners * cells.size(), Corners}, mesh.vertex_count(),
+                   name, keyword);
   });
   expect(mesh.dimension == 3 || mesh.tetrahedra.size() == 0, name, "tetrahedra in dimension 2");
   for (const auto& [keyword, indices, limit] : lists_of(mesh))
-    expect_below(indices.data(), indices.size(), limit, name, keyword);
+    expect_below({indices.data(), indices.size(), 1}, limit, name, keyword);
 }
 
 std::vector<Place> sections_of(const AnyMesh& mesh) {
@@ -165,7 +177,7 @@ void expect_fit(const AnyField& field, const GmfOptions& options, const std::str
   expect(field.values.size() == stride * field.vertex_count, name,
          "expected " + std::to_string(stride) + " values at each vertex, found " +
              std::to_string(field.values.size()) + " in all");
-  expect_finite(field.values, stride, options, name);
+  expect_finite(field.values, stride, options, name, "values");
 }
 
 template <class Sink>

@@ -6,29 +6,32 @@
 #include <string>
 
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
-#include "metric/judge_metric.hpp"
+#include "mesh/wording.hpp"
+#include "metric/bounded_metric.hpp"
+#include "metric/metric_range.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
 using Type = AnyField::Type;
 
-[[noreturn]] void fail(const AnyField& field, const std::string& expected,
-                       const std::string& advice) {
-  throw InputError(field.name + ": expected " + expected + "; " + advice);
+[[noreturn]] void fail(const AnyField& field, const Wording& expected, const Wording& advice) {
+  refuse(name_of(field) + ": expected " + expected + "; " + advice);
 }
 
 [[noreturn]] void fail_at(const AnyField& field, std::size_t vertex, const std::string& expected,
                           const std::string& found) {
-  fail(field, expected + " at vertex " + std::to_string(vertex + 1) + ", found " + found,
+  fail(field, expected + " at " + value_at(field, vertex) + ", found " + found,
        "correct the field there");
 }
 
 void expect_one_metric(const AnyField& field, const AnyMesh& mesh) {
+  expect_coordinates(mesh);
   if (field.types.size() != 1)
     fail(field, "one field, the metric, found " + std::to_string(field.types.size()),
-         "keep the metric alone in its file");
+         {"give the metric alone", "keep the metric alone in its file"});
   if (field.types[0] != Type::scalar && field.types[0] != Type::symmetric)
     fail(field,
          "a metric, sizes (type 1) or symmetric tensors (type 3), found type " +
@@ -36,34 +39,43 @@ void expect_one_metric(const AnyField& field, const AnyMesh& mesh) {
          "give another field");
   if (field.vertex_count != mesh.vertex_count())
     fail(field,
-         std::to_string(mesh.vertex_count()) + " values, one for each vertex of " + mesh.name +
+         std::to_string(mesh.vertex_count()) + " values, one for each vertex of " + name_of(mesh) +
              ", found " + std::to_string(field.vertex_count),
          "give the field of this mesh");
   if (field.dimension < mesh.dimension)
     fail(field,
-         "dimension " + std::to_string(mesh.dimension) + ", that of " + mesh.name + ", found " +
+         "dimension " + std::to_string(mesh.dimension) + ", that of " + name_of(mesh) + ", found " +
              std::to_string(field.dimension),
          "give the field of this mesh");
+  expect_values(field);
 }
 
 template <int Dim>
 void expect_metric(const AnyField& field, std::size_t vertex, const Metric<Dim>& metric) {
-  if (is_metric(metric)) return;
-  for (const double component : metric.m)
-    if (!std::isfinite(component))
-      fail_at(field, vertex, "a tensor of finite numbers", number(component));
+  if (surely_in_range(metric)) return;
+  const bool huge = std::any_of(metric.m.begin(), metric.m.end(),
+                                [](double x) { return !(std::abs(x) < 1e151); });
+  if (huge)
+    fail_at(field, vertex, "a tensor of sizes from 1e-75 to 1e75",
+            "components beyond 1e150 or no numbers");
   const auto values = principal_axes(metric).value;
   const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
-  if (!(*smallest > 0))
-    fail_at(field, vertex, "a positive definite tensor",
-            "eigenvalues from " + number(*smallest) + " to " + number(*largest));
   const double shortest = 1 / std::sqrt(*largest);
   const double longest = 1 / std::sqrt(*smallest);
-  if (shortest < smallest_size || longest > largest_size)
-    fail_at(field, vertex, "sizes from 1e-75 to 1e75", number(shortest) + " to " + number(longest));
-  if (longest > largest_anisotropy * shortest)
-    fail_at(field, vertex, "sizes that differ by at most " + number(largest_anisotropy) + " times",
-            number(shortest) + " to " + number(longest));
+  switch (range_fault(values)) {
+    case RangeFault::none:
+      return;
+    case RangeFault::indefinite:
+      fail_at(field, vertex, "a positive definite tensor",
+              "eigenvalues from " + number(*smallest) + " to " + number(*largest));
+    case RangeFault::size:
+      fail_at(field, vertex, "sizes from 1e-75 to 1e75",
+              number(shortest) + " to " + number(longest));
+    case RangeFault::anisotropy:
+      fail_at(field, vertex,
+              "sizes that differ by at most " + number(largest_anisotropy) + " times",
+              number(shortest) + " to " + number(longest));
+  }
 }
 
 /// A size that is none by itself, but large or small, is the bound. A size of 0 is none at all.
@@ -113,7 +125,7 @@ void append_tensor(AnyField& result, const AnyField& field, std::size_t vertex,
     if (field.dimension == 3) metric = plane_part(field, vertex, dropped_axis);
   if (field.dimension == Dim)
     std::copy_n(&field.values[vertex * Metric<Dim>::size], metric.m.size(), metric.m.begin());
-  if (has_bounds(bounds) && !is_metric(metric)) metric = meshadapt::within_bounds(metric, bounds);
+  if (has_bounds(bounds) && !in_range(metric)) metric = meshadapt::within_bounds(metric, bounds);
   expect_metric(field, vertex, metric);
   result.values.insert(result.values.end(), metric.m.begin(), metric.m.end());
 }
@@ -147,26 +159,27 @@ AnyField metric_of(const AnyField& field, const AnyMesh& mesh, const SizeBounds&
 void expect_field_of(const AnyField& field, const AnyMesh& mesh) {
   if (field.dimension != mesh.dimension)
     fail(field,
-         "dimension " + std::to_string(mesh.dimension) + ", that of " + mesh.name + ", found " +
+         "dimension " + std::to_string(mesh.dimension) + ", that of " + name_of(mesh) + ", found " +
              std::to_string(field.dimension),
          "give a field of this mesh");
   if (field.vertex_count != mesh.vertex_count())
     fail(field,
-         std::to_string(mesh.vertex_count()) + " values, one for each vertex of " + mesh.name +
+         std::to_string(mesh.vertex_count()) + " values, one for each vertex of " + name_of(mesh) +
              ", found " + std::to_string(field.vertex_count),
          "give a field of this mesh");
-  const std::size_t wanted = field.vertex_count * stride_of(field);
-  if (field.types.empty() || field.values.size() != wanted)
-    fail(field,
-         "numbers for all components at all vertices, " + std::to_string(wanted) +
-             " of them, found " + std::to_string(field.values.size()),
-         "give all of them");
+  expect_values(field);
 }
 
 template <int Dim>
 std::vector<Metric<Dim>> tensors_of(const runtime::Executor& executor, const AnyField& field,
                                     std::size_t component) {
+  expect_values(field);
   const std::size_t stride = stride_of(field);
+  if (field.dimension != Dim || component > stride || stride - component < Metric<Dim>::size)
+    throw InputError(name_of(field) + ": expected tensors of dimension " + std::to_string(Dim) +
+                     " from component " + std::to_string(component) + " on, found " +
+                     std::to_string(stride) + " components of dimension " +
+                     std::to_string(field.dimension));
   std::vector<Metric<Dim>> tensor_of(field.vertex_count);
   runtime::parallel_for(executor, tensor_of.size(), [&](std::size_t v) {
     std::copy_n(&field.values[v * stride + component], Metric<Dim>::size, tensor_of[v].m.begin());

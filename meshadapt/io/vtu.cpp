@@ -10,6 +10,8 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/finite_values.hpp"
+#include "mesh/indices.hpp"
 #include "vtk_array.hpp"
 
 namespace ductile::meshadapt {
@@ -77,12 +79,51 @@ std::string unused_name(pugi::xml_node parent, const std::string& name) {
   return result;
 }
 
+/// Throws unless XML can hold it: UTF-8 without control characters.
+void expect_text(const std::string& name, std::size_t index) {
+  const auto byte = [&](std::size_t i) {
+    return i < name.size() ? static_cast<unsigned char>(name[i]) : 0U;
+  };
+  for (std::size_t at = 0; at < name.size();) {
+    const unsigned first = byte(at), second = byte(at + 1);
+    const std::size_t length = first < 0x80                    ? 1
+                               : first >= 0xC2 && first < 0xE0 ? 2
+                               : first >= 0xE0 && first < 0xF0 ? 3
+                               : first >= 0xF0 && first < 0xF5 ? 4
+                                                               : 0;
+    bool good = length > 1 || (first >= 0x20 && first != 0x7F);
+    good = good && length > 0;
+    for (std::size_t i = 1; i < length; ++i) good = good && byte(at + i) >> 6U == 2;
+    // Not too long, no surrogate, none beyond the last character, no noncharacter of XML.
+    good = good && !(first == 0xE0 && second < 0xA0) && !(first == 0xED && second > 0x9F) &&
+           !(first == 0xF0 && second < 0x90) && !(first == 0xF4 && second > 0x8F) &&
+           !(first == 0xEF && second == 0xBF && byte(at + 2) > 0xBD);
+    if (!good)
+      throw InputError("fields[" + std::to_string(index) +
+                       "].name: expected UTF-8 without control characters, found another byte at " +
+                       std::to_string(at));
+    at += length;
+  }
+}
+
+void expect_fields(const AnyMesh& mesh, const std::vector<VtuField>& fields) {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto& [name, type, values] = fields[i];
+    const std::string place = "fields[" + std::to_string(i) + "]";
+    const int number = static_cast<int>(type);
+    if (number < 1 || number > 4)
+      throw InputError(place + ".type: expected 1 to 4, found " + std::to_string(number));
+    const std::size_t expected =
+        mesh.vertex_count() * static_cast<std::size_t>(component_count(type, mesh.dimension));
+    if (values.size() != expected)
+      throw InputError(place + ".values: expected " + std::to_string(expected) +
+                       " numbers, found " + std::to_string(values.size()));
+    expect_text(name, i);
+  }
+}
+
 void add_field(pugi::xml_node parent, const VtuField& field, const AnyMesh& mesh) {
   const auto stride = static_cast<std::size_t>(component_count(field.type, mesh.dimension));
-  if (field.values.size() != stride * mesh.vertex_count())
-    throw Error("field " + field.name + ": expected " +
-                std::to_string(stride * mesh.vertex_count()) + " values, found " +
-                std::to_string(field.values.size()));
   const std::string name = unused_name(parent, field.name);
   if (field.type == Type::scalar) return add_array(parent, name, 1, field.values);
   const int rows = field.type == Type::vector ? 1 : 3;
@@ -167,6 +208,9 @@ void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const 
                const std::vector<VtuField>& fields) {
   expect_coordinates(mesh);
   expect_references(mesh);
+  expect_all_vertices(mesh);
+  expect_finite_coordinates(runtime::Executor({.threads = 1}), mesh);
+  expect_fields(mesh, fields);
   pugi::xml_document document;
   const pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   add_attribute(declaration, "version", "1.0");

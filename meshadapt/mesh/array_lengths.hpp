@@ -14,7 +14,8 @@ void expect_coordinates(const AnyMesh& mesh);
 /// Throws InputError unless there is a reference for each edge, triangle and tetrahedron.
 void expect_references(const AnyMesh& mesh);
 
-/// Throws InputError unless the fields have as many values as they should.
+/// Throws InputError unless there are fields of known types, of dimension 2 or 3, that have as many
+/// values as they should.
 void expect_values(const AnyField& field);
 
 }  // namespace ductile::meshadapt

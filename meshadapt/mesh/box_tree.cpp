@@ -141,6 +141,10 @@ ClosestPoint<Dim> BoxTree<Dim>::closest(const Vector<Dim>& point) const {
   ClosestPoint<Dim> best;
   best.squared_distance = std::numeric_limits<double>::infinity();
   look_into(boxes_of_.size() - 1, 0, point, best);
+  if (best.element == none) {  // no distance is a number
+    best.element = order_[0];
+    best.weight[0] = 1;
+  }
   return best;
 }
 

@@ -16,6 +16,7 @@
 #include "ductile/meshadapt/vector.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/indices.hpp"
 #include "mesh/pinches.hpp"
 #include "mesh/scale.hpp"
 
@@ -273,6 +274,7 @@ std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& afte
   for (const AnyMesh* mesh : {&before, &after}) {
     expect_coordinates(*mesh);
     expect_references(*mesh);
+    expect_all_vertices(*mesh);
   }
   if (after.dimension != before.dimension)
     throw InputError(after.name + ": expected dimension " + std::to_string(before.dimension) +

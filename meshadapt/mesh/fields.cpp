@@ -4,6 +4,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -12,7 +13,7 @@ namespace {
 /// The first component of a field among those of a vertex. Throws unless it is of this type.
 std::size_t first_component(const AnyField& field, std::size_t index, AnyField::Type type) {
   if (index >= field.types.size() || field.types[index] != type)
-    throw InputError(field.name + ": expected a field of " +
+    throw InputError(name_of(field) + ": expected a field of " +
                      (type == AnyField::Type::scalar ? "scalars" : "vectors") + " with index " +
                      std::to_string(index) + ", found " +
                      (index < field.types.size() ? "one of another type"
@@ -26,6 +27,8 @@ std::size_t first_component(const AnyField& field, std::size_t index, AnyField::
 }  // namespace
 
 AnyField scalar_field(int dimension, std::vector<double> value_of, const std::string& name) {
+  if (dimension != 2 && dimension != 3)
+    throw InputError("dimension: expected 2 or 3, found " + std::to_string(dimension));
   const std::size_t count = value_of.size();
   return {dimension, count, {AnyField::Type::scalar}, std::move(value_of), name};
 }
@@ -43,9 +46,9 @@ AnyField joined(const AnyField& first, const AnyField& second) {
   expect_values(first);
   expect_values(second);
   if (first.dimension != second.dimension || first.vertex_count != second.vertex_count)
-    throw InputError(second.name + ": expected a field of dimension " +
+    throw InputError(name_of(second) + ": expected a field of dimension " +
                      std::to_string(first.dimension) + " with " +
-                     std::to_string(first.vertex_count) + " vertices, as " + first.name +
+                     std::to_string(first.vertex_count) + " vertices, as " + name_of(first) +
                      " is, found one of dimension " + std::to_string(second.dimension) + " with " +
                      std::to_string(second.vertex_count));
   AnyField both{first.dimension, first.vertex_count, first.types, {}, first.name};
@@ -72,7 +75,7 @@ std::vector<double> scalars_of(const AnyField& field, std::size_t index) {
 template <int Dim>
 std::vector<Vector<Dim>> vectors_of(const AnyField& field, std::size_t index) {
   if (field.dimension != Dim)
-    throw InputError(field.name + ": expected dimension " + std::to_string(Dim) + ", found " +
+    throw InputError(name_of(field) + ": expected dimension " + std::to_string(Dim) + ", found " +
                      std::to_string(field.dimension));
   expect_values(field);
   const std::size_t first = first_component(field, index, AnyField::Type::vector);

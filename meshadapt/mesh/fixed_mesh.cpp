@@ -9,8 +9,10 @@
 #include "ductile/runtime/atomic_count.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/finite_values.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/indices.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -35,9 +37,7 @@ class FixedMeshMaker {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(any_.name + ": " + what);
-  }
+  [[noreturn]] void fail(const Wording& what) const { refuse(name_of(any_) + ": " + what); }
 
   void check() const {
     const auto& elements = elements_in<Dim>(any_).vertices;
@@ -53,6 +53,7 @@ class FixedMeshMaker {
     if (any_.vertex_count() >= none || elements.size() >= none / 4)
       fail("too many entities for 32-bit numbers");
     expect_corners<Dim>(executor_, any_);
+    expect_finite_coordinates(executor_, any_);
   }
 
   void place_vertices() {
@@ -69,10 +70,13 @@ class FixedMeshMaker {
       if (determinant < 0) std::swap(mesh_.corners_of[e][0], mesh_.corners_of[e][1]);
       mesh_.volume_of[e] = std::abs(determinant) / (Dim == 2 ? 2 : 6);
     });
-    const std::size_t bad = first_bad(executor_, elements_in<Dim>(any_).size(),
-                                      [&](std::size_t e) { return !(mesh_.volume_of[e] > 0); });
+    const std::size_t bad = first_bad(executor_, elements_in<Dim>(any_).size(), [&](std::size_t e) {
+      const double volume = mesh_.volume_of[e];
+      return !(volume > 0 && std::isfinite(volume));
+    });
     if (bad != no_index)
-      fail(entity(element_name<Dim>(), bad) + " has no volume; remove or repair it");
+      fail(entry(elements_array<Dim>(), element_name<Dim>(), bad) +
+           " has no volume; remove or repair it");
   }
 
   void list_elements() {
@@ -159,7 +163,7 @@ template <int Dim>
 double integral(const Executor& executor, const FixedMesh<Dim>& mesh,
                 std::span<const double> value_of) {
   if (value_of.size() != mesh.vertex_count())
-    throw InputError("integral: expected a value for each of the " +
+    throw InputError("value_of: expected a value for each of the " +
                      std::to_string(mesh.vertex_count()) + " vertices, found " +
                      std::to_string(value_of.size()));
   return runtime::parallel_reduce(

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/error.hpp"
 #include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -20,9 +21,8 @@ bool names_others(const AnyMesh& mesh, std::size_t element) {
 
 template <int Dim>
 [[noreturn]] void refuse_corners(const AnyMesh& mesh, std::size_t element) {
-  throw InputError(mesh.name + ": " + entity(element_name<Dim>(), element) +
-                   " names a vertex beyond the " + std::to_string(mesh.vertex_count()) +
-                   " that there are");
+  refuse(name_of(mesh) + ": " + entry(elements_array<Dim>(), element_name<Dim>(), element) +
+         " names a vertex beyond the " + std::to_string(mesh.vertex_count()) + " that there are");
 }
 
 /// Throws InputError, naming the first element that has a corner beyond the vertices.
@@ -32,6 +32,24 @@ void expect_corners(const runtime::Executor& executor, const AnyMesh& mesh) {
       first_bad(executor, elements_in<Dim>(mesh).size(),
                 [&](std::size_t element) { return names_others<Dim>(mesh, element); });
   if (bad != no_index) refuse_corners<Dim>(mesh, bad);
+}
+
+/// The same of cells of any shape; `kind` is what one is called, `array` holds them.
+template <int N>
+void expect_vertices(const AnyMesh& mesh, const Cells<N>& cells, const char* array,
+                     const char* kind) {
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (const std::uint32_t v : cells.vertices[i])
+      if (v >= mesh.vertex_count())
+        refuse(name_of(mesh) + ": " + entry(array, kind, i) + " names vertex " + index_word(v) +
+               ", beyond the " + std::to_string(mesh.vertex_count()) + " that there are");
+}
+
+/// Of all cells.
+inline void expect_all_vertices(const AnyMesh& mesh) {
+  expect_vertices(mesh, mesh.edges, "edges.vertices", "edge");
+  expect_vertices(mesh, mesh.triangles, "triangles.vertices", "triangle");
+  expect_vertices(mesh, mesh.tetrahedra, "tetrahedra.vertices", "tetrahedron");
 }
 
 }  // namespace ductile::meshadapt

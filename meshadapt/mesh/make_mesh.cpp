@@ -8,6 +8,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/flatten.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
@@ -18,6 +19,7 @@
 #include "mesh/facet_key.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/listed_twice.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 
@@ -54,12 +56,12 @@ class MeshMaker {
  private:
   void check_options() const {
     const double tolerance = options_.surface_tolerance, angle = options_.ridge_angle;
-    if (!(tolerance >= 0 && std::isfinite(tolerance)))
-      throw InputError("expected a surface tolerance of 0 or more, found " +
-                       std::to_string(tolerance));
+    if (!(tolerance == 0 || (tolerance >= smallest_size && tolerance <= largest_size)))
+      throw InputError("surface_tolerance: expected 0, or a length from 1e-75 to 1e75, found " +
+                       number(tolerance));
     if (!(angle > 0 && angle < 90))
-      throw InputError("expected a ridge angle between 0 and 90 degrees, found " +
-                       std::to_string(angle));
+      throw InputError("ridge_angle: expected an angle between 0 and 90 degrees, found " +
+                       number(angle));
     const auto& kept = options_.keep_facets_at;
     for (std::size_t i = 0; i < kept.size(); ++i)
       if (kept[i] >= any_.vertex_count())
@@ -68,8 +70,18 @@ class MeshMaker {
                          std::to_string(kept[i]));
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(any_.name + ": " + what);
+  [[noreturn]] void fail(const Wording& what) const { refuse(name_of(any_) + ": " + what); }
+
+  static Wording element_word(std::size_t e) {
+    return entry(elements_array<Dim>(), element_name<Dim>(), e);
+  }
+  static Wording cell_word(const std::string& kind, std::size_t i) {
+    const std::string array = kind == "tetrahedron" ? "tetrahedra" : kind + "s";
+    return entry(array + ".vertices", kind, i);
+  }
+  static Wording place_word(std::size_t coordinate) {
+    return {"coordinates[" + std::to_string(coordinate) + "] is",
+            entity("vertex", coordinate / Dim) + " has a coordinate"};
   }
 
   /// The squares of volumes must be numbers, too.
@@ -78,8 +90,7 @@ class MeshMaker {
     const auto& x = any_.coordinates;
     const std::size_t far =
         first_bad(executor_, x.size(), [&](std::size_t i) { return std::abs(x[i]) > largest; });
-    if (far != no_index)
-      fail(entity("vertex", far / Dim) + " has a coordinate beyond 1e50; scale the mesh");
+    if (far != no_index) fail(place_word(far) + " beyond 1e50; scale the mesh");
     const double extent = runtime::parallel_reduce(
         executor_, x.size(), 0.0, [&](std::size_t i) { return std::abs(x[i] - x[i % Dim]); },
         [](double a, double b) { return std::max(a, b); });
@@ -103,7 +114,7 @@ class MeshMaker {
         first_bad(executor_, any_.coordinates.size(),
                   [&](std::size_t i) { return !std::isfinite(any_.coordinates[i]); });
     if (bad_vertex != no_index)
-      fail(entity("vertex", bad_vertex / Dim) + " has a coordinate that is not a finite number");
+      fail(place_word(bad_vertex) + Wording(" not", " that is not") + " a finite number");
     check_scale();
     check_cells(cells, element_name<Dim>());
     check_cells(facets_in<Dim>(any_), facet_name<Dim>());
@@ -124,9 +135,9 @@ class MeshMaker {
     if (bad == no_index) return;
     for (const std::uint32_t v : cells.vertices[bad])
       if (v >= any_.vertex_count())
-        fail(entity(kind, bad) + " names vertex " + std::to_string(std::uint64_t{v} + 1) +
-             ", but there are only " + std::to_string(any_.vertex_count()));
-    fail(entity(kind, bad) + " names the same vertex twice; remove it");
+        fail(cell_word(kind, bad) + " names vertex " + index_word(v) + ", but there are only " +
+             std::to_string(any_.vertex_count()));
+    fail(cell_word(kind, bad) + " names the same vertex twice; remove it");
   }
 
   void fill() {
@@ -177,8 +188,8 @@ class MeshMaker {
 
   std::uint32_t checked_vertex(std::uint32_t v, const char* what) const {
     if (v >= any_.vertex_count())
-      fail(std::string("a ") + what + " names vertex " + std::to_string(std::uint64_t{v} + 1) +
-           ", but there are only " + std::to_string(any_.vertex_count()));
+      fail(std::string("a ") + what + " names vertex " + index_word(v) + ", but there are only " +
+           std::to_string(any_.vertex_count()));
     return v;
   }
 
@@ -188,9 +199,8 @@ class MeshMaker {
     std::vector<bool> flags(count, false);
     for (const std::uint32_t i : list) {
       if (i >= count)
-        fail(std::string("a required or ridge ") + kind + " has number " +
-             std::to_string(std::uint64_t{i} + 1) + ", but there are only " +
-             std::to_string(count));
+        fail(std::string("a required or ridge ") + kind + " has number " + index_word(i) +
+             ", but there are only " + std::to_string(count));
       flags[i] = true;
     }
     return flags;
@@ -212,7 +222,7 @@ class MeshMaker {
     const std::size_t flat =
         first_bad(executor_, count, [&](std::size_t e) { return orientation(e) == 0; });
     if (flat != no_index)
-      fail(entity(element_name<Dim>(), flat) + " has no volume; remove or repair it");
+      fail(element_word(flat) + " has no volume; remove or repair it");
     turned_.resize(count);
     parallel_for(executor_, count, [&](std::size_t e) {
       turned_[e] = turned(e);
@@ -335,8 +345,7 @@ class MeshMaker {
     }
     std::sort(crowd.begin(), crowd.end());
     const auto both = [](ElementId a, ElementId b) {
-      return std::string(element_name<Dim>()) + " " + std::to_string(a + 1) + " and " +
-             std::to_string(b + 1);
+      return element_word(a) + " and " + index_word(b);
     };
     for (std::size_t i = 1; i < crowd.size(); ++i)
       if (crowd[i].first == crowd[i - 1].first)
@@ -372,7 +381,7 @@ class MeshMaker {
     ListedTwice twice(facet_name<Dim>(), cells.reference);
     for (std::size_t f = 0; f < facets.size(); ++f) {
       if (facets[f].element == none)
-        fail(entity(facet_name<Dim>(), f) + " is not a facet of any " + element_name<Dim>() +
+        fail(cell_word(facet_name<Dim>(), f) + " is not a facet of any " + element_name<Dim>() +
              "; remove it or repair the mesh");
       PatchId& mark =
           mesh_.patches_of[facets[f].element][static_cast<std::size_t>(facets[f].facet)];
@@ -398,8 +407,6 @@ class MeshMaker {
   static void merge(Listed& first, const Listed& again) {
     first.required = first.required || again.required;
     first.ridge = first.ridge || again.ridge;
-  }
-
   /// Finds the elements on both sides of a facet.
   void attach(TaggedFacet<Dim>& facet) const {
     for (const ElementId e : mesh_.elements_of.of(facet.corners[0]))
@@ -448,12 +455,15 @@ class MeshMaker {
   }
 
   [[noreturn]] void fail_unlisted(ElementId element, int facet) const {
-    std::string corners;
+    Wording corners = "";
     for (const VertexId v : facet_of<Dim>(mesh_.corners_of[element], facet))
-      corners += " " + std::to_string(std::uint64_t{v} + 1);
+      corners = corners + " " + index_word(v);
+    const Wording advice("in " + std::string(facets_array<Dim>()) +
+                             "; list it, or set MakeMeshOptions::complete_boundary",
+                         "in the file; list it, or pass --complete-boundary");
     fail("the boundary " + std::string(facet_name<Dim>()) + " with vertices" + corners + " (of " +
-         entity(element_name<Dim>(), element) + ") is not listed in the file; list it, or pass " +
-         "--complete-boundary to give unlisted ones reference 0");
+         element_word(element) + ") is not listed " + advice +
+         " to give unlisted ones reference 0");
   }
 
   /// Edges that belong to no element, as construction lines do, are left out.

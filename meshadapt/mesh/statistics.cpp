@@ -13,9 +13,11 @@
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/finite_values.hpp"
 #include "mesh/grouping.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/numbering.hpp"
+#include "metric/expect_metrics.hpp"
 
 namespace ductile::meshadapt {
 
@@ -202,14 +204,17 @@ MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const A
 
 void expect_measurable(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   expect_coordinates(mesh);
+  expect_finite_coordinates(executor, mesh);
   mesh.dimension == 2 ? expect_corners<2>(executor, mesh) : expect_corners<3>(executor, mesh);
   if (metric == nullptr) return;
   expect_field_of(*metric, mesh);
   if (metric->types != std::vector{AnyField::Type::symmetric})
-    throw InputError(metric->name + ": expected a metric, one field of symmetric tensors, found " +
-                     (metric->types.size() == 1
-                          ? "one of another type"
-                          : std::to_string(metric->types.size()) + " fields"));
+    throw InputError(
+        name_of(*metric) + ": expected a metric, one field of symmetric tensors, found " +
+        (metric->types.size() == 1 ? "one of another type"
+                                   : std::to_string(metric->types.size()) + " fields"));
+  mesh.dimension == 2 ? expect_metric_field<2>(executor, *metric)
+                      : expect_metric_field<3>(executor, *metric);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/numbering.hpp"
+#include "metric/metric_range.hpp"
 
 namespace ductile::meshadapt {
 
@@ -152,7 +153,9 @@ void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& ve
     const Site<Dim>& site = mesh.site_of[vertices[i]];
     any.vertex_reference[i] = mesh.reference_of[vertices[i]];
     std::copy_n(site.position.x.begin(), Dim, &any.coordinates[i * Dim]);
-    std::copy_n(site.metric.m.begin(), stride, &field.values[i * stride]);
+    // What rounding made of one at the end of the range is brought back, to be read again.
+    const Metric<Dim> metric = brought_into_range(site.metric);
+    std::copy_n(metric.m.begin(), stride, &field.values[i * stride]);
   });
   any.corners = numbers_of(executor, vertices.size(),
                            [&](std::size_t i) { return mesh.kind_of[vertices[i]].corner; });

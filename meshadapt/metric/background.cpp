@@ -52,6 +52,7 @@ ClosestPoint<Dim> Background<Dim>::closest(const Vector<Dim>& point) const {
 template <int Dim>
 auto Background<Dim>::sample(const Vector<Dim>& point, ElementId near) const -> Sample {
   constexpr double rounding = 1e-5;  // of a barycentric weight, seen in thin elements
+  if (near >= corners_of_.size()) near = 0;
   const WalkEnd<Dim> end = walk<Dim>({{corners_of_, position_of_}, neighbours_}, point, near);
   ElementId host = end.element;
   Weights<Dim> weight = end.weight;

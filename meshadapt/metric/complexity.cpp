@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ductile/meshadapt/error.hpp"
+#include "metric/expect_metrics.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -13,14 +14,6 @@ namespace ductile::meshadapt {
 using runtime::Executor;
 
 namespace {
-
-template <int Dim>
-void expect_metrics(const FixedMesh<Dim>& mesh, const std::vector<Metric<Dim>>& metric_of) {
-  if (metric_of.size() != mesh.vertex_count())
-    throw InputError("complexity: expected a metric for each of the " +
-                     std::to_string(mesh.vertex_count()) + " vertices, found " +
-                     std::to_string(metric_of.size()));
-}
 
 /// What is scaled: the metrics on their mesh, and where to.
 template <int Dim>
@@ -72,13 +65,15 @@ MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, 
 }  // namespace
 
 double complexity_of_elements(int dimension, double elements) {
+  if (dimension != 2 && dimension != 3)
+    throw InputError("dimension: expected 2 or 3, found " + std::to_string(dimension));
   return elements / (dimension == 2 ? 2.35 : 11);
 }
 
 template <int Dim>
 double complexity(const Executor& executor, const FixedMesh<Dim>& mesh,
                   const std::vector<Metric<Dim>>& metric_of) {
-  expect_metrics(mesh, metric_of);
+  expect_metric_everywhere(executor, metric_of, mesh.vertex_count(), "metric_of");
   return runtime::parallel_reduce(
       executor, metric_of.size(), 0.0,
       [&](std::size_t v) {
@@ -90,7 +85,7 @@ double complexity(const Executor& executor, const FixedMesh<Dim>& mesh,
 template <int Dim>
 MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                               const FixedMesh<Dim>& mesh, const ComplexityGoal& goal) {
-  expect_metrics(mesh, metric_of);
+  expect_metric_everywhere(executor, metric_of, mesh.vertex_count(), "metric_of");
   expect_bounds(goal.bounds);
   expect_gradation(goal.gradation);
   if (!(goal.complexity > 0) || !std::isfinite(goal.complexity))

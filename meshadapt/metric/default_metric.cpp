@@ -6,7 +6,6 @@
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,7 +15,9 @@
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
+#include "mesh/first_bad.hpp"
 #include "mesh/indices.hpp"
+#include "mesh/wording.hpp"
 #include "metric/metric_of_element.hpp"
 
 namespace ductile::meshadapt {
@@ -79,11 +80,9 @@ void expect_sizes(const AnyMesh& mesh, const std::vector<double>& size_of) {
     return !(size >= smallest_size && size <= largest_size);
   });
   if (bad == size_of.end()) return;
-  std::ostringstream found;
-  found << *bad;
-  throw InputError(mesh.name + ": expected edges of lengths from 1e-75 to 1e75, found " +
-                   found.str() + " at vertex " + std::to_string(bad - size_of.begin() + 1) +
-                   "; scale the mesh");
+  const auto vertex = static_cast<std::size_t>(bad - size_of.begin());
+  refuse(name_of(mesh) + ": expected edges of lengths from 1e-75 to 1e75, found " + number(*bad) +
+         " at vertex " + index_word(vertex) + "; scale the mesh");
 }
 
 /// The size that the mesh has at each vertex, alike in all directions.
@@ -226,6 +225,9 @@ AnyField implied_tensors_in(const runtime::Executor& executor, const AnyMesh& an
 }  // namespace
 
 AnyField constant_metric(const AnyMesh& mesh, double size) {
+  expect_coordinates(mesh);
+  if (!(size >= smallest_size && size <= largest_size))
+    throw InputError("size: expected a length from 1e-75 to 1e75, found " + number(size));
   return isotropic_field(mesh, std::vector<double>(mesh.vertex_count(), size));
 }
 

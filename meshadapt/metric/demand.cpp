@@ -13,6 +13,7 @@
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -73,9 +74,9 @@ double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim>& 
 
 void expect_countable(const std::string& name, double complexity) {
   if (complexity > none)
-    throw InputError(name + ": asks for more than " + number(complexity) +
-                     " elements on this mesh, and 32-bit numbers cannot count them; expected "
-                     "larger sizes (-hmin sets the smallest)");
+    refuse(name + ": asks for more than " + number(complexity) +
+           " elements on this mesh, and 32-bit numbers cannot count them; expected larger sizes (" +
+           Wording("smallest_size bounds them", "-hmin sets the smallest") + ")");
 }
 
 void expect_room(const std::string& name, int dimension, double complexity, std::size_t limit) {

@@ -249,7 +249,7 @@ std::vector<Metric<Dim>> projected_hessian(const Executor& executor, const Fixed
 template <int Dim>
 void expect_value_everywhere(const FixedMesh<Dim>& mesh, std::span<const double> value_of) {
   if (value_of.size() != mesh.vertex_count())
-    throw InputError("derivatives of a field: expected a value for each of the " +
+    throw InputError("value_of: expected a value for each of the " +
                      std::to_string(mesh.vertex_count()) + " vertices, found " +
                      std::to_string(value_of.size()));
 }

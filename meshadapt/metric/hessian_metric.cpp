@@ -9,6 +9,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -109,7 +110,7 @@ class HessianMetric {
  private:
   void take_curvatures(const std::vector<Metric<Dim>>& hessian_of) {
     if (hessian_of.size() != mesh_.vertex_count())
-      throw InputError("metric of a Hessian: expected a tensor for each of the " +
+      throw InputError("hessian_of: expected a tensor for each of the " +
                        std::to_string(mesh_.vertex_count()) + " vertices, found " +
                        std::to_string(hessian_of.size()));
     const std::size_t bad = first_bad(executor_, hessian_of.size(), [&](std::size_t v) {
@@ -117,8 +118,8 @@ class HessianMetric {
       return !std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });
     });
     if (bad != no_index)
-      throw InputError("metric of a Hessian: expected finite numbers, found others at " +
-                       entity("vertex", bad));
+      refuse("metric of a Hessian: expected finite numbers, found others at " +
+             entry("hessian_of", "vertex", bad));
     spectrum_.axes_of.resize(hessian_of.size());
     curvature_of_.resize(hessian_of.size());
     parallel_for(executor_, hessian_of.size(), [&](std::size_t v) {

@@ -15,6 +15,8 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/first_bad.hpp"
+#include "metric/expect_metrics.hpp"
+#include "metric/metric_range.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -179,6 +181,10 @@ class Gradation {
       active = woken();
     }
     report.converged = active.empty();
+    if (report.raised > 0)
+      runtime::parallel_for(executor_, metric_of_.size(), [&](std::size_t v) {
+        metric_of_[v] = brought_into_range(metric_of_[v]);
+      });
     return report;
   }
 
@@ -269,8 +275,11 @@ class Gradation {
 
 void expect_gradable(std::size_t metrics, std::size_t vertices, const GradationOptions& options) {
   if (!(options.factor >= 1) || !std::isfinite(options.factor)) refuse_gradation(options.factor);
+  if (!(options.tolerance >= 0) || options.sweeps < 0)
+    throw InputError("gradation: expected a tolerance and sweeps of 0 or more, found " +
+                     number(options.tolerance) + " and " + std::to_string(options.sweeps));
   if (metrics != vertices)
-    throw InputError("gradation: expected a metric for each of the " + std::to_string(vertices) +
+    throw InputError("metric_of: expected a metric for each of the " + std::to_string(vertices) +
                      " vertices, found " + std::to_string(metrics));
 }
 
@@ -278,12 +287,15 @@ void expect_gradable(std::size_t metrics, std::size_t vertices, const GradationO
 
 void expect_bounds(const SizeBounds& bounds) {
   const auto [smallest, largest, anisotropy] = bounds;
-  if (!(smallest >= 0) || !(largest >= 0) || (largest > 0 && smallest > largest))
+  const auto is_size = [](double x) {
+    return x == 0 || (x >= meshadapt::smallest_size && x <= meshadapt::largest_size);
+  };
+  if (!is_size(smallest) || !is_size(largest) || (largest > 0 && smallest > largest))
     throw InputError(
-        "bounds on sizes: expected 0 (none) or more, and the smallest not above the "
+        "bounds on sizes: expected 0 (none) or from 1e-75 to 1e75, and the smallest not above the "
         "largest, found " +
         number(smallest) + " and " + number(largest));
-  if (!(anisotropy == 0 || anisotropy >= 1))
+  if (!(anisotropy == 0 || (anisotropy >= 1 && std::isfinite(anisotropy))))
     throw InputError("bound on the anisotropy: expected 0 (none) or 1 or more, found " +
                      number(anisotropy));
 }
@@ -305,10 +317,13 @@ template <int Dim>
 void intersect(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
                const std::vector<Metric<Dim>>& other_of) {
   if (metric_of.size() != other_of.size())
-    throw InputError("expected as many metrics as the " + std::to_string(metric_of.size()) +
-                     " to intersect with, found " + std::to_string(other_of.size()));
+    throw InputError("other_of: expected as many metrics as the " +
+                     std::to_string(metric_of.size()) + " in metric_of, found " +
+                     std::to_string(other_of.size()));
+  expect_metrics(executor, metric_of, "metric_of");
+  expect_metrics(executor, other_of, "other_of");
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    metric_of[v] = intersect(metric_of[v], other_of[v]);
+    metric_of[v] = brought_into_range(intersect(metric_of[v], other_of[v]));
   });
 }
 
@@ -316,13 +331,14 @@ template <int Dim>
 void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds) {
   expect_bounds(bounds);
+  expect_metrics(executor, metric_of, "metric_of", bounds);
   if (bounds.smallest == 0 && bounds.largest == 0 && bounds.anisotropy == 0) return;
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     PrincipalAxes<Dim> axes = principal_axes(metric_of[v]);
     const auto within = bounded(axes.value, bounds);
     if (within == axes.value) return;
     axes.value = within;
-    metric_of[v] = compose(axes);
+    metric_of[v] = brought_into_range(compose(axes));
   });
 }
 
@@ -337,6 +353,7 @@ template <int Dim>
 GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                                 const FixedMesh<Dim>& mesh, const GradationOptions& options) {
   expect_gradable(metric_of.size(), mesh.vertex_count(), options);
+  expect_metrics(executor, metric_of, "metric_of");
   return Gradation<Dim, FixedMesh<Dim>>(executor, metric_of, mesh, options).run();
 }
 

@@ -12,6 +12,7 @@
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "metric/metric_range.hpp"
 
 namespace ductile::meshadapt {
 
@@ -62,7 +63,7 @@ struct Spectrum {
     runtime::parallel_for(executor, axes_of.size(), [&](std::size_t v) {
       PrincipalAxes<Dim> axes = axes_of[v];
       axes.value = scaled(v, factor);
-      metric_of[v] = compose(axes);
+      metric_of[v] = brought_into_range(compose(axes));
     });
     return metric_of;
   }

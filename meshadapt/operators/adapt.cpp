@@ -5,38 +5,30 @@
 #include <optional>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/team.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
-#include "metric/judge_metric.hpp"
+#include "mesh/wording.hpp"
+#include "metric/expect_metrics.hpp"
+#include "metric/bounded_metric.hpp"
 #include "metric/spectrum.hpp"
 #include "operators/processor_level.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
-/// Of what metric_of checks that which costs nothing: rounding decides whether a thin metric is
-/// positive definite.
-void expect_numbers(const runtime::Executor& executor, const AnyField& metric) {
-  const std::size_t stride = stride_of(metric);
-  if (metric.values.size() != stride * metric.vertex_count)
-    throw InputError(metric.name + ": expected " + std::to_string(stride * metric.vertex_count) +
-                     " numbers, those of all tensors, found " +
-                     std::to_string(metric.values.size()));
-  const std::size_t bad = first_bad(executor, metric.vertex_count, [&](std::size_t v) {
-    const double* m = &metric.values[v * stride];
-    // Sizes from 1e-75 to 1e75 and their rounding, as metric_of has it.
-    const auto within = [](double x) { return x > 1e-151 && x < 1e151; };
-    const bool positive = within(m[0]) && within(m[2]) && (stride == 3 || within(m[5]));
-    return !positive || !std::all_of(m, m + stride, [](double x) { return std::isfinite(x); });
-  });
-  if (bad < metric.vertex_count)
-    throw InputError(
-        metric.name +
-        ": expected a positive definite tensor, of sizes from 1e-75 to 1e75, at vertex " +
-        std::to_string(bad + 1) + ", found one that is not; correct the metric there");
+void expect_rules(const Rules& rules) {
+  for (const double rule :
+       {rules.short_edge, rules.long_edge, rules.stretched_edge, rules.accepted_shape,
+        rules.kept_shape, rules.poor_shape, rules.layer_split_keeps, rules.split_keeps,
+        rules.overlong_edge, rules.shortest_split})
+    if (!(rule >= 0 && rule <= 1e6))
+      throw InputError("rules: expected thresholds from 0 to 1e6, found " + number(rule));
+  if (!(rules.long_edge > rules.short_edge))
+    throw InputError("rules: expected long_edge to be above short_edge, found " +
+                     number(rules.long_edge) + " and " + number(rules.short_edge));
 }
 
 /// The metric with those tensors that are none within the bounds, if there are such; nothing if the
@@ -50,13 +42,13 @@ std::optional<AnyField> within_bounds(const runtime::Executor& executor, const A
     return one;
   };
   const bool all_good = first_bad(executor, metric.vertex_count, [&](std::size_t v) {
-                          return !is_metric(tensor(metric, v));
+                          return !in_range(tensor(metric, v));
                         }) == no_index;
   if (all_good) return std::nullopt;
   AnyField bounded = metric;
   runtime::parallel_for(executor, metric.vertex_count, [&](std::size_t v) {
     const Metric<Dim> one = tensor(metric, v);
-    if (is_metric(one)) return;
+    if (in_range(one)) return;
     const Metric<Dim> better = meshadapt::within_bounds(one, bounds);
     std::copy_n(better.m.begin(), better.m.size(), &bounded.values[v * better.m.size()]);
   });
@@ -67,11 +59,9 @@ void expect_options(const AdaptOptions& options) {
   if (options.iterations < 0)
     throw InputError("adaptation: expected 0 iterations or more, found " +
                      std::to_string(options.iterations));
-  for (const double size : {options.smallest_size, options.largest_size})
-    if (!std::isfinite(size))
-      throw InputError("adaptation: expected finite bounds on sizes, or 0 for none");
   expect_bounds({.smallest = options.smallest_size, .largest = options.largest_size});
   expect_gradation(options.gradation);
+  expect_rules(options.rules);
 }
 
 }  // namespace
@@ -82,17 +72,19 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const 
   expect_coordinates(mesh);
   if (metric.types != std::vector{AnyField::Type::symmetric} ||
       metric.dimension != mesh.dimension || metric.vertex_count != mesh.vertex_count())
-    throw InputError(metric.name + ": expected one symmetric tensor for each of the " +
-                     std::to_string(mesh.vertex_count()) + " vertices of " + mesh.name);
+    throw InputError(name_of(metric) + ": expected one symmetric tensor for each of the " +
+                     std::to_string(mesh.vertex_count()) + " vertices of " + name_of(mesh));
+  expect_values(metric);
   AdaptedMesh adapted;
   runtime::with_team(executor, [&] {
     const SizeBounds bounds{options.smallest_size, options.largest_size};
     std::optional<AnyField> bounded;
-    if (has_bounds(bounds) && metric.values.size() == stride_of(metric) * metric.vertex_count)
+    if (has_bounds(bounds))
       bounded = mesh.dimension == 2 ? within_bounds<2>(executor, metric, bounds)
                                     : within_bounds<3>(executor, metric, bounds);
     const AnyField& judged = bounded ? *bounded : metric;
-    expect_numbers(executor, judged);
+    mesh.dimension == 2 ? expect_metric_field<2>(executor, judged)
+                        : expect_metric_field<3>(executor, judged);
     adapted = adapt_at(usable_levels().front(), executor, mesh, judged, options);
   });
   return adapted;

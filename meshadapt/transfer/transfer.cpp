@@ -8,6 +8,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
 #include "transfer/projection.hpp"
 
 namespace ductile::meshadapt {
@@ -24,8 +25,10 @@ void expect_places(const Executor& executor, std::span<const double> coordinates
     return !(std::abs(coordinates[i]) <= 1e150);
   });
   if (bad != no_index)
-    throw InputError("expected coordinates from -1e150 to 1e150, found others at " +
-                     entity(what, bad / static_cast<std::size_t>(dimension)));
+    refuse("expected coordinates from -1e150 to 1e150, found others at " +
+           Wording("coordinates[" + std::to_string(bad) + "], " + what + " " +
+                       std::to_string(bad / static_cast<std::size_t>(dimension)),
+                   entity(what, bad / static_cast<std::size_t>(dimension))));
 }
 
 void expect_points(const Executor& executor, std::span<const double> coordinates, int dimension) {
@@ -61,10 +64,10 @@ std::vector<double> interpolated(const Executor& executor, const Locator<Dim>& f
 template <int Dim>
 TransferredField transfer(const Executor& executor, const FieldOnMesh& from, const AnyMesh& to,
                           const ProjectionOptions* projection) {
-  const auto old_mesh = make_fixed_mesh<Dim>(executor, from.mesh);
-  const auto new_mesh = make_fixed_mesh<Dim>(executor, to);
   expect_places(executor, from.mesh.coordinates, Dim, "old vertex");
   expect_places(executor, to.coordinates, Dim, "new vertex");
+  const auto old_mesh = make_fixed_mesh<Dim>(executor, from.mesh);
+  const auto new_mesh = make_fixed_mesh<Dim>(executor, to);
   const Locator<Dim> locator(executor, old_mesh);
   const Components field{from.field.values, stride_of(from.field)};
   TransferredField result;
@@ -82,8 +85,8 @@ TransferredField transfer(const Executor& executor, const FieldOnMesh& from, con
 template <int Dim>
 TransferredField sample(const Executor& executor, const FieldOnMesh& from,
                         std::span<const double> coordinates) {
-  const auto mesh = make_fixed_mesh<Dim>(executor, from.mesh);
   expect_places(executor, from.mesh.coordinates, Dim, "vertex");
+  const auto mesh = make_fixed_mesh<Dim>(executor, from.mesh);
   expect_points(executor, coordinates, Dim);
   const Locator<Dim> locator(executor, mesh);
   const Components field{from.field.values, stride_of(from.field)};

@@ -51,7 +51,7 @@ std::string complaint(const AnyMesh& any, const MakeMeshOptions& options = {}) {
     else
       make<3>(any, options);
   } catch (const InputError& error) {
-    return error.what();
+    return error.in_file();
   }
   return "nothing thrown";
 }

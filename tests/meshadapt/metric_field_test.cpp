@@ -98,7 +98,7 @@ TEST(MetricField, NamesFileVertexAndFault) {
   for (const Values& values : in_space)
     EXPECT_NE(test::complaint([&] {
                 metric_of(field_of(3, Type::symmetric, values), mesh_of(3, 1));
-              }).find("at vertex 1"),
+              }).find("at values[0], vertex 0"),
               std::string::npos);
   EXPECT_THROW(metric_of(field_of(2, Type::scalar, {1}), mesh_of(3, 1)), InputError);
 }

@@ -24,9 +24,9 @@ struct AdaptProgress {
   std::size_t changes = 0;
 };
 
-/// adapt() refuses iterations, sizes and gradations that make no sense: those that are negative
-/// (but for gradations) or not finite, a smallest size above the largest, a gradation between 0
-/// and 1.
+/// adapt() refuses options that make no sense: iterations below 0, bounds on sizes that are neither
+/// 0 nor from 1e-75 to 1e75, a smallest size above the largest, a gradation between 0 and 1 or not
+/// finite, rules that are negative, above 1e6 or no numbers, or that split what they collapse.
 struct AdaptOptions {
   int iterations = 16;       ///< at most this many rounds of the four kernels, but for those on
                              ///< the way to a metric that is far from the mesh
@@ -85,7 +85,8 @@ struct AdaptedMesh {
 };
 
 /// Adapts `mesh` to `metric`, which has one symmetric positive definite tensor per vertex (see
-/// metric_field.hpp to get one from a file). With a deterministic executor the result depends on
+/// metric_field.hpp to get one from a file); bounds on sizes hold before it is judged, so an
+/// eigenvalue of 0 is fine with a largest size. With a deterministic executor the result depends on
 /// nothing but the input and the last bits of the C library's exp() and log(), of which glibc has
 /// one version for processors with AVX2 and one for others. Throws InputError for options that make
 /// no sense and input that is not a valid mesh; Error if the elements that the metric asks for

@@ -28,7 +28,8 @@ std::vector<std::string> check_mesh(const runtime::Executor& executor, const Any
 /// as boundaries that far away make it, and boundaries only have to be there still. Nor may the
 /// boundary of `after` meet itself, at vertices in 2D or along edges in 3D, where that of `before`
 /// did not. Boundary that `before` does not list counts as of reference 0, if it lists some. Throws
-/// InputError unless both meshes are of one dimension and have all coordinates and references.
+/// InputError unless both meshes are of one dimension, have all coordinates and references, and
+/// name no vertices beyond those that there are.
 /// Linear in the meshes but for a logarithm in the facets. Thread safety: any thread.
 std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
                                       double surface_tolerance = 0);
@@ -37,8 +38,8 @@ std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& afte
 /// that only touch, or lie in one plane, or do so but for rounding, do not cross: so it is if one
 /// need only move by 2e-10 of the extent, and the rounding of coordinates, for them to be apart, as
 /// it may be on both sides of a closed crack. Elements of positive volume whose boundary does not
-/// cross itself do not overlap by more. Precondition: all vertices have coordinates and facets name
-/// no others, as check_mesh() says of a mesh.
+/// cross itself do not overlap by more. Throws InputError unless all vertices have coordinates and
+/// facets name no others.
 /// Takes a logarithm more than linear in the facets. Thread safety: one caller; runs on the
 /// executor.
 std::vector<std::string> check_boundary(const runtime::Executor& executor, const AnyMesh& mesh);

@@ -8,7 +8,8 @@
 
 namespace ductile::meshadapt {
 
-/// Asks for edges of this length everywhere. Thread safety: any thread.
+/// Asks for edges of this length everywhere. Throws InputError unless it is from 1e-75 to 1e75 and
+/// vertices have coordinates and references. Thread safety: any thread.
 AnyField constant_metric(const AnyMesh& mesh, double size);
 
 /// What the program adapts a mesh to when no metric is given: the sizes that the mesh has, in the

@@ -4,6 +4,7 @@
 /// functions that go on regardless: the library prints nothing, its callers do.
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -23,11 +24,20 @@ class Error : public std::runtime_error {
   ~Error() override;  // defined in one place, as the type then is, whoever throws it
 };
 
-/// What the user gave is wrong: a file, a mesh, a metric or an option.
+/// What the user gave is wrong: a file, a mesh, a metric or an option. Of arrays in memory, what()
+/// names the array and the index, counted from 0: "triangles.vertices[6]".
 class InputError : public Error {
  public:
   using Error::Error;
+  InputError(const std::string& what, const std::string& in_file);
   ~InputError() override;
+
+  /// The same for who gave a file that the arrays were read from, and knows no arrays: entities are
+  /// counted from 1, "triangle 7".
+  const char* in_file() const noexcept;
+
+ private:
+  std::shared_ptr<const std::string> in_file_;  // null: as what()
 };
 
 /// What was met and not taken over, or looks doubtful: one line each, as in an error.

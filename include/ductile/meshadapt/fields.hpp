@@ -13,7 +13,7 @@
 
 namespace ductile::meshadapt {
 
-/// One scalar at each vertex of a mesh of this dimension.
+/// One scalar at each vertex of a mesh of this dimension. Throws InputError unless that is 2 or 3.
 AnyField scalar_field(int dimension, std::vector<double> value_of, const std::string& name = "");
 
 /// One vector at each vertex.

@@ -43,8 +43,8 @@ struct GmfOptions {
 
 /// Writes a mesh; reading it back gives the same numbers bit for bit (version 1: to the precision
 /// of float). The file appears whole or not at all. Throws InputError for a place that cannot be
-/// written or a name with an unknown ending, Error if the disk fills up or the data is not fit for
-/// a file (index out of range, not finite).
+/// written, a name with an unknown ending, or data that is not fit for a file (index out of range,
+/// not finite, arrays of lengths that do not belong together); Error if the disk fills up.
 void write_mesh(const std::filesystem::path& path, const AnyMesh& mesh, GmfOptions options = {});
 
 /// Writes the fields at the vertices, likewise.

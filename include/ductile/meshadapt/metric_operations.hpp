@@ -23,7 +23,8 @@ template <int Dim>
 Metric<Dim> intersect(const Metric<Dim>& a, const Metric<Dim>& b);
 
 /// The same at every vertex: metric_of[vertex] becomes fine enough for other_of[vertex], too.
-/// Throws InputError unless there are as many. Thread safety: one caller; runs on the executor.
+/// Throws InputError unless there are as many, all of them metrics (see metric_of). Thread safety:
+/// one caller; runs on the executor.
 template <int Dim>
 void intersect(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
                const std::vector<Metric<Dim>>& other_of);
@@ -36,9 +37,11 @@ struct SizeBounds {
 };
 
 /// Clamps the sizes 1/sqrt(eigenvalue) of every metric between the bounds, then shortens those that
-/// are too long beside the shortest; one that is within the bounds keeps its bits. Throws
-/// InputError if a bound is negative or not a number, the smallest is above the largest or the
-/// anisotropy below 1. Thread safety: one caller; runs on the executor.
+/// are too long beside the shortest; one that is within the bounds keeps its bits. An eigenvalue of
+/// 0 up to rounding, which is no limit, gets the largest size. Throws InputError if a bound on
+/// sizes is neither 0 nor from 1e-75 to 1e75, the smallest is above the largest, the anisotropy
+/// below 1 or not finite, or for what is not a metric (see metric_of) within the bounds. Thread
+/// safety: one caller; runs on the executor.
 template <int Dim>
 void bound_sizes(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds);
@@ -62,13 +65,14 @@ struct GradationReport {
 /// In each sweep a vertex intersects its metric with those of its neighbours before the sweep, in
 /// the order of their numbers, so the result does not depend on threads or timing. metric_of is
 /// indexed by the vertices of the mesh; the metrics in the mesh are not read. Throws InputError if
-/// the factor is below 1 or not finite, std::bad_alloc if memory runs out.
+/// the factor is below 1 or not finite, the tolerance or the sweeps are negative, or there is not a
+/// metric (see metric_of) for each vertex; std::bad_alloc if memory runs out.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
 GradationReport limit_gradation(const runtime::Executor& executor,
                                 std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,
                                 const GradationOptions& options = {});
-/// The same on a mesh that is being adapted.
+/// The same on a mesh that is being adapted; whether they are metrics is not checked.
 template <int Dim>
 GradationReport limit_gradation(const runtime::Executor& executor,
                                 std::vector<Metric<Dim>>& metric_of, const Mesh<Dim>& mesh,

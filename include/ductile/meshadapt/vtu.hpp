@@ -26,8 +26,10 @@ struct VtuField {
 std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name);
 
 /// Writes the mesh and fields of its dimension at its vertices. The file appears whole or not at
-/// all. Throws InputError for a place that cannot be written, Error if the disk fills up or a
-/// field's length does not fit the mesh. Thread safety: any thread.
+/// all. Throws InputError for a place that cannot be written, cells that name vertices beyond those
+/// that there are, arrays whose lengths do not belong together, and names that are not UTF-8 or
+/// have control characters, which XML cannot hold; Error if the disk fills up. Thread safety: any
+/// thread.
 void write_vtu(const std::filesystem::path& path, const AnyMesh& mesh,
                const std::vector<VtuField>& fields = {});
 

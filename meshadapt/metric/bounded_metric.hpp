@@ -1,0 +1,42 @@
+/// @file
+/// What bounds on sizes make of a tensor that is no metric by itself: they say what holds where it
+/// asks for nothing.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
+#include "metric/spectrum.hpp"
+
+namespace ductile::meshadapt {
+
+inline bool has_bounds(const SizeBounds& bounds) {
+  return bounds.smallest > 0 || bounds.largest > 0 || bounds.anisotropy > 0;
+}
+
+/// A tensor that is no metric with its sizes within bounds, which may make it one. Eigenvalues that
+/// are below 0 by no more than the rounding of a few digits count as 0. One that is indefinite, or
+/// not finite, stays as it is.
+template <int Dim>
+Metric<Dim> within_bounds(const Metric<Dim>& tensor, const SizeBounds& bounds) {
+  constexpr double digits = 1e-6, nothing = 1e-300;
+  double scale = 0;
+  for (const double component : tensor.m) {
+    if (!std::isfinite(component)) return tensor;
+    scale = std::max(scale, std::abs(component));
+  }
+  const double factor = scale > nothing ? scale : 1;  // so that products are numbers
+  PrincipalAxes<Dim> axes = principal_axes((1 / factor) * tensor);
+  const double largest = *std::max_element(axes.value.begin(), axes.value.end());
+  for (double& value : axes.value) {
+    if (value < -digits * largest) return tensor;
+    value = factor * std::max(value, 0.0);
+  }
+  axes.value = bounded(axes.value, bounds);
+  return compose(axes);
+}
+
+}  // namespace ductile::meshadapt

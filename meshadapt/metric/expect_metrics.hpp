@@ -1,0 +1,78 @@
+/// @file
+/// Whether the tensors that a caller gives are metrics, to be asked before anything relies on it:
+/// with one that is not, roots are no numbers and kernels need not end.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/metric.hpp"
+#include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
+#include "metric/metric_range.hpp"
+#include "metric/spectrum.hpp"
+
+namespace ductile::meshadapt {
+
+/// Is it a metric once bounds hold? A direction without any limit, whose eigenvalue is 0 up to
+/// rounding, may have one by a bound; a negative eigenvalue asks for nothing.
+template <int Dim>
+bool in_range_within(const Metric<Dim>& metric, const SizeBounds& bounds) {
+  if (surely_in_range(metric)) return true;
+  for (const double component : metric.m)
+    if (!(std::abs(component) < 1e151)) return false;
+  const auto value = principal_axes(metric).value;
+  const auto [least, most] = std::minmax_element(value.begin(), value.end());
+  if (!(*least >= -1e-12 * *most)) return false;
+  return range_fault(bounded(value, bounds)) == RangeFault::none;
+}
+
+inline const char* const what_metrics_are =
+    "expected a positive definite tensor, of sizes from 1e-75 to 1e75 that differ by at most 1e8 "
+    "times, ";
+
+/// Throws InputError, naming the array and the first that is wrong, unless all are metrics.
+template <int Dim>
+void expect_metrics(const runtime::Executor& executor, const std::vector<Metric<Dim>>& metric_of,
+                    const std::string& array, const SizeBounds& bounds = {}) {
+  const std::size_t bad = first_bad(executor, metric_of.size(), [&](std::size_t v) {
+    return !in_range_within(metric_of[v], bounds);
+  });
+  if (bad == no_index) return;
+  std::string found;
+  for (const double component : metric_of[bad].m)
+    found += (found.empty() ? "" : " ") + number(component);
+  refuse(std::string(what_metrics_are) + "found another at " + entry(array, "vertex", bad) + ": " +
+         found);
+}
+
+/// The same of a field of one symmetric tensor at each vertex, of which there are all.
+template <int Dim>
+void expect_metric_field(const runtime::Executor& executor, const AnyField& field,
+                         const SizeBounds& bounds = {}) {
+  const std::size_t bad = first_bad(executor, field.vertex_count, [&](std::size_t v) {
+    Metric<Dim> metric;
+    std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric.m.begin());
+    return !in_range_within(metric, bounds);
+  });
+  if (bad != no_index)
+    refuse(name_of(field) + ": " + what_metrics_are + "found another at " + value_at(field, bad) +
+           "; correct the metric there");
+}
+
+/// As expect_metrics(), for each of so many vertices.
+template <int Dim>
+void expect_metric_everywhere(const runtime::Executor& executor,
+                              const std::vector<Metric<Dim>>& metric_of, std::size_t vertices,
+                              const std::string& array) {
+  if (metric_of.size() != vertices)
+    throw InputError(array + ": expected a metric for each of the " + std::to_string(vertices) +
+                     " vertices, found " + std::to_string(metric_of.size()));
+  expect_metrics(executor, metric_of, array);
+}
+
+}  // namespace ductile::meshadapt
