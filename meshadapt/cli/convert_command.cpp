@@ -5,6 +5,8 @@
 
 #include "command.hpp"
 #include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/vtu.hpp"
 #include "files.hpp"
 
@@ -33,6 +35,71 @@ void warn_of_rounding(const std::vector<double>& values, const fs::path& to, int
                        " numbers were rounded (--version-of-file 2 keeps them)");
 }
 
+bool rounds(const fs::path& to, const meshadapt::GmfOptions& form) {
+  return form.version == 1 && to.extension().string().ends_with('b');
+}
+
+std::vector<double> rounded(std::vector<double> values) {
+  for (double& value : values) value = static_cast<double>(static_cast<float>(value));
+  return values;
+}
+
+/// Calls a check; true unless it refuses.
+template <class Check>
+bool passes(Check&& check) {
+  try {
+    check();
+  } catch (const meshadapt::InputError&) {
+    return false;
+  }
+  return true;
+}
+
+/// What could be adapted, or adapted to, before it is rounded shall be so when it is read again.
+template <class Check, class Rounded>
+void expect_to_stay(const char* what, const fs::path& to, Check&& check, Rounded&& rounded_of) {
+  if (!passes([&] { check(rounded_of(false)); }) || passes([&] { check(rounded_of(true)); }))
+    return;
+  throw meshadapt::InputError(to.string() +
+                              ": version 1 holds 7 digits, and rounded to those it is" +
+                              " no valid " + what + " any more; --version-of-file 2 keeps them");
+}
+
+template <int Dim>
+void make_any_mesh(const meshadapt::AnyMesh& mesh) {
+  meshadapt::Neighbours<Dim> neighbours;
+  meshadapt::Warnings ignored;
+  meshadapt::make_mesh<Dim>(runtime::Executor({.threads = 1}), mesh, {.complete_boundary = true},
+                            neighbours, ignored);
+}
+
+void expect_mesh_to_stay(meshadapt::AnyMesh mesh, const fs::path& to) {
+  const std::vector<double> exact = mesh.coordinates;
+  expect_to_stay(
+      "mesh", to,
+      [](const meshadapt::AnyMesh& any) {
+        any.dimension == 2 ? make_any_mesh<2>(any) : make_any_mesh<3>(any);
+      },
+      [&](bool round) -> const meshadapt::AnyMesh& {
+        mesh.coordinates = round ? rounded(exact) : exact;
+        return mesh;
+      });
+}
+
+void expect_metric_to_stay(meshadapt::AnyField field, const fs::path& to) {
+  meshadapt::AnyMesh any;  // only to have as many vertices
+  any.dimension = field.dimension;
+  any.vertex_reference.assign(field.vertex_count, 0);
+  any.coordinates.assign(field.vertex_count * static_cast<std::size_t>(field.dimension), 0);
+  const std::vector<double> exact = field.values;
+  expect_to_stay(
+      "metric", to, [&](const meshadapt::AnyField& metric) { meshadapt::metric_of(metric, any); },
+      [&](bool round) -> const meshadapt::AnyField& {
+        field.values = round ? rounded(exact) : exact;
+        return field;
+      });
+}
+
 bool holds_field(const fs::path& path) {
   return path.extension() == ".sol" || path.extension() == ".solb";
 }
@@ -44,6 +111,7 @@ void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arg
                   const meshadapt::GmfOptions& form, meshadapt::Warnings& warnings) {
   const meshadapt::AnyMesh mesh = meshadapt::read_mesh(from, &warnings);
   if (holds_mesh(to)) {
+    if (rounds(to, form)) expect_mesh_to_stay(mesh, to);
     warn_of_rounding(mesh.coordinates, to, form.version, warnings);
     return meshadapt::write_mesh(to, mesh, form);
   }
@@ -76,6 +144,7 @@ int run(const Arguments& arguments) {
   meshadapt::Warnings warnings;
   if (field) {
     const meshadapt::AnyField values = meshadapt::read_field(from, &warnings);
+    if (rounds(to, form)) expect_metric_to_stay(values, to);
     warn_of_rounding(values.values, to, form.version, warnings);
     meshadapt::write_field(to, values, form);
   } else
