@@ -12,8 +12,8 @@ template <int Corners>
 void expect_references_of(const AnyMesh& mesh, const Cells<Corners>& cells, const char* kind) {
   if (cells.reference.size() != cells.size())
     throw InputError(name_of(mesh) + ": expected a reference for each of the " +
-                     std::to_string(cells.size()) + " " + kind + " in " + kind +
-                     ".reference, found " + std::to_string(cells.reference.size()));
+                     std::to_string(cells.size()) + " " + kind + ", found " +
+                     std::to_string(cells.reference.size()) + " in " + kind + ".reference");
 }
 
 }  // namespace
@@ -29,8 +29,8 @@ void expect_coordinates(const AnyMesh& mesh) {
                      std::to_string(mesh.vertex_count()));
   if (mesh.coordinates.size() != static_cast<std::size_t>(mesh.dimension) * mesh.vertex_count())
     throw InputError(name_of(mesh) + ": expected " + dimension + " coordinates for each of the " +
-                     std::to_string(mesh.vertex_count()) + " vertices in coordinates, found " +
-                     std::to_string(mesh.coordinates.size()) + " numbers");
+                     std::to_string(mesh.vertex_count()) + " vertices, found " +
+                     std::to_string(mesh.coordinates.size()) + " numbers in coordinates");
 }
 
 void expect_references(const AnyMesh& mesh) {

@@ -326,11 +326,13 @@ TEST(CheckDomain, RefusesArraysThatDoNotFit) {
   AnyMesh other = mesh;
   other.coordinates.pop_back();
   EXPECT_EQ(complaint(other),
-            "a.mesh: expected 2 coordinates for each of the 25 vertices, found 49 numbers");
+            "a.mesh: expected 2 coordinates for each of the 25 vertices, found 49 numbers in "
+            "coordinates");
   other = mesh;
   other.triangles.reference.pop_back();
-  EXPECT_EQ(complaint(other),
-            "a.mesh: expected a reference for each of the 32 triangles, found 31");
+  EXPECT_EQ(
+      complaint(other),
+      "a.mesh: expected a reference for each of the 32 triangles, found 31 in triangles.reference");
   EXPECT_EQ(complaint(box(3)), "test: expected dimension 2, that of a.mesh, found 3");
 }
 

@@ -172,7 +172,9 @@ TEST(Vtu, TakesNoFieldApartThatLacksValues) {
   AnyField field = test::random_field(2, 3, {Type::scalar, Type::vector}, 1);
   field.name = "u.sol";
   field.values.pop_back();
-  EXPECT_EQ(test::complaint([&] { vtu_fields(field, "u"); }), "u.sol: expected 9 values, found 8");
+  EXPECT_EQ(
+      test::complaint([&] { vtu_fields(field, "u"); }),
+      "u.sol: expected numbers for all components at all vertices, 9 of them, found 8 in values");
 }
 
 TEST(Vtu, GivesEachFieldANameOfItsOwn) {
