@@ -407,6 +407,8 @@ class MeshMaker {
   static void merge(Listed& first, const Listed& again) {
     first.required = first.required || again.required;
     first.ridge = first.ridge || again.ridge;
+  }
+
   /// Finds the elements on both sides of a facet.
   void attach(TaggedFacet<Dim>& facet) const {
     for (const ElementId e : mesh_.elements_of.of(facet.corners[0]))
