@@ -17,6 +17,8 @@
 #include "ductile/runtime/unset_vector.hpp"
 #include "geometry/faced.hpp"
 #include "geometry/facet_sides.hpp"
+#include "geometry/rough_parts.hpp"
+#include "geometry/rounding.hpp"
 #include "geometry/surface.hpp"
 #include "geometry/touching.hpp"
 
@@ -24,8 +26,11 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// Flat and straight mean: within this fraction of the mesh's extent of one plane or line.
+/// Flat and straight mean: within this fraction of the mesh's extent of one plane or line; or as
+/// far from one as rounding explains (see rough_parts.hpp).
 constexpr double flatness = 1e-10;
+/// Of the extent. Coordinates that seem to be rounded by as much are round numbers by choice.
+constexpr double coarsest = 0.02;
 
 template <int Dim>
 double extent(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
@@ -70,6 +75,8 @@ class Classifier {
     store_patches();
     if (surface_tolerance_ > 0) keep_surface();
     classify_vertices();
+    if (rounding_ && !(rounding_->plane_of.empty() && rounding_->line_of.empty()))
+      mesh_.rounding = std::move(rounding_);
   }
 
  private:
@@ -111,8 +118,55 @@ class Classifier {
       order[f] = {-norm(normal_of<Dim>(mesh_, facets_[f].corners)), static_cast<std::uint32_t>(f)};
     });
     runtime::parallel_sort(executor_, std::span(order));
+    find_rough_patches();
     for (const auto& [size, seed] : order)
       if (facets_[seed].patch == 0) grow_patch(seed);
+  }
+
+  // ---- What is flat up to how precisely it was written ----
+
+  /// By how much rounding may have moved what the boundary and curves are made of; 0 if they are
+  /// precise.
+  double rounding() {
+    if (rounding_) return rounding_->tolerance;
+    rounding_ = std::make_shared<Rounding<Dim>>();
+    std::vector<bool> seen(mesh_.vertex_slots());
+    PrecisionFinder finder;
+    const auto add = [&](VertexId v) {
+      if (seen[v]) return true;
+      seen[v] = true;
+      const auto& x = mesh_.site_of[v].position.x;
+      return std::all_of(x.begin(), x.end(), [&](double value) { return finder.add(value); });
+    };
+    const auto add_all = [&](const auto& corners) {
+      return std::all_of(corners.begin(), corners.end(), add);
+    };
+    for (const TaggedFacet<Dim>& f : facets_)
+      if (!add_all(f.corners)) return 0;
+    for (const auto& [key, edge] : listed_)
+      if (!add_all(std::array{edge.a, edge.b})) return 0;
+    rounding_->precision = finder.precision();
+    const double tolerance = rounding_tolerance<Dim>(rounding_->precision);
+    const bool matters = tolerance > tolerance_ && tolerance < coarsest * extent_;
+    return rounding_->tolerance = matters ? tolerance : 0;
+  }
+
+  void find_rough_patches() {
+    const RoughParts<Dim, decltype(across_)> parts(mesh_, facets_, across_);
+    const bool rough = runtime::parallel_reduce(
+        executor_, facets_.size(), false,
+        [&](std::size_t f) { return parts.is_rough(static_cast<std::uint32_t>(f), tolerance_); },
+        std::logical_or<>());
+    if (!rough || !(rounding() > 0)) return;
+    parts.each_part(rounding(), [&](const auto& part, const Flat<Dim>& plane) {
+      const auto id = static_cast<PatchId>(mesh_.patches.size());
+      Patch<Dim> patch = facets_[part.front()].data;
+      patch.normal = plane.direction;
+      for (const std::uint32_t f : part) facets_[f].patch = id;
+      mesh_.patches.push_back(patch);
+      rounding_->plane_of.resize(mesh_.patches.size());
+      rounding_->plane_of.back() = plane;
+    });
   }
 
   void grow_patch(std::uint32_t seed) {
@@ -243,6 +297,7 @@ class Classifier {
     Curve data;
     std::vector<PatchId> patches;  // sorted
     CurveId curve = 0;
+    bool bends = false;  ///< more than rounding makes it
     bool agrees_with(const CurveEdge& o) const {
       return std::tie(data.reference, data.listed, data.required, data.ridge, patches) ==
              std::tie(o.data.reference, o.data.listed, o.data.required, o.data.ridge, o.patches);
@@ -293,9 +348,7 @@ class Classifier {
   void grow_curve(std::uint32_t seed) {
     const auto id = static_cast<CurveId>(mesh_.curves.size());
     Curve curve = curve_edges_[seed].data;
-    const Vector<Dim> origin = mesh_.site_of[curve_edges_[seed].a].position;
-    Vector<Dim> direction = mesh_.site_of[curve_edges_[seed].b].position - origin;
-    direction *= 1 / norm(direction);
+    const auto [origin, direction, tolerance] = line_along(seed);
     curve_edges_[seed].curve = id;
     for (const VertexId start : {curve_edges_[seed].a, curve_edges_[seed].b}) {
       const Vector<Dim> towards = (start == curve_edges_[seed].a ? -1.0 : 1.0) * direction;
@@ -306,7 +359,7 @@ class Classifier {
         const VertexId end = edge.a == v ? edge.b : edge.a;
         const Vector<Dim> d = mesh_.site_of[end].position - origin;
         const Vector<Dim> step = mesh_.site_of[end].position - mesh_.site_of[v].position;
-        const bool straight = norm(d - dot(d, direction) * direction) <= tolerance_;
+        const bool straight = norm(d - dot(d, direction) * direction) <= tolerance;
         const double along = dot(step, heading);
         if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed])) break;
         if (surface_tolerance_ > 0 && !edge.data.required) {
@@ -324,6 +377,71 @@ class Classifier {
     }
     if constexpr (Dim == 3) curve.direction = direction;
     mesh_.curves.push_back(curve);
+  }
+
+  /// What a curve has to be close to if it is to be straight.
+  struct Line {
+    Vector<Dim> origin, direction;
+    double tolerance;
+  };
+
+  /// Through an edge, or near what continues it, if only rounding makes that bend.
+  Line line_along(std::uint32_t seed) {
+    const auto at = [&](VertexId v) { return mesh_.site_of[v].position; };
+    const CurveEdge& edge = curve_edges_[seed];
+    Vector<Dim> direction = at(edge.b) - at(edge.a);
+    direction *= 1 / norm(direction);
+    if constexpr (Dim == 3) {
+      if (auto line = rough_line(seed)) {
+        if (dot(line->direction, direction) < 0) line->direction *= -1;
+        rounding_->line_of.resize(mesh_.curves.size() + 1);
+        rounding_->line_of.back() = line;
+        return {line->origin, line->direction, rounding()};
+      }
+    }
+    return {at(edge.a), direction, tolerance_};
+  }
+
+  /// The line near a chain of edges that are not in line but for rounding.
+  std::optional<Flat<Dim>> rough_line(std::uint32_t seed) {
+    if (curve_edges_[seed].bends) return {};
+    std::vector<std::uint32_t> chain{seed};
+    std::vector<Vector<Dim>> points;
+    bool bends = false;
+    for (const VertexId start : {curve_edges_[seed].a, curve_edges_[seed].b}) {
+      VertexId v = start, before = curve_edges_[seed].a + curve_edges_[seed].b - start;
+      points.push_back(mesh_.site_of[v].position);
+      for (std::uint32_t e = next_edge(seed, v); e != none && e != seed; e = next_edge(e, v)) {
+        const CurveEdge& edge = curve_edges_[e];
+        const VertexId end = edge.a == v ? edge.b : edge.a;
+        if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed])) break;
+        const Turn turn = turn_at(before, v, end);
+        if (turn == Turn::much) break;
+        bends = bends || turn == Turn::little;
+        chain.push_back(e);
+        points.push_back(mesh_.site_of[end].position);
+        before = std::exchange(v, end);
+      }
+    }
+    if (!bends) return {};
+    const auto line = line_near(points, rounding());
+    if (!line)
+      for (const std::uint32_t e : chain) curve_edges_[e].bends = true;
+    return line;
+  }
+
+  /// Whether a curve turns at a vertex by more than rounding explains, or, if not, at all.
+  enum class Turn { none, little, much };
+  Turn turn_at(VertexId before, VertexId v, VertexId after) {
+    const auto at = [&](VertexId w) { return mesh_.site_of[w].position; };
+    const Vector<Dim> u = at(v) - at(before), w = at(after) - at(v);
+    if (!(dot(u, w) > 0) || !turns_by_rounding(u, w)) return Turn::much;
+    if (norm(w - dot(w, u) / dot(u, u) * u) <= tolerance_) return Turn::none;
+    if (!(rounding() > 0)) return Turn::much;
+    return explains_line(at(before), at(v), at(after), rounding()) &&
+                   explains_line(at(after), at(v), at(before), rounding())
+               ? Turn::little
+               : Turn::much;
   }
 
   /// The other curve edge at a vertex where exactly two meet and nothing stops the curve.
@@ -433,8 +551,9 @@ class Classifier {
   const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
   std::vector<TaggedFacet<Dim>> facets_;
-  double extent_;     // of the mesh
-  double tolerance_;  // of flatness
+  double extent_;                            // of the mesh
+  double tolerance_;                         // of flatness
+  std::shared_ptr<Rounding<Dim>> rounding_;  // null until it is known, see rounding()
   const MakeMeshOptions& options_;
   double surface_tolerance_;  // of what is not flat; 0 if nothing is to be smooth
   double least_turn_;         // cosine of the angle from which on edges are ridges

@@ -15,6 +15,7 @@
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/meshadapt/vector.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "geometry/roughness.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/pinches.hpp"
@@ -236,26 +237,47 @@ void compare_pinches(const AnyMesh& before, const AnyMesh& after, double surface
   faults.push_back(text.str());
 }
 
+/// By how much facets measure more than the plane that they are in, if it is rough by a length.
+template <int Dim>
+double rough_measure(const AnyMesh& mesh, double roughness) {
+  double sum = 0;
+  for (const Facet<Dim>& facet : facets_in<Dim>(mesh).vertices) {
+    const auto p = points<Dim>(mesh, facet);
+    double longest = 0;
+    for (std::size_t i = 0; i < Dim; ++i)
+      longest = std::max(longest, norm(p[(i + 1) % Dim] - p[i]));
+    const double measure = facet_measure<Dim>(mesh, facet);
+    const double height = Dim == 2 ? measure : 2 * measure / longest;
+    if (height > 0) sum += measure * std::min(1.0, std::pow(2 * roughness / height, 2));
+  }
+  return sum;
+}
+
+/// What is flat may be rough by a length.
 template <int Dim>
 std::vector<std::string> check(const AnyMesh& before, const AnyMesh& after,
-                               double surface_tolerance) {
+                               double surface_tolerance, double roughness) {
   const Measures old = measures<Dim>(before);
   Measures now = measures<Dim>(after);
   const double domain = total(old.regions);
   // What was not listed before may be by now.
   const double boundary = std::max(total(old.facets), total(now.facets));
-  const auto [extent, slack] = scale_of<Dim>(before);
+  const auto scale = scale_of<Dim>(before);
+  const double slack = scale.slack + 2 * roughness;
   std::vector<std::string> faults;
   const double allowed = 1e-9 * domain + slack * boundary;
   compare("the domain measures ", total(now.regions), domain,
           allowed + surface_tolerance * boundary, faults);
   compare_regions<Dim>(before, old, now, {allowed, surface_tolerance}, faults);
   // The rim of a patch of facets: two points in 2D, in 3D a line about as long as the mesh.
-  const double rim = Dim == 2 ? 2 : 4 * extent;
+  const double rim = Dim == 2 ? 2 : 4 * scale.extent;
+  double rough = 0;
+  if (roughness > 0)
+    rough = rough_measure<Dim>(before, roughness) + rough_measure<Dim>(after, roughness);
   const auto faults_of_facets = [&](const Measures& expected) {
     std::vector<std::string> found;
     if (surface_tolerance == 0)
-      compare_facets<Dim>(before, expected, now, 1e-9 * boundary + slack * rim, found);
+      compare_facets<Dim>(before, expected, now, 1e-9 * boundary + slack * rim + rough, found);
     else
       expect_facets(expected, now, found);
     return found;
@@ -265,6 +287,16 @@ std::vector<std::string> check(const AnyMesh& before, const AnyMesh& after,
   faults.insert(faults.end(), found.begin(), found.end());
   compare_pinches<Dim>(before, after, surface_tolerance, faults);
   return faults;
+}
+
+/// What differs by more than usual is looked at again if the mesh was written with few digits.
+template <int Dim>
+std::vector<std::string> check(const AnyMesh& before, const AnyMesh& after,
+                               double surface_tolerance) {
+  auto faults = check<Dim>(before, after, surface_tolerance, 0);
+  if (faults.empty()) return faults;
+  const double rough = roughness<Dim>(before);
+  return rough > 0 ? check<Dim>(before, after, surface_tolerance, rough) : faults;
 }
 
 }  // namespace

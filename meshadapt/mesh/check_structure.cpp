@@ -7,6 +7,7 @@
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/orientation.hpp"
+#include "geometry/rounding.hpp"
 #include "mesh/problems.hpp"
 
 namespace ductile::meshadapt {
@@ -202,6 +203,7 @@ class StructureChecker {
 
   /// How far from flat or straight is let pass: twice what classification lets, and rounding.
   double tolerance() const {
+    if (mesh_.rounding) return 4 * mesh_.rounding->tolerance;
     double extent = 0, largest = 0;
     const Vector<Dim>* first = nullptr;
     for (VertexId v = 0; v < mesh_.vertex_slots(); ++v) {

@@ -21,6 +21,7 @@
 #include "operators/adapter.hpp"
 #include "operators/processor_level.hpp"
 #include "operators/rescue.hpp"
+#include "operators/round_boundary.hpp"
 
 #ifndef DUCTILE_LEVEL  // which is only given where this is compiled once more
 #define DUCTILE_LEVEL as_built
@@ -152,6 +153,7 @@ Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const 
   if (auto* recording = executor.recording()) recording->begin_section("other");
   adapter.run();
   mesh = adapter.take_mesh();
+  round_boundary(mesh);
   count_curved_edges(executor, mesh, adapter.report());
   auto [adapted, metric_on_it] = take_apart(executor, std::move(mesh));
   Attempt result{{std::move(adapted), std::move(metric_on_it), adapter.report()}, may_meet};

@@ -84,6 +84,10 @@ struct Region {
 template <int Dim>
 struct Surface;
 
+/// How precisely coordinates were written; see geometry/rounding.hpp.
+template <int Dim>
+struct Rounding;
+
 template <int Dim>
 struct Mesh {
   // ---- Elements; one is gone when its first corner is none ----
@@ -110,6 +114,8 @@ struct Mesh {
   std::vector<Curve> curves;
   std::vector<Region> regions;
   std::shared_ptr<const Surface<Dim>> surface;  ///< null if no patch or curve is smooth
+  /// Null unless a patch or curve is flat, or straight, only up to how precisely it was written.
+  std::shared_ptr<const Rounding<Dim>> rounding;
 
   std::size_t element_slots() const { return corners_of.size(); }
   std::size_t vertex_slots() const { return site_of.size(); }

@@ -1,0 +1,103 @@
+#include "geometry/precision.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// A number as 15 digits show it, without the zeros at their end.
+struct Decimal {
+  int digits, exponent;  // the first digit counts 10^exponent
+};
+Decimal decimal(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.14e", std::abs(x));
+  const std::string_view view(text.data());
+  const std::size_t mark = view.find('e');
+  std::size_t end = mark;
+  while (end > 2 && view[end - 1] == '0') --end;
+  Decimal result{static_cast<int>(end) - 1, 0};  // the point is none of them
+  if (end == 2) result.digits = 1;
+  result.exponent = std::atoi(view.data() + mark + 1);
+  return result;
+}
+
+/// Is it a number of single precision, or what became of one that was printed with few digits?
+bool is_single(double x, const Decimal& as_decimal) {
+  const double nearest = static_cast<float>(x);
+  if (nearest == x) return true;
+  constexpr int most_digits = 9;  // are printed to tell all of them apart
+  if (as_decimal.digits > most_digits) return false;
+  const double unit = std::pow(10.0, as_decimal.exponent - as_decimal.digits + 1);
+  return std::abs(x - nearest) <= 0.5 * unit * (1 + 1e-6);
+}
+
+double parsed(const char* format, int digits, double x) {
+  std::array<char, 400> text{};
+  std::snprintf(text.data(), text.size(), format, digits, x);
+  return std::strtod(text.data(), nullptr);
+}
+
+}  // namespace
+
+double Precision::rounded(double x) const {
+  switch (kind) {
+    case Kind::full:
+      return x;
+    case Kind::decimals:
+      return parsed("%.*f", digits, x) + 0.0;  // no -0
+    case Kind::significant:
+      return parsed("%.*e", digits - 1, x);
+    case Kind::single:
+      return is_single(x, decimal(x)) ? x : static_cast<float>(x);
+  }
+  return x;
+}
+
+bool PrecisionFinder::add(double x) {
+  if (x == 0) return is_decimal_ || is_single_;
+  constexpr int most_digits = 13;  // 15 would show numbers of double precision as they are
+  const Decimal as_decimal = decimal(x);
+  is_decimal_ = is_decimal_ && as_decimal.digits <= most_digits;
+  is_single_ = is_single_ && is_single(x, as_decimal);
+  const auto count = [&](Most& most) {
+    most.digits = std::max(most.digits, as_decimal.digits);
+    most.decimals = std::max(most.decimals, as_decimal.digits - 1 - as_decimal.exponent);
+  };
+  if (as_decimal.exponent > exponent_) {
+    exponent_ = as_decimal.exponent;
+    largest_ = {};
+  }
+  if (as_decimal.exponent == exponent_) count(largest_);
+  count(all_);
+  size_ = std::max(size_, std::abs(x));
+  return is_decimal_ || is_single_;
+}
+
+/// Of numbers with a fixed number of decimals, the largest have as many as all; of those with a
+/// fixed number of digits, as many digits as all, and fewer decimals.
+Precision PrecisionFinder::precision() const {
+  Precision best;
+  if (size_ == 0) return best;
+  if (is_decimal_) {
+    const bool all_digits = largest_.digits == all_.digits && largest_.decimals < all_.decimals;
+    if (all_digits)
+      best = {Precision::Kind::significant, all_.digits,
+              std::pow(10.0, exponent_ - all_.digits + 1)};
+    else
+      best = {Precision::Kind::decimals, std::max(0, all_.decimals),
+              std::pow(10.0, -all_.decimals)};
+  }
+  const double single = std::ldexp(1.0, std::ilogb(size_) - 23);
+  if (is_single_ && single > best.unit) best = {Precision::Kind::single, 24, single};
+  return best;
+}
+
+}  // namespace ductile::meshadapt

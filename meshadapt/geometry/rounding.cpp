@@ -1,0 +1,125 @@
+#include "geometry/rounding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// The centre of points and the axes of their spread, from the narrowest on.
+template <int Dim>
+struct Spread {
+  Vector<Dim> centre;
+  std::array<Vector<Dim>, Dim> axis;
+};
+template <int Dim>
+Spread<Dim> spread_of_points(std::span<const Vector<Dim>> points) {
+  Spread<Dim> spread;
+  for (const Vector<Dim>& p : points) spread.centre += (1.0 / points.size()) * p;
+  Metric<Dim> moments;
+  for (const Vector<Dim>& p : points) {
+    const Vector<Dim> d = p - spread.centre;
+    std::size_t at = 0;
+    for (int j = 0; j < Dim; ++j)
+      for (int i = 0; i <= j; ++i) moments.m[at++] += d[i] * d[j];
+  }
+  const PrincipalAxes<Dim> axes = principal_axes(moments);
+  std::array<std::size_t, Dim> order;
+  for (std::size_t i = 0; i < Dim; ++i) order[i] = i;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return axes.value[a] < axes.value[b]; });
+  for (std::size_t i = 0; i < Dim; ++i) spread.axis[i] = axes.vector[order[i]];
+  return spread;
+}
+
+/// From a line to a point.
+template <int Dim>
+Vector<Dim> aside(const Flat<Dim>& line, const Vector<Dim>& point) {
+  const Vector<Dim> d = point - line.origin;
+  return d - dot(d, line.direction) * line.direction;
+}
+
+}  // namespace
+
+template <int Dim>
+double rounding_tolerance(const Precision& precision) {
+  return std::sqrt(double{Dim}) * precision.unit;
+}
+
+template <int Dim>
+std::optional<Flat<Dim>> plane_near(std::span<const Vector<Dim>> points, double distance) {
+  const Spread<Dim> spread = spread_of_points(points);
+  const bool near = std::all_of(points.begin(), points.end(), [&](const Vector<Dim>& p) {
+    return std::abs(dot(p - spread.centre, spread.axis[0])) <= distance;
+  });
+  if (!near) return {};
+  return Flat<Dim>{spread.centre, spread.axis[0]};
+}
+
+std::optional<Flat<3>> line_near(std::span<const Vector<3>> points, double distance) {
+  const Spread<3> spread = spread_of_points(points);
+  const Flat<3> line{spread.centre, spread.axis[2]};
+  const bool near = std::all_of(points.begin(), points.end(), [&](const Vector<3>& p) {
+    return norm(aside(line, p)) <= distance;
+  });
+  if (!near) return {};
+  return line;
+}
+
+bool explains_line(const Vector<3>& a, const Vector<3>& b, const Vector<3>& point,
+                   double tolerance) {
+  const Vector<3> along = b - a, d = point - a;
+  const double square = dot(along, along);
+  if (!(square > 0)) return false;
+  const double share = dot(d, along) / square;
+  return norm(d - share * along) <= tolerance * (1 + std::abs(share) + std::abs(1 - share));
+}
+
+template <int Dim>
+bool explains(const std::array<Vector<Dim>, Dim>& facet, const Vector<Dim>& point,
+              double tolerance) {
+  const Vector<Dim> normal = facet_normal(facet), d = point - facet[0];
+  const double square = dot(normal, normal);
+  if (!(square > 0)) return false;
+  double lever = 0;  // the sum of the weights with which the corners make up the point's foot
+  if constexpr (Dim == 2) {
+    const Vector<2> along = facet[1] - facet[0];
+    const double share = dot(d, along) / dot(along, along);
+    lever = std::abs(share) + std::abs(1 - share);
+  } else {
+    const double v = dot(cross(d, facet[2] - facet[0]), normal) / square;
+    const double w = dot(cross(facet[1] - facet[0], d), normal) / square;
+    lever = std::abs(v) + std::abs(w) + std::abs(1 - v - w);
+  }
+  return std::abs(dot(d, normal)) <= tolerance * (1 + lever) * std::sqrt(square);
+}
+
+template <int Dim>
+Vector<Dim> Rounding<Dim>::rounded(Vector<Dim> position, int freedom, std::uint32_t entity) const {
+  const auto flat_of = [&](const auto& flats) {
+    return entity < flats.size() ? flats[entity] : std::nullopt;
+  };
+  if (freedom == Dim - 1) {
+    if (const auto plane = flat_of(plane_of))
+      position -= dot(position - plane->origin, plane->direction) * plane->direction;
+  } else if (freedom == 1) {
+    if (const auto line = flat_of(line_of)) position -= aside(*line, position);
+  }
+  for (double& x : position.x) x = precision.rounded(x);
+  return position;
+}
+
+template double rounding_tolerance<2>(const Precision&);
+template double rounding_tolerance<3>(const Precision&);
+template std::optional<Flat<2>> plane_near(std::span<const Vector<2>>, double);
+template std::optional<Flat<3>> plane_near(std::span<const Vector<3>>, double);
+template bool explains<2>(const std::array<Vector<2>, 2>&, const Vector<2>&, double);
+template bool explains<3>(const std::array<Vector<3>, 3>&, const Vector<3>&, double);
+template struct Rounding<2>;
+template struct Rounding<3>;
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,57 @@
+/// @file
+/// Rounding: what is flat or straight in a mesh up to how precisely its coordinates were written.
+/// Its new and moved vertices there are to be written alike, so that it is flat when it is read
+/// again.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ductile/meshadapt/mesh.hpp"
+#include "geometry/precision.hpp"
+
+namespace ductile::meshadapt {
+
+/// A plane, by its normal, or a line, by its direction; both of unit length.
+template <int Dim>
+struct Flat {
+  Vector<Dim> origin, direction;
+};
+
+template <int Dim>
+struct Rounding {
+  Precision precision;
+  double tolerance = 0;  ///< how far what is flat, or straight, may be from a plane, or a line
+  std::vector<std::optional<Flat<Dim>>> plane_of;  ///< [patch], of those flat by rounding
+  std::vector<std::optional<Flat<Dim>>> line_of;   ///< [curve], 3D
+
+  /// Where to look for a vertex of this freedom that may not leave an entity: on its plane or line,
+  /// written as precisely as the input.
+  Vector<Dim> rounded(Vector<Dim> position, int freedom, std::uint32_t entity) const;
+};
+
+/// How far rounding may take what is flat: half a unit along each axis, and as much again because
+/// planes are found from what was rounded.
+template <int Dim>
+double rounding_tolerance(const Precision& precision);
+
+/// The plane that fits the points best, if all are within a distance of it.
+template <int Dim>
+std::optional<Flat<Dim>> plane_near(std::span<const Vector<Dim>> points, double distance);
+/// The same for a line in space.
+std::optional<Flat<3>> line_near(std::span<const Vector<3>> points, double distance);
+
+/// Is a point as far from the plane (2D: the line) of a facet as it may be if it is meant to be in
+/// it, and both were rounded by the tolerance at most?
+template <int Dim>
+bool explains(const std::array<Vector<Dim>, Dim>& facet, const Vector<Dim>& point,
+              double tolerance);
+/// The same for the line through two points in space.
+bool explains_line(const Vector<3>& a, const Vector<3>& b, const Vector<3>& point,
+                   double tolerance);
+
+extern template struct Rounding<2>;
+extern template struct Rounding<3>;
+
+}  // namespace ductile::meshadapt
