@@ -41,6 +41,7 @@ TEST_F(Memory, IsRefusedOnlyWhereItIsTooLittle) {
                                                         {"s.mesh -hsiz 0.003", "triangles"},
                                                         {"t.mesh -hsiz 0.035", "tetrahedra"}}) {
     ASSERT_EQ(adapt(words), 0) << errors_of(folder_);
+    ASSERT_EQ(adapt(words), 0) << errors_of(folder_);
     const std::size_t taken = megabytes_told();
     std::filesystem::remove(folder_.path() / "o.mesh");
     EXPECT_EQ(adapt(words + " -m " + std::to_string(4 * taken)), 0) << errors_of(folder_);
