@@ -63,7 +63,8 @@ bool in_range(const Metric<Dim>& metric) {
 }
 
 /// The metric itself if it is one. If rounding, or an intersection, has made it more stretched than
-/// metrics may be, one that is not: the longest sizes are shorter. Whatever is no number stays.
+/// metrics may be, one that is not: the longest sizes are shorter. What asks for sizes beyond their
+/// bounds stays, to be refused, and so does what is no number.
 template <int Dim>
 Metric<Dim> brought_into_range(const Metric<Dim>& metric) {
   if (in_range(metric)) return metric;
@@ -72,6 +73,9 @@ Metric<Dim> brought_into_range(const Metric<Dim>& metric) {
   if (!(most > 0 && most < 1e300)) return metric;
   const double highest = 1 / (smallest_size * smallest_size);
   const double lowest = 1 / (largest_size * largest_size);
+  if (most > 1.01 * highest) return metric;
+  for (const double value : axes.value)
+    if (value < 0.99 * lowest && value > 1e-12 * most) return metric;
   // Rounding in turned axes takes some of the small ones again, so there is less stretch each time.
   Metric<Dim> result = metric;
   for (double ratio = 1 / (largest_anisotropy * largest_anisotropy); ratio < 1e-11; ratio *= 4) {
