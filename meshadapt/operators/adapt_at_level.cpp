@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -135,28 +136,51 @@ bool has_faced_patches(const Mesh<Dim>& mesh) {
                      [](const Patch<Dim>& patch) { return patch.faced; });
 }
 
+/// Adapts; a mesh that came adapted, and is better than what came out, is set up again and kept.
+template <int Dim>
+void run(std::optional<Adapter<Dim>>& adapter, const auto& set_up) {
+  using Outcome = typename Adapter<Dim>::Outcome;
+  adapter->run();
+  if (adapter->outcome() == Outcome::better_mended) {
+    set_up();
+    adapter->mend();
+  }
+  if (adapter->outcome() == Outcome::better_left) {
+    set_up();
+    adapter->report().converged = true;
+  }
+}
+
 template <int Dim>
 Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
                    const AdaptOptions& options) {
   const Stopwatch watch;
   if (auto* recording = executor.recording()) recording->begin_section("setup");
-  Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
-  Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
-  const bool may_meet = mesh.surface || has_faced_patches(mesh);
-  const std::size_t fixed = fixed_vertices(executor, mesh);
-  auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
-  expect_possible(executor, mesh, metric_of, metric.name, options);
-  Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours),
-                       std::exchange(metric_of, {}));
-  adapter.report().setup_seconds = watch.seconds();
+  std::size_t fixed = 0;
+  bool may_meet = false;
+  std::optional<Adapter<Dim>> adapter;
+  const auto set_up = [&] {
+    adapter.reset();
+    warnings.clear();
+    Neighbours<Dim> neighbours;
+    Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
+    may_meet = mesh.surface || has_faced_patches(mesh);
+    fixed = fixed_vertices(executor, mesh);
+    auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
+    expect_possible(executor, mesh, metric_of, metric.name, options);
+    adapter.emplace(executor, options, std::move(mesh), std::move(neighbours),
+                    std::exchange(metric_of, {}));
+  };
+  set_up();
+  adapter->report().setup_seconds = watch.seconds();
   if (auto* recording = executor.recording()) recording->begin_section("other");
-  adapter.run();
-  mesh = adapter.take_mesh();
+  run<Dim>(adapter, set_up);
+  Mesh<Dim> mesh = adapter->take_mesh();
   round_boundary(mesh);
-  count_curved_edges(executor, mesh, adapter.report());
+  count_curved_edges(executor, mesh, adapter->report());
   auto [adapted, metric_on_it] = take_apart(executor, std::move(mesh));
-  Attempt result{{std::move(adapted), std::move(metric_on_it), adapter.report()}, may_meet};
+  Attempt result{{std::move(adapted), std::move(metric_on_it), adapter->report()}, may_meet};
   result.adapted.report.warnings = std::move(warnings);
   result.adapted.report.fixed_vertices = fixed;
   return result;

@@ -1,23 +1,21 @@
 #include "operators/adapter.hpp"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
-#include <numeric>
 #include <utility>
 
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "operators/coarsen.hpp"
+#include "operators/kernel_timer.hpp"
 #include "operators/metric_path.hpp"
 #include "operators/refine.hpp"
+#include "operators/remaining_work.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"
+#include "operators/tuning.hpp"
 
 namespace ductile::meshadapt {
 
@@ -27,51 +25,12 @@ using runtime::RoundsReport;
 
 namespace {
 
-/// How much is done for better shapes.
-struct Care {
-  double calm;   ///< share of changes below which the mesh is near the metric
-  int polishes;  ///< passes
-  double far;    ///< of SmoothOptions
-};
+/// A mesh of which a smaller share would change is left alone, or only mended, or only mended
+/// unless it gets clearly better by more.
+constexpr double nothing = 2e-4, little = 0.02, not_much = 0.06;
 
-/// What differs between the dimensions. Shares are of the number of elements.
-template <int Dim>
-struct Tuning;
-
-template <>
-struct Tuning<2> {
-  /// How much longer than the rules want edges must be to be split, by stage.
-  static constexpr double stages[] = {1};
-  static constexpr Care normal{.calm = 0.03, .polishes = 1, .far = 0.16};
-  static constexpr Care thorough{.calm = 0.03, .polishes = 2, .far = 0.08};
-  static constexpr double kept_shape = 1;        ///< of Rules, on the way to the metric
-  static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
-  static constexpr int rearrangements = 4;       ///< passes
-  static constexpr double swap_below = 0.9;      ///< mean ratio of elements that are swapped
-  static constexpr double optimise_below = 0.8;  ///< of those that are optimised in the end
-  /// ... and of those around a vertex on the whole where they are finished together.
-  static constexpr double mean_below = 0.7;
-  static constexpr double far = 0.003;  ///< of most elements where the metric is far from the mesh
-};
-
-template <>
-struct Tuning<3> {
-  /// Coarsening and swapping shorten many long edges, so the first stage splits none, and each
-  /// after it what is left of the longest.
-  static constexpr double stages[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25, 1};
-  static constexpr Care normal{.calm = 0.1, .polishes = 1, .far = 0.2};
-  static constexpr Care thorough{.calm = 0.05, .polishes = 2, .far = 0.08};
-  static constexpr double kept_shape = 0.2;
-  static constexpr double stretched_edge = 1.55;
-  static constexpr int rearrangements = 2;
-  static constexpr double swap_below = 0.8;
-  static constexpr double optimise_below = 0.6;
-  static constexpr double mean_below = 0;
-  static constexpr double far = 0.012;
-};
-
-/// A mesh of which a smaller share would change is left alone, or only finished.
-constexpr double nothing = 2e-4, little = 5e-3;
+/// Of elements, whatever could be done about them.
+constexpr double many_poor = 5e-3;
 
 /// Swapping takes the worst elements first only within windows, which stay in cache while they are
 /// reserved, planned and applied.
@@ -79,26 +38,6 @@ constexpr RoundsOptions by_windows{.most_rounds = 1000, .reserving_window = 3276
 
 /// Rearranging also collapses edges that are hardly long enough: some would end up too short.
 constexpr double eager = 1.03;
-
-/// Adds the time of a scope to a kernel's, and makes it a section of the executor's recording.
-class KernelTimer {
- public:
-  KernelTimer(const runtime::Executor& executor, const char* kernel, double& seconds)
-      : recording_(executor.recording()), seconds_(seconds) {
-    if (recording_ != nullptr) recording_->begin_section(kernel);
-  }
-  KernelTimer(const KernelTimer&) = delete;
-  KernelTimer& operator=(const KernelTimer&) = delete;
-  ~KernelTimer() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    if (recording_ != nullptr) recording_->begin_section("other");
-  }
-
- private:
-  runtime::Recording* recording_;
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// The mesh in an order in which what is near in space is near in memory, every vertex with its
 /// metric and with one of its elements as its host.
@@ -113,11 +52,6 @@ Mesh<Dim> with_metrics(const runtime::Executor& executor, Mesh<Dim> mesh,
     mesh.host_of[v] = mesh.elements_of.of(static_cast<VertexId>(v)).front();
   });
   return mesh;
-}
-
-template <int Dim>
-const Care& care_of(const AdaptOptions& options) {
-  return options.thorough ? Tuning<Dim>::thorough : Tuning<Dim>::normal;
 }
 
 }  // namespace
@@ -136,8 +70,33 @@ Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& opt
 template <int Dim>
 void Adapter<Dim>::run() {
   const double wanted = share_to_change();
-  report_.converged = wanted < little;
+  // Rules that refuse what is next to poor elements may hide what there is to do.
+  const bool many_are_poor = share(elements_below(RemainingWork<Dim>::poor)) >= many_poor;
+  if (options_.insert && wanted < little && !many_are_poor) return mend(wanted);
+  const bool doubtful = !options_.insert || wanted < not_much;
+  const Standing before = doubtful ? standing() : Standing{};
+  adapt_anew();
+  if (doubtful && !is_better(standing(), before)) outcome_ = Outcome::better_mended;
+}
+
+template <int Dim>
+void Adapter<Dim>::mend() {
+  if (options_.insert) mend(share_to_change());
+}
+
+/// Does what is to be done next to where it is to be done, if anything is. Next to elements that
+/// are thin and cannot go, splits may make others like them, without an end.
+template <int Dim>
+void Adapter<Dim>::mend(double wanted) {
+  report_.converged = true;
+  came_adapted_ = true;
   if (wanted < nothing) return;
+  finish();
+  if (share_to_change() > wanted / 2) outcome_ = Outcome::better_left;
+}
+
+template <int Dim>
+void Adapter<Dim>::adapt_anew() {
   if (options_.insert && is_far()) come_near();
   while (!report_.converged && report_.iterations < options_.iterations) {
     ++report_.iterations;
@@ -148,11 +107,15 @@ void Adapter<Dim>::run() {
     report_.converged = calm && !next_stage();
   }
   stage_ = std::size(Tuning<Dim>::stages) - 1;  // what is left is split at once
-  if (wanted >= little) {
-    rearrange();
-    polish();
-  }
+  rearrange();
+  polish();
   finish();
+}
+
+template <int Dim>
+Standing Adapter<Dim>::standing() const {
+  const EdgeRange wanted{options_.rules.short_edge, options_.rules.long_edge};
+  return standing_of(executor_, mesh_, wanted, RemainingWork<Dim>::poor);
 }
 
 template <int Dim>
@@ -205,46 +168,28 @@ void Adapter<Dim>::take_metrics() {
 template <int Dim>
 double Adapter<Dim>::share_to_change() {
   if (!options_.insert) return 1;
-  const double lengths = share(feasible_changes());
-  if (lengths >= little) return lengths;
-  const auto swaps = Swap<Dim>::improvements(executor_, mesh_, 0, Tuning<Dim>::swap_below);
-  return lengths + share(swaps.size() + elements_below(0.3));
-}
-
-/// About how many collapses and splits finishing would make, from a sample of those that lengths
-/// call for; looked at part by part, until they are not few: then it is more than that.
-template <int Dim>
-std::size_t Adapter<Dim>::feasible_changes() {
   aim_ = Aim::finish;
-  const Coarsen<Dim> coarsening(mesh_, rules());
-  const Refine<Dim> refinement(executor_, mesh_, background_, rules());
+  keeps_lengths_ = true;
+  const auto few = static_cast<std::size_t>(little * static_cast<double>(least_count()));
+  RemainingWork<Dim> work(executor_, mesh_, background_,
+                          {.rules = rules(),
+                           .smooth = smoothing(Tuning<Dim>::optimise_below, false),
+                           .swap_below = Tuning<Dim>::swap_below,
+                           .swaps = options_.swap,
+                           .moves = options_.move,
+                           .few = few});
+  const double share = static_cast<double>(work.count(survey_for(rules().long_edge))) /
+                       static_cast<double>(least_count());
+  if (share < little) work.touch_poor();
   aim_ = Aim::approach;
-  ++mesh_.epoch;  // the survey can tell what is there from what will change
-  auto& survey = survey_for(rules().long_edge);
-  const auto crowded =
-      Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey, rules().short_edge, 0);
-  const auto edges = long_edges(executor_, mesh_, survey, rules().long_edge, 0);
-  const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
-  const auto changes_at = [&](std::size_t k) -> std::size_t {
-    if (k < crowded.size()) return coarsening.plan(crowded[k]).has_value();
-    const LongEdge& edge = edges[k - crowded.size()];
-    return refinement.splits(edge) ? splits_of(edge) : 0;
-  };
-  std::size_t changes = 0;
-  std::array<std::size_t, 256> part;
-  for (std::size_t first = 0; first < all / step && share(changes) < little; first += part.size()) {
-    const std::size_t count = std::min(part.size(), all / step - first);
-    const auto look = [&](std::size_t i) { part[i] = changes_at((first + i) * step); };
-    parallel_for(executor_, count, look, {.grain = 2});
-    changes += step * std::accumulate(part.begin(), part.begin() + count, std::size_t{0});
-  }
-  return changes;
+  keeps_lengths_ = false;
+  return share;
 }
 
-/// About how many times an edge will be split.
+/// One change is no small share of a small mesh, but it is little work.
 template <int Dim>
-std::size_t Adapter<Dim>::splits_of(const LongEdge& edge) const {
-  return static_cast<std::size_t>(edge.length / options_.rules.long_edge);
+std::size_t Adapter<Dim>::least_count() const {
+  return std::max<std::size_t>(100, element_count());
 }
 
 template <int Dim>
@@ -252,8 +197,8 @@ std::size_t Adapter<Dim>::splits_to_come() {
   const double limit = options_.rules.long_edge;
   const auto edges = long_edges(executor_, mesh_, survey_for(limit), limit, 0);
   return runtime::parallel_reduce(
-      executor_, edges.size(), std::size_t{0}, [&](std::size_t i) { return splits_of(edges[i]); },
-      std::plus<>());
+      executor_, edges.size(), std::size_t{0},
+      [&](std::size_t i) { return splits_of(edges[i], limit); }, std::plus<>());
 }
 
 template <int Dim>
@@ -275,6 +220,14 @@ Rules Adapter<Dim>::rules() const {
     rules.shortest_split = rules.short_edge;
   }
   return rules;
+}
+
+/// What moves and swaps leave edges in: in the end they may undo nothing of what collapses and
+/// splits have reached.
+template <int Dim>
+EdgeRange Adapter<Dim>::range() const {
+  if (!keeps_lengths_) return {};
+  return {options_.rules.short_edge, options_.rules.long_edge};
 }
 
 template <int Dim>
@@ -326,21 +279,27 @@ void Adapter<Dim>::polish() {
     smooth(3, 0.5, true);
     swap(4, Tuning<Dim>::swap_below);
   }
+  seen_by_smooth_ = 0;
   smooth(2, Tuning<Dim>::optimise_below, false);
 }
 
-/// Until there is nothing to do: adapting the result again shall change nothing.
+/// Until there is nothing to do: adapting the result again shall change nothing. In a mesh that
+/// came adapted vertices move only next to changes.
 template <int Dim>
 void Adapter<Dim>::finish() {
   if (!options_.insert) return;
   aim_ = Aim::finish;
   seen_by_coarsen_ = seen_by_refine_ = seen_by_swap_ = 0;
-  for (int pass = 0; pass < 5; ++pass) {
+  const std::uint32_t before = came_adapted_ ? mesh_.epoch - 1 : 0;
+  keeps_lengths_ = came_adapted_;
+  for (int pass = 0; pass < 10; ++pass) {
     std::size_t changes = coarsen();
     changes += swap(4, Tuning<Dim>::swap_below);
     changes += refine();
     changes += swap(4, Tuning<Dim>::swap_below);
+    seen_by_smooth_ = before;
     smooth(1, Tuning<Dim>::optimise_below, false);
+    keeps_lengths_ = true;
     if (share(changes) < 1e-4) break;
   }
 }
@@ -412,9 +371,9 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
   const KernelTimer timer(executor_, "swap", report_.swap.seconds);
   std::size_t changes = 0;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below);
+    auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below, range());
     if (work.empty()) break;
-    Swap<Dim> op(executor_, mesh_);
+    Swap<Dim> op(executor_, mesh_, range());
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), by_windows);
     add(report_.swap, rounds);
     changes += rounds.applied;
@@ -425,18 +384,25 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
 }
 
 template <int Dim>
+SmoothOptions Adapter<Dim>::smoothing(double optimise_below, bool laplacian) const {
+  return {.laplacian = laplacian,
+          .optimise_below = optimise_below,
+          .mean_below = aim_ == Aim::finish ? Tuning<Dim>::mean_below : 0,
+          .far = care_of<Dim>(options_).far,
+          .range = range()};
+}
+
+template <int Dim>
 std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplacian) {
   if (!options_.move) return 0;
   const KernelTimer timer(executor_, "smooth", report_.smooth.seconds);
-  Smooth<Dim> op(mesh_, background_,
-                 {.laplacian = laplacian,
-                  .optimise_below = optimise_below,
-                  .mean_below = aim_ == Aim::finish ? Tuning<Dim>::mean_below : 0,
-                  .far = care_of<Dim>(options_).far,
-                  .again = sweeps > 1});
+  SmoothOptions options = smoothing(optimise_below, laplacian);
+  options.again = sweeps > 1;
+  Smooth<Dim> op(mesh_, background_, options);
   auto work = laplacian
                   ? Smooth<Dim>::movable_vertices(executor_, mesh_, end_epoch(seen_by_smooth_))
-                  : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below);
+                  : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below,
+                                                          end_epoch(seen_by_smooth_));
   const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = sweeps});
   add(report_.smooth, rounds);
   if (rounds.applied != 0) survey_.forget();

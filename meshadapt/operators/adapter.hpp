@@ -11,7 +11,10 @@
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/rounds_report.hpp"
+#include "operators/edge_range.hpp"
 #include "operators/edges.hpp"
+#include "operators/smooth.hpp"
+#include "operators/standing.hpp"
 
 namespace ductile::meshadapt {
 
@@ -21,8 +24,16 @@ class Adapter {
   Adapter(const runtime::Executor& executor, const AdaptOptions& options, Mesh<Dim> mesh,
           Neighbours<Dim> neighbours, const std::vector<Metric<Dim>>& metric_of);
 
-  /// Adapts the mesh; may be called once.
+  /// Adapts the mesh. Either this or mend() may be called, once.
   void run();
+
+  /// Changes only what it must of a mesh that came adapted.
+  void mend();
+
+  /// What has become of a mesh that came more or less adapted: it is to be kept as it is now; or
+  /// the one that came is better for it, and is to be mended, or left alone.
+  enum class Outcome : std::uint8_t { good, better_mended, better_left };
+  Outcome outcome() const { return outcome_; }
 
   const Mesh<Dim>& mesh() const { return mesh_; }
   /// Gives the mesh away, which is the end of this adapter's work.
@@ -56,15 +67,19 @@ class Adapter {
   void come_near();
   void take_metrics();
   double share_to_change();
-  std::size_t feasible_changes();
+  void mend(double wanted);
+  void adapt_anew();
   std::size_t iterate();
   void rearrange();
   void polish();
   void finish();
 
   Rules rules() const;
+  EdgeRange range() const;
+  SmoothOptions smoothing(double optimise_below, bool laplacian) const;
+  std::size_t least_count() const;
+  Standing standing() const;
   bool next_stage();
-  std::size_t splits_of(const LongEdge& edge) const;
   std::size_t splits_to_come();
   double share(std::size_t changes) const;
   std::size_t elements_below(double mean_ratio) const;
@@ -83,7 +98,10 @@ class Adapter {
   EdgeSurvey<Dim> survey_;
   AdaptReport report_;
   Aim aim_ = Aim::approach;
-  std::size_t stage_ = 0;                             // of refinement
+  std::size_t stage_ = 0;      // of refinement
+  bool came_adapted_ = false;  // or nearly
+  Outcome outcome_ = Outcome::good;
+  bool keeps_lengths_ = false;                        // see range()
   bool in_order_ = false;                             // renumbered since elements were made or gone
   mutable std::optional<std::size_t> element_count_;  // as far as it is known
   // The epoch up to which each kernel has seen all changes.

@@ -56,6 +56,11 @@ struct LongEdge {
   friend auto operator<=>(const LongEdge&, const LongEdge&) = default;
 };
 
+/// About how many times an edge will be split.
+inline std::size_t splits_of(const LongEdge& edge, double long_edge) {
+  return static_cast<std::size_t>(edge.length / long_edge);
+}
+
 /// Of the elements around an edge that changed after an epoch, one stands for it. Of two triangles,
 /// that is the one where it goes from the lower number to the higher. `element` is one of them.
 inline bool stands_for(const Mesh<2>& mesh, ElementId element, std::size_t edge,

@@ -53,11 +53,13 @@ runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices(const runtime::Exec
 
 template <int Dim>
 runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices_of_poor(
-    const runtime::Executor& executor, const Mesh<Dim>& mesh, double mean_ratio) {
+    const runtime::Executor& executor, const Mesh<Dim>& mesh, double mean_ratio,
+    std::uint32_t after) {
   const double bound = shape_of_mean_ratio<Dim>(mean_ratio);
   runtime::FilledArray<std::uint8_t> marked(executor, mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
-    if (mesh.shape_of[e] >= bound || !mesh.alive(static_cast<ElementId>(e))) return;
+    if (mesh.shape_of[e] >= bound || mesh.changed_at[e] <= after) return;
+    if (!mesh.alive(static_cast<ElementId>(e))) return;
     for (const VertexId v : mesh.corners_of[e]) runtime::atomic_set(marked[v]);
   });
   return movable_of(executor, mesh, marked);
@@ -119,6 +121,20 @@ bool Smooth<Dim>::keeps_surface(VertexId vertex, const Vector<Dim>& position) co
   });
 }
 
+/// Do all edges of the vertex stay in the range, or as close to it as they are, if it is here?
+template <int Dim>
+bool Smooth<Dim>::keeps_lengths(VertexId vertex, const Site<Dim>& site) const {
+  if (!options_.range.is_bounded()) return true;
+  bool keeps = true;
+  visit_neighbours(mesh_, vertex, [&](VertexId v) {
+    const Site<Dim>& other = mesh_.site_of[v];
+    const EndSquares edge = end_squares(site, other);
+    keeps = keeps && (options_.range.contains(edge) ||
+                      options_.range.accepts(edge, end_squares(mesh_.site_of[vertex], other)));
+  });
+  return keeps;
+}
+
 /// Whether a place scores better than a bar; sets `result` to it. It is looked at first as if the
 /// metric were the same there as nearby, as that needs no search; and a place with positive volumes
 /// lies inside the domain.
@@ -136,8 +152,9 @@ bool Smooth<Dim>::place(const Ball<Dim>& ball, const Vector<Dim>& position, cons
     return mesh_.kind_of[ball.vertex()].freedom == Dim &&
            ball.is_certain(result.score.volume, position);
   };
-  return beats_bar(result.score) && (is_certain() || (keeps_volumes(ball.vertex(), position) &&
-                                                      keeps_surface(ball.vertex(), position)));
+  return beats_bar(result.score) && keeps_lengths(ball.vertex(), result.site) &&
+         (is_certain() ||
+          (keeps_volumes(ball.vertex(), position) && keeps_surface(ball.vertex(), position)));
 }
 
 /// Along a curve, where it is smooth between the next vertices on both sides.

@@ -14,6 +14,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 #include "operators/ball.hpp"
+#include "operators/edge_range.hpp"
 
 namespace ductile::meshadapt {
 
@@ -34,6 +35,7 @@ struct SmoothOptions {
                                 ///< though the worst may get worse
   double far = 0.08;            ///< metric length of a move that neighbours take notice of
   bool again = true;            ///< wake whoever has a neighbour that moved far
+  EdgeRange range = {};         ///< which no move leads edges out of, or farther out of
 };
 
 template <int Dim>
@@ -54,10 +56,12 @@ class Smooth {
   static runtime::UnsetVector<VertexId> movable_vertices(const runtime::Executor& executor,
                                                          const Mesh<Dim>& mesh,
                                                          std::uint32_t after);
-  /// All vertices that may move, next to elements of a mean ratio below a bound.
+  /// All vertices that may move, next to elements of a mean ratio below a bound that changed after
+  /// an epoch.
   static runtime::UnsetVector<VertexId> movable_vertices_of_poor(const runtime::Executor& executor,
                                                                  const Mesh<Dim>& mesh,
-                                                                 double mean_ratio);
+                                                                 double mean_ratio,
+                                                                 std::uint32_t after);
 
   // ---- Plan: a better place, if there is one. Reads only. ----
   std::optional<Plan> plan(VertexId vertex) const;
@@ -89,6 +93,7 @@ class Smooth {
   };
   bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
   bool keeps_surface(VertexId vertex, const Vector<Dim>& position) const;
+  bool keeps_lengths(VertexId vertex, const Site<Dim>& site) const;
   bool place(const Ball<Dim>& ball, const Vector<Dim>& position, const Place& near,
              const Score& bar, Place& result) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;

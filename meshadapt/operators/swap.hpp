@@ -14,6 +14,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
+#include "operators/edge_range.hpp"
 
 namespace ductile::meshadapt {
 
@@ -33,14 +34,16 @@ class Swap {
   using Update = ListChange;
   static constexpr bool forgoes_wakes = true;  // the next sweep looks at what has changed
 
-  Swap(const runtime::Executor& executor, Mesh<Dim>& mesh) : executor_(executor), mesh_(mesh) {}
+  Swap(const runtime::Executor& executor, Mesh<Dim>& mesh, const EdgeRange& range = {})
+      : executor_(executor), mesh_(mesh), range_(range) {}
 
   /// Edges and faces of elements changed after an epoch whose swap would be an improvement now,
   /// where the worst mean ratio is below a bound. Only such as are likely to be worth a swap are
-  /// looked at: in 2D edges opposite to a wide angle, in 3D long edges and large faces.
+  /// looked at: in 2D edges opposite to a wide angle, in 3D long edges and large faces. New edges
+  /// are in the range, or closer to it than the one that goes.
   static runtime::UnsetVector<Swappable> improvements(const runtime::Executor& executor,
                                                       Mesh<Dim>& mesh, std::uint32_t after,
-                                                      double below);
+                                                      double below, const EdgeRange& range = {});
 
   /// New elements are worth it if the worst of them is better than this.
   static double bar(double worst_before) { return worst_before * 1.02 + 1e-4; }
@@ -88,6 +91,7 @@ class Swap {
  private:
   const runtime::Executor& executor_;
   Mesh<Dim>& mesh_;
+  EdgeRange range_;
 };
 
 }  // namespace ductile::meshadapt

@@ -22,15 +22,17 @@ Kite make_kite(const Mesh<2>& mesh, ElementId first, int corner, ElementId secon
   return {first, second, a, b, mesh.corners_of[first][static_cast<std::size_t>(corner)], d};
 }
 
-/// May the shared edge go, and are triangles a d c and d b c better?
-bool worth_a_flip(const Mesh<2>& mesh, const Kite& kite) {
+/// May the shared edge go, are triangles a d c and d b c better, and may the edge c-d be?
+bool worth_a_flip(const Mesh<2>& mesh, const Kite& kite, const EdgeRange& range) {
   const auto [first, second, a, b, c, d] = kite;
   if (mesh.region_of[first] != mesh.region_of[second] || mesh.required_element(first) ||
       patch_of_edge(mesh, first, a, b) != 0)
     return false;
   const double least = Swap<2>::bar(std::min(mesh.shape_of[first], mesh.shape_of[second]));
   return shape_above<2>(mesh.sites({a, d, c}), least) &&
-         shape_above<2>(mesh.sites({d, b, c}), least);
+         shape_above<2>(mesh.sites({d, b, c}), least) &&
+         (!range.is_bounded() || range.accepts(end_squares(mesh.site_of[c], mesh.site_of[d]),
+                                               end_squares(mesh.site_of[a], mesh.site_of[b])));
 }
 
 }  // namespace
@@ -46,7 +48,7 @@ std::optional<Replacement<2>> Swap<2>::plan(const Swappable& edge) const {
          first[static_cast<std::size_t>(corner)] == edge.b)
     ++corner;
   const Kite kite = make_kite(mesh_, shell[0], corner, shell[1]);
-  if (!worth_a_flip(mesh_, kite)) return {};
+  if (!worth_a_flip(mesh_, kite, range_)) return {};
   Replacement<2> result;
   result.old_elements = {kite.first, kite.second};
   result.new_elements = {{kite.a, kite.d, kite.c}, {kite.d, kite.b, kite.c}};
@@ -86,9 +88,10 @@ class FlipSearch {
   static constexpr std::size_t stretch = 64;
 
   FlipSearch(const runtime::Executor& executor, const Mesh<2>& mesh, std::uint32_t after,
-             double below)
+             double below, const EdgeRange& range)
       : mesh_(mesh),
         after_(after),
+        range_(range),
         bound_(static_cast<float>(shape_of_mean_ratio<2>(below))),
         marked_(mark_changed(executor, mesh, after)) {}
 
@@ -140,13 +143,14 @@ class FlipSearch {
       const int at = wide_corner(mesh_, other);
       if (at >= 0 && mesh_.corners_of[other][static_cast<std::size_t>(at)] == kite.d) return;
     }
-    if (!worth_a_flip(mesh_, kite)) return;
+    if (!worth_a_flip(mesh_, kite, range_)) return;
     const float worst = std::min(mesh_.shape_of[e], mesh_.shape_of[other]);
     append(Swappable{std::min(kite.a, kite.b), std::max(kite.a, kite.b), none, worst});
   }
 
   const Mesh<2>& mesh_;
   std::uint32_t after_;
+  EdgeRange range_;
   float bound_;
   runtime::FilledArray<std::uint8_t> marked_;
 };
@@ -159,9 +163,9 @@ class FlipSearch {
 template <>
 runtime::UnsetVector<Swappable> Swap<2>::improvements(const runtime::Executor& executor,
                                                       Mesh<2>& mesh, std::uint32_t after,
-                                                      double below) {
+                                                      double below, const EdgeRange& range) {
   constexpr std::size_t stretch = FlipSearch::stretch;
-  const FlipSearch search(executor, mesh, after, below);
+  const FlipSearch search(executor, mesh, after, below, range);
   const std::size_t elements = mesh.element_slots();
   return runtime::parallel_collect<Swappable>(
       executor, (elements + stretch - 1) / stretch, [&](std::size_t i, auto&& append) {

@@ -157,7 +157,8 @@ bool worth_piercing(const Mesh<3>& mesh, const Swappable& face, VertexId p, Vert
 }
 
 std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappable& face,
-                                             const Shell& shell, double bar) {
+                                             const Shell& shell, double bar,
+                                             const EdgeRange& range) {
   ElementId e = shell[0], f = shell[1];
   auto [p, c] = others(mesh.corners_of[e], face.a, face.b);
   if (c != face.c) {
@@ -173,6 +174,7 @@ std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappabl
   for (const Corners<3>& corners : elements_around(face, p, q))
     result.new_elements.push_back(corners);
   result.old_elements = {e, f};
+  if (!keeps_lengths(mesh, result, {p, p}, range)) return {};
   return result;
 }
 
@@ -187,13 +189,16 @@ std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
     worst = std::min(worst, mesh_.shape_of[e]);
   });
   if (item.c != none)
-    return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(worst)) : std::nullopt;
+    return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(worst), range_)
+                             : std::nullopt;
   Ring ring;
   if (!ring.close(shell.size(), item.a, item.b,
                   [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }))
     return {};
   auto result = triangulate(mesh_, item, ring, bar(worst));
-  if (result && accept_edge_removal(mesh_, item, shell, ring, *result)) return result;
+  if (result && accept_edge_removal(mesh_, item, shell, ring, *result) &&
+      keeps_lengths(mesh_, *result, {item.a, item.b}, range_))
+    return result;
   return mesh_.surface ? plan_cut_off(mesh_, item.a, item.b, shell, ring) : std::nullopt;
 }
 
@@ -225,9 +230,11 @@ struct Gauge {
 /// Looks for edges from one vertex whose removal is worth it, or an element's next to them.
 class EdgeSearch {
  public:
-  EdgeSearch(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after, float good_enough)
+  EdgeSearch(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after, float good_enough,
+             const EdgeRange& range)
       : mesh_(mesh),
         vertex_(vertex),
+        range_(range),
         good_enough_(good_enough),
         ball_(mesh.elements_of.of(vertex)),
         star_(mesh, vertex, after) {
@@ -283,11 +290,13 @@ class EdgeSearch {
     if (!result) return false;
     Shell shell;
     for (std::size_t k = 0; k < edge.count; ++k) shell.push_back(element(k));
-    return accept_edge_removal(mesh_, {vertex_, edge.to}, shell, ring, *result);
+    return accept_edge_removal(mesh_, {vertex_, edge.to}, shell, ring, *result) &&
+           keeps_lengths(mesh_, *result, {vertex_, edge.to}, range_);
   }
 
   const Mesh<3>& mesh_;
   VertexId vertex_;
+  EdgeRange range_;
   float good_enough_;
   std::span<const ElementId> ball_;
   Star star_;
@@ -326,8 +335,8 @@ int lowest_corner(const Mesh<3>& mesh, const Corners<3>& corners, const Metric<3
 }
 
 /// Is the largest facet of a poor element worth piercing? Found from the worse of its two elements.
-std::optional<Swappable> face_to_pierce(const Mesh<3>& mesh, ElementId element,
-                                        std::uint32_t after) {
+std::optional<Swappable> face_to_pierce(const Mesh<3>& mesh, ElementId element, std::uint32_t after,
+                                        const EdgeRange& range) {
   constexpr double short_edge = 1.4;
   const Corners<3>& corners = mesh.corners_of[element];
   const Gauge gauge(mesh, corners);
@@ -346,7 +355,7 @@ std::optional<Swappable> face_to_pierce(const Mesh<3>& mesh, ElementId element,
     return {};
   const Swappable item{face[0], face[1], face[2], worst};
   const Shell shell{std::min(element, other), std::max(element, other)};
-  if (!plan_face_swap(mesh, item, shell, Swap<3>::bar(worst))) return {};
+  if (!plan_face_swap(mesh, item, shell, Swap<3>::bar(worst), range)) return {};
   return item;
 }
 
@@ -355,7 +364,7 @@ std::optional<Swappable> face_to_pierce(const Mesh<3>& mesh, ElementId element,
 template <>
 runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& executor,
                                                       Mesh<3>& mesh, std::uint32_t after,
-                                                      double below) {
+                                                      double below, const EdgeRange& range) {
   const auto good_enough = static_cast<float>(shape_of_mean_ratio<3>(below));
   const auto poor = [&](ElementId e) { return mesh.shape_of[e] < good_enough; };
   const double flat = std::min<double>(good_enough, shape_of_mean_ratio<3>(0.5));
@@ -366,7 +375,7 @@ runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& e
     const auto vertex = static_cast<VertexId>(v);
     const auto ball = mesh.elements_of.of(vertex);
     if (std::any_of(ball.begin(), ball.end(), poor))
-      EdgeSearch(mesh, vertex, after, good_enough).run(append);
+      EdgeSearch(mesh, vertex, after, good_enough, range).run(append);
   };
   const auto find_faces = [&](std::size_t e, auto&& append) {
     const auto element = static_cast<ElementId>(e);
@@ -374,7 +383,7 @@ runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& e
     const auto is_near = [&](VertexId v) { return near_change[v] != 0; };
     const Corners<3>& corners = mesh.corners_of[e];
     if (std::count_if(corners.begin(), corners.end(), is_near) < 3) return;
-    if (const auto face = face_to_pierce(mesh, element, after)) append(*face);
+    if (const auto face = face_to_pierce(mesh, element, after, range)) append(*face);
   };
   const std::size_t vertices = mesh.vertex_slots();
   const auto find = [&](std::size_t i, auto&& append) {

@@ -1,0 +1,28 @@
+/// @file
+/// Standing: how far a mesh is from its metric, to tell whether a run has made it better.
+#pragma once
+
+#include <cstddef>
+
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "operators/edge_range.hpp"
+
+namespace ductile::meshadapt {
+
+struct Standing {
+  std::size_t elements = 0;
+  double shapes = 0;   ///< sum of what the elements' mean ratios lack of 1
+  double lengths = 0;  ///< sum of the share of each element's edges that are out of the range
+  double poor = 0;     ///< elements of a mean ratio below that which counts as poor
+};
+
+/// Thread safety: one caller; runs on the executor.
+template <int Dim>
+Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                     const EdgeRange& range, double poor);
+
+/// Is the one clearly better than the other? What differs by chance from run to run is not.
+bool is_better(const Standing& after, const Standing& before);
+
+}  // namespace ductile::meshadapt

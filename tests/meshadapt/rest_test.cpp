@@ -1,0 +1,134 @@
+/// @file
+/// Adapts random meshes again and again: by the third call hardly any element may change.
+/// DUCTILE_TRIALS says how many there are of each kind, DUCTILE_FIRST_TRIAL where to start.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "support/meshes.hpp"
+#include "support/random_case.hpp"
+#include "support/rest_case.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+using runtime::Executor;
+
+std::uint64_t setting(const char* name, std::uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+/// The elements by where their corners are, in order.
+template <int Dim>
+std::vector<std::vector<double>> places_in(const AnyMesh& mesh) {
+  std::vector<std::vector<double>> places;
+  for (const auto& corners : elements_in<Dim>(mesh).vertices) {
+    std::array<std::array<double, Dim>, Dim + 1> points;
+    for (std::size_t c = 0; c <= Dim; ++c) points[c] = position_in<Dim>(mesh, corners[c]).x;
+    std::sort(points.begin(), points.end());
+    std::vector<double>& place = places.emplace_back();
+    for (const auto& point : points) place.insert(place.end(), point.begin(), point.end());
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+std::vector<std::vector<double>> places(const AnyMesh& mesh) {
+  return mesh.dimension == 2 ? places_in<2>(mesh) : places_in<3>(mesh);
+}
+
+/// Share of the elements of either mesh, that of more, that the other has not.
+double share_changed(const AnyMesh& before, const AnyMesh& after) {
+  const auto one = places(before), other = places(after);
+  std::vector<std::vector<double>> both;
+  std::set_intersection(one.begin(), one.end(), other.begin(), other.end(),
+                        std::back_inserter(both));
+  const auto most = static_cast<double>(std::max(one.size(), other.size()));
+  return 1 - static_cast<double>(both.size()) / most;
+}
+
+/// By how much the third call changes the number of elements, and which share of them.
+struct Change {
+  double count, share;
+};
+
+std::size_t element_count(const AnyMesh& mesh) {
+  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+}
+
+/// Of as many calls, each given the mesh that the last one left: with its metric, or with one that
+/// is made anew; what the last of them changes.
+Change change_by_call(int calls, const AnyMesh& mesh, const AnyField& metric,
+                      const AdaptOptions& options, auto&& metric_on) {
+  const Executor executor({.threads = 1});
+  AdaptedMesh last = adapt(executor, mesh, metric, options);
+  for (int call = 2; call < calls; ++call)
+    last = adapt(executor, last.mesh, metric_on(last), options);
+  const AdaptedMesh next = adapt(executor, last.mesh, metric_on(last), options);
+  const auto before = static_cast<double>(element_count(last.mesh));
+  const auto after = static_cast<double>(element_count(next.mesh));
+  return {std::abs(after / before - 1), share_changed(last.mesh, next.mesh)};
+}
+
+/// Of a number of cases, those that are not at rest, which may be one in twenty.
+class Unrest {
+ public:
+  void note(std::uint64_t seed, const std::string& what, double changed) {
+    ++all_;
+    if (changed < 0.02) return;
+    ++count_;
+    said_ += "seed " + std::to_string(seed) + ", " + std::to_string(100 * changed) +
+             " % changed: " + what + "\n";
+  }
+  void expect_little() const { EXPECT_LE(20 * count_, all_) << said_; }
+
+ private:
+  std::size_t all_ = 0, count_ = 0;
+  std::string said_;
+};
+
+void expect_rest(std::uint64_t default_count, auto&& changed_in) {
+  const std::uint64_t first = setting("DUCTILE_FIRST_TRIAL", 0);
+  const std::uint64_t count = setting("DUCTILE_TRIALS", default_count);
+  Unrest unrest;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) changed_in(seed, unrest);
+  unrest.expect_little();
+}
+
+TEST(Rest, ComesByTheThirdCallWithTheMetricThatIsLeft) {
+  expect_rest(40, [](std::uint64_t seed, Unrest& unrest) {
+    const test::RestCase made = test::rest_case(seed);
+    const Change changed = change_by_call(3, made.mesh, made.metric_on(made.mesh), made.options,
+                                          [](const AdaptedMesh& last) { return last.metric; });
+    unrest.note(seed, made.what, changed.share);
+  });
+}
+
+/// The first calls bring meshes near a metric that the first mesh has not resolved.
+TEST(Rest, ComesByTheSixthCallWithAMetricThatIsMadeAnew) {
+  expect_rest(20, [](std::uint64_t seed, Unrest& unrest) {
+    const test::RestCase made = test::rest_case(seed);
+    const Change changed =
+        change_by_call(6, made.mesh, made.metric_on(made.mesh), made.options,
+                       [&](const AdaptedMesh& last) { return made.metric_on(last.mesh); });
+    unrest.note(seed, made.what, changed.count);
+  });
+}
+
+TEST(Rest, ComesByTheThirdCallInNastyMeshesToo) {
+  expect_rest(20, [](std::uint64_t seed, Unrest& unrest) {
+    const test::RandomCase made = test::random_case(seed);
+    const Change changed = change_by_call(3, made.mesh, made.metric, made.options,
+                                          [](const AdaptedMesh& last) { return last.metric; });
+    unrest.note(seed, made.what, changed.count);
+  });
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt
