@@ -92,7 +92,7 @@ void Adapter<Dim>::mend(double wanted) {
   came_adapted_ = true;
   if (wanted < nothing) return;
   finish();
-  if (share_to_change() > wanted / 2) outcome_ = Outcome::better_left;
+  if (share_to_change() >= little) outcome_ = Outcome::better_left;
 }
 
 template <int Dim>
