@@ -45,8 +45,7 @@ struct AnyMesh {
   std::vector<std::uint32_t> required_triangles;   ///< indices into triangles
   std::vector<std::uint32_t> required_tetrahedra;  ///< indices into tetrahedra
   std::string name;                                ///< where it came from, for messages
-  int dropped_axis =
-      2;  ///< of dimension 2: what fields of dimension 3 have beside it (flatten.hpp)
+  int dropped_axis = 2;  ///< of a flat mesh: the axis of space that flatten() left out
 
   std::size_t vertex_count() const { return vertex_reference.size(); }
   friend bool operator==(const AnyMesh&, const AnyMesh&) = default;
