@@ -63,7 +63,7 @@ void expect_metric(const AnyField& field, std::size_t vertex, const Metric<Dim>&
   const double shortest = 1 / std::sqrt(*largest);
   const double longest = 1 / std::sqrt(*smallest);
   switch (range_fault(values)) {
-    case RangeFault::none:
+    case RangeFault::nothing:
       return;
     case RangeFault::indefinite:
       fail_at(field, vertex, "a positive definite tensor",

@@ -28,7 +28,7 @@ bool in_range_within(const Metric<Dim>& metric, const SizeBounds& bounds) {
   const auto value = principal_axes(metric).value;
   const auto [least, most] = std::minmax_element(value.begin(), value.end());
   if (!(*least >= -1e-12 * *most)) return false;
-  return range_fault(bounded(value, bounds)) == RangeFault::none;
+  return range_fault(bounded(value, bounds)) == RangeFault::nothing;
 }
 
 inline const char* const what_metrics_are =

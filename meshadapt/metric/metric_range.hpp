@@ -37,7 +37,7 @@ bool surely_in_range(const Metric<Dim>& metric) {
 }
 
 /// What is wrong with the eigenvalues of what is to be a metric, the first of these.
-enum class RangeFault { none, indefinite, size, anisotropy };
+enum class RangeFault { nothing, indefinite, size, anisotropy };
 
 template <std::size_t N>
 RangeFault range_fault(const std::array<double, N>& eigenvalue) {
@@ -51,7 +51,7 @@ RangeFault range_fault(const std::array<double, N>& eigenvalue) {
   if (!(shortest * range_tolerance >= smallest_size && longest <= largest_size * range_tolerance))
     return RangeFault::size;
   return longest > largest_anisotropy * range_tolerance * shortest ? RangeFault::anisotropy
-                                                                   : RangeFault::none;
+                                                                   : RangeFault::nothing;
 }
 
 template <int Dim>
@@ -59,7 +59,7 @@ bool in_range(const Metric<Dim>& metric) {
   if (surely_in_range(metric)) return true;
   for (const double component : metric.m)
     if (!(std::abs(component) < 1e151)) return false;
-  return range_fault(principal_axes(metric).value) == RangeFault::none;
+  return range_fault(principal_axes(metric).value) == RangeFault::nothing;
 }
 
 /// The metric itself if it is one. If rounding, or an intersection, has made it more stretched than
