@@ -90,6 +90,7 @@ template <int Dim>
 void Adapter<Dim>::mend(double wanted) {
   report_.converged = true;
   came_adapted_ = true;
+  stage_ = std::size(Tuning<Dim>::stages) - 1;  // what is long is split at once
   if (wanted < nothing) return;
   finish();
   if (share_to_change() >= little) outcome_ = Outcome::better_left;

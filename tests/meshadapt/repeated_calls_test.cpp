@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -121,13 +120,10 @@ void settles(AnyMesh mesh, const Request& request) {
   for (int call = 0; call < 10; ++call) {
     const AnyField metric =
         request.size > 0 ? constant_metric(mesh, request.size) : implied_metric(mesh);
-    const auto start = std::chrono::steady_clock::now();
     AdaptedMesh result = adapt(executor, mesh, metric, options);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     mesh = std::move(result.mesh);
     if (call == 0) first = element_count(mesh);
     counts += " " + std::to_string(element_count(mesh));
-    ASSERT_LT(seconds.count(), 20) << counts;  // on a busy machine; alone, a tenth of it
     ASSERT_LT(element_count(mesh), 1.2 * static_cast<double>(first) + 20) << counts;
   }
 }

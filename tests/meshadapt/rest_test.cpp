@@ -1,11 +1,9 @@
 /// @file
 /// Adapts random meshes again and again: by the third call hardly any element may change.
-/// DUCTILE_TRIALS says how many there are of each kind, DUCTILE_FIRST_TRIAL where to start.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <optional>
 #include <vector>
@@ -14,16 +12,12 @@
 #include "support/meshes.hpp"
 #include "support/random_case.hpp"
 #include "support/rest_case.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
 using runtime::Executor;
-
-std::uint64_t setting(const char* name, std::uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
 
 /// The elements by where their corners are, in order.
 template <int Dim>
@@ -93,11 +87,10 @@ class Unrest {
   std::string said_;
 };
 
-void expect_rest(std::uint64_t default_count, auto&& changed_in) {
-  const std::uint64_t first = setting("DUCTILE_FIRST_TRIAL", 0);
-  const std::uint64_t count = setting("DUCTILE_TRIALS", default_count);
+void expect_rest(std::uint64_t usual_count, auto&& changed_in) {
   Unrest unrest;
-  for (std::uint64_t seed = first; seed < first + count; ++seed) changed_in(seed, unrest);
+  for (auto seed = test::first_trial(); seed < test::end_of_trials(usual_count); ++seed)
+    changed_in(seed, unrest);
   unrest.expect_little();
 }
 

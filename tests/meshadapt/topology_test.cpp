@@ -18,16 +18,12 @@
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 #include "support/thin_cases.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
 using runtime::Executor;
-
-std::uint64_t setting(const char* name, std::uint64_t otherwise) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
 
 std::vector<std::string> counted(const AnyMesh& mesh) {
   return mesh.dimension == 2 ? test::counted_topology<2>(mesh) : test::counted_topology<3>(mesh);
@@ -53,10 +49,8 @@ int try_case(const test::ThinCase& thin) {
 using Make = std::function<test::ThinCase(int, std::uint64_t)>;
 
 void try_many(const Make& make) {
-  const std::uint64_t first = setting("DUCTILE_FIRST_TRIAL", 0);
-  const std::uint64_t count = setting("DUCTILE_TRIALS", 200);
   std::array<std::array<int, 10>, 4> attempts{};
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+  for (auto seed = test::first_trial(); seed < test::end_of_trials(200); ++seed) {
     const int dimension = seed % 2 == 0 ? 2 : 3;
     const test::ThinCase thin = make(dimension, seed);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + thin.what);

@@ -1,0 +1,21 @@
+/// @file
+/// How many random cases a test tries: by DUCTILE_TRIALS, from DUCTILE_FIRST_TRIAL on. Sanitizers
+/// try few, and who looks for faults tries many.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+
+namespace ductile::meshadapt::test {
+
+inline std::uint64_t setting(const char* name, std::uint64_t otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+inline std::uint64_t first_trial() { return setting("DUCTILE_FIRST_TRIAL", 0); }
+inline std::uint64_t end_of_trials(std::uint64_t usual_count) {
+  return first_trial() + setting("DUCTILE_TRIALS", usual_count);
+}
+
+}  // namespace ductile::meshadapt::test
