@@ -26,8 +26,8 @@ extern const Command adapt_command, info_command, metric_command, view_command, 
 /// All commands, in the order of help.
 std::span<const Command* const> commands();
 
-/// Runs the program on the arguments of main(): prints errors, of which memory that runs out is one,
-/// and returns the exit status.
+/// Runs the program on the arguments of main(): prints errors, of which memory that runs out is
+/// one, and returns the exit status.
 int run_program(int argument_count, const char* const* argument) noexcept;
 
 }  // namespace ductile::cli

@@ -221,8 +221,7 @@ class MeshMaker {
     if (first_bad(executor_, count, turned) == no_index) return;
     const std::size_t flat =
         first_bad(executor_, count, [&](std::size_t e) { return orientation(e) == 0; });
-    if (flat != no_index)
-      fail(element_word(flat) + " has no volume; remove or repair it");
+    if (flat != no_index) fail(element_word(flat) + " has no volume; remove or repair it");
     turned_.resize(count);
     parallel_for(executor_, count, [&](std::size_t e) {
       turned_[e] = turned(e);

@@ -11,8 +11,8 @@
 #include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/wording.hpp"
-#include "metric/expect_metrics.hpp"
 #include "metric/bounded_metric.hpp"
+#include "metric/expect_metrics.hpp"
 #include "metric/spectrum.hpp"
 #include "operators/processor_level.hpp"
 

@@ -107,9 +107,7 @@ TEST(Flatten, SaysThatASurfaceIsOne) {
     for (const std::string& text :
          {test::complaint([&] { adapt(executor, surface, constant_metric(surface, extent)); }),
           test::complaint([&] { make_fixed_mesh<3>(executor, surface); })})
-      EXPECT_NE(text.find("triangles in no plane x, y or z = constant"),
-                std::string::npos)
-          << text;
+      EXPECT_NE(text.find("triangles in no plane x, y or z = constant"), std::string::npos) << text;
   }
 }
 

@@ -27,9 +27,10 @@ inline constexpr double largest_anisotropy = 1e8;
 /// dimension 3 for a mesh that read_mesh found flat, the part in the plane is taken. Where a value
 /// is no metric by itself, bounds hold before it is judged: with a largest size, one that is
 /// infinite is that, and so is the size along an axis of eigenvalue 0. Other values stay as they
-/// are. Throws InputError, naming the field and the vertex, unless there is a value for each vertex,
-/// sizes are positive, tensors positive definite, and no size or anisotropy is beyond reason.
-/// Whatever metrics this library returns or the program writes are taken. Thread safety: any thread.
+/// are. Throws InputError, naming the field and the vertex, unless there is a value for each
+/// vertex, sizes are positive, tensors positive definite, and no size or anisotropy is beyond
+/// reason. Whatever metrics this library returns or the program writes are taken. Thread safety:
+/// any thread.
 AnyField metric_of(const AnyField& field, const AnyMesh& mesh, const SizeBounds& bounds = {});
 
 /// Throws InputError unless the field has the dimension of the mesh, a value for each vertex, and
