@@ -105,6 +105,7 @@ std::vector<BoundaryPart<Dim>> parts_of(const AnyMesh& mesh, BoundarySurface<Dim
       --part[surface.part_of_side(joints[0].side)].euler;
     });
   std::vector<BoundaryPart<Dim>> parts;
+  parts.reserve(part.size());
   for (const auto& [vertex, each] : part) parts.push_back(each);
   return parts;
 }

@@ -1,6 +1,7 @@
 #include "place.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <set>
 
@@ -91,7 +92,7 @@ double put_with_few_digits(Random& random, Mesh& mesh, Mesh& exact, double& roun
   map(mesh, [&](const Point& x) { return x + away * offset; });
   exact.points = mesh.points;
   const int way = random.below(3), digits = random.between(4, 10);
-  const double step = scale * random.power(-6, -3);
+  const double step = std::pow(10, std::floor(std::log10(scale * random.power(-6, -3))));
   rounding = 0;
   const bool fine = map(mesh, [&](const Point& x) {
     Point y = x;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "geometry.hpp"
@@ -46,7 +47,7 @@ void hollow_some(Random& random, Mesh& mesh, int count) {
   std::size_t last =
       static_cast<std::size_t>(random.below(static_cast<int>(mesh.elements().size())));
   const std::set<std::size_t> near = neighbours(mesh, last);
-  std::set<std::size_t> chosen;
+  std::set<std::size_t, std::greater<>> chosen;
   for (; count > 0; --count) {
     const bool close = random.chance(0.6);
     auto at = near.begin();
@@ -56,8 +57,8 @@ void hollow_some(Random& random, Mesh& mesh, int count) {
               : static_cast<std::size_t>(random.below(static_cast<int>(mesh.elements().size()))));
   }
   // hollow() renumbers what comes after the element, so that the last goes first.
-  for (auto at = chosen.rbegin(); at != chosen.rend(); ++at)
-    hollow(mesh, *at, random.uniform(0.2, 0.97), random.chance(0.8) ? &random : nullptr);
+  for (const std::size_t element : chosen)
+    hollow(mesh, element, random.uniform(0.2, 0.97), random.chance(0.8) ? &random : nullptr);
 }
 
 /// Cells (i, j) of which no two are neighbours, none at the rim.

@@ -19,7 +19,10 @@ struct Case {
   bool may_differ = false;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.words; }
+// GoogleTest asks for a function of this name.
+void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming)
+  *out << c.words;
+}
 
 class OutOfMemory : public testing::TestWithParam<Case> {
  protected:

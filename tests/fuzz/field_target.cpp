@@ -69,6 +69,7 @@ void use_as_metric(const AnyField& field) {
 }  // namespace
 }  // namespace ductile::fuzz
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer asks for a function of this name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace ductile;
   static fuzz::MemoryFile file;

@@ -111,6 +111,7 @@ void use(const AnyMesh& mesh) {
 }  // namespace
 }  // namespace ductile::fuzz
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer asks for a function of this name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace ductile;
   static fuzz::MemoryFile file;

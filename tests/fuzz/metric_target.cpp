@@ -160,6 +160,7 @@ void use(Numbers& numbers, const AnyMesh& mesh, const AnyField& field) {
 }  // namespace
 }  // namespace ductile::fuzz
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer asks for a function of this name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace ductile::fuzz;
   if (size == 0) return 0;

@@ -47,7 +47,8 @@ AnyMesh cylinder_in_box(int dimension, int n, bool hollow) {
     return inside(cell[0]) && inside(cell[1]) ? (hollow ? 0 : 2) : 1;
   };
   AnyMesh mesh = test::make_grid(grid);
-  round_off(mesh, 1 - 2 * (n / 4) / static_cast<double>(n));
+  const int quarter = n / 4;
+  round_off(mesh, 1 - 2.0 * quarter / n);
   return mesh;
 }
 

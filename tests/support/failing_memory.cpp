@@ -18,11 +18,12 @@
 #include <cstdlib>
 #include <cstring>
 
+// The C library's own names, for those who take the place of malloc and its kin.
 extern "C" {
-void* __libc_malloc(std::size_t bytes);
-void* __libc_calloc(std::size_t count, std::size_t bytes);
-void* __libc_realloc(void* memory, std::size_t bytes);
-void* __libc_memalign(std::size_t alignment, std::size_t bytes);
+void* libc_malloc(std::size_t bytes) asm("__libc_malloc");
+void* libc_calloc(std::size_t count, std::size_t bytes) asm("__libc_calloc");
+void* libc_realloc(void* memory, std::size_t bytes) asm("__libc_realloc");
+void* libc_memalign(std::size_t alignment, std::size_t bytes) asm("__libc_memalign");
 }
 
 namespace {
@@ -65,28 +66,29 @@ __attribute__((destructor)) void end() {
 
 extern "C" {
 
-void* malloc(std::size_t bytes) { return fails() ? nullptr : __libc_malloc(bytes); }
+void* malloc(std::size_t bytes) { return fails() ? nullptr : libc_malloc(bytes); }
 
 void* calloc(std::size_t count, std::size_t bytes) {
-  return fails() ? nullptr : __libc_calloc(count, bytes);
+  return fails() ? nullptr : libc_calloc(count, bytes);
 }
 
 void* realloc(void* memory, std::size_t bytes) {
-  return fails() ? nullptr : __libc_realloc(memory, bytes);
+  return fails() ? nullptr : libc_realloc(memory, bytes);
 }
 
 void* memalign(std::size_t alignment, std::size_t bytes) {
-  return fails() ? nullptr : __libc_memalign(alignment, bytes);
+  return fails() ? nullptr : libc_memalign(alignment, bytes);
 }
 
 void* aligned_alloc(std::size_t alignment, std::size_t bytes) { return memalign(alignment, bytes); }
 
 int posix_memalign(void** memory, std::size_t alignment, std::size_t bytes) {
   if (fails()) return ENOMEM;
-  *memory = __libc_memalign(alignment, bytes);
+  *memory = libc_memalign(alignment, bytes);
   return *memory == nullptr ? ENOMEM : 0;
 }
 
+// NOLINTNEXTLINE(readability-function-size): that many has the system's.
 void* mmap(void* place, std::size_t bytes, int protection, int flags, int file, off_t offset) {
   using Map = void* (*)(void*, std::size_t, int, int, int, off_t);
   static const Map map = reinterpret_cast<Map>(::dlsym(RTLD_NEXT, "mmap"));

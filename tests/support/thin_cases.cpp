@@ -248,7 +248,7 @@ ThinCase joined_voids(std::uint64_t seed) {
   if (chance(random, 0.5)) divide_elements<Dim>(mesh, random, 10 + below(random, 60));
   std::vector<bool> gone(elements_in<Dim>(mesh).size());
   const double share = uniform(random, 0.02, 0.15);
-  for (std::size_t e = 0; e < gone.size(); ++e) gone[e] = chance(random, share);
+  for (auto&& is_gone : gone) is_gone = chance(random, share);
   keep_one_part<Dim>(mesh, gone);
   carve<Dim>(mesh, gone);
   if (chance(random, 0.4)) lift(mesh, random_curve(random));
