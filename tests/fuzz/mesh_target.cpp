@@ -91,11 +91,18 @@ void make(const AnyMesh& mesh) {
   }
 }
 
+/// Beyond that, areas and volumes are no numbers, and nothing is adapted.
+bool is_in_scale(const AnyMesh& mesh) {
+  return std::all_of(mesh.coordinates.begin(), mesh.coordinates.end(),
+                     [](double x) { return std::abs(x) <= 1e50; });
+}
+
 void use(const AnyMesh& mesh) {
   const auto faults = meshadapt::check_mesh(executor(), mesh);
   expect_messages(faults);
   if (faults.empty()) {
-    expect(meshadapt::check_domain(mesh, mesh).empty(), "a mesh whose domain is not its own");
+    const auto domain = meshadapt::check_domain(mesh, mesh);
+    expect(domain.empty() || !is_in_scale(mesh), "a mesh whose domain is not its own");
     expect_messages(meshadapt::check_boundary(executor(), mesh));
   }
   meshadapt::measure(executor(), mesh, nullptr);
