@@ -157,15 +157,21 @@ Case random_case(std::uint64_t seed) {
   return result;
 }
 
+struct Share {
+  double in_range;       ///< of the edges
+  std::size_t vertices;  ///< of the mesh
+};
+
 /// Shares of edges in range after each of some calls.
-std::vector<double> shares(AnyMesh mesh, double size, int calls) {
-  std::vector<double> result;
+std::vector<Share> shares(AnyMesh mesh, double size, int calls) {
+  std::vector<Share> result;
   for (int call = 0; call < calls; ++call) {
     const AnyField metric = constant_metric(mesh, size);
     AdaptedMesh adapted = adapt(executor, mesh, metric);
     EXPECT_EQ(test::joined(check_mesh(executor, adapted.mesh)), "");
     EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "") << "call " << call;
-    result.push_back(measure(executor, adapted.mesh, &adapted.metric).share_in_range());
+    result.push_back({measure(executor, adapted.mesh, &adapted.metric).share_in_range(),
+                      adapted.mesh.vertex_count()});
     mesh = std::move(adapted.mesh);
     size *= call % 2 == 0 ? 1.3 : 0.6;  // so that there is something to do
   }
@@ -173,7 +179,7 @@ std::vector<double> shares(AnyMesh mesh, double size, int calls) {
 }
 
 /// Of a few hundred edges some more or less are in range by chance; with a boundary that cannot be
-/// coarsened a third and more are not.
+/// coarsened a third and more are not. Of fewer edges shares say nothing.
 TEST(Rounding, LeavesFlatWhatIsFlat) {
   int compared = 0, poorer = 0;
   double sum = 0;
@@ -185,9 +191,11 @@ TEST(Rounding, LeavesFlatWhatIsFlat) {
     const auto exact = shares(random.exact, random.size, 3);
     const auto found = shares(rounded, random.size, 3);
     for (std::size_t call = 0; call < exact.size(); ++call) {
-      EXPECT_GT(found[call], exact[call] - 0.1) << "call " << call;
-      sum += found[call] - exact[call];
-      poorer += found[call] < exact[call] - 0.03;
+      if (exact[call].vertices < 80) continue;
+      const double difference = found[call].in_range - exact[call].in_range;
+      EXPECT_GT(difference, -0.1) << "call " << call;
+      sum += difference;
+      poorer += difference < -0.03;
       ++compared;
     }
   }
