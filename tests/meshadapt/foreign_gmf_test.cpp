@@ -67,7 +67,7 @@ std::string random_line(Random& random) {
                                             "g.mesh Vertices 3",
                                             "(1, 2), 3",
                                             "nan inf 0x1F",
-                                            "/home/of/End Triangles 1"};
+                                            "folder/of/End Triangles 1"};
   std::string line;
   switch (below(random, 6)) {
     case 0:

@@ -16,7 +16,7 @@ AnyField constant_metric(const AnyMesh& mesh, double size);
 /// directions in which it has them, so that stretched elements and layers stay and the number of
 /// elements is about the same. At each vertex it has the shape of implied_tensors(), and in it the
 /// geometric mean of the lengths of the vertex's edges is 1. Where sizes differ by less than a
-/// factor of 2 between the directions, as they do by chance in any isotropic mesh, it is isotropic;
+/// factor of 2 between the directions, which is by chance in any isotropic mesh, it is isotropic;
 /// up to a factor of 4 it is partly so. Elements need not have a volume: flat ones count for
 /// nothing. A vertex without elements gets the mean size of the whole mesh. Throws InputError for
 /// lengths beyond the sizes that a metric may ask for, for vertices without coordinates or
