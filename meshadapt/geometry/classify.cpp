@@ -402,7 +402,7 @@ class Classifier {
     return {at(edge.a), direction, tolerance_};
   }
 
-  /// The line near a chain of edges that are not in line but for rounding.
+  /// The line near a chain of edges that would lie on it without rounding.
   std::optional<Flat<Dim>> rough_line(std::uint32_t seed) {
     if (curve_edges_[seed].bends) return {};
     std::vector<std::uint32_t> chain{seed};

@@ -1,7 +1,7 @@
 /// @file
-/// CrossingFacets: which listed facets of a mesh cross each other, but for what rounding does to
-/// points that two facets share, or that lie on both sides of a closed crack. For sources only, see
-/// BoxIndex.
+/// CrossingFacets: which listed facets of a mesh cross each other. What rounding does to points
+/// does not count, if they are points that two facets share, or that lie on both sides of a closed
+/// crack. For sources only, see BoxIndex.
 #pragma once
 
 #include <algorithm>

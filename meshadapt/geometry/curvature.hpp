@@ -17,7 +17,7 @@ namespace ductile::meshadapt {
 /// and what a single facet does cancels. Sizes are not smaller than the edges that the mesh has
 /// there or the flat parts that the patch is made of, where these are larger than the chords: to
 /// divide them would bring nothing closer. They are never smaller than twice the tolerance. Linear
-/// in the mesh but for a logarithm. Thread safety: one caller; runs on the executor.
+/// in the mesh, times a logarithm. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
                         std::vector<Metric<Dim>>& metric_of);

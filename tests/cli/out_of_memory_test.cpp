@@ -20,7 +20,7 @@ struct Case {
 };
 
 // GoogleTest asks for a function of this name.
-void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming)
+void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming): its name
   *out << c.words;
 }
 

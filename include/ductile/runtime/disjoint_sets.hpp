@@ -1,7 +1,7 @@
 /// @file
 /// DisjointSets: numbers that many threads put together into sets, such as the parts of a graph
-/// that hang together. Each set is a tree whose root is its lowest number, so that what comes out
-/// does not depend on who was first.
+/// that hang together. Each set is a tree whose root is its lowest number, so that the
+/// result does not depend on the order in which threads come.
 #pragma once
 
 #include <atomic>
