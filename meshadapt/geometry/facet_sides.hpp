@@ -113,10 +113,15 @@ bool folds_back(const Mesh<Dim>& mesh, const Facet<Dim>& f, const Facet<Dim>& g,
 }
 
 /// How many triangles follow each other around a vertex, from one and away from a side of it, up to
-/// a curve, or where not two triangles have a side, or to the first again.
+/// a curve, or where not two triangles have a side, or to the first again. Needs no kinds of
+/// vertices, so that kinds can be found with it, by many threads.
 inline std::size_t facets_around(const Mesh<3>& mesh, const std::vector<TaggedFacet<3>>& facets,
                                  const FacetSides<3>& sides, VertexId vertex,
                                  const FacetSide& first) {
+  const auto is_on_curve = [&](VertexId other) {
+    return std::ranges::any_of(mesh.links_of.of(vertex),
+                               [&](const CurveLink& link) { return link.to == other; });
+  };
   std::size_t count = 0;
   std::uint32_t at = first.facet;
   SideKey from = first.key;
@@ -127,7 +132,7 @@ inline std::size_t facets_around(const Mesh<3>& mesh, const std::vector<TaggedFa
       if (v != vertex && edge_key(vertex, v) != from) next = v;
     from = edge_key(vertex, next);
     const auto both = sides.at(from);
-    if (both.size() != 2 || mesh.curve_of(vertex, next) != 0) break;
+    if (both.size() != 2 || is_on_curve(next)) break;
     at = both[0].facet == at ? both[1].facet : both[0].facet;
   } while (at != first.facet);
   return count;
