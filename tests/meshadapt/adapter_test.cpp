@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -13,6 +12,7 @@
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
 #include "support/random_case.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -47,11 +47,8 @@ void check_after_each_kernel(const Executor& executor, const test::RandomCase& r
 }
 
 TEST(Adapter, EachKernelLeavesTheMeshSound) {
-  const char* only = std::getenv("DUCTILE_FIRST_TRIAL");
-  const std::uint64_t first = only == nullptr ? 1000 : std::strtoull(only, nullptr, 10);
-  const char* trials = std::getenv("DUCTILE_TRIALS");
-  const std::uint64_t count = trials == nullptr ? 24 : std::strtoull(trials, nullptr, 10);
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+  const std::uint64_t first = test::first_trial(1000), end = first + test::trials(24);
+  for (std::uint64_t seed = first; seed < end; ++seed) {
     const test::RandomCase random = test::random_case(seed);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + random.what);
     const Executor executor(
@@ -88,9 +85,7 @@ test::RandomCase random_arc(std::uint64_t seed) {
 }
 
 TEST(Adapter, EachKernelLeavesCurvedBoundariesSound) {
-  const char* trials = std::getenv("DUCTILE_TRIALS");
-  const std::uint64_t count = trials == nullptr ? 16 : std::strtoull(trials, nullptr, 10);
-  for (std::uint64_t seed = 0; seed < count; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::trials(16); ++seed) {
     SCOPED_TRACE(seed);
     const test::RandomCase random = random_arc(seed);
     const Executor executor(

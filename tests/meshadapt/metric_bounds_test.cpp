@@ -19,6 +19,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "io_support.hpp"
 #include "support/meshes.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -143,7 +144,7 @@ void bound(unsigned seed) {
 }
 
 TEST(MetricBounds, HoldWhereNoLimitIsGiven) {
-  for (unsigned seed = 0; seed < 200; ++seed) {
+  for (unsigned seed = 0; seed < test::trials(200); ++seed) {
     SCOPED_TRACE(seed);
     seed % 2 == 0 ? bound<2>(seed) : bound<3>(seed);
   }

@@ -15,6 +15,7 @@
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/team.hpp"
 #include "support/meshes.hpp"
+#include "support/trials.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -128,7 +129,7 @@ void merge_repeated(unsigned seed) {
 }
 
 TEST(RepairedMeshes, MergeWhatIsListedTwice) {
-  for (unsigned seed = 0; seed < 200; ++seed) {
+  for (unsigned seed = 0; seed < test::trials(200); ++seed) {
     SCOPED_TRACE(seed);
     seed % 2 == 0 ? merge_repeated<2>(seed) : merge_repeated<3>(seed);
   }
