@@ -4,8 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -13,34 +11,22 @@
 #include "ductile/meshadapt/metric.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/wording.hpp"
+#include "metric/bounded_metric.hpp"
 #include "metric/metric_range.hpp"
-#include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
-
-/// Is it a metric once bounds hold? A direction without any limit, whose eigenvalue is 0 up to
-/// rounding, may have one by a bound; a negative eigenvalue asks for nothing.
-template <int Dim>
-bool in_range_within(const Metric<Dim>& metric, const SizeBounds& bounds) {
-  if (surely_in_range(metric)) return true;
-  for (const double component : metric.m)
-    if (!(std::abs(component) < 1e151)) return false;
-  const auto value = principal_axes(metric).value;
-  const auto [least, most] = std::minmax_element(value.begin(), value.end());
-  if (!(*least >= -1e-12 * *most)) return false;
-  return range_fault(bounded(value, bounds)) == RangeFault::nothing;
-}
 
 inline const char* const what_metrics_are =
     "expected a positive definite tensor, of sizes from 1e-75 to 1e75 that differ by at most 1e8 "
     "times, ";
 
-/// Throws InputError, naming the array and the first that is wrong, unless all are metrics.
+/// Throws InputError, naming the array and the first that is wrong, unless all are metrics, or are
+/// once bounds hold.
 template <int Dim>
 void expect_metrics(const runtime::Executor& executor, const std::vector<Metric<Dim>>& metric_of,
                     const std::string& array, const SizeBounds& bounds = {}) {
   const std::size_t bad = first_bad(executor, metric_of.size(), [&](std::size_t v) {
-    return !in_range_within(metric_of[v], bounds);
+    return !in_range(metric_of[v]) && !in_range(within_bounds(metric_of[v], bounds));
   });
   if (bad == no_index) return;
   std::string found;
@@ -52,12 +38,11 @@ void expect_metrics(const runtime::Executor& executor, const std::vector<Metric<
 
 /// The same of a field of one symmetric tensor at each vertex, of which there are all.
 template <int Dim>
-void expect_metric_field(const runtime::Executor& executor, const AnyField& field,
-                         const SizeBounds& bounds = {}) {
+void expect_metric_field(const runtime::Executor& executor, const AnyField& field) {
   const std::size_t bad = first_bad(executor, field.vertex_count, [&](std::size_t v) {
     Metric<Dim> metric;
     std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric.m.begin());
-    return !in_range_within(metric, bounds);
+    return !in_range(metric);
   });
   if (bad != no_index)
     refuse(name_of(field) + ": " + what_metrics_are + "found another at " + value_at(field, bad) +

@@ -15,6 +15,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/first_bad.hpp"
+#include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"
 #include "metric/metric_range.hpp"
 #include "metric/spectrum.hpp"
@@ -334,6 +335,7 @@ void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
   expect_metrics(executor, metric_of, "metric_of", bounds);
   if (bounds.smallest == 0 && bounds.largest == 0 && bounds.anisotropy == 0) return;
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
+    if (!in_range(metric_of[v])) metric_of[v] = within_bounds(metric_of[v], bounds);
     PrincipalAxes<Dim> axes = principal_axes(metric_of[v]);
     const auto within = bounded(axes.value, bounds);
     if (within == axes.value) return;
