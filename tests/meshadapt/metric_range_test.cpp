@@ -121,7 +121,9 @@ TYPED_TEST(MetricRangeIn, WhateverAdaptReturnsItTakesAgain) {
       ASSERT_NO_THROW(metric_of(read, once.mesh));
     }
   }
-  if (count >= 100) EXPECT_GT(taken, count / 2);
+  if (count >= 100) {
+    EXPECT_GT(taken, count / 2);
+  }
   std::filesystem::remove_all(folder);
 }
 
