@@ -333,7 +333,7 @@ void bound_sizes(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds) {
   expect_bounds(bounds);
   expect_metrics(executor, metric_of, "metric_of", bounds);
-  if (bounds.smallest == 0 && bounds.largest == 0 && bounds.anisotropy == 0) return;
+  if (!has_bounds(bounds)) return;
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     if (!in_range(metric_of[v])) metric_of[v] = within_bounds(metric_of[v], bounds);
     PrincipalAxes<Dim> axes = principal_axes(metric_of[v]);

@@ -53,10 +53,10 @@ class CaseMaker {
 
   Case make() {
     Shape shape = kind_.shape(random_);
-    const auto failed =
-        [&] {  // a map may turn elements or push one side of a void through the other
-          return !all_positive(shape.mesh) || !check_overlaps(shape.mesh).empty();
-        };
+    // A map may turn elements, or push one side of a void through the other.
+    const auto failed = [&] {
+      return !all_positive(shape.mesh) || !check_overlaps(shape.mesh).empty();
+    };
     while (failed()) shape = kind_.shape(random_);
     mesh() = std::move(shape.mesh);
     length_ = shape.length;

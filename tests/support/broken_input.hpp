@@ -24,7 +24,7 @@ namespace ductile::meshadapt::test {
 /// Suites of tests in both dimensions.
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 
-/// Refused by an InputError that one who has arrays and no files understands.
+/// Expects the call to throw an InputError whose message says nothing of files or options.
 template <class Call>
 void expect_refused(const Call& call, const std::string& what) {
   SCOPED_TRACE(what);
@@ -41,7 +41,7 @@ void expect_refused(const Call& call, const std::string& what) {
   }
 }
 
-/// Whatever becomes of it, it does not crash, and throws nothing else.
+/// Expects the call to return, or to throw an InputError and nothing else.
 template <class Call>
 void expect_survived(const Call& call, const std::string& what) {
   SCOPED_TRACE(what);
