@@ -158,7 +158,11 @@ class Classifier {
         [&](std::size_t f) { return parts.is_rough(static_cast<std::uint32_t>(f), tolerance_); },
         std::logical_or<>());
     if (!rough || !(rounding() > 0)) return;
-    parts.each_part(rounding(), [&](const auto& part, const Flat<Dim>& plane) {
+    const auto found = parts.all(rounding(), tolerance_);
+    // If none is rough, the coordinates are round numbers by choice.
+    if (std::none_of(found.begin(), found.end(), [](const auto& part) { return part.rough; }))
+      return;
+    for (const auto& [part, plane, _] : found) {
       const auto id = static_cast<PatchId>(mesh_.patches.size());
       Patch<Dim> patch = facets_[part.front()].data;
       patch.normal = plane.direction;
@@ -166,7 +170,7 @@ class Classifier {
       mesh_.patches.push_back(patch);
       rounding_->plane_of.resize(mesh_.patches.size());
       rounding_->plane_of.back() = plane;
-    });
+    }
   }
 
   void grow_patch(std::uint32_t seed) {

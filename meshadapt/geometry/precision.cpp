@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numeric>
 #include <string_view>
 
 namespace ductile::meshadapt {
@@ -14,7 +15,9 @@ namespace {
 
 /// A number as 15 digits show it, without the zeros at their end.
 struct Decimal {
-  int digits, exponent;  // the first digit counts 10^exponent
+  int digits, exponent;   // the first digit counts 10^exponent
+  std::int64_t mantissa;  // all digits as one number
+  int decimals() const { return digits - 1 - exponent; }
 };
 Decimal decimal(double x) {
   std::array<char, 32> text{};
@@ -23,9 +26,9 @@ Decimal decimal(double x) {
   const std::size_t mark = view.find('e');
   std::size_t end = mark;
   while (end > 2 && view[end - 1] == '0') --end;
-  Decimal result{static_cast<int>(end) - 1, 0};  // the point is none of them
-  if (end == 2) result.digits = 1;
-  result.exponent = std::atoi(view.data() + mark + 1);
+  Decimal result{static_cast<int>(end) - 1, std::atoi(view.data() + mark + 1), view[0] - '0'};
+  if (end == 2) result.digits = 1;  // the point is none
+  for (std::size_t i = 2; i < end; ++i) result.mantissa = 10 * result.mantissa + (view[i] - '0');
   return result;
 }
 
@@ -69,8 +72,9 @@ bool PrecisionFinder::add(double x) {
   is_single_ = is_single_ && is_single(x, as_decimal);
   const auto count = [&](Most& most) {
     most.digits = std::max(most.digits, as_decimal.digits);
-    most.decimals = std::max(most.decimals, as_decimal.digits - 1 - as_decimal.exponent);
+    most.decimals = std::max(most.decimals, as_decimal.decimals());
   };
+  divide_by(as_decimal.mantissa, as_decimal.decimals());
   if (as_decimal.exponent > exponent_) {
     exponent_ = as_decimal.exponent;
     largest_ = {};
@@ -79,6 +83,18 @@ bool PrecisionFinder::add(double x) {
   count(all_);
   size_ = std::max(size_, std::abs(x));
   return is_decimal_ || is_single_;
+}
+
+void PrecisionFinder::divide_by(std::int64_t mantissa, int decimals) {
+  const auto in_smaller_units = [](std::int64_t x, int by) {
+    for (; by > 0; --by) {
+      if (x >= std::int64_t{1} << 59) return std::int64_t{1};  // of numbers of very different sizes
+      x *= 10;
+    }
+    return x;
+  };
+  divisor_ = std::gcd(in_smaller_units(divisor_, decimals - all_.decimals),
+                      in_smaller_units(mantissa, all_.decimals - decimals));
 }
 
 /// Of numbers with a fixed number of decimals, the largest have as many as all; of those with a
@@ -91,7 +107,7 @@ Precision PrecisionFinder::precision() const {
     if (all_digits)
       best = {Precision::Kind::significant, all_.digits,
               std::pow(10.0, exponent_ - all_.digits + 1)};
-    else
+    else if (divisor_ == 1)
       best = {Precision::Kind::decimals, std::max(0, all_.decimals),
               std::pow(10.0, -all_.decimals)};
   }

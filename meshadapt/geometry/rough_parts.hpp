@@ -34,33 +34,39 @@ class RoughParts {
 
   /// Is a facet off the plane of a neighbour of a higher number, though they turn little?
   bool is_rough(std::uint32_t f, double tolerance) const {
-    const auto here = corners(f);
-    for (const std::uint32_t g : across_[f]) {
-      if (g == none || g < f || !turn_little(f, g)) continue;
-      for (const Vector<Dim>& p : corners(g))
-        if (std::abs(dot(p - here[0], facet_normal(here))) > tolerance * norm(facet_normal(here)))
-          return true;
-    }
-    return false;
+    return std::any_of(across_[f].begin(), across_[f].end(), [&](std::uint32_t g) {
+      return g != none && g > f && is_off(f, g, tolerance);
+    });
   }
 
-  /// Calls visit(part, plane) for each part of more than one facet that rounding by the tolerance
-  /// explains; part is the numbers of its facets.
-  template <class Visit>
-  void each_part(double tolerance, Visit&& visit) const {
-    std::vector<bool> seen(facets_.size());
+  struct Part {
+    std::vector<std::uint32_t> facets;  ///< their numbers, more than one
+    Flat<Dim> plane;                    ///< near which they are
+    bool rough = false;                 ///< not exactly flat
+  };
+
+  /// All parts that rounding explains, those that are flat to the tolerance among them.
+  std::vector<Part> all(double rounding, double tolerance) const {
+    std::vector<Part> parts;
+    std::vector<std::uint32_t> seed_of(facets_.size(), none);
     std::vector<std::uint32_t> part;
     for (std::uint32_t seed = 0; seed < facets_.size(); ++seed) {
-      if (seen[seed]) continue;
-      grow(seed, tolerance, seen, part);
+      if (seed_of[seed] != none) continue;
+      grow(seed, rounding, seed_of, part);
       if (part.size() < 2) continue;
-      const auto plane = plane_of(part, tolerance);
+      const auto plane = plane_of(part, rounding);
       if (!plane) continue;
+      const bool rough = std::any_of(part.begin(), part.end(), [&](std::uint32_t f) {
+        return std::any_of(across_[f].begin(), across_[f].end(), [&](std::uint32_t g) {
+          return g != none && seed_of[g] == seed && is_off(f, g, tolerance);
+        });
+      });
       std::erase_if(part, [&](std::uint32_t f) {
         return !turns_by_rounding(facet_normal(corners(f)), plane->direction);
       });
-      if (part.size() > 1) visit(part, *plane);
+      if (part.size() > 1) parts.push_back({part, *plane, rough});
     }
+    return parts;
   }
 
  private:
@@ -68,6 +74,16 @@ class RoughParts {
     std::array<Vector<Dim>, Dim> p;
     for (std::size_t i = 0; i < p.size(); ++i) p[i] = mesh_.site_of[facets_[f].corners[i]].position;
     return p;
+  }
+
+  /// Is a facet off the plane of another, though they turn little?
+  bool is_off(std::uint32_t f, std::uint32_t g, double tolerance) const {
+    if (!turn_little(f, g)) return false;
+    const auto here = corners(f), there = corners(g);
+    const Vector<Dim> normal = facet_normal(here);
+    return std::any_of(there.begin(), there.end(), [&](const Vector<Dim>& p) {
+      return std::abs(dot(p - here[0], normal)) > tolerance * norm(normal);
+    });
   }
 
   bool turn_little(std::uint32_t f, std::uint32_t g) const {
@@ -84,14 +100,14 @@ class RoughParts {
     return all(here, there) && all(there, here);
   }
 
-  void grow(std::uint32_t seed, double tolerance, std::vector<bool>& seen,
+  void grow(std::uint32_t seed, double rounding, std::vector<std::uint32_t>& seed_of,
             std::vector<std::uint32_t>& part) const {
     part.assign(1, seed);
-    seen[seed] = true;
+    seed_of[seed] = seed;
     for (std::size_t i = 0; i < part.size(); ++i)
       for (const std::uint32_t g : across_[part[i]])
-        if (g != none && !seen[g] && explained(part[i], g, tolerance)) {
-          seen[g] = true;
+        if (g != none && seed_of[g] == none && explained(part[i], g, rounding)) {
+          seed_of[g] = seed;
           part.push_back(g);
         }
   }

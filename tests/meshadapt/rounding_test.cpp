@@ -204,6 +204,44 @@ TEST(Rounding, LeavesFlatWhatIsFlat) {
   EXPECT_LT(poorer, 0.04 * compared);
 }
 
+/// A grid that is sheared by one of a few slopes in each column: all coordinates are multiples of
+/// 0.05 by choice, and what is straight is so exactly.
+AnyMesh round_numbers(Random& random) {
+  constexpr double unit = 0.05;
+  const int dimension = 2 + static_cast<int>(test::below(random, 2));
+  const int n = 4 + 2 * static_cast<int>(test::below(random, 3));
+  test::Grid grid = test::unit_grid(dimension, n);
+  grid.region = test::random_regions(random(), 3, false);
+  AnyMesh mesh = test::make_grid(grid);
+  std::vector<int> height{0};  // of each line, in units
+  int rise = 0;
+  for (int column = 0; column < n; ++column) {
+    if (column == 0 || test::chance(random, 0.4)) rise = static_cast<int>(test::below(random, 3));
+    height.push_back(height.back() + rise);
+  }
+  const auto size = static_cast<std::size_t>(dimension);
+  const auto in_units = [&](double x, int units) { return unit * std::round(units * n * x); };
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += size) {
+    const auto column = static_cast<std::size_t>(std::lround(n * mesh.coordinates[at]));
+    mesh.coordinates[at] = in_units(mesh.coordinates[at], 5);
+    for (std::size_t axis = 1; axis < size; ++axis)
+      mesh.coordinates[at + axis] = in_units(mesh.coordinates[at + axis], 2);
+    mesh.coordinates[at + 1] += unit * height[column];
+  }
+  return written(mesh, {Format::Kind::decimals, 2});
+}
+
+TEST(Rounding, IsNoneOfRoundNumbersByChoice) {
+  Random random(4);
+  for (std::uint64_t trial = 0; trial < test::trials(60); ++trial) {
+    SCOPED_TRACE(trial);
+    const AnyMesh mesh = round_numbers(random);
+    const AdaptedMesh adapted =
+        adapt(executor, mesh, constant_metric(mesh, test::uniform(random, 0.08, 0.4)));
+    EXPECT_EQ(test::joined(test::changes_of_what_is_kept(mesh, adapted.mesh)), "");
+  }
+}
+
 template <int Dim>
 std::size_t patch_count(const AnyMesh& any) {
   Neighbours<Dim> neighbours;
