@@ -248,7 +248,7 @@ TEST_P(Checker, SeesBodiesThatOverlap) {
     }
   EXPECT_EQ(check_structure(overlapping), Faults{});
   EXPECT_TRUE(mentions(check_overlaps(overlapping), "elements lie in others"));
-  EXPECT_TRUE(mentions(check_overlaps(overlapping), "crossings of the boundary"));
+  EXPECT_TRUE(mentions(check_overlaps(overlapping), "go through the boundary"));
 }
 
 // ---- Required entities ----
