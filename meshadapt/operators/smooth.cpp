@@ -200,7 +200,9 @@ Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) cons
     const Vector<Dim> along = tangent(vertex);
     return dot(displacement, along) * along;
   }
+  // Twice: what rounding leaves of a displacement that is long across is not little.
   const Vector<Dim> across = normal(vertex);
+  displacement -= dot(displacement, across) * across;
   return displacement - dot(displacement, across) * across;
 }
 
