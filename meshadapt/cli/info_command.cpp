@@ -4,6 +4,7 @@
 #include <string>
 
 #include "command.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
@@ -40,6 +41,9 @@ Validity check_in(const Executor& executor, const AnyMesh& mesh, const AnyField*
     meshadapt::Neighbours<Dim> neighbours;
     meshadapt::make_mesh<Dim>(executor, mesh, {}, neighbours, validity.warnings);
     if (metric == nullptr) meshadapt::default_metric(executor, mesh);
+    for (const std::string& crossing : meshadapt::check_boundary(executor, mesh))
+      validity.warnings.push_back(mesh.name + ": " + crossing +
+                                  "; what is adapted may be refused as not valid");
   } catch (const meshadapt::InputError& error) {
     validity.reason = error.in_file();
   }

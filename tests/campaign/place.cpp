@@ -91,7 +91,8 @@ double put_with_few_digits(Random& random, Mesh& mesh, Mesh& exact, double& roun
   const double away = scale * random.pick({0.0, 1.0, 100.0});
   map(mesh, [&](const Point& x) { return x + away * offset; });
   exact.points = mesh.points;
-  const int way = random.below(3), digits = random.between(4, 10);
+  // Of the mesh itself, beside those that tell where it is.
+  const int way = random.below(3), digits = random.between(4, 10) + (away > scale ? 2 : 0);
   const double step = std::pow(10, std::floor(std::log10(scale * random.power(-6, -3))));
   rounding = 0;
   const bool fine = map(mesh, [&](const Point& x) {

@@ -35,6 +35,23 @@ TEST(Program, SuggestsOptionsOnlyWhereTheyAreClose) {
   }
 }
 
+TEST(Program, InfoWarnsOfBoundariesThatCross) {
+  const Folder folder;
+  const auto info = [&](const char* tip) {  // of the first of two triangles
+    folder.write("m.mesh", "MeshVersionFormatted 2\nDimension 2\nVertices 6\n0 0 0\n0 1 0\n" +
+                               std::string(tip) +
+                               " 0.4 0\n1 0 0\n2 0 0\n1 1 0\n"
+                               "Triangles 2\n1 3 2 1\n4 5 6 1\n"
+                               "Edges 6\n1 2 1\n2 3 1\n3 1 1\n4 5 1\n5 6 1\n6 4 1\nEnd\n");
+    return folder.run("info m.mesh");
+  };
+  const Outcome apart = info("0.9"), crossing = info("1.1");
+  EXPECT_EQ(apart.status, 0);
+  EXPECT_EQ(apart.err, "");
+  EXPECT_EQ(crossing.status, 0);
+  EXPECT_TRUE(contains(crossing.err, "m.mesh: edge 2 crosses edge 6")) << crossing.err;
+}
+
 TEST(Program, SaysWhichMeshCannotBeDrawnAndWhatToDo) {
   const Folder folder;
   const std::string head = "MeshVersionFormatted 2\nDimension 2\nVertices 3\n";
