@@ -71,12 +71,13 @@ class Classifier {
       join_patches();
     }
     if constexpr (Dim == 3) find_curves();
-    mark_faced_patches(executor_, mesh_, facets_, sides_, tolerance_);
+    const bool is_rough = rounding_ && !(rounding_->plane_of.empty() && rounding_->line_of.empty());
+    mark_faced_patches(executor_, mesh_, facets_, sides_,
+                       is_rough ? rounding_->tolerance : tolerance_);
     store_patches();
     if (surface_tolerance_ > 0) keep_surface();
     classify_vertices();
-    if (rounding_ && !(rounding_->plane_of.empty() && rounding_->line_of.empty()))
-      mesh_.rounding = std::move(rounding_);
+    if (is_rough) mesh_.rounding = std::move(rounding_);
   }
 
  private:

@@ -249,6 +249,26 @@ std::size_t patch_count(const AnyMesh& any) {
   return make_mesh<Dim>(executor, any, {}, neighbours, warnings).patches.size();
 }
 
+/// Of patches that face another one.
+std::size_t faced_count(const AnyMesh& any) {
+  Neighbours<3> neighbours;
+  std::vector<std::string> warnings;
+  const auto patches = make_mesh<3>(executor, any, {}, neighbours, warnings).patches;
+  return static_cast<std::size_t>(
+      std::count_if(patches.begin(), patches.end(), [](const auto& patch) { return patch.faced; }));
+}
+
+/// What bends by rounding alone encloses nothing.
+TEST(Rounding, MakesNoPatchFaceAnother) {
+  for (auto seed = test::first_trial(); seed < test::end_of_trials(200); ++seed) {
+    const Case random = random_case(2 * seed + 1);  // in 3D
+    SCOPED_TRACE("seed " + std::to_string(2 * seed + 1) + ": " + random.what);
+    const AnyMesh rounded = written(random.exact, random.format);
+    if (!check_mesh(executor, rounded).empty()) continue;
+    EXPECT_EQ(faced_count(rounded), faced_count(random.exact));
+  }
+}
+
 /// Of so many facets around, of radius 1.
 AnyMesh cylinder(int dimension, int facets) {
   test::Grid grid = test::unit_grid(dimension, facets / 4);
