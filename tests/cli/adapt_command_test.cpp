@@ -239,8 +239,9 @@ TEST(AdaptCommand, CarriesFieldsAlong) {
       const Folder folder;
       folder.add_example(name);
       add_field(folder, name + ".mesh");
-      const Outcome outcome = folder.run("adapt " + name + ".mesh --iterations 1 --field u.sol" +
-                                         " --vtu a.vtu -o a.mesh" + how);
+      const Outcome outcome =
+          folder.run("adapt " + name + ".mesh --iterations 1 -hmin 0.05 --field u.sol" +
+                     " --vtu a.vtu -o a.mesh" + how);
       EXPECT_EQ(outcome.status, 0) << outcome.err;
       EXPECT_TRUE(contains(outcome.out, "written: a.mesh, a.sol, a.u.sol")) << outcome.out;
       EXPECT_TRUE(contains(folder.read("a.vtu"), "u_2"));

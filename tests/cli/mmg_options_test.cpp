@@ -19,19 +19,20 @@ std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), 
 TEST(MmgOptions, AreTakenWithOneWarningAndChangeNothing) {
   const Folder folder;
   folder.add_example("waves2d");
-  ASSERT_EQ(folder.run("adapt waves2d.mesh -o plain.mesh").err, "");
+  ASSERT_EQ(folder.run("adapt waves2d.mesh -hmin 0.05 -o plain.mesh").err, "");
   for (const char* words :
        {"-nofem", "-opnbdy", "-nosizreq", "-keep-ref", "-d", "-val", "-default", "-nr", "-octree 8",
         "-rn", "-rn 0", "-hgradreq -1", "-isoref 10", "-rmc", "-rmc 1e-3", "-ar 30",
         "-nofem -opnbdy -nosizreq -keep-ref -d -val -default -nr -octree 8 -rn 1 -hgradreq 1.3"}) {
-    const Outcome outcome = folder.run("adapt waves2d.mesh -o mmg.mesh " + std::string(words));
+    const Outcome outcome =
+        folder.run("adapt waves2d.mesh -hmin 0.05 -o mmg.mesh " + std::string(words));
     EXPECT_EQ(outcome.status, 0) << words << ": " << outcome.err;
     EXPECT_EQ(lines(outcome.err), 1) << words << ": " << outcome.err;
     EXPECT_TRUE(contains(outcome.err, "warning: Mmg's options that need not be given here: -"))
         << outcome.err;
     EXPECT_EQ(folder.read("mmg.mesh"), folder.read("plain.mesh")) << words;
   }
-  const Outcome in = folder.run("adapt -in waves2d.mesh -out mmg.mesh -v 0 -nofem");
+  const Outcome in = folder.run("adapt -in waves2d.mesh -out mmg.mesh -hmin 0.05 -v 0 -nofem");
   EXPECT_EQ(in.status, 0);
   EXPECT_EQ(in.err, "");
   EXPECT_EQ(folder.read("mmg.mesh"), folder.read("plain.mesh"));
