@@ -1,0 +1,15 @@
+# Headers are read, and templates compiled, once for eight sources of a library. The thread sanitizer's
+# build is made so; others compile each source alone and see what is missing, shadowed or unused in it.
+foreach(library ductile_runtime ductile_meshadapt)
+  if(TARGET ${library})
+    set_target_properties(${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8
+      UNITY_BUILD_CODE_BEFORE_INCLUDE "#pragma GCC diagnostic ignored \"-Wshadow\"")
+  endif()
+endforeach()
+# These have names in common with others.
+set_source_files_properties(${PROJECT_SOURCE_DIR}/runtime/steal_by_signal.cpp
+  TARGET_DIRECTORY ductile_runtime PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+if(TARGET ductile_meshadapt)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/meshadapt/io/vtu.cpp
+    TARGET_DIRECTORY ductile_meshadapt PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endif()
