@@ -76,7 +76,7 @@ void Adapter<Dim>::run() {
   const bool doubtful = !options_.insert || wanted < not_much;
   const Standing before = doubtful ? standing() : Standing{};
   adapt_anew();
-  if (doubtful && !is_better(standing(), before)) outcome_ = Outcome::better_mended;
+  if (doubtful && !is_better(standing(), before, after_a_run)) outcome_ = Outcome::better_mended;
 }
 
 template <int Dim>
@@ -84,16 +84,21 @@ void Adapter<Dim>::mend() {
   if (options_.insert) mend(share_to_change());
 }
 
-/// Does what is to be done next to where it is to be done, if anything is. Next to elements that
-/// are thin and cannot go, splits may make others like them, without an end.
+/// Does what is to be done next to where it is to be done, if anything is. Where that changes more
+/// than little, the mesh must be clearly better for it; and next to elements that are thin and
+/// cannot go, splits may make others like them, without an end.
 template <int Dim>
 void Adapter<Dim>::mend(double wanted) {
   report_.converged = true;
   came_adapted_ = true;
   stage_ = std::size(Tuning<Dim>::stages) - 1;  // what is long is split at once
   if (wanted < nothing) return;
+  const std::uint32_t epoch = mesh_.epoch;
+  const Standing before = standing();
   finish();
-  if (share_to_change() >= little) outcome_ = Outcome::better_left;
+  const bool in_vain = share(elements_changed_after(epoch)) >= little &&
+                       !is_better(standing(), before, after_mending);
+  if (in_vain || share_to_change() >= little) outcome_ = Outcome::better_left;
 }
 
 template <int Dim>
@@ -126,6 +131,15 @@ std::size_t Adapter<Dim>::elements_below(double mean_ratio) const {
     return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < shape;
   };
   return runtime::parallel_reduce(executor_, mesh_.element_slots(), std::size_t{0}, is_below,
+                                  std::plus<>());
+}
+
+template <int Dim>
+std::size_t Adapter<Dim>::elements_changed_after(std::uint32_t epoch) const {
+  const auto is_changed = [&](std::size_t e) -> std::size_t {
+    return mesh_.alive(static_cast<ElementId>(e)) && mesh_.changed_at[e] > epoch;
+  };
+  return runtime::parallel_reduce(executor_, mesh_.element_slots(), std::size_t{0}, is_changed,
                                   std::plus<>());
 }
 

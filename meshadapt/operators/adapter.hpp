@@ -83,6 +83,7 @@ class Adapter {
   std::size_t splits_to_come();
   double share(std::size_t changes) const;
   std::size_t elements_below(double mean_ratio) const;
+  std::size_t elements_changed_after(std::uint32_t epoch) const;
   double long_edge() const;
   EdgeSurvey<Dim>& survey_for(double longer);
   std::uint32_t end_epoch(std::uint32_t& seen);

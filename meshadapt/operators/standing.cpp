@@ -28,19 +28,22 @@ Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
   return runtime::parallel_reduce(executor, mesh.element_slots(), Standing{}, look, add);
 }
 
-bool is_better(const Standing& after, const Standing& before) {
-  constexpr double clearly = 0.85, hardly = 1.02, least = 0.01, chance = 3;  // the last: elements
+bool is_better(const Standing& after, const Standing& before, const Clearly& clearly) {
+  constexpr double hardly = 1.02, chance = 3;  // the last: elements
   const auto per_element = [](const Standing& standing, double sum) {
     return sum / static_cast<double>(std::max<std::size_t>(1, standing.elements));
   };
   struct Fault {
     double after, before;
-    bool is_less() const { return after < clearly * before && after < before - least; }
+    bool is_less(const Clearly& by) const {
+      return after < by.part * before && after < before - by.least;
+    }
     bool is_no_more() const { return after <= hardly * before; }
   };
   const Fault shapes{per_element(after, after.shapes), per_element(before, before.shapes)};
   const Fault lengths{per_element(after, after.lengths), per_element(before, before.lengths)};
-  return (shapes.is_less() && lengths.is_no_more()) || (lengths.is_less() && shapes.is_no_more()) ||
+  return (shapes.is_less(clearly) && lengths.is_no_more()) ||
+         (lengths.is_less(clearly) && shapes.is_no_more()) ||
          per_element(after, after.poor + chance) < 0.5 * per_element(before, before.poor);
 }
 

@@ -22,7 +22,17 @@ template <int Dim>
 Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                      const EdgeRange& range, double poor);
 
-/// Is the one clearly better than the other? What differs by chance from run to run is not.
-bool is_better(const Standing& after, const Standing& before);
+/// How much less of a fault is clearly less: at most this part of it, and for each element less by
+/// more than `least`.
+struct Clearly {
+  double part, least;
+};
+/// What differs by chance from run to run is not clear.
+inline constexpr Clearly after_a_run{.part = 0.85, .least = 0.01};
+/// What was mended differs only where it was.
+inline constexpr Clearly after_mending{.part = 0.9, .least = 0};
+
+/// Is the one clearly better than the other?
+bool is_better(const Standing& after, const Standing& before, const Clearly& clearly);
 
 }  // namespace ductile::meshadapt

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/statistics.hpp"
 #include "support/meshes.hpp"
 #include "support/random_case.hpp"
 #include "support/rest_case.hpp"
@@ -119,8 +121,32 @@ TEST(Rest, ComesByTheThirdCallInNastyMeshesToo) {
     const test::RandomCase made = test::random_case(seed);
     const Change changed = change_by_call(3, made.mesh, made.metric, made.options,
                                           [](const AdaptedMesh& last) { return last.metric; });
-    unrest.note(seed, made.what, changed.count);
+    unrest.note(seed, made.what, changed.share);
   });
+}
+
+/// A mesh at rest, of whose metric a small spot changes: the spot is adapted, however small it is.
+TEST(Rest, IsNotForWhatIsNew) {
+  const Executor executor({.threads = 1});
+  const AnyMesh start = test::make_grid(test::unit_grid(2, 40));
+  AdaptedMesh last = adapt(executor, start, constant_metric(start, 0.03), {});
+  last = adapt(executor, last.mesh, last.metric, {});
+  test::Random random(5);
+  for (std::uint64_t trial = 0; trial < test::trials(20); ++trial) {
+    const double x = test::uniform(random, 0.2, 0.8), y = test::uniform(random, 0.2, 0.8);
+    const double radius = test::uniform(random, 0.03, 0.15);
+    AnyField metric = last.metric;
+    for (std::size_t v = 0; v < last.mesh.vertex_count(); ++v) {
+      const double away =
+          std::hypot(last.mesh.coordinates[2 * v] - x, last.mesh.coordinates[2 * v + 1] - y);
+      if (away < radius)  // sizes a third of what they were
+        for (std::size_t i = 0; i < 3; ++i) metric.values[3 * v + i] *= 9;
+    }
+    const double before = measure(executor, last.mesh, &metric).edge_length.max;
+    const AdaptedMesh next = adapt(executor, last.mesh, metric, {});
+    SCOPED_TRACE("radius " + std::to_string(radius));
+    EXPECT_LT(measure(executor, next.mesh, &next.metric).edge_length.max, std::min(2.0, before));
+  }
 }
 
 }  // namespace
