@@ -10,20 +10,24 @@ namespace ductile::meshadapt {
 template <int Dim>
 Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                      const EdgeRange& range, double poor) {
+  const EdgeRange twice{range.shortest / 2, 2 * range.longest};
   const auto look = [&](std::size_t i) -> Standing {
     const auto e = static_cast<ElementId>(i);
     if (!mesh.alive(e)) return {};
     const double ratio = std::max(0.0, mean_ratio<Dim>(mesh.shape_of[e]));
-    Standing one{.elements = 1, .shapes = 1 - ratio, .lengths = 0, .poor = ratio < poor ? 1.0 : 0};
+    Standing one{.elements = 1, .shapes = 1 - ratio, .poor = ratio < poor ? 1.0 : 0};
     for (std::size_t k = 0; k < Simplex<Dim>::edges; ++k) {
       const auto [a, b] = ends_of_edge<Dim>(mesh.corners_of[e], k);
-      if (!range.contains(end_squares(mesh.site_of[a], mesh.site_of[b])))
-        one.lengths += 1.0 / Simplex<Dim>::edges;
+      const EndSquares edge = end_squares(mesh.site_of[a], mesh.site_of[b]);
+      if (range.contains(edge)) continue;
+      one.lengths += 1.0 / Simplex<Dim>::edges;
+      if (!twice.contains(edge)) one.far = 1;
     }
     return one;
   };
   const auto add = [](const Standing& a, const Standing& b) -> Standing {
-    return {a.elements + b.elements, a.shapes + b.shapes, a.lengths + b.lengths, a.poor + b.poor};
+    return {a.elements + b.elements, a.shapes + b.shapes, a.lengths + b.lengths, a.poor + b.poor,
+            a.far + b.far};
   };
   return runtime::parallel_reduce(executor, mesh.element_slots(), Standing{}, look, add);
 }
@@ -38,13 +42,14 @@ bool is_better(const Standing& after, const Standing& before, const Clearly& cle
     bool is_less(const Clearly& by) const {
       return after < by.part * before && after < before - by.least;
     }
-    bool is_no_more() const { return after <= hardly * before; }
+    bool is_at_most(double times) const { return after <= times * before; }
   };
   const Fault shapes{per_element(after, after.shapes), per_element(before, before.shapes)};
   const Fault lengths{per_element(after, after.lengths), per_element(before, before.lengths)};
-  return (shapes.is_less(clearly) && lengths.is_no_more()) ||
-         (lengths.is_less(clearly) && shapes.is_no_more()) ||
-         per_element(after, after.poor + chance) < 0.5 * per_element(before, before.poor);
+  return (shapes.is_less(clearly) && lengths.is_at_most(hardly)) ||
+         (lengths.is_less(clearly) && shapes.is_at_most(clearly.shapes)) ||
+         per_element(after, after.poor + chance) < 0.5 * per_element(before, before.poor) ||
+         per_element(after, after.far + chance) < 0.5 * per_element(before, before.far);
 }
 
 template Standing standing_of<2>(const runtime::Executor&, const Mesh<2>&, const EdgeRange&,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -15,6 +16,7 @@ struct Standing {
   double shapes = 0;   ///< sum of what the elements' mean ratios lack of 1
   double lengths = 0;  ///< sum of the share of each element's edges that are out of the range
   double poor = 0;     ///< elements of a mean ratio below that which counts as poor
+  double far = 0;      ///< elements with an edge that is twice as long as the range, or half
 };
 
 /// Thread safety: one caller; runs on the executor.
@@ -23,16 +25,19 @@ Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                      const EdgeRange& range, double poor);
 
 /// How much less of a fault is clearly less: at most this part of it, and for each element less by
-/// more than `least`.
+/// more than `least`. Where lengths are clearly better, `shapes` may be this many times as much.
 struct Clearly {
-  double part, least;
+  double part, least, shapes;
 };
 /// What differs by chance from run to run is not clear.
-inline constexpr Clearly after_a_run{.part = 0.85, .least = 0.01};
-/// What was mended differs only where it was.
-inline constexpr Clearly after_mending{.part = 0.9, .least = 0};
+inline constexpr Clearly after_a_run{.part = 0.85, .least = 0.01, .shapes = 1.02};
+/// What was mended differs only where it was, and lengths come first: shapes that were made for
+/// other lengths are better than those that are made for these.
+inline constexpr Clearly after_mending{
+    .part = 0.9, .least = 0, .shapes = std::numeric_limits<double>::infinity()};
 
-/// Is the one clearly better than the other?
+/// Is the one clearly better than the other? It is also if only half as many elements are poor, or
+/// far from the range.
 bool is_better(const Standing& after, const Standing& before, const Clearly& clearly);
 
 }  // namespace ductile::meshadapt
