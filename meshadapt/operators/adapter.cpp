@@ -134,6 +134,7 @@ std::size_t Adapter<Dim>::elements_below(double mean_ratio) const {
                                   std::plus<>());
 }
 
+/// Those that are there now: made, moved or swapped since that epoch.
 template <int Dim>
 std::size_t Adapter<Dim>::elements_changed_after(std::uint32_t epoch) const {
   const auto is_changed = [&](std::size_t e) -> std::size_t {

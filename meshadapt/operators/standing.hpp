@@ -16,7 +16,7 @@ struct Standing {
   double shapes = 0;   ///< sum of what the elements' mean ratios lack of 1
   double lengths = 0;  ///< sum of the share of each element's edges that are out of the range
   double poor = 0;     ///< elements of a mean ratio below that which counts as poor
-  double far = 0;      ///< elements with an edge that is twice as long as the range, or half
+  double far = 0;      ///< elements with an edge above twice the range, or below half of it
 };
 
 /// Thread safety: one caller; runs on the executor.
@@ -36,8 +36,8 @@ inline constexpr Clearly after_a_run{.part = 0.85, .least = 0.01, .shapes = 1.02
 inline constexpr Clearly after_mending{
     .part = 0.9, .least = 0, .shapes = std::numeric_limits<double>::infinity()};
 
-/// Is the one clearly better than the other? It is also if only half as many elements are poor, or
-/// far from the range.
+/// Is the one clearly better than the other? So it is, too, if less than half as many elements are
+/// poor, or far from the range.
 bool is_better(const Standing& after, const Standing& before, const Clearly& clearly);
 
 }  // namespace ductile::meshadapt
