@@ -10,8 +10,11 @@
 /// after the join.
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -100,13 +103,14 @@ void work_and_steal(Loop& loop, Parts parts, PartOfThread& mine) {
 }  // namespace
 
 void run_steal_by_atomics(const Executor& executor, Loop& loop) {
-  // Kept from loop to loop. Loops inside a body do not get here, so one per thread is enough.
-  static thread_local std::vector<PartOfThread> kept;
   const auto threads = static_cast<std::size_t>(executor.threads());
-  if (kept.size() < threads) kept = std::vector<PartOfThread>(threads);
   while (loop.chunk_count() > UINT32_MAX) loop.grain *= 2;
   const std::size_t chunks = loop.chunk_count(), wanted = std::min(threads, chunks);
-  const Parts parts(kept.data(), wanted);
+  // On the stack, but for very many threads: a loop asks for no memory.
+  alignas(PartOfThread) std::array<std::byte, 64 * sizeof(PartOfThread)> room;
+  std::pmr::monotonic_buffer_resource pool(room.data(), room.size());
+  std::pmr::vector<PartOfThread> of_threads(wanted, &pool);
+  const Parts parts(of_threads);
   for (std::size_t t = 0; t < wanted; ++t) {
     const auto bound = [&](std::size_t i) {
       return static_cast<std::uint32_t>(chunks * i / wanted);
