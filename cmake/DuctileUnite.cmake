@@ -1,5 +1,5 @@
-# Headers are read, and templates compiled, once for eight sources of a library. The thread sanitizer's
-# build is made so; others compile each source alone and see what is missing, shadowed or unused in it.
+# Headers are read, and templates compiled, once for eight sources of a library. The sanitizers' builds
+# are made so; others compile each source alone and see what is missing, shadowed or unused in it.
 foreach(library ductile_runtime ductile_meshadapt)
   if(TARGET ${library})
     set_target_properties(${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8

@@ -10,7 +10,7 @@
 #include "ductile/meshadapt/gmf.hpp"
 #include "program.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::adapt_command_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -342,4 +342,4 @@ TEST(AdaptCommand, ChecksItsOutputsBeforeItWorks) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::adapt_command_test

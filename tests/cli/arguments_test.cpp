@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace ductile::cli {
+namespace ductile::cli::arguments_test {
 namespace {
 
 constexpr std::array<Option, 4> options{{{"-hmin", "X", ""},
@@ -60,4 +60,4 @@ TEST(EditDistance, CountsTypingErrors) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::arguments_test

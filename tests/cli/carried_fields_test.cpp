@@ -5,7 +5,7 @@
 #include "ductile/meshadapt/gmf.hpp"
 #include "program.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::carried_fields_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -74,4 +74,4 @@ TEST(CarriedFields, AreRefusedBeforeTheWorkWhereNamesCollide) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::carried_fields_test

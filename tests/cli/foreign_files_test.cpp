@@ -10,7 +10,7 @@
 
 #include "program.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::foreign_files_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -176,4 +176,4 @@ TEST(ForeignFiles, OutputsThatLeadNowhereAreRefusedBeforeTheWork) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::foreign_files_test

@@ -10,7 +10,7 @@
 
 #include "spawned.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::killed_test {
 namespace {
 
 using Contents = std::map<std::string, std::string>;
@@ -112,4 +112,4 @@ TEST_F(Killed, AtRandomMomentsLeavesFilesOfOneRun) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::killed_test

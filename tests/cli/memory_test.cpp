@@ -8,7 +8,7 @@
 
 #include "spawned.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::memory_test {
 namespace {
 
 class Memory : public testing::Test {
@@ -63,4 +63,4 @@ TEST_F(Memory, IsRefusedBeforeTheWork) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::memory_test

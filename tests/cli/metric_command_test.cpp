@@ -10,7 +10,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "program.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::metric_command_test {
 namespace {
 
 using meshadapt::AnyField;
@@ -239,4 +239,4 @@ TEST(MetricCommand, TellsWhatIsWrongWithAFieldAndLeavesOldOutput) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::metric_command_test

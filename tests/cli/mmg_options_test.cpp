@@ -7,7 +7,7 @@
 
 #include "program.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::mmg_options_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -66,4 +66,4 @@ TEST(MmgOptions, AreNotShownInHelp) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::mmg_options_test

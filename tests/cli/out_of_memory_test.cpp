@@ -9,7 +9,7 @@
 
 #include "spawned.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::out_of_memory_test {
 namespace {
 
 struct Case {
@@ -116,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Case>& named) { return std::string(named.param.name); });
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::out_of_memory_test

@@ -6,7 +6,7 @@
 #include "picture/draw.hpp"
 #include "picture/scene.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::picture_test {
 namespace {
 
 using meshadapt::AnyMesh;
@@ -119,4 +119,4 @@ TEST(Draw, RefusesAnSvgOfTooManyPolygons) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::picture_test

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-namespace ductile::cli {
+namespace ductile::cli::program_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -233,4 +233,4 @@ TEST(Program, TakesAnyBytesInNames) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::program_test

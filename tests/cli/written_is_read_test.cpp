@@ -13,7 +13,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::cli {
+namespace ductile::cli::written_is_read_test {
 namespace {
 
 using meshadapt::AnyField;
@@ -174,4 +174,4 @@ TEST(WrittenIsRead, OfConvert) {
 }
 
 }  // namespace
-}  // namespace ductile::cli
+}  // namespace ductile::cli::written_is_read_test

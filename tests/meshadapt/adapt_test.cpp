@@ -22,7 +22,7 @@
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::adapt_test {
 namespace {
 
 using runtime::Executor;
@@ -439,4 +439,4 @@ TEST_P(Adapt, RefusesOptionsThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::adapt_test

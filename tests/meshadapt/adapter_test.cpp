@@ -14,7 +14,7 @@
 #include "support/random_case.hpp"
 #include "support/trials.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::adapter_test {
 namespace {
 
 using runtime::Executor;
@@ -105,4 +105,4 @@ TEST(Adapter, EachKernelLeavesCurvedBoundariesSound) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::adapter_test

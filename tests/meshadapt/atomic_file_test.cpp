@@ -13,7 +13,7 @@
 #include "ductile/meshadapt/gmf.hpp"
 #include "io_support.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -298,4 +298,4 @@ TEST(AtomicOutputs, SurviveAnInterrupt) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::atomic_file_test

@@ -10,7 +10,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::background_test {
 namespace {
 
 using runtime::Executor;
@@ -157,4 +157,4 @@ TYPED_TEST(BackgroundIn, GivesAPointOutsideTheMetricOfTheClosestPoint) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::background_test

@@ -11,7 +11,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::ball_test {
 namespace {
 
 using test::Random;
@@ -223,4 +223,4 @@ TEST(Ball, PullsToWhereElementsAreRegular) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::ball_test

@@ -5,7 +5,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::base_test {
 namespace {
 
 using test::Random;
@@ -74,4 +74,4 @@ TYPED_TEST(ShapeOf, AgreesThatAShapeIsAboveABar) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::base_test

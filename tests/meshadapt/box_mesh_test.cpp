@@ -6,7 +6,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::box_mesh_test {
 namespace {
 
 /// The axis along which a side is at one end, and where it is there.
@@ -57,4 +57,4 @@ TEST(BoxMesh, RefusesBoxesWithoutExtentOrCells) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::box_mesh_test

@@ -24,7 +24,7 @@
 #include "support/broken_input.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::broken_fields_test {
 namespace {
 
 using test::below;
@@ -196,4 +196,4 @@ TYPED_TEST(BrokenFieldsIn, MessagesNameArrayAndIndex) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::broken_fields_test

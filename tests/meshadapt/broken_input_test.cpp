@@ -22,7 +22,7 @@
 #include "support/broken_input.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::broken_input_test {
 namespace {
 
 using test::below;
@@ -167,4 +167,4 @@ TYPED_TEST(BrokenInputIn, VtuNamesThatAreNoXmlAreRefused) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::broken_input_test

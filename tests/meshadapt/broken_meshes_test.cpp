@@ -28,7 +28,7 @@
 #include "support/broken_input.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::broken_meshes_test {
 namespace {
 
 using test::bad_index;
@@ -240,4 +240,4 @@ TYPED_TEST(BrokenMeshesIn, AWalkLeavesNoArray) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::broken_meshes_test

@@ -9,7 +9,7 @@
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::cavity_test {
 namespace {
 
 TEST(Numbering, CountsInTheOrderOfFirstMeetings) {
@@ -82,4 +82,4 @@ TYPED_TEST(Neighbourhood, IsVisitedWhole) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::cavity_test

@@ -11,7 +11,7 @@
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::check_mesh_test {
 namespace {
 
 using runtime::Executor;
@@ -433,4 +433,4 @@ TEST(CheckBoundary, FindsMeshesThatOverlapThemselves) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::check_mesh_test

@@ -12,7 +12,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::complexity_test {
 namespace {
 
 using runtime::Executor;
@@ -124,4 +124,4 @@ TYPED_TEST(ComplexityIn, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::complexity_test

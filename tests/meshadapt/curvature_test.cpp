@@ -11,7 +11,7 @@
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::curvature_test {
 namespace {
 
 using runtime::Executor;
@@ -123,4 +123,4 @@ TEST(CurvedSizes, MakeBetterShapesWithGradation) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::curvature_test

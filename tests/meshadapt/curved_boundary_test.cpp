@@ -17,7 +17,7 @@
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::curved_boundary_test {
 namespace {
 
 using runtime::Executor;
@@ -245,4 +245,4 @@ TEST(CurvedBoundaries, ALidSmallerThanTheToleranceStays) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::curved_boundary_test

@@ -11,7 +11,7 @@
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::default_metric_test {
 namespace {
 
 using runtime::Executor;
@@ -214,4 +214,4 @@ TYPED_TEST(DefaultMetricIn, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::default_metric_test

@@ -9,7 +9,7 @@
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::edges_test {
 namespace {
 
 std::vector<std::uint8_t> as_vector(const runtime::FilledArray<std::uint8_t>& marks) {
@@ -213,4 +213,4 @@ TYPED_TEST(EdgesIn, AreThoseOfAMeshThatShrinks) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::edges_test

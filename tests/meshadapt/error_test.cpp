@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::error_test {
 namespace {
 
 TEST(Error, WrongInputIsAnErrorToo) { EXPECT_THROW(throw InputError("x"), Error); }
@@ -22,4 +22,4 @@ TEST(Error, StaysOneLineThatDoesNothingToATerminal) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::error_test

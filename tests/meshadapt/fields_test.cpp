@@ -4,7 +4,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::fields_test {
 namespace {
 
 TEST(Fields, AreTakenApartAsTheyWerePutTogether) {
@@ -30,4 +30,4 @@ TEST(Fields, AreRefusedWhereTypeOrSizeDiffers) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::fields_test

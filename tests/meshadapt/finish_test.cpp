@@ -10,7 +10,7 @@
 #include "support/preserved.hpp"
 #include "support/short_edges.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::finish_test {
 namespace {
 
 using runtime::Executor;
@@ -72,4 +72,4 @@ TEST(Standing, IsBetterOnlyIfItClearlyIs) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::finish_test

@@ -8,7 +8,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::fixed_mesh_test {
 namespace {
 
 using runtime::Executor;
@@ -105,4 +105,4 @@ TYPED_TEST(FixedMeshIn, TurnsInvertedElementsAndRefusesBadOnes) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::fixed_mesh_test

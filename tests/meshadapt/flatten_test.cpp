@@ -16,7 +16,7 @@
 #include "io_support.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::flatten_test {
 namespace {
 
 using runtime::Executor;
@@ -159,4 +159,4 @@ TEST(Flatten, MetricsFollow) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::flatten_test

@@ -14,7 +14,7 @@
 #include "ductile/meshadapt/gmf.hpp"
 #include "io_support.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::foreign_gmf_test {
 namespace {
 
 using Form = GmfOptions::Form;
@@ -284,4 +284,4 @@ TEST(ForeignGmf, SaysOfManySectionsHowManyThereAre) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::foreign_gmf_test

@@ -11,7 +11,7 @@
 #include "ductile/meshadapt/gmf.hpp"
 #include "io_support.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::gmf_errors_test {
 namespace {
 
 using Form = GmfOptions::Form;
@@ -388,4 +388,4 @@ TEST_F(GmfErrors, WritersRefuseWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::gmf_errors_test

@@ -39,7 +39,7 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 #endif
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::gmf_fuzz_test {
 namespace {
 
 using Form = GmfOptions::Form;
@@ -154,4 +154,4 @@ TEST(GmfFuzz, RandomBytesAreRefused) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::gmf_fuzz_test

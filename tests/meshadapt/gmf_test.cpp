@@ -10,7 +10,7 @@
 
 #include "io_support.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::gmf_test {
 namespace {
 
 using Form = GmfOptions::Form;
@@ -98,4 +98,4 @@ INSTANTIATE_TEST_SUITE_P(Binary, GmfRoundTrip,
                                           testing::Values(2, 3)));
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::gmf_test

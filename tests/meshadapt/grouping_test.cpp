@@ -7,7 +7,7 @@
 
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::grouping_test {
 namespace {
 
 using Items = std::vector<std::vector<std::uint32_t>>;  // [item], its keys
@@ -73,4 +73,4 @@ TEST(Grouping, SaysThatItCannotCountSoMuch) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::grouping_test

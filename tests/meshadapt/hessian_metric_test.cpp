@@ -13,7 +13,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::hessian_metric_test {
 namespace {
 
 using runtime::Executor;
@@ -315,4 +315,4 @@ TYPED_TEST(HessianMetricIn, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::hessian_metric_test

@@ -8,7 +8,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::hessian_test {
 namespace {
 
 using runtime::Executor;
@@ -212,4 +212,4 @@ TYPED_TEST(HessianIn, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::hessian_test

@@ -9,7 +9,7 @@
 
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::hilbert_test {
 namespace {
 
 template <class Dimension>
@@ -48,4 +48,4 @@ TYPED_TEST(Hilbert, GoesFromNeighbourToNeighbour) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::hilbert_test

@@ -11,7 +11,7 @@
 // Everything together, as a simulation uses it: a function is sampled, its Hessian recovered, the
 // metric fitted, the mesh adapted, and again. The interpolation error must fall as N^(-2/d).
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::interpolation_error_test {
 namespace {
 
 using runtime::Executor;
@@ -108,4 +108,4 @@ TEST(InterpolationError, FallsAtTheOptimalRate) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::interpolation_error_test

@@ -17,7 +17,7 @@
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::kernels_checked_test {
 namespace {
 
 const runtime::Executor executor({.threads = 2});
@@ -102,4 +102,4 @@ TYPED_TEST(KernelsChecked, SmoothKeepsItsContract) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::kernels_checked_test

@@ -8,7 +8,7 @@
 
 #include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::list_pool_test {
 namespace {
 
 const runtime::Executor executor({.threads = 2});
@@ -107,4 +107,4 @@ TEST(ListPool, GrowsAndForgets) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::list_pool_test

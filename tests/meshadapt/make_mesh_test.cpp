@@ -11,7 +11,7 @@
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::make_mesh_test {
 namespace {
 
 using runtime::Executor;
@@ -423,4 +423,4 @@ TEST(TakeApart, GivesBackWhatWasMade) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::make_mesh_test

@@ -4,7 +4,7 @@
 
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::marked_set_test {
 namespace {
 
 TEST(MarkedSet, NumbersWhatIsMarkedInOrder) {
@@ -28,4 +28,4 @@ TEST(MarkedSet, NumbersWhatIsMarkedInOrder) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::marked_set_test

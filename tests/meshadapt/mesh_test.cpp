@@ -10,7 +10,7 @@
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::mesh_test {
 namespace {
 
 using runtime::Executor;
@@ -303,4 +303,4 @@ TYPED_TEST(MeshIn, NeighboursAreMutual) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::mesh_test

@@ -21,7 +21,7 @@
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::metric_bounds_test {
 namespace {
 
 using runtime::Executor;
@@ -193,4 +193,4 @@ TEST(MetricBounds, FieldsAreInfiniteOnlyIfTheyMayBe) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::metric_bounds_test

@@ -9,7 +9,7 @@
 
 #include "io_support.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::metric_field_test {
 namespace {
 
 using Type = AnyField::Type;
@@ -109,4 +109,4 @@ TEST(MetricField, NamesFileVertexAndFault) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::metric_field_test

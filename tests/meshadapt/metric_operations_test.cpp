@@ -14,7 +14,7 @@
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::metric_operations_test {
 namespace {
 
 using runtime::Executor;
@@ -455,4 +455,4 @@ TEST(AdaptToMetric, GradationAndBoundsAreThoseOfTheOptions) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::metric_operations_test

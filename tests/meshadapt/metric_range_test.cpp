@@ -16,7 +16,7 @@
 #include "support/metrics.hpp"
 #include "support/trials.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::metric_range_test {
 namespace {
 
 using test::below;
@@ -150,4 +150,4 @@ TYPED_TEST(MetricRangeIn, WhateverOperationsReturnTheyTakeAgain) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::metric_range_test

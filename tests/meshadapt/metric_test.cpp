@@ -5,7 +5,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::metric_test {
 namespace {
 
 using test::difference;
@@ -129,4 +129,4 @@ TEST(MeanLength, IsTheIntegralAlongTheEdge) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::metric_test

@@ -9,7 +9,7 @@
 
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::pieces_test {
 namespace {
 
 template <class Dimension>
@@ -83,4 +83,4 @@ TYPED_TEST(PiecesIn, FillTheElement) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::pieces_test

@@ -7,7 +7,7 @@
 
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::prism_test {
 namespace {
 
 /// Parts of a wavy surface over the unit square, or of a curve over an interval, n along an axis,
@@ -112,4 +112,4 @@ TEST(Prism, HasNothingOverWhatIsFlat) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::prism_test

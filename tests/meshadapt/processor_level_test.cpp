@@ -10,7 +10,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::processor_level_test {
 namespace {
 
 using runtime::Executor;
@@ -69,4 +69,4 @@ TEST_P(ProcessorLevelOf, AdaptUsesTheBest) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::processor_level_test

@@ -5,7 +5,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::quality_test {
 namespace {
 
 using test::Random;
@@ -149,4 +149,4 @@ TEST(ShorterThan, SaysWhatTheLengthSays) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::quality_test

@@ -12,7 +12,7 @@
 #include "support/preserved.hpp"
 #include "support/random_case.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::random_meshes_test {
 namespace {
 
 using runtime::Executor;
@@ -60,4 +60,4 @@ TEST(RandomMeshes, AreValidAfterAdaptation) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::random_meshes_test

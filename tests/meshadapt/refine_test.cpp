@@ -15,7 +15,7 @@
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::refine_test {
 namespace {
 
 using runtime::Executor;
@@ -231,4 +231,4 @@ TYPED_TEST(RefineIn, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::refine_test

@@ -17,7 +17,7 @@
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::repaired_meshes_test {
 namespace {
 
 using runtime::Executor;
@@ -242,4 +242,4 @@ TEST(RepairedMeshes, RefuseWhatIsInvertedInSpace) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::repaired_meshes_test

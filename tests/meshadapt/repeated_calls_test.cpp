@@ -14,7 +14,7 @@
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::repeated_calls_test {
 namespace {
 
 using runtime::Executor;
@@ -181,4 +181,4 @@ TEST(RepeatedCalls, OnAFewElements) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::repeated_calls_test

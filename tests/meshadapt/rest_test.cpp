@@ -16,7 +16,7 @@
 #include "support/rest_case.hpp"
 #include "support/trials.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::rest_test {
 namespace {
 
 using runtime::Executor;
@@ -155,4 +155,4 @@ TEST(Rest, IsNotForWhatIsNew) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::rest_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::ring_test {
 namespace {
 
 constexpr VertexId a = 100, b = 101;
@@ -63,4 +63,4 @@ TEST(Ring, RefusesWhatIsNotOneRing) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::ring_test

@@ -19,7 +19,7 @@
 #include "support/preserved.hpp"
 #include "support/trials.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::rounding_test {
 namespace {
 
 using runtime::Executor;
@@ -314,4 +314,4 @@ TEST(Rounding, KeepsTheFacetsOfCylinders) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::rounding_test

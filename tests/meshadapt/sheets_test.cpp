@@ -10,7 +10,7 @@
 #include "geometry/distance.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::sheets_test {
 namespace {
 
 using test::uniform;
@@ -222,4 +222,4 @@ TEST(Sheets, OfNothingCoverNothing) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::sheets_test

@@ -5,7 +5,7 @@
 #include "ductile/meshadapt/orientation.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::simplex_test {
 namespace {
 
 using test::Random;
@@ -104,4 +104,4 @@ TEST(Simplex, FindsTheFacetOppositeACorner) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::simplex_test

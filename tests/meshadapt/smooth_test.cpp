@@ -11,7 +11,7 @@
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::smooth_test {
 namespace {
 
 using runtime::Executor;
@@ -152,4 +152,4 @@ TYPED_TEST(SmoothIn, KeepsTheShapesOfALargeBallUpToDate) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::smooth_test

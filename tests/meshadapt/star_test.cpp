@@ -8,7 +8,7 @@
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::star_test {
 namespace {
 
 const runtime::Executor executor({.threads = 1});
@@ -76,4 +76,4 @@ TEST(Star, KnowsWhatIsAroundEachEdgeToAHigherVertex) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::star_test

@@ -15,7 +15,7 @@
 #include "io_support.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::statistics_test {
 namespace {
 
 using runtime::Executor;
@@ -294,4 +294,4 @@ TEST(DefaultMetric, ImpliedSizesAreThoseOfTheMesh) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::statistics_test

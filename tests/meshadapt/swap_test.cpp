@@ -9,7 +9,7 @@
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::swap_test {
 namespace {
 
 const runtime::Executor executor({.threads = 2});
@@ -178,4 +178,4 @@ TEST(Swap, CutsNothingOffThatIsFarFromTheInputOrNotPoorOrBelowAnotherRegion) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::swap_test

@@ -20,7 +20,7 @@
 #include "support/thin_cases.hpp"
 #include "support/trials.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::topology_test {
 namespace {
 
 using runtime::Executor;
@@ -139,4 +139,4 @@ TEST(Topology, OfCurvedClosedCracksIsKept) { try_many(test::curved_crack); }
 TEST(Topology, OfBodiesInContactIsKept) { try_many(test::bodies_in_contact); }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::topology_test

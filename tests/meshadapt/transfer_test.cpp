@@ -11,7 +11,7 @@
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "support/meshes.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::transfer_test {
 namespace {
 
 using runtime::Executor;
@@ -351,4 +351,4 @@ TYPED_TEST(TransferIn, RefusesAFieldOfAnotherMesh) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::transfer_test

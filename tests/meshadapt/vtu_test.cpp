@@ -14,7 +14,7 @@
 #include "ductile/meshadapt/box_mesh.hpp"
 #include "io_support.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::vtu_test {
 namespace {
 
 using Type = AnyField::Type;
@@ -241,4 +241,4 @@ TEST(Vtu, IsWholeOrNotThereIfMemoryRunsOut) {
 }
 
 }  // namespace
-}  // namespace ductile::meshadapt
+}  // namespace ductile::meshadapt::vtu_test

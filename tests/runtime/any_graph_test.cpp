@@ -10,7 +10,7 @@
 #include "ductile/runtime/ordering.hpp"
 #include "graphs.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::any_graph_test {
 namespace {
 
 std::vector<std::uint32_t> row(const auto& graph, std::uint32_t v) {
@@ -83,4 +83,4 @@ TEST(AnyGraph, SpeculativeMethodsColourWhatNeedsLongWords) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::any_graph_test

@@ -8,7 +8,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::arena_test {
 namespace {
 
 using SmallArena = Arena<std::uint32_t, 12>;  // short segments, to cross many borders
@@ -92,4 +92,4 @@ TEST(Arena, SwapsContents) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::arena_test

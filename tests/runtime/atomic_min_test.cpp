@@ -9,7 +9,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::atomic_min_test {
 namespace {
 
 TEST(AtomicMin, SaysWhetherItLowered) {
@@ -41,4 +41,4 @@ TEST(AtomicMin, KeepsTheLeastOfWhatManyThreadsOffer) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::atomic_min_test

@@ -8,7 +8,7 @@
 
 #include "graphs.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::balance_test {
 namespace {
 
 std::vector<std::size_t> sizes(const Colouring& colouring) {
@@ -83,4 +83,4 @@ TEST(Balance, DoesNothingWithoutPasses) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::balance_test

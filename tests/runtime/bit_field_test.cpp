@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ductile::runtime::detail {
+namespace ductile::runtime::detail::bit_field_test {
 namespace {
 
 TEST(BitField, TakesItsBitsAndNoOthers) {
@@ -18,4 +18,4 @@ TEST(BitField, IsZeroOfEveryNumberWhereItHasNoBits) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime::detail
+}  // namespace ductile::runtime::detail::bit_field_test

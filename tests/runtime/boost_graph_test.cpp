@@ -12,7 +12,7 @@
 #include "ductile/runtime/graph.hpp"
 #include "graphs.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::boost_graph_test {
 namespace {
 
 template <class G>
@@ -60,4 +60,4 @@ TEST(BoostGraph, UsesTheIndexOfVerticesThatAreNotNumbers) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::boost_graph_test

@@ -13,7 +13,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::checked_rounds_test {
 namespace {
 
 using Vertex = std::uint32_t;
@@ -529,4 +529,4 @@ TEST(RunRoundsChecked, CatchesAVoidItemThatNobodyWakes) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::checked_rounds_test

@@ -9,7 +9,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "rounds_support.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::collect_test {
 namespace {
 
 /// Finds the same number of times as i's hash says, 0 to 3.
@@ -60,4 +60,4 @@ TEST(ParallelCollect, PassesOnWhatIsThrown) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::collect_test

@@ -14,7 +14,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "graphs.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::colouring_test {
 namespace {
 
 constexpr ColouringMethod methods[] = {
@@ -393,4 +393,4 @@ TEST(IsProper, RefusesClashesAndMissingColours) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::colouring_test

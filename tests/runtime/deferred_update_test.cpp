@@ -13,7 +13,7 @@
 
 #include "ductile/runtime/hash.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::deferred_update_test {
 namespace {
 
 using History = std::vector<std::vector<std::uint64_t>>;  // [owner], updates as committed
@@ -261,4 +261,4 @@ TEST(DeferredUpdate, PassesOnAnExceptionAndIsEmptyAfterwards) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::deferred_update_test

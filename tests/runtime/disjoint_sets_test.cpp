@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace ductile::runtime {
+namespace ductile::runtime::disjoint_sets_test {
 namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
@@ -59,4 +59,4 @@ TEST(DisjointSets, OfOneLongChainAreOne) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::disjoint_sets_test

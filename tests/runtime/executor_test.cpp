@@ -16,7 +16,7 @@
 #include "cgroup.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::executor_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ TEST_F(Cgroup, LimitsMemoryInBothVersions) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::executor_test

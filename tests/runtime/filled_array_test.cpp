@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace ductile::runtime {
+namespace ductile::runtime::filled_array_test {
 namespace {
 
 TEST(FilledArray, KeepsWhatItHasAndFillsTheRest) {
@@ -50,4 +50,4 @@ TEST(FilledArray, MovesItsElementsAndLeavesNone) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::filled_array_test

@@ -12,7 +12,7 @@
 
 #include "ductile/runtime/growing_array.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::fresh_memory_test {
 namespace {
 
 /// Memory that the system has given no pages of yet.
@@ -118,4 +118,4 @@ TEST(MakeUnset, GivesElementsThatHoldWhatIsWritten) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::fresh_memory_test

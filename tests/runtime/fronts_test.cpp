@@ -11,7 +11,7 @@
 #include "ductile/runtime/recording.hpp"
 #include "graphs.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::fronts_test {
 namespace {
 
 using detail::Front;
@@ -157,4 +157,4 @@ TEST(Fronts, SayWhichHasMostLeft) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::fronts_test

@@ -11,7 +11,7 @@
 #include "ductile/runtime/csr_rows.hpp"
 #include "graphs.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::graph_test {
 namespace {
 
 template <Graph G>
@@ -54,4 +54,4 @@ TEST(Graph, SquareJoinsVerticesTwoEdgesApart) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::graph_test

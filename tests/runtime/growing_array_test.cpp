@@ -21,7 +21,7 @@
 
 #include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::growing_array_test {
 namespace {
 
 struct Pair {
@@ -161,4 +161,4 @@ TEST(GrowingArray, StaysAsItIsWhereAskedForTooMuch) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::growing_array_test

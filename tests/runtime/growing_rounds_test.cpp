@@ -11,7 +11,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::growing_rounds_test {
 namespace {
 
 using test::all_items;
@@ -79,4 +79,4 @@ TEST(RunRounds, TakesAnyWindow) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::growing_rounds_test

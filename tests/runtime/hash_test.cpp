@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <unordered_set>
 
-namespace ductile::runtime {
+namespace ductile::runtime::hash_test {
 namespace {
 
 TEST(Hash, IsKnownWhenCompiling) {
@@ -64,4 +64,4 @@ TEST(Hash, ChangesHalfTheBitsWhenOneChanges) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::hash_test

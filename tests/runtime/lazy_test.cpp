@@ -9,7 +9,7 @@
 
 #include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::lazy_test {
 namespace {
 
 TEST(Lazy, IsMadeOnceHoweverManyThreadsAsk) {
@@ -41,4 +41,4 @@ TEST(Lazy, IsTriedAgainAfterAnException) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::lazy_test

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace ductile::runtime {
+namespace ductile::runtime::make_vector_test {
 namespace {
 
 TEST(MakeVector, HoldsZeros) {
@@ -32,4 +32,4 @@ TEST(MakeVector, ForgetsWhatMemoryHeld) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::make_vector_test

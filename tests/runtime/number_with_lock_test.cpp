@@ -7,7 +7,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "rounds_support.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::number_with_lock_test {
 namespace {
 
 TEST(NumberWithLock, KeepsItsNumberWhileItIsHeld) {
@@ -45,4 +45,4 @@ TEST(NumberWithLock, LetsOneThreadInAtATime) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::number_with_lock_test

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace ductile::runtime {
+namespace ductile::runtime::operator_test {
 namespace {
 
 // What an operator lacks is found out when it is compiled: each of these lacks one thing. That
@@ -67,4 +67,4 @@ TEST(Operator, AnUnknownItemSaysWhich) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::operator_test

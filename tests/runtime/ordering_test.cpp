@@ -9,7 +9,7 @@
 
 #include "graphs.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::ordering_test {
 namespace {
 
 constexpr VertexOrder orders[] = {VertexOrder::natural, VertexOrder::largest_first,
@@ -104,4 +104,4 @@ TEST(ColourInOrder, RefusesWhatDoesNotNameEachVertexOnce) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::ordering_test

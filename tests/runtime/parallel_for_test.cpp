@@ -17,7 +17,7 @@
 
 #include "ductile/runtime/hash.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::parallel_for_test {
 namespace {
 
 constexpr Schedule schedules[] = {Schedule::automatic,       Schedule::omp_static,
@@ -378,4 +378,4 @@ TEST(ParallelReduce, TellsWhetherAll) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::parallel_for_test

@@ -16,7 +16,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/recording.hpp"
 
-namespace ductile::runtime::detail {
+namespace ductile::runtime::detail::ranked_blocks_test {
 namespace {
 
 /// Blocks that meet others of any rank, as chance has it.
@@ -137,4 +137,4 @@ TEST(RankedBlocks, ArePartsOfARecordedLoopThatWaitForThoseTheyMeet) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime::detail
+}  // namespace ductile::runtime::detail::ranked_blocks_test

@@ -15,7 +15,7 @@
 #include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::replay_test {
 namespace {
 
 constexpr double second = 1e9;  // nanoseconds, exact as float below 2^24 of them times a power of 2
@@ -331,4 +331,4 @@ TEST(Recording, ChangesNoResult) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::replay_test

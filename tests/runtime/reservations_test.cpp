@@ -9,7 +9,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::reservations_test {
 namespace {
 
 using test::all_items;
@@ -291,4 +291,4 @@ TEST(RunRounds, FewerAskWhereTooFewWin) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::reservations_test

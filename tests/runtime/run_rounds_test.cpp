@@ -12,7 +12,7 @@
 
 #include "rounds_support.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::run_rounds_test {
 namespace {
 
 using test::all_items;
@@ -517,4 +517,4 @@ TEST(RunRounds, NoWorkIsNoRound) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::run_rounds_test

@@ -12,7 +12,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_sort.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::sort_test {
 namespace {
 
 template <class T>
@@ -143,4 +143,4 @@ TEST(RunSort, IsStable) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::sort_test

@@ -17,7 +17,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::surveyed_tiles_test {
 namespace {
 
 using test::all_items;
@@ -238,4 +238,4 @@ TEST(SurveyedTiles, MeetAnyNumberOfTiles) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::surveyed_tiles_test

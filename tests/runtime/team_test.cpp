@@ -22,7 +22,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "team.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::team_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -285,4 +285,4 @@ TEST(WithTeam, RoundsFormOne) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::team_test

@@ -20,7 +20,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/team.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::threads_to_be_had_test {
 namespace {
 
 constexpr Schedule schedules[] = {Schedule::omp_static, Schedule::omp_dynamic, Schedule::omp_guided,
@@ -110,4 +110,4 @@ TEST(ThreadsToBeHad, AreAllWantedOtherwise) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::threads_to_be_had_test

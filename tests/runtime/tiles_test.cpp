@@ -12,7 +12,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::tiles_test {
 namespace {
 
 using test::all_items;
@@ -218,4 +218,4 @@ TEST(Tiles, WakeNeighboursThatHadTheirTurn) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::tiles_test

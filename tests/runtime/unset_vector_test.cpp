@@ -9,7 +9,7 @@
 
 #include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::runtime {
+namespace ductile::runtime::unset_vector_test {
 namespace {
 
 struct Counted {
@@ -55,4 +55,4 @@ TEST(UnsetVector, IsMadeForAllThreadsToFill) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::unset_vector_test

@@ -42,7 +42,7 @@ std::atomic<std::size_t> most_bytes = SIZE_MAX;  // that over-aligned types get 
 }
 #endif
 
-namespace ductile::runtime {
+namespace ductile::runtime::worklist_test {
 namespace {
 
 std::uint32_t item(std::size_t i) { return mix32(static_cast<std::uint32_t>(i)) % 50000; }
@@ -263,4 +263,4 @@ TEST(Worklist, SaysThatItCannotSortWhatHasNoOrder) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::worklist_test
