@@ -24,7 +24,7 @@ namespace {
 /// of the last case needs a mesh that knows where the layer is, so it starts from one adapted to a
 /// hundredth of the complexity.
 constexpr double layer_coarser = 100;
-constexpr std::array<CaseInfo, 10> cases{{
+constexpr std::array<CaseInfo, 12> cases{{
     {"psi2d", 2, 238157, 1, true, "waves and a front; 20,000 to about 520,000 triangles"},
     {"psi3d", 3, 24748.7, 1, true, "the same along z; 750,000 to about 280,000 tetrahedra"},
     {"uni2d", 2, 10000, 1, true, "edges of 0.01; 2,048 to about 24,000 triangles"},
@@ -32,6 +32,8 @@ constexpr std::array<CaseInfo, 10> cases{{
     {"ani2d_boundary", 2, 12954, 4, false, "a boundary layer, 1 : 1000; 2,048 triangles"},
     {"ani2d_circle", 2, 386.8, 4, false, "a thin circle, 1 : 100; 2,048 triangles"},
     {"cube-linear", 3, 4651.7, 5, false, "a plane layer in a cube, 1 : 100; 162 tetrahedra"},
+    {"turn2d", 2, 2500, 1, true, "0.004 x 0.1, turning; 8,192 to about 6,800 triangles"},
+    {"turn3d", 3, 1600, 1, true, "0.01 x 0.25 x 0.25, turning; 10,368 to about 30,000 tetrahedra"},
     {"layer3d", 3, 100000, 1, false,
      "a curved layer, 1 : 100; about 14,000 to 1,000,000 tetrahedra"},
     {"ring2d", 2, 1870, 1, true,
@@ -46,6 +48,8 @@ int start_cells(std::string_view name) {
   if (name == "psi3d") return 50;
   if (name == "uni3d") return 10;
   if (name == "cube-linear") return 3;
+  if (name == "turn2d") return 64;
+  if (name == "turn3d") return 12;
   if (name == "ring2d") return 200;
   if (name == "dome3d") return 40;
   return name == "layer3d" ? 6 : 32;
@@ -92,6 +96,8 @@ Formula<2> formula_of(const runtime::Executor& executor, const CaseInfo& info, d
   if (info.name == "psi2d") return psi_metric<2>(executor, factor * info.complexity);
   if (info.name == "uni2d") return scaled(uniform_metric<2>(0.01), factor);
   if (info.name == "ring2d") return scaled(uniform_metric<2>(0.02), factor);
+  if (info.name == "turn2d")
+    return scaled(Formula<2>([](const auto& place) { return turning_metric(place); }), factor);
   return scaled(Formula<2>(info.name == "ani2d_circle" ? circle_metric : boundary_metric), factor);
 }
 
@@ -101,6 +107,8 @@ Formula<3> formula_of(const runtime::Executor& executor, const CaseInfo& info, d
   if (info.name == "layer3d") return curved_layer_metric(executor, factor * info.complexity);
   const double growth = std::pow(factor, 2.0 / 3);
   if (info.name == "dome3d") return scaled(uniform_metric<3>(0.1), growth);
+  if (info.name == "turn3d")
+    return scaled(Formula<3>([](const auto& place) { return turning_metric(place); }), growth);
   return scaled(info.name == "uni3d" ? uniform_metric<3>(0.05) : Formula<3>(cube_linear_metric),
                 growth);
 }

@@ -79,6 +79,17 @@ double psi_factor(const runtime::Executor& executor, double complexity) {
   return factor;
 }
 
+/// The size `across` along the direction, `along` at right angles to it.
+template <int Dim>
+Metric<Dim> stretched(const Vector<Dim>& direction, double across, double along) {
+  Metric<Dim> metric = meshadapt::isotropic<Dim>(along);
+  const double more = 1 / (across * across) - 1 / (along * along);
+  for (int i = 0, k = 0; i < Dim; ++i)
+    for (int j = 0; j <= i; ++j, ++k)
+      metric.m[static_cast<std::size_t>(k)] += more * direction[i] * direction[j];
+  return metric;
+}
+
 // ---- Layers ----
 
 /// What sizes that grow from 0.001 to 0.1 are at a distance of up to 1/2.
@@ -127,6 +138,18 @@ Metric<2> circle_metric(const Vector<2>& place) {
   const double size = std::min(0.1, layer_size(2 * std::abs(radius - 0.25)));
   const double along = 100, more = 1 / (size * size) - along;
   return {{along + more * out[0] * out[0], more * out[0] * out[1], along + more * out[1] * out[1]}};
+}
+
+Metric<2> turning_metric(const Vector<2>& place) {
+  const double turn = 1.5 * place[0] + 0.5 * place[1];
+  return stretched<2>({{std::cos(turn), std::sin(turn)}}, 0.004, 0.1);
+}
+
+Metric<3> turning_metric(const Vector<3>& place) {
+  const double turn = 1.2 * place[0] + 0.6 * place[1], rise = 0.8 * place[0] + 0.4 * place[2];
+  return stretched<3>(
+      {{std::cos(rise) * std::cos(turn), std::cos(rise) * std::sin(turn), std::sin(rise)}}, 0.01,
+      0.25);
 }
 
 Metric<2> boundary_metric(const Vector<2>& place) {

@@ -40,6 +40,14 @@ meshadapt::Metric<2> boundary_metric(const meshadapt::Vector<2>& place);
 /// 0.1 along x and y.
 meshadapt::Metric<3> cube_linear_metric(const meshadapt::Vector<3>& place);
 
+// ---- Directions that turn, sizes that stay ----
+
+/// 0.004 in a direction that turns by 1.5 x + 0.5 y, 0.1 across it.
+meshadapt::Metric<2> turning_metric(const meshadapt::Vector<2>& place);
+
+/// 0.01 in a direction that turns about two axes, 0.25 across it.
+meshadapt::Metric<3> turning_metric(const meshadapt::Vector<3>& place);
+
 // ---- Growth ----
 
 /// A gently curved layer in the middle of the cube: across it, sizes are 1 : 100 of those along it,

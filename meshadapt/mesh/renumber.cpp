@@ -109,7 +109,7 @@ template <int Dim>
 void permute_vertices(const Executor& executor, Mesh<Dim>& mesh, const Ids& order) {
   Permutation permute(executor, order, sizeof(Metric<Dim>));
   permute.members(mesh.site_of, &Site<Dim>::metric);
-  permute.members(mesh.site_of, &Site<Dim>::position, &Site<Dim>::density);
+  permute.members(mesh.site_of, &Site<Dim>::position, &Site<Dim>::scale);
   mesh.site_of.resize(order.size());
   permute(mesh.entity_of, mesh.reference_of, mesh.host_of, mesh.kind_of);
 }

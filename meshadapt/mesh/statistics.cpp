@@ -58,24 +58,18 @@ std::array<const Site<Dim>*, Dim + 1> corners_of(const std::vector<Site<Dim>>& s
   return corner;
 }
 
-/// Mean ratio in the metric of the densest corner, the mean over them where several are. That of an
-/// ideal element is 1 but for rounding, and not shown to be more.
+/// Mean ratio in the mean metric. That of an ideal element is 1 but for rounding, and not shown to
+/// be more.
 template <int Dim>
 double quality_of(const std::array<const Site<Dim>*, Dim + 1>& corner) {
+  const auto [metric, scale] = mean_metric<Dim>(corner);
   const double measure = signed_measure<Dim>(corner);
-  const double highest = densest<Dim>(corner).density;
-  const double metric_measure = std::abs(measure) * highest;
+  const double metric_measure = metric_volume<Dim>(std::abs(measure), scale);
   const double ideal = Dim == 2 ? 4 * std::numbers::sqrt3 * metric_measure
                                 : 12 * std::cbrt(9 * metric_measure * metric_measure);
-  double sum = 0;
-  int ties = 0;
-  for (const Site<Dim>* judge : corner) {
-    if (judge->density < highest * (1 - 1e-9)) continue;
-    const double squares = sum_of_squared_lengths<Dim>(judge->metric, corner);
-    sum += squares > 0 ? ideal / squares : 0;  // all corners may be one point
-    ++ties;
-  }
-  return std::copysign(std::min(sum / ties, 1.0), measure);
+  const double squares = sum_of_squared_lengths<Dim>(metric, corner);
+  if (!(squares > 0)) return 0;  // all corners may be one point
+  return std::copysign(std::min(ideal / squares, 1.0), measure);
 }
 
 /// For each vertex, those of a higher number to which an edge leads.
@@ -166,7 +160,8 @@ double complexity_of(const Executor& executor, const std::vector<Site<Dim>>& sit
       [&](std::size_t e) {
         const auto corner = corners_of<Dim>(site_of, elements[e]);
         double density = 0;
-        for (const Site<Dim>* site : corner) density += site->density / (Dim + 1);
+        for (const Site<Dim>* site : corner)
+          density += metric_volume<Dim>(1, site->scale) / (Dim + 1);
         return std::abs(signed_measure<Dim>(corner)) * density;
       },
       [](double a, double b) { return a + b; });

@@ -16,19 +16,18 @@
 
 namespace ductile::meshadapt {
 
-/// Facets opposite to a vertex, as if they were bases of eight elements. Where shapes may be
-/// doubtful the metrics of all corners of the facets are kept, else that of the densest.
+/// Facets opposite to a vertex, as if they were bases of eight elements.
 template <int Dim>
 struct BaseLanes {
   static constexpr int size = Metric<Dim>::size;
-  static constexpr std::size_t judges = doubtful_shape<Dim> > 0 ? Dim : 1;
 
   LanesOf<Dim> normal, centre;
   LanesOf<size> spread;
-  std::array<LanesOf<size>, judges> metric;
-  std::array<Lanes, judges> density;  // of their corners
-  ShapeLanes shape;                   // as the mesh has it
-  ShapeLanes counts;                  // 1, or 0 where there is no element but a copy of another
+  LanesOf<size> metric;  // the mean_metric() of their corners
+  Lanes scale;           // of that
+  Lanes unit;            // inverses of their corners' largest scales
+  ShapeLanes shape;      // as the mesh has it
+  ShapeLanes counts;     // 1, or 0 where there is no element but a copy of another
 };
 
 /// The shapes of the elements around a vertex, in the order of its list; of more than `most`,
@@ -81,7 +80,7 @@ class Ball {
   }
   /// The same; sets the shapes, too.
   Score score(const Site<Dim>& apex, double bound, Shapes& shapes) const {
-    if (!(apex.density > 0)) return {-1, 0};  // else no judge: comparisons pass over no number
+    if (!(apex.scale > 0)) return {-1, 0};
     float worst = 1;
     double volume = std::numeric_limits<double>::infinity();
     ShapeLanes sum{};
@@ -122,6 +121,7 @@ class Ball {
   /// more than a guess, roots are taken of numbers without a unit, in single precision.
   Vector<Dim> mean_pull(const Site<Dim>& site) const {
     const Metric<Dim> dual = inverse(site.metric);
+    const double density = metric_volume<Dim>(1, site.scale);
     LanesOf<Dim> centres{}, normals{};
     Lanes weights{};
     for (const Block& block : blocks_)
@@ -132,7 +132,7 @@ class Ball {
             contraction(site.metric, tensor_at<Dim>(block.spread, l)) / (2 * Dim - 3);
         const Vector<Dim> normal = at(block.normal, l), centre = at(block.centre, l);
         // place = centre + stretch * dual * normal
-        const double stretch = weight * height_over_normal(square, normal, dual, site.density);
+        const double stretch = weight * height_over_normal(square, normal, dual, density);
         for (std::size_t i = 0; i < Dim; ++i) {
           centres[i][l] += weight * centre.x[i];
           normals[i][l] += stretch * normal.x[i];
@@ -145,35 +145,20 @@ class Ball {
     return (1 / total(weights)) * (centre + product(dual, normal));
   }
 
-  /// Gradient of an element's shape, which is this, by the position of its apex, in the metric that
-  /// judges it now.
+  /// Gradient of an element's shape, which is this, by the position of its apex, as if the metric
+  /// that judges it stayed what it is.
   Vector<Dim> gradient(std::size_t element, const Site<Dim>& apex, double shape) const {
     const Block& block = blocks_[element / lane_count];
     const std::size_t l = element % lane_count;
     const Vector<Dim> up = apex.position - origin_ - at(block.centre, l);
     const Metric<Dim> all = all_edges(tensor_at<Dim>(block.spread, l), up);
-    const auto by = [&](const Metric<Dim>& metric) { return contraction(metric, all); };
-    Metric<Dim> judge = apex.metric;
-    double density = apex.density;
-    for (std::size_t j = Block::judges; j-- > 0;)
-      if (!(block.density[j][l] < density)) {
-        judge = tensor_at<Dim>(block.metric[j], l);
-        density = block.density[j][l];
-      }
-    double squares = by(judge);
-    if (shape <= doubtful_shape<Dim>) {
-      const auto ask = [&](const Metric<Dim>& metric) {
-        const double here = by(metric);
-        if (here > squares) judge = metric;
-        squares = std::max(squares, here);
-      };
-      ask(apex.metric);
-      for (const auto& metric : block.metric) ask(tensor_at<Dim>(metric, l));
-    }
+    const Metric<Dim> metric = corner_weight<Dim>(block.unit[l] * apex.scale) * apex.metric +
+                               tensor_at<Dim>(block.metric, l);
+    const double squares = contraction(metric, all);
     const Vector<Dim> normal = at(block.normal, l);
     constexpr double power = Dim == 2 ? 1.0 : 1.5;
     return shape *
-           ((1 / dot(normal, up)) * normal - (2 * power * Dim / squares) * product(judge, up));
+           ((1 / dot(normal, up)) * normal - (2 * power * Dim / squares) * product(metric, up));
   }
 
  private:
@@ -209,17 +194,11 @@ class Ball {
       const Vector<Dim> up = offset - at(block.centre, l);
       const double determinant = dot(at(block.normal, l), up);
       const Metric<Dim> all = all_edges(tensor_at<Dim>(block.spread, l), up);
-      const double by_apex = contraction(apex.metric, all);
-      double most = by_apex, squares = by_apex, density = apex.density;
-      for (std::size_t j = Block::judges; j-- > 0;) {
-        const double by_other = contraction(tensor_at<Dim>(block.metric[j], l), all);
-        squares = block.density[j][l] < density ? squares : by_other;
-        density = block.density[j][l] < density ? density : block.density[j][l];
-        most = by_other > most ? by_other : most;
-      }
-      const double volume = density * determinant;
-      if constexpr (Block::judges > 1)
-        squares = shape_from<Dim>(volume, 1.0) > doubtful_shape<Dim> * squares ? squares : most;
+      const double weight = corner_weight<Dim>(block.unit[l] * apex.scale);
+      const double squares = weight * contraction(apex.metric, all) +
+                             contraction(tensor_at<Dim>(block.metric, l), all);
+      const double scale = weight * apex.scale + block.scale[l];
+      const double volume = metric_volume<Dim>(determinant, scale);
       judged.determinant[l] = determinant;
       judged.shape[l] = shape_from<Dim>(static_cast<float>(volume), static_cast<float>(squares));
     }
@@ -271,7 +250,7 @@ class Ball {
     }
     std::array<LanesOf<Dim>, Dim> corner;
     for (std::size_t k = 0; k < Dim; ++k) read_position(site[k], corner[k]);
-    read_judges(site, block);
+    read_metrics(site, block);
     raise(block, corner);
   }
 
@@ -282,29 +261,38 @@ class Ball {
     transpose(site, 0, {&position[0], &position[1], Dim == 3 ? &position[Dim - 1] : nullptr});
   }
   [[gnu::always_inline]] static void read_metric(const SiteOfLane& site,
-                                                 LanesOf<Block::size>& metric, Lanes& density) {
+                                                 LanesOf<Block::size>& metric, Lanes& scale) {
     if constexpr (Dim == 2) {
-      transpose(site, Dim, {&metric[0], &metric[1], &metric[2], &density});
+      transpose(site, Dim, {&metric[0], &metric[1], &metric[2], &scale});
     } else {
       transpose(site, Dim, {&metric[0], &metric[1], &metric[2], &metric[3]});
-      transpose(site, Dim + 3, {nullptr, &metric[4], &metric[5], &density});
+      transpose(site, Dim + 3, {nullptr, &metric[4], &metric[5], &scale});
     }
   }
 
-  [[gnu::always_inline]] static void read_judges(const std::array<SiteOfLane, Dim>& site,
-                                                 Block& block) {
-    if constexpr (Block::judges > 1) {
-      for (std::size_t j = 0; j < Block::judges; ++j)
-        read_metric(site[j], block.metric[j], block.density[j]);
-    } else {
-      SiteOfLane densest = site[0];
-      for (std::size_t k = 1; k < Dim; ++k)
-        for (std::size_t l = 0; l < lane_count; ++l) {  // no branches: any may be the one
-          const std::array<const Site<Dim>*, 2> either{densest[l], site[k][l]};
-          densest[l] = either[either[1]->density > either[0]->density ? 1 : 0];
-        }
-      read_metric(densest, block.metric[0], block.density[0]);
+  /// mean_metric() of the corners of each facet. Written out, as loops in a loop over lanes keep it
+  /// from being vectorised.
+  [[gnu::always_inline]] static void read_metrics(const std::array<SiteOfLane, Dim>& site,
+                                                  Block& block) {
+    std::array<LanesOf<Block::size>, Dim> metric;
+    std::array<Lanes, Dim> scale, weight;
+    for (std::size_t k = 0; k < Dim; ++k) read_metric(site[k], metric[k], scale[k]);
+    for (std::size_t l = 0; l < lane_count; ++l) {
+      const double most = std::max(scale[0][l], scale[1][l]);
+      block.unit[l] = 1 / (Dim == 2 ? most : std::max(most, scale[Dim - 1][l]));
     }
+    for (std::size_t k = 0; k < Dim; ++k)
+      for (std::size_t l = 0; l < lane_count; ++l)
+        weight[k][l] = corner_weight<Dim>(block.unit[l] * scale[k][l]);
+    const auto mean_of = [&](const auto& values, Lanes& mean) {
+      for (std::size_t l = 0; l < lane_count; ++l)
+        mean[l] = weight[0][l] * values(0)[l] + weight[1][l] * values(1)[l];
+      if constexpr (Dim == 3)
+        for (std::size_t l = 0; l < lane_count; ++l) mean[l] += weight[2][l] * values(2)[l];
+    };
+    mean_of([&](std::size_t k) -> const Lanes& { return scale[k]; }, block.scale);
+    for (std::size_t i = 0; i < block.metric.size(); ++i)
+      mean_of([&](std::size_t k) -> const Lanes& { return metric[k][i]; }, block.metric[i]);
   }
 
   /// What follows from the corners of the facets.

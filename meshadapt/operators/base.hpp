@@ -1,7 +1,7 @@
 /// @file
 /// Base: a triangle as the base of tetrahedra with different apexes, on both sides of it. What does
-/// not depend on the apex is computed once. Nothing is a branch: which corner is the densest, and
-/// which tetrahedron is good, is a matter of chance.
+/// not depend on the apex is computed once. Nothing is a branch: which tetrahedron is good is a
+/// matter of chance.
 #pragma once
 
 #include <algorithm>
@@ -43,18 +43,18 @@ double squares_over(double squares, const Metric<Dim>& metric, const Vector<Dim>
 struct Base {
   Vector<3> normal;  ///< towards the side that is above it; as long as twice its area
   Vector<3> centre;
-  Metric<3> spread;      ///< of its edges, see spread_of()
-  const Site<3>* judge;  ///< the densest of its corners
+  Metric<3> spread;       ///< of its edges, see spread_of()
+  ElementMetric<3> mean;  ///< of its corners' metrics
+  double unit;            ///< inverse of the largest scale
 };
 
 /// The triangle with these corners; they turn clockwise seen from above.
 [[gnu::always_inline]] inline Base make_base(const std::array<const Site<3>*, 3>& corner) {
   const Vector<3>& first = corner[0]->position;
   const Vector<3> u = corner[1]->position - first, v = corner[2]->position - first;
-  const Site<3>* judge = corner[1]->density > corner[0]->density ? corner[1] : corner[0];
-  judge = corner[2]->density > std::max(corner[0]->density, corner[1]->density) ? corner[2] : judge;
   return {cross(v, u), (1.0 / 3) * (first + corner[1]->position + corner[2]->position),
-          spread_of(u, v), judge};
+          spread_of(u, v), mean_metric<3>(corner),
+          1 / std::max({corner[0]->scale, corner[1]->scale, corner[2]->scale})};
 }
 
 /// The square of shape() of the tetrahedron with this apex, but for rounding; -1 if its volume is
@@ -62,12 +62,13 @@ struct Base {
 /// be confirmed by certain_determinant() before it is acted on.
 [[gnu::always_inline]] inline double squared_shape_over(const Base& base, const Site<3>& apex,
                                                         double side) {
-  static_assert(doubtful_shape<3> == 0);
   const Vector<3> up = apex.position - base.centre;
-  const Site<3>& judge = apex.density > base.judge->density ? apex : *base.judge;
-  const double volume = judge.density * (side * dot(base.normal, up));
-  const double squares = squares_over(contraction(judge.metric, base.spread), judge.metric, up);
-  const double square = 432 * (volume * volume) / (squares * squares * squares);
+  const double weight = corner_weight<3>(base.unit * apex.scale);
+  const Metric<3> metric = base.mean.metric + weight * apex.metric;
+  const double scale = base.mean.scale + weight * apex.scale;
+  const double volume = side * dot(base.normal, up), scaled = scale * volume;
+  const double squares = squares_over(contraction(metric, base.spread), metric, up);
+  const double square = 432 * (scaled * scaled * scale) / (squares * squares * squares);
   return volume > 0 && square >= 0 ? square : -1;  // no number if lengths are out of all range
 }
 

@@ -182,7 +182,7 @@ bool Refine<Dim>::locate(const LongEdge& edge, const Shell& shell, Split& split)
   split.site = make_site(position, sample.metric);
   split.host = sample.host;
   // Where metrics are as thin as rounding is fine, what is between them may be no metric.
-  if (!(split.site.density > 0)) return false;
+  if (!(split.site.scale > 0)) return false;
   classify(edge, shell, split);
   return !shorter_than(a, split.site, rules_.shortest_split) &&
          !shorter_than(b, split.site, rules_.shortest_split);

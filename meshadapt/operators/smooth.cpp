@@ -142,7 +142,7 @@ template <int Dim>
 bool Smooth<Dim>::place(const Ball<Dim>& ball, const Vector<Dim>& position, const Place& near,
                         const Score& bar, Place& result) const {
   const auto beats_bar = [&](const Score& score) { return score.worst > 0 && score.sum > bar.sum; };
-  if (!beats_bar(ball.score({position, near.site.metric, near.site.density}, bar.worst)))
+  if (!beats_bar(ball.score({position, near.site.metric, near.site.scale}, bar.worst)))
     return false;
   const auto sample = background_.sample(position, near.host);
   result.site = make_site(position, sample.metric);

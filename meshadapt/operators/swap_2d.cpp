@@ -70,7 +70,7 @@ constexpr double wide = 0.8;
 /// makes better triangles.
 int wide_corner(const Mesh<2>& mesh, ElementId element) {
   const auto corner = mesh.sites(mesh.corners_of[element]);
-  const Metric<2>& metric = densest<2>(corner).metric;
+  const Metric<2> metric = mean_metric<2>(corner).metric;
   std::array<double, 3> square;
   for (std::size_t i = 0; i < 3; ++i)
     square[i] =

@@ -213,17 +213,17 @@ namespace {
 /// around them are hardly ever worth removing, and faces are hardly ever worth piercing by an edge
 /// that is long for the worse element (docs/performance.md).
 struct Gauge {
-  const Metric<3>* metric = nullptr;  // that the element is judged by
-  double mean_square = 0;             // of its edges, in that metric
+  Metric<3> metric;        // that the element is judged by
+  double mean_square = 0;  // of its edges, in that metric
 
   Gauge() = default;
   Gauge(const Mesh<3>& mesh, const Corners<3>& corners) {
     const auto corner = mesh.sites(corners);
-    metric = &densest<3>(corner).metric;
-    mean_square = sum_of_squared_lengths<3>(*metric, corner) / 6;
+    metric = mean_metric<3>(corner).metric;
+    mean_square = sum_of_squared_lengths<3>(metric, corner) / 6;
   }
   double relative_square(const Vector<3>& edge) const {
-    return squared_length(*metric, edge) / mean_square;
+    return squared_length(metric, edge) / mean_square;
   }
 };
 
@@ -268,7 +268,7 @@ class EdgeSearch {
     const double limit = long_edge(edge);
     if (limit > longest) return false;
     Gauge& gauge = gauge_of_[edge.worst];
-    if (gauge.metric == nullptr) gauge = Gauge(mesh_, mesh_.corners_of[ball_[edge.worst]]);
+    if (gauge.mean_square == 0) gauge = Gauge(mesh_, mesh_.corners_of[ball_[edge.worst]]);
     const Vector<3> along = mesh_.site_of[edge.to].position - mesh_.site_of[vertex_].position;
     return gauge.relative_square(along) > limit;
   }
@@ -340,7 +340,7 @@ std::optional<Swappable> face_to_pierce(const Mesh<3>& mesh, ElementId element, 
   constexpr double short_edge = 1.4;
   const Corners<3>& corners = mesh.corners_of[element];
   const Gauge gauge(mesh, corners);
-  const int apex = lowest_corner(mesh, corners, *gauge.metric);
+  const int apex = lowest_corner(mesh, corners, gauge.metric);
   const ElementId other = neighbour(mesh, element, apex);
   const float worst = mesh.shape_of[element];
   if (other == none || (mesh.changed_at[element] <= after && mesh.changed_at[other] <= after) ||

@@ -25,13 +25,13 @@ struct Tuning<2> {
   static constexpr double stages[] = {1};
   static constexpr Care normal{.calm = 0.03, .polishes = 1, .far = 0.16};
   static constexpr Care thorough{.calm = 0.03, .polishes = 2, .far = 0.08};
-  static constexpr double kept_shape = 1;        ///< of Rules, on the way to the metric
+  static constexpr double kept_shape = 0.5;      ///< of Rules, on the way to the metric
   static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
   static constexpr int rearrangements = 4;       ///< passes
   static constexpr double swap_below = 0.9;      ///< mean ratio of elements that are swapped
   static constexpr double optimise_below = 0.8;  ///< of those that are optimised in the end
   /// ... and of those around a vertex on the whole where they are finished together.
-  static constexpr double mean_below = 0.7;
+  static constexpr double mean_below = 0.9;
   static constexpr double far = 0.003;  ///< of most elements where the metric is far from the mesh
 };
 

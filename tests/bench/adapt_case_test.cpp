@@ -156,6 +156,22 @@ TEST(Formulas, LayersHaveThePublishedSizes) {
   EXPECT_NEAR(cube_linear_metric({{0, 0, 1}})(2, 2), 100, 1e-9);
 }
 
+/// The metric length of steps as long as the sizes, along the short axis and across it.
+TEST(Formulas, TurningMetricsTurn) {
+  const Metric<2> flat = turning_metric(meshadapt::Vector<2>{{0.4, 0.2}});
+  const double turn = 1.5 * 0.4 + 0.5 * 0.2, c = std::cos(turn), s = std::sin(turn);
+  EXPECT_NEAR(squared_length(flat, {{0.004 * c, 0.004 * s}}), 1, 1e-9);
+  EXPECT_NEAR(squared_length(flat, {{-0.1 * s, 0.1 * c}}), 1, 1e-9);
+  const auto axes = principal_axes(turning_metric(meshadapt::Vector<3>{{0.3, 0.1, 0.9}}));
+  std::array<double, 3> sizes;
+  std::transform(axes.value.begin(), axes.value.end(), sizes.begin(),
+                 [](double value) { return 1 / std::sqrt(value); });
+  std::sort(sizes.begin(), sizes.end());
+  EXPECT_NEAR(sizes[0], 0.01, 1e-9);
+  EXPECT_NEAR(sizes[1], 0.25, 1e-9);
+  EXPECT_NEAR(sizes[2], 0.25, 1e-9);
+}
+
 TEST(Formulas, CurvedLayerIsAHundredTimesThinnerThanWide) {
   const auto formula = curved_layer_metric(Executor({.threads = 1}), 1000);
   const auto on_layer = meshadapt::principal_axes(formula({{0.5, 0.25, 0.5}})).value;

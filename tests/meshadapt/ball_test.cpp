@@ -171,7 +171,7 @@ TYPED_TEST(BallOf, RefusesAnApexThatIsNowhere) {
   Site<Dim> nowhere = here, undecided = here, dense = here;
   nowhere.position[0] = nothing;
   undecided.metric.m.fill(nothing);
-  undecided.density = dense.density = nothing;
+  undecided.scale = dense.scale = nothing;
   for (const Site<Dim>& apex : {nowhere, undecided, dense})
     EXPECT_LT(Ball<Dim>(mesh, 0).score(apex, 0).worst, 0);
 }

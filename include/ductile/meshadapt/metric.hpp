@@ -32,6 +32,7 @@ struct Metric {
     for (double& component : m) component *= s;
     return *this;
   }
+  friend Metric operator+(Metric a, const Metric& b) { return a += b; }
   friend Metric operator*(double s, Metric a) { return a *= s; }
 };
 

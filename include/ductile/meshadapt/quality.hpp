@@ -19,13 +19,14 @@ template <int Dim>
 struct Site {
   Vector<Dim> position;
   Metric<Dim> metric;
-  double density = 0;  ///< sqrt(det metric), metric volume of a unit volume
+  double scale = 0;  ///< det(metric)^(1/Dim), the geometric mean of its eigenvalues
   friend bool operator==(const Site&, const Site&) = default;
 };
 
 template <int Dim>
 Site<Dim> make_site(const Vector<Dim>& position, const Metric<Dim>& metric) {
-  return {position, metric, std::sqrt(determinant(metric))};
+  const double product = determinant(metric);
+  return {position, metric, Dim == 2 ? std::sqrt(product) : std::cbrt(product)};
 }
 
 /// The squares of an edge's metric length, as the metric at either end measures it.
@@ -61,17 +62,45 @@ bool shorter_than(const Site<Dim>& a, const Site<Dim>& b, double limit) {
   return shorter_than(end_squares(a, b), limit);
 }
 
-/// The corner with the densest metric: the metric an element is judged by, as the unstructured grid
-/// adaptation working group does (Ibanez et al., Procedia Eng. 203, 2017).
+/// The metric volume of what has this volume, by the scale of the metric.
 template <int Dim>
-const Site<Dim>& densest(const std::array<const Site<Dim>*, Dim + 1>& corner) {
-  const Site<Dim>* best = corner[0];
-  double density = best->density;
-  for (std::size_t i = 1; i < corner.size(); ++i) {  // no branches: any may be the one
-    best = corner[i]->density > density ? corner[i] : best;
-    density = std::max(density, corner[i]->density);
+[[gnu::always_inline]] inline double metric_volume(double volume, double scale) {
+  return Dim == 2 ? scale * volume : scale * volume * std::sqrt(scale);
+}
+
+/// How much a corner counts in the metric of an element, by its scale in units of another: as the
+/// fourth power of its density. At the bound what counts less is too little to matter, and squares
+/// still fit into single precision.
+template <int Dim>
+[[gnu::always_inline]] inline double corner_weight(double scale) {
+  const double square = std::min(scale, 100.0) * std::min(scale, 100.0);
+  return Dim == 2 ? square * square : square * square * square;
+}
+
+/// The metric that an element is judged by, up to a factor, which shapes do not depend on.
+template <int Dim>
+struct ElementMetric {
+  Metric<Dim> metric;
+  double scale = 0;  ///< the mean of the corners', at most det(metric)^(1/Dim) (Minkowski)
+};
+
+/// The mean of the metrics of some corners by their weights. Where one is much denser than the
+/// others it alone counts, as the unstructured grid adaptation working group has it (Ibanez et al.,
+/// Procedia Eng. 203, 2017); all of those count that are as dense, so that where directions differ
+/// no rounding decides which of them judges.
+template <int Dim, std::size_t n>
+[[gnu::always_inline]] inline ElementMetric<Dim> mean_metric(
+    const std::array<const Site<Dim>*, n>& corner) {
+  double densest = corner[0]->scale;
+  for (std::size_t i = 1; i < n; ++i) densest = std::max(densest, corner[i]->scale);
+  const double unit = 1 / densest;
+  ElementMetric<Dim> mean;
+  for (const Site<Dim>* site : corner) {
+    const double weight = corner_weight<Dim>(unit * site->scale);
+    mean.metric += weight * site->metric;
+    mean.scale += weight * site->scale;
   }
-  return *best;
+  return mean;
 }
 
 /// Sum of the squared metric lengths of all edges, by the identity
@@ -99,39 +128,19 @@ Number shape_from(Number volume, Number squares) {
     return 12 * root3 * volume / (squares * std::sqrt(squares));
 }
 
-/// Elements of a shape below this are judged with caution. Good ones look alike from every corner.
-/// In 3D none are: it takes 4 to 17 % more time there, and what it gains is within the noise.
-template <int Dim>
-inline constexpr double doubtful_shape = Dim == 2 ? 0.65 : 0;
-
-/// The largest sum of squared lengths that an element has in the metric of any of its corners.
-template <int Dim>
-double largest_sum_of_squares(const std::array<const Site<Dim>*, Dim + 1>& corner) {
-  double largest = 0;
-  for (const Site<Dim>* site : corner)
-    largest = std::max(largest, sum_of_squared_lengths<Dim>(site->metric, corner));
-  return largest;
-}
-
-/// Shape of an element in the metric of its densest corner: 4 sqrt(3) A / (sum of squared lengths)
-/// in 2D; the volume-length ratio 72 sqrt(3) V / (sum of squared lengths)^(3/2) in 3D
-/// (Parthasarathy, Graichen & Hathaway, Finite Elem. Anal. Des. 15, 1994). 1 for a regular element,
-/// 0 or less for one that is not certain to have a positive volume.
-///
-/// If that is doubtful, in 2D only, the lengths are taken where they are largest: of corners that
-/// are nearly as dense but turned, the least change of the metric may make another one the densest,
-/// from which the element is a sliver.
+/// Shape of an element in its mean metric: 4 sqrt(3) A / (sum of squared lengths) in 2D; the
+/// volume-length ratio 72 sqrt(3) V / (sum of squared lengths)^(3/2) in 3D (Parthasarathy, Graichen
+/// & Hathaway, Finite Elem. Anal. Des. 15, 1994). At most 1, for a regular element whose corners'
+/// metrics differ by factors; 0 or less for one that is not certain to have a positive volume.
 template <int Dim>
 double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   std::array<Vector<Dim>, Dim + 1> p;
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
   const double determinant = certain_determinant<Dim>(p);
   if (!(determinant > 0)) return determinant;
-  const Site<Dim>& judge = densest<Dim>(corner);
-  const double volume = judge.density * determinant;
-  const double value = shape_from<Dim>(volume, sum_of_squared_lengths<Dim>(judge.metric, corner));
-  if (value > doubtful_shape<Dim>) return value;
-  return shape_from<Dim>(volume, largest_sum_of_squares<Dim>(corner));
+  const auto [metric, scale] = mean_metric<Dim>(corner);
+  return shape_from<Dim>(metric_volume<Dim>(determinant, scale),
+                         sum_of_squared_lengths<Dim>(metric, corner));
 }
 
 /// What shape() is made of; a volume of 0 if shape(corner) > bar does not hold, which is decided
@@ -146,20 +155,12 @@ template <int Dim>
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
   const double determinant = certain_determinant<Dim>(p);
   if (!(determinant > 0)) return {};
-  const Site<Dim>& judge = densest<Dim>(corner);
-  const double volume = judge.density * determinant;
-  const auto above = [volume](double limit, double squares) {
-    if constexpr (Dim == 2)
-      return 2 * std::sqrt(3.0) * volume > limit * squares;
-    else
-      return 432 * volume * volume > limit * limit * (squares * squares * squares);
-  };
-  const double squares = sum_of_squared_lengths<Dim>(judge.metric, corner);
-  if (above(std::max(bar, doubtful_shape<Dim>), squares)) return {volume, squares};
-  if (!above(bar, squares)) return {};
-  const double largest = largest_sum_of_squares<Dim>(corner);
-  if (!above(bar, largest)) return {};
-  return {volume, largest};
+  const auto [metric, scale] = mean_metric<Dim>(corner);
+  const double volume = metric_volume<Dim>(determinant, scale);
+  const double squares = sum_of_squared_lengths<Dim>(metric, corner);
+  const bool above = Dim == 2 ? 2 * std::sqrt(3.0) * volume > bar * squares
+                              : 432 * volume * volume > bar * bar * (squares * squares * squares);
+  return above ? VolumeAndSquares{volume, squares} : VolumeAndSquares{};
 }
 
 /// shape(corner) > bar, decided without the root and the division; bar is not negative.

@@ -1,7 +1,8 @@
 /// @file
 /// Statistics of a mesh: how long its edges and how good its elements are, in a metric or without
-/// one. Lengths and quality are those of the unstructured grid adaptation working group (Ibanez et
-/// al., Procedia Eng. 203, 2017). The figures do not depend on threads or timing.
+/// one. Lengths are those of the unstructured grid adaptation working group (Ibanez et al.,
+/// Procedia Eng. 203, 2017), quality is its mean ratio in the mean metric of an element
+/// (mean_metric() in quality.hpp). The figures do not depend on threads or timing.
 #pragma once
 
 #include <array>
