@@ -117,7 +117,7 @@ TEST(Rest, ComesByTheSixthCallWithAMetricThatIsMadeAnew) {
 }
 
 TEST(Rest, ComesByTheThirdCallInNastyMeshesToo) {
-  expect_rest(40, [](std::uint64_t seed, Unrest& unrest) {
+  expect_rest(60, [](std::uint64_t seed, Unrest& unrest) {
     const test::RandomCase made = test::random_case(seed);
     const Change changed = change_by_call(3, made.mesh, made.metric, made.options,
                                           [](const AdaptedMesh& last) { return last.metric; });
