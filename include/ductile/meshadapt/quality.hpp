@@ -68,12 +68,12 @@ template <int Dim>
   return Dim == 2 ? scale * volume : scale * volume * std::sqrt(scale);
 }
 
-/// How much a corner counts in the metric of an element, by its scale in units of another: as the
-/// fourth power of its density. At the bound what counts less is too little to matter, and squares
-/// still fit into single precision.
+/// How much a corner counts beside another in the metric of an element, by the ratio of their
+/// scales: the fourth power of the ratio of their densities. From the bound on the other no longer
+/// matters; larger weights would leave the range of single precision.
 template <int Dim>
-[[gnu::always_inline]] inline double corner_weight(double scale) {
-  const double square = std::min(scale, 100.0) * std::min(scale, 100.0);
+[[gnu::always_inline]] inline double corner_weight(double ratio) {
+  const double square = std::min(ratio, 100.0) * std::min(ratio, 100.0);
   return Dim == 2 ? square * square : square * square * square;
 }
 
