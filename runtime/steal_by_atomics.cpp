@@ -106,7 +106,7 @@ void run_steal_by_atomics(const Executor& executor, Loop& loop) {
   const auto threads = static_cast<std::size_t>(executor.threads());
   while (loop.chunk_count() > UINT32_MAX) loop.grain *= 2;
   const std::size_t chunks = loop.chunk_count(), wanted = std::min(threads, chunks);
-  // On the stack, but for very many threads: a loop asks for no memory.
+  // Up to 64 lie on the stack, so that a loop asks for no memory.
   alignas(PartOfThread) std::array<std::byte, 64 * sizeof(PartOfThread)> room;
   std::pmr::monotonic_buffer_resource pool(room.data(), room.size());
   std::pmr::vector<PartOfThread> of_threads(wanted, &pool);

@@ -58,8 +58,8 @@ std::array<const Site<Dim>*, Dim + 1> corners_of(const std::vector<Site<Dim>>& s
   return corner;
 }
 
-/// Mean ratio in the mean metric. That of an ideal element is 1 but for rounding, and not shown to
-/// be more.
+/// Mean ratio in the mean metric. Rounding may make that of an ideal element a little more than 1;
+/// it is reported as 1.
 template <int Dim>
 double quality_of(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   const auto [metric, scale] = mean_metric<Dim>(corner);

@@ -84,10 +84,10 @@ struct ElementMetric {
   double scale = 0;  ///< the mean of the corners', at most det(metric)^(1/Dim) (Minkowski)
 };
 
-/// The mean of the metrics of some corners by their weights. Where one is much denser than the
-/// others it alone counts, as the unstructured grid adaptation working group has it (Ibanez et al.,
-/// Procedia Eng. 203, 2017); all of those count that are as dense, so that where directions differ
-/// no rounding decides which of them judges.
+/// The mean of the metrics of some corners by their weights. A corner that is much denser than the
+/// others decides alone. This is the rule of the unstructured grid adaptation working group (Ibanez
+/// et al., Procedia Eng. 203, 2017). Corners that are equally dense count alike: if rounding chose
+/// one of them, neighbouring elements would be judged in different directions.
 template <int Dim, std::size_t n>
 [[gnu::always_inline]] inline ElementMetric<Dim> mean_metric(
     const std::array<const Site<Dim>*, n>& corner) {
