@@ -59,7 +59,7 @@ int main(int argument_count, char** argument) {
       mesh = std::move(adapted);
       solution = carried;
     }
-    meshadapt::write_vtu(argument[2], mesh, meshadapt::vtu_fields(solution, "u"));
+    meshadapt::write_vtu(argument[2], mesh, meshadapt::named_fields(solution, "u"));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

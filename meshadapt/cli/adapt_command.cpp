@@ -13,6 +13,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/vtu.hpp"
 #include "ductile/runtime/memory.hpp"
@@ -242,8 +243,8 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
   job.fields.write(outputs, carried);
   if (job.vtu) {
-    auto fields = meshadapt::vtu_fields(adapted.metric, "metric");
-    for (auto& field : job.fields.vtu_fields(carried)) fields.push_back(std::move(field));
+    auto fields = meshadapt::named_fields(adapted.metric, "metric");
+    for (auto& field : job.fields.named_fields(carried)) fields.push_back(std::move(field));
     meshadapt::write_vtu(outputs, *job.vtu, adapted.mesh, fields);
   }
   if (job.json) outputs.stage(*job.json).write(json);

@@ -84,11 +84,11 @@ void CarriedFields::write(meshadapt::AtomicOutputs& outputs,
     meshadapt::write_field(outputs, outputs_[i], carried[i]);
 }
 
-std::vector<meshadapt::VtuField> CarriedFields::vtu_fields(
+std::vector<meshadapt::NamedField> CarriedFields::named_fields(
     const std::vector<AnyField>& carried) const {
-  std::vector<meshadapt::VtuField> all;
+  std::vector<meshadapt::NamedField> all;
   for (std::size_t i = 0; i < carried.size(); ++i)
-    for (auto& field : meshadapt::vtu_fields(carried[i], as_utf8(inputs_[i].stem().string())))
+    for (auto& field : meshadapt::named_fields(carried[i], as_utf8(inputs_[i].stem().string())))
       all.push_back(std::move(field));
   return all;
 }

@@ -41,7 +41,7 @@ class CarriedFields {
 
   void write(meshadapt::AtomicOutputs& outputs,
              const std::vector<meshadapt::AnyField>& carried) const;
-  std::vector<meshadapt::VtuField> vtu_fields(
+  std::vector<meshadapt::NamedField> named_fields(
       const std::vector<meshadapt::AnyField>& carried) const;
 
  private:

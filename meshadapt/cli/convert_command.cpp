@@ -4,6 +4,7 @@
 #include <string>
 
 #include "command.hpp"
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -115,10 +116,10 @@ void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arg
     warn_of_rounding(mesh.coordinates, to, form.version, warnings);
     return meshadapt::write_mesh(to, mesh, form);
   }
-  std::vector<meshadapt::VtuField> fields;
+  std::vector<meshadapt::NamedField> fields;
   if (const auto path = arguments.text("-sol"))
-    fields = meshadapt::vtu_fields(read_fields(*path, mesh, warnings),
-                                   as_utf8(fs::path(*path).stem().string()));
+    fields = meshadapt::named_fields(read_fields(*path, mesh, warnings),
+                                     as_utf8(fs::path(*path).stem().string()));
   meshadapt::write_vtu(to, mesh, fields);
 }
 

@@ -106,10 +106,12 @@ void expect_text(const std::string& name, std::size_t index) {
   }
 }
 
-void expect_fields(const AnyMesh& mesh, const std::vector<VtuField>& fields) {
+void expect_fields(const AnyMesh& mesh, const std::vector<NamedField>& fields) {
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto& [name, type, values] = fields[i];
+    const auto& [name, type, values, at] = fields[i];
     const std::string place = "fields[" + std::to_string(i) + "]";
+    if (at != NamedField::Place::vertices)
+      throw InputError(place + ".place: expected vertices, found elements");
     const int number = static_cast<int>(type);
     if (number < 1 || number > 4)
       throw InputError(place + ".type: expected 1 to 4, found " + std::to_string(number));
@@ -122,7 +124,7 @@ void expect_fields(const AnyMesh& mesh, const std::vector<VtuField>& fields) {
   }
 }
 
-void add_field(pugi::xml_node parent, const VtuField& field, const AnyMesh& mesh) {
+void add_field(pugi::xml_node parent, const NamedField& field, const AnyMesh& mesh) {
   const auto stride = static_cast<std::size_t>(component_count(field.type, mesh.dimension));
   const std::string name = unused_name(parent, field.name);
   if (field.type == Type::scalar) return add_array(parent, name, 1, field.values);
@@ -140,7 +142,7 @@ void add_field(pugi::xml_node parent, const VtuField& field, const AnyMesh& mesh
 }
 
 void add_points(pugi::xml_node piece, const AnyMesh& mesh) {
-  const VtuField points{"Points", Type::vector, mesh.coordinates};
+  const NamedField points{.name = "Points", .type = Type::vector, .values = mesh.coordinates};
   add_field(add_node(piece, "Points"), points, mesh);
 }
 
@@ -171,7 +173,7 @@ void add_cells(pugi::xml_node piece, const AnyMesh& mesh) {
   add_array(add_node(piece, "CellData"), "reference", 1, references);
 }
 
-void add_piece(pugi::xml_node grid, const AnyMesh& mesh, const std::vector<VtuField>& fields) {
+void add_piece(pugi::xml_node grid, const AnyMesh& mesh, const std::vector<NamedField>& fields) {
   const pugi::xml_node piece = add_node(grid, "Piece");
   const std::size_t cells = mesh.tetrahedra.size() + mesh.triangles.size() + mesh.edges.size();
   add_attribute(piece, "NumberOfPoints", mesh.vertex_count());
@@ -180,32 +182,13 @@ void add_piece(pugi::xml_node grid, const AnyMesh& mesh, const std::vector<VtuFi
   add_cells(piece, mesh);
   const pugi::xml_node point_data = add_node(piece, "PointData");
   add_array(point_data, "reference", 1, mesh.vertex_reference);
-  for (const VtuField& field : fields) add_field(point_data, field, mesh);
+  for (const NamedField& field : fields) add_field(point_data, field, mesh);
 }
 
 }  // namespace
 
-std::vector<VtuField> vtu_fields(const AnyField& field, const std::string& name) {
-  std::vector<VtuField> fields;
-  expect_values(field);
-  const std::size_t stride = stride_of(field);
-  std::size_t first = 0;
-  for (const Type type : field.types) {
-    const auto count = static_cast<std::size_t>(component_count(type, field.dimension));
-    VtuField& part = fields.emplace_back();
-    part.name = field.types.size() == 1 ? name : name + "_" + std::to_string(fields.size());
-    part.type = type;
-    part.values.reserve(field.vertex_count * count);
-    for (std::size_t vertex = 0; vertex < field.vertex_count; ++vertex)
-      for (std::size_t i = 0; i < count; ++i)
-        part.values.push_back(field.values[vertex * stride + first + i]);
-    first += count;
-  }
-  return fields;
-}
-
 void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-               const std::vector<VtuField>& fields) {
+               const std::vector<NamedField>& fields) {
   expect_coordinates(mesh);
   expect_references(mesh);
   expect_all_vertices(mesh);
@@ -227,7 +210,7 @@ void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const 
 }
 
 void write_vtu(const std::filesystem::path& path, const AnyMesh& mesh,
-               const std::vector<VtuField>& fields) {
+               const std::vector<NamedField>& fields) {
   AtomicOutputs outputs;
   write_vtu(outputs, path, mesh, fields);
   outputs.commit();

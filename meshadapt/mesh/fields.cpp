@@ -63,6 +63,25 @@ AnyField joined(const AnyField& first, const AnyField& second) {
   return both;
 }
 
+std::vector<NamedField> named_fields(const AnyField& field, const std::string& name) {
+  std::vector<NamedField> fields;
+  expect_values(field);
+  const std::size_t stride = stride_of(field);
+  std::size_t first = 0;
+  for (const AnyField::Type type : field.types) {
+    const auto count = static_cast<std::size_t>(component_count(type, field.dimension));
+    NamedField& part = fields.emplace_back();
+    part.name = field.types.size() == 1 ? name : name + "_" + std::to_string(fields.size());
+    part.type = type;
+    part.values.reserve(field.vertex_count * count);
+    for (std::size_t vertex = 0; vertex < field.vertex_count; ++vertex)
+      for (std::size_t i = 0; i < count; ++i)
+        part.values.push_back(field.values[vertex * stride + first + i]);
+    first += count;
+  }
+  return fields;
+}
+
 std::vector<double> scalars_of(const AnyField& field, std::size_t index) {
   expect_values(field);
   const std::size_t first = first_component(field, index, AnyField::Type::scalar);

@@ -87,6 +87,7 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const 
                         : expect_metric_field<3>(executor, judged);
     adapted = adapt_at(usable_levels().front(), executor, mesh, judged, options);
   });
+  adapted.mesh.names = mesh.names;
   return adapted;
 }
 

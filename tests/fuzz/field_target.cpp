@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/vtu.hpp"
@@ -82,7 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     fuzz::expect_whole(field);
     fuzz::expect_round_trip(field, size + bytes[size / 2]);
     fuzz::use_as_metric(field);
-    for (const auto& one : meshadapt::vtu_fields(field, "x"))
+    for (const auto& one : meshadapt::named_fields(field, "x"))
       fuzz::expect(!one.name.empty(), "a field without a name");
   } catch (const meshadapt::InputError& error) {
     fuzz::expect_message_of(file.path(), error.what());

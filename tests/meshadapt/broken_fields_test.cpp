@@ -148,7 +148,7 @@ std::vector<OfField> functions_of_fields(const AnyMesh& mesh, const std::filesys
        finite},
       {"write_field", Type::vector, [=](const AnyField& f) { write_field(folder / "f.solb", f); },
        finite},
-      {"vtu_fields", Type::vector, [](const AnyField& f) { vtu_fields(f, "f"); }, lengths},
+      {"named_fields", Type::vector, [](const AnyField& f) { named_fields(f, "f"); }, lengths},
   };
 }
 

@@ -1,4 +1,5 @@
 #include "ductile/meshadapt/vtu.hpp"
+#include "ductile/meshadapt/fields.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -137,9 +138,9 @@ INSTANTIATE_TEST_SUITE_P(Dimension, VtuFile, testing::Values(2, 3));
 TEST(Vtu, WidensTensorsAndVectors) {
   const test::TemporaryFolder folder;
   AnyMesh mesh = test::random_mesh(3, 1, 1);
-  const std::vector<VtuField> in_space = {{"size <&>", Type::scalar, {7}},
-                                          {"metric", Type::symmetric, {11, 12, 22, 13, 23, 33}},
-                                          {"matrix", Type::matrix, {1, 2, 3, 4, 5, 6, 7, 8, 9}}};
+  const std::vector<NamedField> in_space = {{"size <&>", Type::scalar, {7}},
+                                            {"metric", Type::symmetric, {11, 12, 22, 13, 23, 33}},
+                                            {"matrix", Type::matrix, {1, 2, 3, 4, 5, 6, 7, 8, 9}}};
   write_vtu(folder / "a.vtu", mesh, in_space);
   const Vtu space(folder / "a.vtu");
   using Values = std::vector<double>;
@@ -159,7 +160,7 @@ TEST(Vtu, WidensTensorsAndVectors) {
 
 TEST(Vtu, TakesFieldsApart) {
   const AnyField field = test::random_field(2, 3, {Type::scalar, Type::symmetric, Type::vector}, 1);
-  const auto parts = vtu_fields(field, "u");
+  const auto parts = named_fields(field, "u");
   ASSERT_EQ(parts.size(), 3U);
   EXPECT_EQ(parts[1].name, "u_2");
   EXPECT_EQ(parts[1].type, Type::symmetric);
@@ -173,7 +174,7 @@ TEST(Vtu, TakesNoFieldApartThatLacksValues) {
   field.name = "u.sol";
   field.values.pop_back();
   EXPECT_EQ(
-      test::complaint([&] { vtu_fields(field, "u"); }),
+      test::complaint([&] { named_fields(field, "u"); }),
       "u.sol: expected numbers for all components at all vertices, 9 of them, found 8 in values");
 }
 
@@ -219,7 +220,7 @@ void* allocate_while_there_is(std::size_t bytes) {
 TEST(Vtu, IsWholeOrNotThereIfMemoryRunsOut) {
   const test::TemporaryFolder folder;
   const AnyMesh mesh = rectangle_mesh({1, 1}, {120, 120});
-  const std::vector<VtuField> fields = {
+  const std::vector<NamedField> fields = {
       {"u", Type::scalar, std::vector<double>(mesh.vertex_count(), 0.5)}};
   write_vtu(folder / "whole.vtu", mesh, fields);
   const auto allocate = pugi::get_memory_allocation_function();

@@ -26,7 +26,7 @@ VtuSeries::VtuSeries(fs::path index) : index_(std::move(index)) {
 }
 
 void VtuSeries::add(double time, const meshadapt::AnyMesh& mesh,
-                    const std::vector<meshadapt::VtuField>& fields) {
+                    const std::vector<meshadapt::NamedField>& fields) {
   write_vtu(index_.parent_path() / member(index_, times_.size()), mesh, fields);
   times_.push_back(time);
   write_index();

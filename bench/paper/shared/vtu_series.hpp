@@ -18,7 +18,7 @@ class VtuSeries {
 
   /// Writes one file and the index anew, so that a run can be looked at while it goes on.
   void add(double time, const meshadapt::AnyMesh& mesh,
-           const std::vector<meshadapt::VtuField>& fields);
+           const std::vector<meshadapt::NamedField>& fields);
 
  private:
   void write_index() const;

@@ -31,6 +31,14 @@ struct Cells {
   friend bool operator==(const Cells&, const Cells&) = default;
 };
 
+/// What the entities of one dimension that carry a reference are called: "wall", "steel".
+struct ReferenceName {
+  int dimension = 0;           ///< of the entities: 0, vertices; 1, edges; 2, triangles; 3
+  std::int32_t reference = 0;  ///< that they carry
+  std::string name;
+  friend bool operator==(const ReferenceName&, const ReferenceName&) = default;
+};
+
 struct AnyMesh {
   int dimension = 0;                           ///< 2 or 3
   std::vector<double> coordinates;             ///< [vertex * dimension + axis]
@@ -44,6 +52,7 @@ struct AnyMesh {
   std::vector<std::uint32_t> required_edges;       ///< indices into edges
   std::vector<std::uint32_t> required_triangles;   ///< indices into triangles
   std::vector<std::uint32_t> required_tetrahedra;  ///< indices into tetrahedra
+  std::vector<ReferenceName> names;                ///< of references; adaptation keeps them
   std::string name;                                ///< where it came from, for messages
   int dropped_axis = 2;  ///< of a flat mesh: the axis of space that flatten() left out
 
@@ -112,5 +121,14 @@ constexpr std::size_t stride_of(const AnyField& field) {
     stride += static_cast<std::size_t>(component_count(type, field.dimension));
   return stride;
 }
+
+/// One field under its name, of a mesh whose dimension says how many components it has.
+struct NamedField {
+  enum class Place { vertices, elements };
+  std::string name;
+  AnyField::Type type = AnyField::Type::scalar;
+  std::vector<double> values;  ///< [entity * component_count + component], order as in AnyField
+  Place place = Place::vertices;
+};
 
 }  // namespace ductile::meshadapt

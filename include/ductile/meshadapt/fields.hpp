@@ -24,6 +24,10 @@ AnyField vector_field(const std::vector<Vector<Dim>>& vector_of, const std::stri
 /// have the same dimension and as many vertices.
 AnyField joined(const AnyField& first, const AnyField& second);
 
+/// The fields of an AnyField apart: "NAME", or "NAME_1", "NAME_2", ... if there are several.
+/// Throws InputError unless there are values for all vertices.
+std::vector<NamedField> named_fields(const AnyField& field, const std::string& name);
+
 /// The values [vertex] of one scalar among the fields, of which the first has index 0. Throws
 /// InputError unless there is one.
 std::vector<double> scalars_of(const AnyField& field, std::size_t index = 0);
