@@ -1,11 +1,13 @@
 #include "ductile/meshadapt/background.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/walk.hpp"
+#include "metric/interpolation.hpp"
 
 namespace ductile::meshadapt {
 
@@ -66,10 +68,30 @@ auto Background<Dim>::sample(const Vector<Dim>& point, ElementId near) const -> 
   double sum = 0;
   for (double& w : weight) sum += w = std::max(w, 0.0);
   const double scale = 1 / sum;
-  Metric<Dim> log_metric;
-  for (std::size_t i = 0; i <= Dim; ++i)
-    log_metric += (scale * weight[i]) * log_metric_of_[corners_of_[host][i]];
-  return {host, exponential(log_metric)};
+  CornerLogs<Dim> logs;
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    weight[i] *= scale;
+    logs[i] = &log_metric_of_[corners_of_[host][i]];
+  }
+  return {host, interpolated<Dim>(logs, weight, [&] { return places_of(host); })};
+}
+
+template <int Dim>
+std::array<Vector<Dim>, Dim + 1> Background<Dim>::places_of(ElementId element) const {
+  std::array<Vector<Dim>, Dim + 1> corner;
+  for (std::size_t i = 0; i <= Dim; ++i) corner[i] = position_of_[corners_of_[element][i]];
+  return corner;
+}
+
+template <int Dim>
+double Background<Dim>::complexity(const runtime::Executor& executor) const {
+  const auto of_element = [&](std::size_t e) {
+    LogDensities<Dim> densities;
+    for (std::size_t i = 0; i <= Dim; ++i)
+      densities[i] = log_density_of_log(log_metric_of_[corners_of_[e][i]]);
+    return complexity_of_element<Dim>(densities, places_of(static_cast<ElementId>(e)));
+  };
+  return runtime::parallel_reduce(executor, corners_of_.size(), 0.0, of_element, std::plus<>());
 }
 
 template <int Dim>

@@ -1,19 +1,17 @@
 #include "metric/demand.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
-#include <span>
 #include <string>
 
 #include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/wording.hpp"
+#include "metric/interpolation.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -24,24 +22,6 @@ double log_density(const Metric<Dim>& metric) {
   double trace = 0;
   for (int i = 0; i < Dim; ++i) trace += metric(i, i);
   return (std::log(determinant(1 / trace * metric)) + Dim * std::log(trace)) / 2;
-}
-
-/// The divided difference of exp at values that rise. Times Dim! it is the mean, over a simplex, of
-/// exp of what is linear and has these values at the corners (Hermite and Genocchi).
-double divided_difference_of_exp(std::span<const double> values) {
-  const std::size_t order = values.size() - 1;
-  const double spread = values.back() - values.front();
-  constexpr double close = 0.25;  // where the first terms of the series are right to 0.1 %
-  if (spread >= close)
-    return (divided_difference_of_exp(values.subspan(1)) -
-            divided_difference_of_exp(values.first(order))) /
-           spread;
-  double mean = 0, squares = 0, factorial = 1;
-  for (const double value : values) mean += value / static_cast<double>(values.size());
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  for (std::size_t i = 2; i <= order; ++i) factorial *= static_cast<double>(i);
-  const auto terms = static_cast<double>(2 * (order + 1) * (order + 2));
-  return std::exp(mean) * (1 + squares / terms) / factorial;
 }
 
 std::string with_commas(double number) {
@@ -59,15 +39,14 @@ double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim>& 
   runtime::parallel_for(executor, metric_of.size(),
                         [&](std::size_t v) { density_of[v] = log_density(metric_of[v]); });
   const auto of_element = [&](std::size_t e) {
-    std::array<Vector<Dim>, Dim + 1> corner;
-    std::array<double, Dim + 1> densities;
+    CornerPlaces<Dim> corner;
+    LogDensities<Dim> densities;
     for (std::size_t c = 0; c <= Dim; ++c) {
       const VertexId v = mesh.corners_of[e][c];
       corner[c] = mesh.site_of[v].position;
       densities[c] = density_of[v];
     }
-    std::sort(densities.begin(), densities.end());
-    return certain_determinant<Dim>(corner) * divided_difference_of_exp(densities);
+    return complexity_of_element<Dim>(densities, corner);
   };
   return runtime::parallel_reduce(executor, mesh.element_slots(), 0.0, of_element, std::plus<>());
 }

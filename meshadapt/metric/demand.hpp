@@ -12,8 +12,8 @@
 
 namespace ductile::meshadapt {
 
-/// The integral over the mesh of sqrt(det metric), logarithms of metrics being linear in each
-/// element, as they are interpolated. Thread safety: one caller; runs on the executor.
+/// The integral over the mesh of sqrt(det metric) as it is interpolated, see interpolation.hpp.
+/// Thread safety: one caller; runs on the executor.
 template <int Dim>
 double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                             const std::vector<Metric<Dim>>& metric_of);

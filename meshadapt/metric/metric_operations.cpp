@@ -13,6 +13,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/unset_vector.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/first_bad.hpp"
 #include "metric/bounded_metric.hpp"
@@ -167,6 +168,7 @@ class Gradation {
         rate_(std::log(options.factor)),
         changed_(metric_of.size()),
         has_changed_(metric_of.size(), 1),
+        axes_of_(metric_of.size()),
         neighbours_(executor),
         wake_(executor, {.unique = true}) {
     std::iota(changed_.begin(), changed_.end(), VertexId{0});
@@ -200,6 +202,9 @@ class Gradation {
 
   /// Finds the new metrics from the old ones, then puts them in place.
   void sweep(std::span<const VertexId> active) {
+    runtime::parallel_for(executor_, changed_.size(), [&](std::size_t i) {
+      axes_of_[changed_[i]] = principal_axes(metric_of_[changed_[i]]);
+    });
     const auto raised = runtime::parallel_collect<Raised>(
         executor_, active.size(), [&](std::size_t i, auto&& append) {
           Metric<Dim> metric = metric_of_[active[i]];
@@ -229,12 +234,19 @@ class Gradation {
     return raised;
   }
 
-  /// The metric at `from` as it may be at `to` at most.
+  /// The metric at `from` as it may be at `to` at most: a size h grows by g^(7/8) g_h^(1/8), where
+  /// g is the growth over the edge's length in the metric and g_h that over its length in h.
   Metric<Dim> grown(VertexId from, VertexId to) const {
     const Vector<Dim> edge = place_of(mesh_, to) - place_of(mesh_, from);
     const double length = std::sqrt(std::max(0.0, squared_length(metric_of_[from], edge)));
-    const double growth = 1 + length * rate_;
-    return 1 / (growth * growth) * metric_of_[from];
+    const double in_metric = 1 + length * rate_, in_space = norm(edge) * rate_;
+    PrincipalAxes<Dim> axes = axes_of_[from];
+    for (double& value : axes.value) {
+      const double in_size = 1 + in_space * std::sqrt(std::max(0.0, value));
+      const double growth = in_metric * std::sqrt(std::sqrt(std::sqrt(in_size / in_metric)));
+      value /= growth * growth;
+    }
+    return compose(axes);
   }
 
   /// In the order of their numbers; valid until the thread asks again.
@@ -263,9 +275,10 @@ class Gradation {
   std::vector<Metric<Dim>>& metric_of_;  // [vertex]
   const AMesh& mesh_;
   GradationOptions options_;
-  double rate_;                            // growth per unit length
-  std::vector<VertexId> changed_;          // in the last sweep, all before the first
-  std::vector<std::uint8_t> has_changed_;  // [vertex]
+  double rate_;                                       // growth per unit length
+  std::vector<VertexId> changed_;                     // in the last sweep, all before the first
+  std::vector<std::uint8_t> has_changed_;             // [vertex]
+  runtime::UnsetVector<PrincipalAxes<Dim>> axes_of_;  // [vertex], of those that changed
   runtime::PerThread<std::vector<VertexId>> neighbours_;
   runtime::Worklist<VertexId> wake_;
 };

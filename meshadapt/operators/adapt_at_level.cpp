@@ -42,7 +42,23 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The metrics of the field within the sizes and the growth that the options allow.
+/// Makes the metrics keep the sizes and the growth that the options allow.
+template <int Dim>
+void limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                 const AdaptOptions& options, const std::string& name,
+                 std::vector<Metric<Dim>>& metric_of, std::vector<std::string>& warnings) {
+  const SizeBounds bounds{options.smallest_size, options.largest_size};
+  bound_sizes(executor, metric_of, bounds);
+  if (options.gradation <= 0) return;
+  if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.surface_tolerance, metric_of);
+  const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
+  if (!report.converged)
+    warnings.push_back(name + ": sizes still grow faster than asked for in places, after " +
+                       std::to_string(report.sweeps) + " sweeps over the edges");
+  bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
+}
+
+/// The metrics of the field, limited.
 template <int Dim>
 std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const AnyField& field,
                                     const Mesh<Dim>& mesh, const AdaptOptions& options,
@@ -51,16 +67,7 @@ std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const Any
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric_of[v].m.begin());
   });
-  const SizeBounds bounds{options.smallest_size, options.largest_size};
-  bound_sizes(executor, metric_of, bounds);
-  if (options.gradation > 0) {
-    if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.surface_tolerance, metric_of);
-    const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
-    if (!report.converged)
-      warnings.push_back(field.name + ": sizes still grow faster than asked for in places, after " +
-                         std::to_string(report.sweeps) + " sweeps over the edges");
-    bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
-  }
+  limit_sizes(executor, mesh, options, field.name, metric_of, warnings);
   return metric_of;
 }
 
@@ -152,6 +159,48 @@ void run(std::optional<Adapter<Dim>>& adapter, const auto& set_up) {
 }
 
 template <int Dim>
+Neighbours<Dim> neighbours_of(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
+  Neighbours<Dim> neighbours;
+  runtime::FreshMemory fresh;
+  neighbours.resize_for_overwrite(mesh.element_slots(), fresh);
+  fresh.touch(executor);
+  runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    for (int i = 0; i <= Dim; ++i)
+      neighbours[e][static_cast<std::size_t>(i)] = neighbour(mesh, static_cast<ElementId>(e), i);
+  });
+  return neighbours;
+}
+
+/// Limits to growth hold along edges, of which a coarse mesh has few: those of the adapted mesh
+/// show more. As long as they ask for much more there, the mesh is adapted to that, too.
+template <int Dim>
+Mesh<Dim> with_growth_limited(const runtime::Executor& executor, const AdaptOptions& options,
+                              const std::string& name, std::optional<Adapter<Dim>>& adapter) {
+  constexpr double much = 1.1;
+  constexpr int most_times = 5;
+  Mesh<Dim> mesh = adapter->take_mesh();
+  if (options.gradation <= 0 || !options.insert) return mesh;
+  for (int time = 0; time < most_times; ++time) {
+    renumber(executor, mesh);
+    auto metric_of = runtime::make_vector<Metric<Dim>>(executor, mesh.vertex_slots());
+    runtime::parallel_for(executor, metric_of.size(),
+                          [&](std::size_t v) { metric_of[v] = mesh.site_of[v].metric; });
+    const double before = complexity_of_demand(executor, mesh, metric_of);
+    std::vector<std::string> told;  // by the first metrics
+    limit_sizes(executor, mesh, options, name, metric_of, told);
+    if (complexity_of_demand(executor, mesh, metric_of) < much * before) break;
+    expect_possible(executor, mesh, metric_of, name, options);
+    AdaptReport report = std::move(adapter->report());
+    Neighbours<Dim> neighbours = neighbours_of(executor, mesh);
+    adapter.emplace(executor, options, std::move(mesh), std::move(neighbours), metric_of);
+    adapter->report() = std::move(report);
+    adapter->adapt_anew();
+    mesh = adapter->take_mesh();
+  }
+  return mesh;
+}
+
+template <int Dim>
 Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
                    const AdaptOptions& options) {
   const Stopwatch watch;
@@ -176,7 +225,7 @@ Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const 
   adapter->report().setup_seconds = watch.seconds();
   if (auto* recording = executor.recording()) recording->begin_section("other");
   run<Dim>(adapter, set_up);
-  Mesh<Dim> mesh = adapter->take_mesh();
+  Mesh<Dim> mesh = with_growth_limited(executor, options, metric.name, adapter);
   round_boundary(mesh);
   count_curved_edges(executor, mesh, adapter->report());
   auto [adapted, metric_on_it] = take_apart(executor, std::move(mesh));

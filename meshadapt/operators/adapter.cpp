@@ -6,8 +6,10 @@
 #include <iterator>
 #include <utility>
 
+#include "ductile/meshadapt/complexity.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "metric/interpolation.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/kernel_timer.hpp"
 #include "operators/metric_path.hpp"
@@ -31,6 +33,9 @@ constexpr double nothing = 2e-4, little = 0.02, not_much = 0.06;
 
 /// Of elements, whatever could be done about them.
 constexpr double many_poor = 5e-3;
+
+/// Of what the metric asks for, in elements that are much too coarse for how sizes change.
+constexpr double much_of_demand = 0.2;
 
 /// Swapping takes the worst elements first only within windows, which stay in cache while they are
 /// reserved, planned and applied.
@@ -103,6 +108,8 @@ void Adapter<Dim>::mend(double wanted) {
 
 template <int Dim>
 void Adapter<Dim>::adapt_anew() {
+  report_.iterations = 0;
+  report_.converged = false;
   if (options_.insert && is_far()) come_near();
   while (!report_.converged && report_.iterations < options_.iterations) {
     ++report_.iterations;
@@ -144,24 +151,52 @@ std::size_t Adapter<Dim>::elements_changed_after(std::uint32_t epoch) const {
                                   std::plus<>());
 }
 
-/// Are most elements slivers in the metric?
+/// Are most elements slivers in the metric, or some, and many to be made where sizes jump?
 template <int Dim>
 bool Adapter<Dim>::is_far() const {
-  return share(elements_below(Tuning<Dim>::far)) > 0.5;
+  const double slivers = share(elements_below(Tuning<Dim>::far));
+  return slivers > 0.5 || (slivers > 0.02 && share_of_steep() > much_of_demand);
+}
+
+/// How much of what the metric asks for lies in elements that are much too coarse for how sizes
+/// change (see is_steep).
+template <int Dim>
+double Adapter<Dim>::share_of_steep() const {
+  const auto complexity = [&](bool of_all) {
+    const auto of_element = [&](std::size_t e) {
+      const auto [densities, corner] = densities_of(mesh_, static_cast<ElementId>(e));
+      return of_all || is_steep<Dim>(densities, corner)
+                 ? complexity_of_element<Dim>(densities, corner)
+                 : 0.0;
+    };
+    return runtime::parallel_reduce(executor_, mesh_.element_slots(), 0.0, of_element,
+                                    std::plus<>());
+  };
+  const double of_steep = complexity(false);
+  return of_steep > 0 ? of_steep / complexity(true) : 0;
 }
 
 /// Adapts to metrics on the way to one that is far, roughly, before what is done for any.
 template <int Dim>
 void Adapter<Dim>::come_near() {
   constexpr int most_rounds = 6;  // to each
-  MetricPath<Dim> path(executor_, mesh_, background_);
+  MetricPath<Dim> path(executor_, mesh_, background_, share_of_steep() > much_of_demand);
   stage_ = std::size(Tuning<Dim>::stages) - 1;  // none is far from the one before
   for (int step = 1; step <= path.steps(); ++step) {
+    if (step > 1 && has_too_many()) step = path.steps();
     path.go_to(step);
     take_metrics();
     bool is_near = step == path.steps();
     for (int round = 0; round < most_rounds && !is_near; ++round) is_near = share(iterate()) < 0.1;
   }
+}
+
+/// Are there many more elements than the metric of the background asks for? Where directions turn
+/// within elements they grow on the way, from step to step.
+template <int Dim>
+bool Adapter<Dim>::has_too_many() const {
+  const double wanted = background_.complexity(executor_);
+  return complexity_of_elements(Dim, static_cast<double>(element_count())) > 1.5 * wanted;
 }
 
 /// Those that the background has now.

@@ -29,6 +29,8 @@ class Adapter {
 
   /// Changes only what it must of a mesh that came adapted.
   void mend();
+  /// Adapts it as one that did not. The report's iterations are then those of this.
+  void adapt_anew();
 
   /// What has become of a mesh that came more or less adapted: it is to be kept as it is now; or
   /// the one that came is better for it, and is to be mended, or left alone.
@@ -64,11 +66,12 @@ class Adapter {
 
   // ---- Steps, in the order of a run ----
   bool is_far() const;
+  double share_of_steep() const;
   void come_near();
+  bool has_too_many() const;
   void take_metrics();
   double share_to_change();
   void mend(double wanted);
-  void adapt_anew();
   std::size_t iterate();
   void rearrange();
   void polish();

@@ -18,6 +18,7 @@
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "metric/interpolation.hpp"
 #include "metric/metric_of_element.hpp"
 
 namespace ductile::meshadapt {
@@ -27,7 +28,10 @@ template <int Dim>
 class MetricPath {
  public:
   /// From the metric of the elements of the mesh, of which the background is a copy.
-  MetricPath(const runtime::Executor& executor, const Mesh<Dim>& mesh, Background<Dim>& background)
+  /// How many steps there are is a mean over the vertices: of all alike, or by the elements that
+  /// are to be made around them.
+  MetricPath(const runtime::Executor& executor, const Mesh<Dim>& mesh, Background<Dim>& background,
+             bool by_demand)
       : executor_(executor),
         background_(background),
         from_(mesh.vertex_slots()),
@@ -40,11 +44,10 @@ class MetricPath {
       share_of_[v] = volume_around(mesh, v) / (Dim + 1);
     });
     const auto elements = static_cast<double>(background.element_count());
-    most_complexity_ = 3 * std::max(complexity_of_elements(Dim, elements), complexity(1));
-    const double all = runtime::parallel_reduce(
-        executor, from_.size(), 0.0, [&](std::size_t v) { return log_stretch(v); }, std::plus<>());
-    const double mean = all / static_cast<double>(std::max<std::size_t>(1, from_.size()));
-    steps_ = static_cast<int>(std::clamp(std::ceil(mean / std::log(longest_step)), 1.0, 20.0));
+    most_complexity_ =
+        3 * std::max(complexity_of_elements(Dim, elements), background.complexity(executor));
+    steps_ = static_cast<int>(
+        std::clamp(std::ceil(mean_log_stretch(by_demand) / std::log(longest_step)), 1.0, 20.0));
   }
 
   int steps() const { return steps_; }
@@ -54,13 +57,16 @@ class MetricPath {
   /// may ask for many more elements than either end has; then all sizes are larger, and stretched
   /// as much.
   void go_to(int step) {
+    if (step == steps_) return set([&](std::size_t v) { return to_[v]; });
     const double share = static_cast<double>(step) / steps_;
-    const double too_many = std::max(1.0, complexity(share) / most_complexity_);
+    set([&](std::size_t v) { return between(v, share); });
+    const double too_many = background_.complexity(executor_) / most_complexity_;
+    if (!(too_many > 1)) return;
     const double larger = 2 * std::log(too_many) / Dim;
-    runtime::parallel_for(executor_, to_.size(), [&](std::size_t v) {
+    set([&](std::size_t v) {
       Metric<Dim> metric = between(v, share);
       for (std::size_t i = 0; i < Dim; ++i) metric.m[i * (i + 3) / 2] -= larger;  // its diagonal
-      background_.log_metric(static_cast<VertexId>(v)) = step == steps_ ? to_[v] : metric;
+      return metric;
     });
   }
 
@@ -73,15 +79,25 @@ class MetricPath {
     return metric;
   }
 
-  /// Of the metric so far on the way.
-  double complexity(double share) const {
-    const auto at_vertex = [&](std::size_t v) {
-      const Metric<Dim> log_metric = between(v, share);
-      double trace = 0;
-      for (int i = 0; i < Dim; ++i) trace += log_metric(i, i);
-      return share_of_[v] * std::exp(trace / 2);
+  void set(const auto& log_metric_of) {
+    runtime::parallel_for(executor_, to_.size(), [&](std::size_t v) {
+      background_.log_metric(static_cast<VertexId>(v)) = log_metric_of(v);
+    });
+  }
+
+  double mean_log_stretch(bool by_demand) const {
+    struct Sum {
+      double weights = 0, all = 0;
     };
-    return runtime::parallel_reduce(executor_, to_.size(), 0.0, at_vertex, std::plus<>());
+    const auto at_vertex = [&](std::size_t v) {
+      const double weight = by_demand ? share_of_[v] * std::exp(log_density_of_log(to_[v])) : 1;
+      return Sum{weight, weight * log_stretch(v)};
+    };
+    const Sum sum = runtime::parallel_reduce(executor_, to_.size(), Sum{}, at_vertex,
+                                             [](const Sum& a, const Sum& b) {
+                                               return Sum{a.weights + b.weights, a.all + b.all};
+                                             });
+    return sum.all / sum.weights;
   }
 
   static double volume_around(const Mesh<Dim>& mesh, VertexId v) {

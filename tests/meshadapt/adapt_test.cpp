@@ -258,6 +258,37 @@ TEST_P(Adapt, MakesNoDetourByManyElements) {
   EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "");
 }
 
+/// Sizes at a plane of vertices jump to large ones at the next: the first call may not make many
+/// times the elements of the last, which knows the metric at the vertices of the one before.
+TEST_P(Adapt, MakesAThinLayerInACoarseMeshAtOnce) {
+  const int axis = dimension() - 1;
+  const double thin = dimension() == 2 ? 1e-5 : 1e-4;
+  const auto metric_of = [&](const AnyMesh& mesh) {
+    AnyField metric = constant_metric(mesh, 0.2);
+    const auto stride = static_cast<std::size_t>(dimension() * (dimension() + 1) / 2);
+    for (std::size_t v = 0; v < metric.vertex_count; ++v) {
+      const double x = mesh.coordinates[v * static_cast<std::size_t>(dimension()) +
+                                        static_cast<std::size_t>(axis)];
+      const double size = std::min(0.2, thin + 0.3 * std::abs(x - 0.5));
+      metric.values[v * stride + (dimension() == 2 ? 2 : 5)] = 1 / (size * size);
+    }
+    return metric;
+  };
+  const Executor executor({.threads = 2});
+  AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 4));
+  const auto elements = [&] {
+    return static_cast<double>(dimension() == 2 ? mesh.triangles.size() : mesh.tetrahedra.size());
+  };
+  double first = 0;
+  for (int call = 0; call < 3; ++call) {
+    mesh = adapt(executor, mesh, metric_of(mesh)).mesh;
+    if (call == 0) first = elements();
+  }
+  EXPECT_LT(first, 3 * elements());
+  const AnyField metric = metric_of(mesh);
+  EXPECT_GT(measure(executor, mesh, &metric).share_in_range(), 0.9);
+}
+
 TEST_P(Adapt, RefusesToMakeMoreElementsThanCanBeCounted) {
   const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 3));
   for (const double size : {1e-6, 1e-70})

@@ -42,7 +42,7 @@ struct Scene {
     mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
     for (std::size_t v = 0; v < any.vertex_count(); ++v) {
       std::array<double, Dim> sizes;
-      for (double& h : sizes) h = std::pow(10.0, uniform(random, -2, 0));
+      for (double& h : sizes) h = std::pow(10.0, uniform(random, -1.3, 0));
       metric_of.push_back(test::random_metric<Dim>(random, sizes));
     }
     for (std::size_t v = 0; v < metric_of.size(); ++v) mesh.site_of[v].metric = metric_of[v];
@@ -154,6 +154,44 @@ TYPED_TEST(BackgroundIn, GivesAPointOutsideTheMetricOfTheClosestPoint) {
   });
   EXPECT_LT(*std::max_element(difference_of.begin(), difference_of.end()), 1e-6);
   EXPECT_GT(scene.background->bytes(), before);
+}
+
+/// A layer of a size at the middle of the box, in elements of 1/6 in which it jumps to 0.03:
+/// between the vertices it grows linearly, and the background knows how many elements that is.
+TYPED_TEST(BackgroundIn, LetsSizesGrowLinearlyWhereTheyJump) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 2});
+  for (const double thin : {1e-4, 1e-5, 1e-7}) {
+    const AnyMesh any = test::make_grid(test::unit_grid(Dim, 6));
+    Neighbours<Dim> neighbours;
+    std::vector<std::string> warnings;
+    Mesh<Dim> mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
+    const auto size_at = [&](double distance) {
+      return std::min(0.03, thin + (0.03 - thin) * 6 * distance);
+    };
+    const auto at_distance = [&](double distance) {
+      PrincipalAxes<Dim> axes = principal_axes(isotropic<Dim>(0.05));
+      for (std::size_t i = 0; i < Dim; ++i) axes.vector[i] = {}, axes.vector[i].x[i] = 1;
+      axes.value[0] = 1 / (size_at(distance) * size_at(distance));
+      return compose(axes);
+    };
+    for (std::size_t v = 0; v < mesh.vertex_slots(); ++v)
+      mesh.site_of[v].metric = at_distance(std::abs(mesh.site_of[v].position[0] - 0.5));
+    const Background<Dim> background(executor, mesh, std::move(neighbours));
+    Random random(12);
+    for (int trial = 0; trial < 200; ++trial) {
+      Vector<Dim> point;
+      for (double& x : point.x) x = uniform(random, 0, 1);
+      const double distance = std::abs(point[0] - 0.5);
+      const auto sample = background.sample(point, 0);
+      EXPECT_LT(difference(at_distance(distance), sample.metric), 1e-6) << thin << ' ' << distance;
+    }
+    // Across: 1/size, integrated; the other sizes are 0.05.
+    const double layers =
+        2 * (std::log(0.03 / thin) / (6 * (0.03 - thin)) + (0.5 - 1.0 / 6) / 0.03);
+    EXPECT_NEAR(background.complexity(executor) / (layers * std::pow(20, Dim - 1)), 1, 1e-3)
+        << thin;
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 /// Points are located by walking from an element nearby; what a walk does not find, by a tree.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -28,7 +29,8 @@ class Background {
   Background& operator=(const Background&) = delete;
 
   /// Where a point lies, and the metric there: log-Euclidean interpolation (Arsigny, Fillard,
-  /// Pennec & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007) of the element's vertices.
+  /// Pennec & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007) of the element's vertices; in an
+  /// element much too coarse for how they differ, with sizes that grow linearly.
   struct Sample {
     ElementId host;
     Metric<Dim> metric;
@@ -59,6 +61,9 @@ class Background {
   /// samples, one thread for each vertex.
   Metric<Dim>& log_metric(VertexId v) { return log_metric_of_[v]; }
 
+  /// The integral over the mesh of sqrt(det metric). Thread safety: while nobody changes metrics.
+  double complexity(const runtime::Executor& executor) const;
+
   /// Gives the memory of its elements and vertices back, by all threads of an executor; there is
   /// nothing to sample any more. Thread safety: one thread.
   void release(const runtime::Executor& executor);
@@ -69,6 +74,7 @@ class Background {
 
  private:
   ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
+  std::array<Vector<Dim>, Dim + 1> places_of(ElementId element) const;
 
   GrowingArray<Corners<Dim>> corners_of_;    // [element]
   Neighbours<Dim> neighbours_;               // [element][facet]

@@ -58,10 +58,13 @@ struct GradationReport {
   bool converged = false;  ///< false: the bound on sweeps was met first
 };
 
-/// Makes metrics finer until, along each edge pq, sizes grow by at most `factor` per unit of metric
-/// length: M_q measures no length less than M_p / (1 + l ln(factor))^2 does, where l is the length
-/// of pq in M_p. A metric that spreads keeps its anisotropy. This is the metric-space gradation of
-/// Alauzet, "Size gradation control of anisotropic meshes", Finite Elem. Anal. Des. 46 (2010).
+/// Makes metrics finer until, along each edge pq, sizes grow by at most about `factor` per unit of
+/// metric length. Each size h of M_p, along one of its axes, may become h g^(7/8) g_h^(1/8) in M_q,
+/// where g = 1 + l ln(factor) with the length l of pq in M_p, and g_h = 1 + |pq|/h ln(factor). M_q
+/// then measures no length less than that metric does. This is the mixed law of Alauzet, "Size
+/// gradation control of anisotropic meshes", Finite Elem. Anal. Des. 46 (2010): with g alone,
+/// metrics spread with all of their anisotropy, so that where directions differ they ask for short
+/// edges in many directions over long distances. Isotropic metrics grow by g, as g_h is the same.
 /// In each sweep a vertex intersects its metric with those of its neighbours before the sweep, in
 /// the order of their numbers, so the result does not depend on threads or timing. metric_of is
 /// indexed by the vertices of the mesh; the metrics in the mesh are not read. Throws InputError if

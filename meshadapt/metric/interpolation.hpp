@@ -1,0 +1,120 @@
+/// @file
+/// How a metric goes on between the corners of an element that it is given at: log-Euclidean
+/// interpolation, unless sizes differ so much that it would ask for many more elements than sizes
+/// that grow linearly. Private to mesh adaptation.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "ductile/meshadapt/vector.hpp"
+
+namespace ductile::meshadapt {
+
+/// The logarithms of the metrics at an element's corners.
+template <int Dim>
+using CornerLogs = std::array<const Metric<Dim>*, Dim + 1>;
+
+/// The logarithm of sqrt(det metric) at each corner.
+template <int Dim>
+using LogDensities = std::array<double, Dim + 1>;
+
+/// The logarithm of sqrt(det metric), of the logarithm of a metric.
+template <int Dim>
+double log_density_of_log(const Metric<Dim>& log_metric) {
+  double trace = 0;
+  for (int i = 0; i < Dim; ++i) trace += log_metric(i, i);
+  return trace / 2;
+}
+
+/// Where an element's corners lie.
+template <int Dim>
+using CornerPlaces = std::array<Vector<Dim>, Dim + 1>;
+
+template <int Dim>
+struct DensitiesAt {
+  LogDensities<Dim> densities;
+  CornerPlaces<Dim> corner;
+};
+
+/// Those of an element of a mesh, which must be there, with the metrics that the mesh has.
+template <int Dim>
+DensitiesAt<Dim> densities_of(const Mesh<Dim>& mesh, ElementId element) {
+  DensitiesAt<Dim> result;
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    const Site<Dim>& site = mesh.site_of[mesh.corners_of[element][i]];
+    result.corner[i] = site.position;
+    result.densities[i] = 0.5 * Dim * std::log(site.scale);
+  }
+  return result;
+}
+
+/// Does the product of the sizes differ by a factor of more than 100 between the corners?
+template <std::size_t Corners>
+bool differ_much(const std::array<double, Corners>& log_densities) {
+  constexpr double log_of_100 = 4.605170185988092;
+  const auto [least, most] = std::minmax_element(log_densities.begin(), log_densities.end());
+  return *most - *least > log_of_100;
+}
+
+/// And would sizes that grow exponentially between them ask for many elements in this one? Beside a
+/// layer of 1e-5, in elements of 0.17, they ask for 2,000 across where sizes that grow linearly to
+/// 0.03 ask for 40 (docs/decisions/0033). A mesh that shows how sizes change has no such elements.
+template <int Dim>
+bool is_steep(const LogDensities<Dim>& log_densities, const CornerPlaces<Dim>& corner);
+
+/// The integral of sqrt(det metric) over an element. Thread safety: any thread.
+template <int Dim>
+double complexity_of_element(const LogDensities<Dim>& log_densities,
+                             const CornerPlaces<Dim>& corner);
+
+/// The directions of the log-Euclidean mean, with sizes that are the means of the corners' sizes,
+/// the shortest with the shortest: from linear sizes alone, directions that differ by a little
+/// would blur what is thin.
+template <int Dim>
+Metric<Dim> with_linear_sizes(const Metric<Dim>& log_mean, const CornerLogs<Dim>& logs,
+                              const std::array<double, Dim + 1>& weight) {
+  std::array<double, Dim> sizes{};
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    std::array<double, Dim> values = principal_axes(*logs[i]).value;
+    std::sort(values.begin(), values.end());
+    for (std::size_t k = 0; k < Dim; ++k) sizes[k] += weight[i] * std::exp(-values[k] / 2);
+  }
+  PrincipalAxes<Dim> axes = principal_axes(log_mean);
+  std::array<std::size_t, Dim> rising;
+  std::iota(rising.begin(), rising.end(), std::size_t{0});
+  std::sort(rising.begin(), rising.end(),
+            [&](std::size_t a, std::size_t b) { return axes.value[a] < axes.value[b]; });
+  for (std::size_t k = 0; k < Dim; ++k) axes.value[rising[k]] = 1 / (sizes[k] * sizes[k]);
+  return compose(axes);
+}
+
+/// The metric at a point of an element, whose barycentric weights add up to 1. Log-Euclidean means
+/// are those of Arsigny, Fillard, Pennec & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007. `places`
+/// gives the CornerPlaces when it is called, which is seldom. Thread safety: any thread.
+template <int Dim>
+Metric<Dim> interpolated(const CornerLogs<Dim>& logs, const std::array<double, Dim + 1>& weight,
+                         const auto& places) {
+  Metric<Dim> log_mean;
+  LogDensities<Dim> densities;
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    log_mean += weight[i] * *logs[i];
+    densities[i] = log_density_of_log(*logs[i]);
+  }
+  if (differ_much(densities) && is_steep<Dim>(densities, places()))
+    return with_linear_sizes<Dim>(log_mean, logs, weight);
+  return exponential(log_mean);
+}
+
+extern template bool is_steep<2>(const LogDensities<2>&, const CornerPlaces<2>&);
+extern template bool is_steep<3>(const LogDensities<3>&, const CornerPlaces<3>&);
+extern template double complexity_of_element<2>(const LogDensities<2>&, const CornerPlaces<2>&);
+extern template double complexity_of_element<3>(const LogDensities<3>&, const CornerPlaces<3>&);
+
+}  // namespace ductile::meshadapt
