@@ -3,7 +3,7 @@
 #include <chrono>
 #include <sstream>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/meshadapt/transfer.hpp"

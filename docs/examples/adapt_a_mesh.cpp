@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
 namespace meshadapt = ductile::meshadapt;

@@ -11,10 +11,9 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/transfer.hpp"
-#include "ductile/meshadapt/vtu.hpp"
 
 namespace meshadapt = ductile::meshadapt;
 
@@ -59,7 +58,7 @@ int main(int argument_count, char** argument) {
       mesh = std::move(adapted);
       solution = carried;
     }
-    meshadapt::write_vtu(argument[2], mesh, meshadapt::named_fields(solution, "u"));
+    meshadapt::write_mesh(argument[2], mesh, {.fields = meshadapt::named_fields(solution, "u")});
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -14,8 +14,8 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/fields.hpp"
-#include "ductile/meshadapt/gmf.hpp"
-#include "ductile/meshadapt/vtu.hpp"
+#include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/memory.hpp"
 #include "files.hpp"
 #include "mmg_options.hpp"
@@ -36,7 +36,8 @@ using runtime::Executor;
 constexpr std::array<Option, 24> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
-    {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh or .meshb)", "--out"},
+    {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
+     "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
     {"-hmin", "X", "asks for no edge shorter than X"},
     {"-hmax", "X", "asks for no edge longer than X"},
@@ -82,11 +83,9 @@ struct Job {
   int verbosity = 1;
   int threads = 0;
   bool racing = false;
+  bool with_metric = true;  // write the metric at the new vertices
+  bool keep_sizes = false;  // whatever metric there is with the mesh
 };
-
-bool is_mesh_name(const fs::path& path) {
-  return path.extension() == ".mesh" || path.extension() == ".meshb";
-}
 
 fs::path only_mesh(const Arguments& arguments) {
   std::vector<std::string> meshes = arguments.operands();
@@ -100,9 +99,9 @@ void set_files(Job& job, const Arguments& arguments) {
   job.input = only_mesh(arguments);
   job.output = default_output(job.input);
   if (const auto out = arguments.text("-o")) job.output = *out;
-  if (!is_mesh_name(job.output))
-    throw UsageError(job.output.string() + ": expected a name ending in .mesh or .meshb");
-  if (!arguments.has("--no-metric")) job.metric_out = field_beside(job.output);
+  expect_mesh_name(job.output);
+  job.with_metric = !arguments.has("--no-metric");
+  if (job.with_metric && !holds_fields(job.output)) job.metric_out = field_beside(job.output);
   job.json = arguments.text("--json");
   job.vtu = arguments.text("--vtu");
   if (job.vtu && job.vtu->extension() != ".vtu")
@@ -115,8 +114,8 @@ void set_files(Job& job, const Arguments& arguments) {
   if (arguments.has("-optim") && (job.size || job.metric_in))
     throw UsageError(std::string("options -optim and ") + (job.size ? "-hsiz" : "-sol") +
                      ": expected one of them, found both");
-  if (!job.size && !job.metric_in && !arguments.has("-optim"))
-    job.metric_in = metric_beside(job.input);
+  job.keep_sizes = arguments.has("-optim");
+  if (!job.size && !job.metric_in && !job.keep_sizes) job.metric_in = metric_beside(job.input);
 }
 
 void set_options(AdaptOptions& adapt, const Arguments& arguments) {
@@ -181,12 +180,14 @@ Job read_job(const Arguments& arguments) {
   return job;
 }
 
-AnyField choose_metric(const Executor& executor, const Job& job, const AnyMesh& mesh,
-                       meshadapt::Warnings& warnings) {
+AnyField choose_metric(const Executor& executor, const Job& job,
+                       const meshadapt::MeshWithFields& file, meshadapt::Warnings& warnings) {
+  const AnyMesh& mesh = file.mesh;
+  const meshadapt::SizeBounds bounds{job.adapt.smallest_size, job.adapt.largest_size};
   if (job.size) return meshadapt::constant_metric(mesh, *job.size);
-  if (job.metric_in)
-    return read_metric(*job.metric_in, mesh, warnings,
-                       {job.adapt.smallest_size, job.adapt.largest_size});
+  if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings, bounds);
+  if (const auto metric = metric_in(file); metric && !job.keep_sizes)
+    return meshadapt::metric_of(*metric, mesh, bounds);
   warnings.push_back(mesh.name +
                      ": no metric given (-sol) or found beside it; adapting to the sizes"
                      " that the mesh has");
@@ -239,14 +240,16 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
 void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector<AnyField>& carried,
                    const std::string& json) {
   meshadapt::AtomicOutputs outputs;
-  meshadapt::write_mesh(outputs, job.output, adapted.mesh);
+  std::vector<meshadapt::NamedField> fields;
+  if (job.with_metric) fields = meshadapt::named_fields(adapted.metric, "metric");
+  for (auto& field : job.fields.named_fields(carried)) fields.push_back(std::move(field));
+  meshadapt::WriteOptions with_fields;
+  with_fields.fields = fields;
+  meshadapt::write_mesh(outputs, job.output, adapted.mesh,
+                        holds_fields(job.output) ? with_fields : meshadapt::WriteOptions{});
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
   job.fields.write(outputs, carried);
-  if (job.vtu) {
-    auto fields = meshadapt::named_fields(adapted.metric, "metric");
-    for (auto& field : job.fields.named_fields(carried)) fields.push_back(std::move(field));
-    meshadapt::write_vtu(outputs, *job.vtu, adapted.mesh, fields);
-  }
+  if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, adapted.mesh, with_fields);
   if (job.json) outputs.stage(*job.json).write(json);
   outputs.commit();
 }
@@ -262,8 +265,9 @@ int work(const Executor& executor, const Job& job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
   if (!job.unneeded.empty()) warnings.push_back(job.unneeded);
-  const AnyMesh mesh = meshadapt::read_mesh(job.input, &warnings);
-  const AnyField metric = choose_metric(executor, job, mesh, warnings);
+  const meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
+  const AnyMesh& mesh = file.mesh;
+  const AnyField metric = choose_metric(executor, job, file, warnings);
   const CarriedFields::Values fields = job.fields.read(mesh, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);

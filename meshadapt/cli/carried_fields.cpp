@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/fields.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "files.hpp"
 
@@ -42,6 +42,7 @@ CarriedFields::CarriedFields(const Arguments& arguments, const fs::path& output)
   for (const std::string& name : arguments.texts("--field")) inputs_.emplace_back(name);
   if (interpolate_ && inputs_.empty())
     throw UsageError("option --interpolate: expected --field as well");
+  if (holds_fields(output)) return;  // which they then go into
   const std::string ending = field_beside(output).extension().string();
   for (const fs::path& input : inputs_) {
     const fs::path place =
@@ -80,7 +81,7 @@ std::vector<AnyField> CarriedFields::carry(const runtime::Executor& executor,
 
 void CarriedFields::write(meshadapt::AtomicOutputs& outputs,
                           const std::vector<AnyField>& carried) const {
-  for (std::size_t i = 0; i < carried.size(); ++i)
+  for (std::size_t i = 0; i < outputs_.size(); ++i)
     meshadapt::write_field(outputs, outputs_[i], carried[i]);
 }
 

@@ -12,7 +12,7 @@
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/vtu.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::cli {
@@ -24,7 +24,7 @@ class CarriedFields {
   CarriedFields(const Arguments& arguments, const std::filesystem::path& output);
 
   const std::vector<std::filesystem::path>& inputs() const { return inputs_; }
-  /// OUT.FIELD.sol for each FIELD, wherever that is.
+  /// OUT.FIELD.sol for each FIELD, wherever that is; none if OUT itself holds fields.
   const std::vector<std::filesystem::path>& outputs() const { return outputs_; }
 
   struct Values {

@@ -2,13 +2,13 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "command.hpp"
 #include "ductile/meshadapt/fields.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
-#include "ductile/meshadapt/vtu.hpp"
 #include "files.hpp"
 
 namespace ductile::cli {
@@ -17,10 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<Option, 2> options{{
-    {"-sol", "FIELD", "for .vtu: the field at the vertices to take along"},
+constexpr std::array<Option, 3> options{{
+    {"-sol", "FIELD", "for formats that hold fields: those at the vertices to take along"},
     {"--version-of-file", "N",
-     "GMF version to write, 1 to 4 (default: 2, more if the size needs it)"},
+     "GMF: 1 to 4 (default: 2, more if the size needs it); .msh: 2 for 2.2, or 4 for 4.1"},
+    {"--binary", "", "for .msh and .vtk: bytes instead of text"},
 }};
 
 /// Version 1 has numbers of 4 bytes in binary: what is rounded may move vertices onto each other.
@@ -36,7 +37,7 @@ void warn_of_rounding(const std::vector<double>& values, const fs::path& to, int
                        " numbers were rounded (--version-of-file 2 keeps them)");
 }
 
-bool rounds(const fs::path& to, const meshadapt::GmfOptions& form) {
+bool rounds(const fs::path& to, const meshadapt::WriteOptions& form) {
   return form.version == 1 && to.extension().string().ends_with('b');
 }
 
@@ -104,23 +105,69 @@ void expect_metric_to_stay(meshadapt::AnyField field, const fs::path& to) {
 bool holds_field(const fs::path& path) {
   return path.extension() == ".sol" || path.extension() == ".solb";
 }
-bool holds_mesh(const fs::path& path) {
-  return path.extension() == ".mesh" || path.extension() == ".meshb";
+bool is_gmf(const fs::path& path) {
+  return holds_field(path) || path.extension() == ".mesh" || path.extension() == ".meshb";
+}
+
+void convert_field(const meshadapt::AnyField& field, const fs::path& to,
+                   const meshadapt::WriteOptions& form, meshadapt::Warnings& warnings) {
+  if (rounds(to, form)) expect_metric_to_stay(field, to);
+  warn_of_rounding(field.values, to, form.version, warnings);
+  meshadapt::write_field(to, field, form);
+}
+
+void warn_of_fields(const meshadapt::MeshWithFields& file, const fs::path& to,
+                    meshadapt::Warnings& warnings) {
+  std::string names;
+  for (const auto& field : file.fields) names += (names.empty() ? "" : ", ") + field.name;
+  if (!names.empty())
+    warnings.push_back(to.string() + ": holds no fields, those of " + file.mesh.name +
+                       " are left out: " + names + "; convert to a .sol for those at vertices");
 }
 
 void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arguments,
-                  const meshadapt::GmfOptions& form, meshadapt::Warnings& warnings) {
-  const meshadapt::AnyMesh mesh = meshadapt::read_mesh(from, &warnings);
-  if (holds_mesh(to)) {
-    if (rounds(to, form)) expect_mesh_to_stay(mesh, to);
-    warn_of_rounding(mesh.coordinates, to, form.version, warnings);
-    return meshadapt::write_mesh(to, mesh, form);
+                  meshadapt::WriteOptions form, meshadapt::Warnings& warnings) {
+  meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(from, &warnings);
+  if (is_gmf(to)) {
+    if (rounds(to, form)) expect_mesh_to_stay(file.mesh, to);
+    warn_of_rounding(file.mesh.coordinates, to, form.version, warnings);
   }
-  std::vector<meshadapt::NamedField> fields;
   if (const auto path = arguments.text("-sol"))
-    fields = meshadapt::named_fields(read_fields(*path, mesh, warnings),
-                                     as_utf8(fs::path(*path).stem().string()));
-  meshadapt::write_vtu(to, mesh, fields);
+    for (auto& field : meshadapt::named_fields(read_fields(*path, file.mesh, warnings),
+                                               as_utf8(fs::path(*path).stem().string())))
+      file.fields.push_back(std::move(field));
+  if (holds_fields(to))
+    form.fields = file.fields;
+  else
+    warn_of_fields(file, to, warnings);
+  meshadapt::write_mesh(to, file.mesh, form);
+}
+
+/// Only a mesh has room for what is asked for, or nothing has.
+void expect_names(const fs::path& from, const fs::path& to) {
+  if (holds_field(to) && (holds_field(from) || holds_fields(from))) return;
+  if (holds_field(from))
+    throw UsageError(to.string() +
+                     ": expected a name ending in .sol or .solb, as the input is a field");
+  if (holds_field(to))
+    throw UsageError(to.string() + ": expected a name ending in " + meshadapt::written_endings() +
+                     ", as the input is a mesh");
+  expect_mesh_name(to);
+}
+
+meshadapt::WriteOptions form_of(const Arguments& arguments, const fs::path& to) {
+  meshadapt::WriteOptions form;
+  form.version = arguments.integer("--version-of-file", 1, 4).value_or(0);
+  const bool is_msh = to.extension() == ".msh", is_vtk = to.extension() == ".vtk";
+  if (form.version != 0 && !is_gmf(to) && !is_msh)
+    throw UsageError("option --version-of-file: " + to.string() + " takes none");
+  if (is_msh && form.version % 2 != 0)
+    throw UsageError("option --version-of-file: " + to.string() + " takes 2 or 4");
+  if (!arguments.has("--binary")) return form;
+  if (!is_msh && !is_vtk)
+    throw UsageError("option --binary: expected an output .msh or .vtk, found " + to.string());
+  form.form = meshadapt::WriteOptions::Form::binary;
+  return form;
 }
 
 int run(const Arguments& arguments) {
@@ -128,28 +175,22 @@ int run(const Arguments& arguments) {
     throw UsageError("expected an input and an output, found " +
                      std::to_string(arguments.operands().size()) + " files");
   const fs::path from = arguments.operands()[0], to = arguments.operands()[1];
-  const bool field = holds_field(from);
-  if (field ? !holds_field(to) : !holds_mesh(to) && to.extension() != ".vtu")
-    throw UsageError(to.string() + ": expected a name ending in " +
-                     (field ? ".sol or .solb, as the input is a field"
-                            : ".mesh, .meshb or .vtu, as the input is a mesh"));
-  const bool for_paraview = to.extension() == ".vtu";
-  if (!for_paraview && arguments.has("-sol"))
-    throw UsageError("option -sol: expected an output .vtu, found " + to.string() +
-                     "; convert the field by itself");
-  if (for_paraview && arguments.has("--version-of-file"))
-    throw UsageError("option --version-of-file: " + to.string() + " takes none");
-  const meshadapt::GmfOptions form{.version =
-                                       arguments.integer("--version-of-file", 1, 4).value_or(0)};
+  expect_names(from, to);
+  if (!holds_fields(to) && arguments.has("-sol"))
+    throw UsageError("option -sol: expected an output that holds fields, such as .vtu, found " +
+                     to.string() + "; convert the field by itself");
+  meshadapt::WriteOptions form = form_of(arguments, to);
   meshadapt::check_writable(to);
   meshadapt::Warnings warnings;
-  if (field) {
-    const meshadapt::AnyField values = meshadapt::read_field(from, &warnings);
-    if (rounds(to, form)) expect_metric_to_stay(values, to);
-    warn_of_rounding(values.values, to, form.version, warnings);
-    meshadapt::write_field(to, values, form);
-  } else
+  form.warnings = &warnings;
+  if (holds_field(from)) {
+    convert_field(meshadapt::read_field(from, &warnings), to, form, warnings);
+  } else if (holds_field(to)) {
+    const meshadapt::AnyMesh mesh = meshadapt::read_mesh(from);
+    convert_field(read_fields(from, mesh, warnings), to, form, warnings);
+  } else {
     convert_mesh(from, to, arguments, form, warnings);
+  }
   print_warnings(warnings);
   return done;
 }
@@ -160,7 +201,8 @@ const Command convert_command{
     "convert",
     "IN OUT [-sol FIELD]",
     "writes a mesh or a field in another format",
-    "Meshes: .mesh, .meshb (read and written), .vtu (written). Fields: .sol, .solb.",
+    "Meshes: .mesh, .meshb, .msh, .vtu, .vtk (read and written), .su2, .stl (written). Fields:\n"
+    ".sol, .solb, to which those at the vertices of a .msh, .vtu or .vtk can be written, too.",
     options,
     run};
 

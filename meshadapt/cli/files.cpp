@@ -6,7 +6,7 @@
 
 #include "arguments.hpp"
 #include "ductile/meshadapt/atomic_file.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
 namespace ductile::cli {
@@ -37,7 +37,9 @@ std::optional<fs::path> metric_beside(const fs::path& mesh) {
 
 fs::path default_output(const fs::path& mesh) {
   fs::path output = mesh;
-  return output.replace_extension(mesh.extension() == ".meshb" ? ".o.meshb" : ".o.mesh");
+  const auto* const format = meshadapt::format_of(mesh);
+  const bool same = format != nullptr && format->is_read && format->is_written;
+  return output.replace_extension(".o" + std::string(same ? format->ending : ".mesh"));
 }
 
 fs::path field_beside(const fs::path& mesh) {
@@ -53,17 +55,71 @@ void expect_no_input(const fs::path& output, const std::vector<fs::path>& inputs
                        ": is read, and would be replaced; give the output another name");
 }
 
+void expect_mesh_name(const fs::path& path) {
+  const auto* const format = meshadapt::format_of(path);
+  if (format == nullptr || !format->is_written)
+    throw UsageError(path.string() + ": expected a name ending in " + meshadapt::written_endings());
+}
+
+bool holds_fields(const fs::path& path) {
+  const auto* const format = meshadapt::format_of(path);
+  return format != nullptr && format->holds_fields;
+}
+
+namespace {
+
+meshadapt::AnyField any_field(const meshadapt::NamedField& field, const meshadapt::AnyMesh& mesh) {
+  return {mesh.dimension, mesh.vertex_count(), {field.type}, field.values, mesh.name};
+}
+
+bool is_at_vertices(const meshadapt::NamedField& field) {
+  return field.place == meshadapt::NamedField::Place::vertices;
+}
+
+/// All of one file.
+meshadapt::AnyField fields_in(const fs::path& path, meshadapt::Warnings& warnings) {
+  if (!holds_fields(path)) return meshadapt::read_field(path, &warnings);
+  const auto file = meshadapt::read_mesh_with_fields(path, &warnings);
+  std::optional<meshadapt::AnyField> all;
+  for (const auto& field : file.fields)
+    if (is_at_vertices(field))
+      all =
+          all ? meshadapt::joined(*all, any_field(field, file.mesh)) : any_field(field, file.mesh);
+  if (!all)
+    throw meshadapt::InputError(path.string() + ": expected fields at vertices, found none");
+  return *all;
+}
+
+meshadapt::AnyField metric_of_file(const fs::path& path, meshadapt::Warnings& warnings) {
+  if (!holds_fields(path)) return meshadapt::read_field(path, &warnings, {.infinite = true});
+  const auto file = meshadapt::read_mesh_with_fields(path, &warnings);
+  if (const auto metric = metric_in(file)) return *metric;
+  if (std::count_if(file.fields.begin(), file.fields.end(), is_at_vertices) != 1)
+    throw meshadapt::InputError(
+        path.string() + ": expected a field 'metric' at vertices, or one alone, found " +
+        std::to_string(file.fields.size()) + " fields of other names; rename the metric");
+  return any_field(*std::find_if(file.fields.begin(), file.fields.end(), is_at_vertices),
+                   file.mesh);
+}
+
+}  // namespace
+
+std::optional<meshadapt::AnyField> metric_in(const meshadapt::MeshWithFields& file) {
+  for (const auto& field : file.fields)
+    if (is_at_vertices(field) && field.name == "metric") return any_field(field, file.mesh);
+  return std::nullopt;
+}
+
 meshadapt::AnyField read_metric(const fs::path& path, const meshadapt::AnyMesh& mesh,
                                 meshadapt::Warnings& warnings,
                                 const meshadapt::SizeBounds& bounds) {
-  const meshadapt::ReadFieldOptions options{.infinite = true};
-  return meshadapt::metric_of(meshadapt::read_field(path, &warnings, options), mesh, bounds);
+  return meshadapt::metric_of(metric_of_file(path, warnings), mesh, bounds);
 }
 
 meshadapt::AnyField read_fields(const fs::path& path, const meshadapt::AnyMesh& mesh,
                                 meshadapt::Warnings& warnings) {
   using Type = meshadapt::AnyField::Type;
-  meshadapt::AnyField field = meshadapt::read_field(path, &warnings);
+  meshadapt::AnyField field = fields_in(path, warnings);
   if (std::all_of(field.types.begin(), field.types.end(), [](Type t) { return t == Type::scalar; }))
     field.dimension = mesh.dimension;  // which may be 2 in a file of dimension 3 that is flat
   meshadapt::expect_field_of(field, mesh);

@@ -10,6 +10,7 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 
 namespace ductile::cli {
@@ -21,22 +22,33 @@ void print_warnings(const meshadapt::Warnings& warnings, int verbosity = 1);
 /// it is not, because a run was killed while it replaced it.
 std::optional<std::filesystem::path> metric_beside(const std::filesystem::path& mesh);
 
-/// NAME.o.mesh or NAME.o.meshb beside the input, binary as it is.
+/// NAME.o.ENDING beside the input, of its format if that can be written, else a .mesh.
 std::filesystem::path default_output(const std::filesystem::path& mesh);
 
 /// The same name with the ending of a field: .sol, or .solb for a .meshb.
 std::filesystem::path field_beside(const std::filesystem::path& mesh);
 
+/// Throws UsageError unless a mesh can be written to a file of this name.
+void expect_mesh_name(const std::filesystem::path& path);
+
+/// Whether files of this name hold a mesh and fields.
+bool holds_fields(const std::filesystem::path& path);
+
+/// The field "metric" that a file has at the vertices beside its mesh, if it has one.
+std::optional<meshadapt::AnyField> metric_in(const meshadapt::MeshWithFields& file);
+
 /// Throws UsageError if an output that is none of its kind would take the place of an input.
 void expect_no_input(const std::filesystem::path& output,
                      const std::vector<std::filesystem::path>& inputs);
 
-/// Reads a field and checks that it is a metric of this mesh, within bounds that hold before.
+/// Reads a field and checks that it is a metric of this mesh, within bounds that hold before. Of a
+/// file that holds a mesh and fields: the one called "metric", or the only one.
 meshadapt::AnyField read_metric(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,
                                 meshadapt::Warnings& warnings,
                                 const meshadapt::SizeBounds& bounds = {});
 
-/// Reads fields at the vertices and checks that they are of this mesh.
+/// Reads fields at the vertices, all that there are in a file, and checks that they are of this
+/// mesh.
 meshadapt::AnyField read_fields(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,
                                 meshadapt::Warnings& warnings);
 

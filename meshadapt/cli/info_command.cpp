@@ -6,7 +6,7 @@
 #include "command.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "files.hpp"
@@ -55,8 +55,19 @@ Validity check(const Executor& executor, const AnyMesh& mesh, const AnyField* me
                              : check_in<3>(executor, mesh, metric);
 }
 
+/// " (steel)" after the reference; nothing if it has no name.
+std::string name_after(const AnyMesh& mesh, int dimension, std::int32_t reference) {
+  for (const meshadapt::ReferenceName& name : mesh.names)
+    if (name.dimension == dimension && name.reference == reference)
+      return " (" + meshadapt::printable(name.name) + ")";
+  return {};
+}
+
 template <class References>
-void print_kind(const char* kind, const References& reference, std::size_t required) {
+void print_kind(const AnyMesh& mesh, int dimension, const References& reference,
+                std::size_t required) {
+  constexpr std::array kinds = {"vertices", "edges", "triangles", "tetrahedra"};
+  const char* const kind = kinds.at(static_cast<std::size_t>(dimension));
   if (reference.empty()) return;
   std::map<std::int32_t, std::size_t> count_of;
   for (const std::int32_t r : reference) ++count_of[r];
@@ -70,17 +81,18 @@ void print_kind(const char* kind, const References& reference, std::size_t requi
       std::printf(", ... (%zu in all)", count_of.size());
       break;
     }
-    std::printf("%s %d: %s", shown == 1 ? "" : ",", r, with_commas(count).c_str());
+    std::printf("%s %d%s: %s", shown == 1 ? "" : ",", r, name_after(mesh, dimension, r).c_str(),
+                with_commas(count).c_str());
   }
   std::printf("\n");
 }
 
 void print_counts(const AnyMesh& mesh) {
   std::printf("%s: dimension %d\n", meshadapt::printable(mesh.name).c_str(), mesh.dimension);
-  print_kind("vertices", mesh.vertex_reference, mesh.required_vertices.size());
-  print_kind("edges", mesh.edges.reference, mesh.required_edges.size());
-  print_kind("triangles", mesh.triangles.reference, mesh.required_triangles.size());
-  print_kind("tetrahedra", mesh.tetrahedra.reference, mesh.required_tetrahedra.size());
+  print_kind(mesh, 0, mesh.vertex_reference, mesh.required_vertices.size());
+  print_kind(mesh, 1, mesh.edges.reference, mesh.required_edges.size());
+  print_kind(mesh, 2, mesh.triangles.reference, mesh.required_triangles.size());
+  print_kind(mesh, 3, mesh.tetrahedra.reference, mesh.required_tetrahedra.size());
   if (!mesh.corners.empty())
     std::printf("  %-12s %12s\n", "corners", with_commas(mesh.corners.size()).c_str());
   if (!mesh.ridges.empty())

@@ -10,7 +10,8 @@
 
 #include "command.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -28,7 +29,8 @@ using meshadapt::Metric;
 using runtime::Executor;
 
 constexpr std::array<Option, 12> options{{
-    {"-o", "OUT", "where the metric goes, a .sol or .solb", "--out"},
+    {"-o", "OUT", "where the metric goes, a .sol or .solb; with the mesh into a .vtu or .msh",
+     "--out"},
     {"--complexity", "X", "make, scale: the integral of sqrt(det metric) to reach"},
     {"--elements", "N", "make, scale: the complexity of about N elements instead"},
     {"--error", "X", "make: the interpolation error to reach instead"},
@@ -87,9 +89,12 @@ void set_files(Job& job, const Arguments& arguments) {
   job.mesh = words[1];
   job.fields.assign(words.begin() + 2, words.end());
   job.output = arguments.text("-o").value_or("");
-  if (job.output.extension() != ".sol" && job.output.extension() != ".solb")
-    throw UsageError("option -o: expected a name ending in .sol or .solb, found '" +
-                     job.output.string() + "'");
+  if (job.output.extension() != ".sol" && job.output.extension() != ".solb" &&
+      !holds_fields(job.output))
+    throw UsageError(
+        "option -o: expected a name ending in .sol or .solb, or of a format that holds a mesh and"
+        " fields, found '" +
+        job.output.string() + "'");
 }
 
 void refuse(const Job& job, const Arguments& arguments,
@@ -281,7 +286,10 @@ void work(const Executor& executor, const Job& job, const AnyMesh& mesh,
   const AnyField metric = work.run();
   const std::string summary = work.summary();  // which may find fault with the mesh: before writing
   print_warnings(warnings, job.verbosity);
-  meshadapt::write_field(job.output, metric);
+  if (holds_fields(job.output))
+    meshadapt::write_mesh(job.output, mesh, {.fields = meshadapt::named_fields(metric, "metric")});
+  else
+    meshadapt::write_field(job.output, metric);
   if (job.verbosity > 0)
     std::printf("%s\nwritten: %s\n", summary.c_str(),
                 meshadapt::printable(job.output.string()).c_str());

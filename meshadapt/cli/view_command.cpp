@@ -3,7 +3,7 @@
 #include <string>
 
 #include "command.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "files.hpp"
 #include "picture/draw.hpp"
 #include "run_in_team.hpp"

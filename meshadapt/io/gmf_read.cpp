@@ -4,12 +4,13 @@
 #include <optional>
 #include <string>
 
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/flatten.hpp"
-#include "ductile/meshadapt/gmf.hpp"
 #include "file_bytes.hpp"
 #include "gmf_ascii.hpp"
 #include "gmf_binary.hpp"
 #include "gmf_left_out.hpp"
+#include "gmf_mesh.hpp"
 #include "gmf_sections.hpp"
 #include "gmf_skip.hpp"
 
@@ -141,22 +142,16 @@ void read_binary(const FileBytes& bytes, const Target& target) {
 
 // ---- Both ----
 
-void read_gmf(const std::filesystem::path& path, const Target& target) {
-  try {
-    const FileBytes bytes = read_bytes(path);
-    BinaryCursor::recognises(bytes) ? read_binary(bytes, target) : read_text(bytes, target);
-  } catch (const std::bad_alloc&) {
-    throw Error(path.string() +
-                ": not enough memory to read the file; allow more or use a larger machine");
-  }
+void read_either(const FileBytes& bytes, const Target& target) {
+  BinaryCursor::recognises(bytes) ? read_binary(bytes, target) : read_text(bytes, target);
 }
 
 }  // namespace
 
-AnyMesh read_mesh(const std::filesystem::path& path, Warnings* warnings) {
+AnyMesh read_gmf(const FileBytes& bytes, Warnings* warnings) {
   AnyMesh mesh;
-  mesh.name = path.string();
-  read_gmf(path, {&mesh, nullptr, warnings});
+  mesh.name = bytes.name;
+  read_either(bytes, {&mesh, nullptr, warnings});
   flatten(mesh, warnings);
   return mesh;
 }
@@ -165,7 +160,12 @@ AnyField read_field(const std::filesystem::path& path, Warnings* warnings,
                     const ReadFieldOptions& options) {
   AnyField field;
   field.name = path.string();
-  read_gmf(path, {nullptr, &field, warnings, options.infinite});
+  try {
+    read_either(read_bytes(path), {nullptr, &field, warnings, options.infinite});
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string() +
+                ": not enough memory to read the file; allow more or use a larger machine");
+  }
   return field;
 }
 

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "gmf_mesh.hpp"
 #include "gmf_sink.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/wording.hpp"
+#include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -18,7 +19,7 @@ using gmf::BinarySizes;
 using gmf::Keyword;
 using gmf::Place;
 using gmf::TextSink;
-using Form = GmfOptions::Form;
+using Form = WriteOptions::Form;
 
 // ---- What is fit for a file ----
 
@@ -26,8 +27,8 @@ void expect(bool holds, const std::string& name, const std::string& text) {
   if (!holds) throw InputError(name + ": cannot be written: " + text);
 }
 
-void expect_finite(const std::vector<double>& values, std::size_t stride, const GmfOptions& options,
-                   const std::string& name, const std::string& array) {
+void expect_finite(const std::vector<double>& values, std::size_t stride,
+                   const WriteOptions& options, const std::string& name, const std::string& array) {
   const double largest = options.version == 1 && options.form == Form::binary
                              ? double{std::numeric_limits<float>::max()}
                              : std::numeric_limits<double>::max();
@@ -95,7 +96,7 @@ Place vertices_of(const AnyMesh& mesh) {
       Keyword::vertices, mesh.vertex_count(), 0, {static_cast<std::uint64_t>(mesh.dimension), 1}};
 }
 
-void expect_fit(const AnyMesh& mesh, const GmfOptions& options, const std::string& name) {
+void expect_fit(const AnyMesh& mesh, const WriteOptions& options, const std::string& name) {
   expect(mesh.dimension == 2 || mesh.dimension == 3, name,
          "expected dimension 2 or 3, found " + std::to_string(mesh.dimension));
   expect(mesh.vertex_count() != 0, name, "the mesh has no vertices");
@@ -167,7 +168,7 @@ Place values_of(const AnyField& field) {
   return {Keyword::field_at_vertices, field.vertex_count, 0, {stride_of(field), 0}};
 }
 
-void expect_fit(const AnyField& field, const GmfOptions& options, const std::string& name) {
+void expect_fit(const AnyField& field, const WriteOptions& options, const std::string& name) {
   expect(field.dimension == 2 || field.dimension == 3, name,
          "expected dimension 2 or 3, found " + std::to_string(field.dimension));
   expect(field.vertex_count != 0, name, "the field has no vertices");
@@ -200,17 +201,23 @@ void put_field(Sink&& sink, const AnyField& field) {
 
 // ---- Form and version ----
 
-/// Fills in what the options leave open. `kind` is ".mesh" or ".sol".
-void choose_form(GmfOptions& options, const std::filesystem::path& path, const std::string& kind) {
+/// Fills in what the options leave open.
+void choose_form(WriteOptions& options, const std::filesystem::path& path) {
   if (options.version < 0 || options.version > 4)
     throw InputError(path.string() + ": expected version 1 to 4 to write, found " +
                      std::to_string(options.version));
+  if (options.form == Form::by_name)
+    options.form = options.format.ends_with('b') ? Form::binary : Form::ascii;
+}
+
+/// Fields are in files of their own, so their format is no mesh format.
+void expect_ending_of_field(WriteOptions& options, const std::filesystem::path& path) {
   if (options.form != Form::by_name) return;
   const std::string ending = path.extension().string();
-  if (ending != kind && ending != kind + "b")
-    throw InputError(path.string() + ": expected a name that ends in " + kind + " or " + kind +
-                     "b, found '" + ending + "'; choose another name");
-  options.form = ending == kind ? Form::ascii : Form::binary;
+  if (ending != ".sol" && ending != ".solb")
+    throw InputError(path.string() + ": expected a name that ends in .sol or .solb, found '" +
+                     ending + "'; choose another name");
+  options.format = ending == ".sol" ? ".sol" : ".solb";
 }
 
 int needed_version(const std::vector<Place>& sections, std::size_t head_numbers, Form form) {
@@ -223,7 +230,7 @@ int needed_version(const std::vector<Place>& sections, std::size_t head_numbers,
   return form == Form::binary && bytes > limit ? 3 : 2;
 }
 
-void choose_version(GmfOptions& options, const std::filesystem::path& path,
+void choose_version(WriteOptions& options, const std::filesystem::path& path,
                     const std::vector<Place>& sections, std::size_t head_numbers) {
   const int needed = needed_version(sections, head_numbers, options.form);
   if (options.version == 0) options.version = needed;
@@ -234,11 +241,14 @@ void choose_version(GmfOptions& options, const std::filesystem::path& path,
 
 }  // namespace
 
-void write_mesh(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
-                GmfOptions options) {
-  choose_form(options, path, ".mesh");
+void write_gmf(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& given) {
+  WriteOptions options = given;
+  choose_form(options, path);
   expect_fit(mesh, options, path.string());
   choose_version(options, path, sections_of(mesh), 0);
+  if (!mesh.names.empty())
+    warn_of_lost(options, path, "names of references (" + std::to_string(mesh.names.size()) + ")");
   OutputFile& out = outputs.stage(path);
   if (options.form == Form::binary)
     put_mesh(BinarySink(out, options.version, options.byte_order), mesh);
@@ -247,8 +257,10 @@ void write_mesh(AtomicOutputs& outputs, const std::filesystem::path& path, const
 }
 
 void write_field(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyField& field,
-                 GmfOptions options) {
-  choose_form(options, path, ".sol");
+                 const WriteOptions& given) {
+  WriteOptions options = given;
+  expect_ending_of_field(options, path);
+  choose_form(options, path);
   expect_fit(field, options, path.string());
   choose_version(options, path, {values_of(field)}, 1 + field.types.size());
   OutputFile& out = outputs.stage(path);
@@ -258,13 +270,8 @@ void write_field(AtomicOutputs& outputs, const std::filesystem::path& path, cons
     put_field(TextSink(out, options.version), field);
 }
 
-void write_mesh(const std::filesystem::path& path, const AnyMesh& mesh, GmfOptions options) {
-  AtomicOutputs outputs;
-  write_mesh(outputs, path, mesh, options);
-  outputs.commit();
-}
-
-void write_field(const std::filesystem::path& path, const AnyField& field, GmfOptions options) {
+void write_field(const std::filesystem::path& path, const AnyField& field,
+                 const WriteOptions& options) {
   AtomicOutputs outputs;
   write_field(outputs, path, field, options);
   outputs.commit();

@@ -7,7 +7,7 @@
 #include "adapt_report.hpp"
 #include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "program.hpp"
 
 namespace ductile::cli::adapt_command_test {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "program.hpp"
 
 namespace ductile::cli::carried_fields_test {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "ductile/meshadapt/complexity.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "program.hpp"
 

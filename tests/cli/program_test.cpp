@@ -100,12 +100,12 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adapt a.mesh -sol a.sol -hsiz 1", "expected one of them");
   expect("adapt", "expected one mesh, found 0");
   expect("adapt a.mesh b.mesh", "expected one mesh, found 2");
-  expect("adapt a.mesh -o b.vtk", "ending in .mesh or .meshb");
+  expect("adapt a.mesh -o b.xyz", "ending in .mesh, .meshb");
   expect("view a.mesh -o b.gif", "ending in .png or .svg");
   expect("view a.mesh --by colour", "quality, size or reference");
   expect("view a.mesh --cut w", "x, y or z");
   expect("convert a.mesh", "expected an input and an output");
-  expect("convert a.mesh a.sol", "ending in .mesh, .meshb or .vtu");
+  expect("convert a.mesh a.sol", "as the input is a mesh");
 }
 
 TEST(Program, TellsWhichFileIsMissing) {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "program.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"

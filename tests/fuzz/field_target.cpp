@@ -5,9 +5,8 @@
 #include <cstring>
 
 #include "ductile/meshadapt/fields.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
-#include "ductile/meshadapt/vtu.hpp"
 #include "oracle.hpp"
 
 namespace ductile::fuzz {
@@ -15,7 +14,7 @@ namespace {
 
 using meshadapt::AnyField;
 using meshadapt::AnyMesh;
-using meshadapt::GmfOptions;
+using meshadapt::WriteOptions;
 
 void expect_whole(const AnyField& field) {
   expect(field.dimension == 2 || field.dimension == 3, "the dimension");
@@ -26,8 +25,8 @@ void expect_whole(const AnyField& field) {
 void expect_round_trip(const AnyField& field, std::size_t choice) {
   static MemoryFile file;
   file.set(nullptr, 0);
-  GmfOptions options;
-  options.form = choice % 2 == 0 ? GmfOptions::Form::ascii : GmfOptions::Form::binary;
+  WriteOptions options;
+  options.form = choice % 2 == 0 ? WriteOptions::Form::ascii : WriteOptions::Form::binary;
   options.version = static_cast<int>(2 + choice / 2 % 3);
   options.byte_order = choice / 6 % 2 == 0 ? std::endian::little : std::endian::big;
   write_field(file.path(), field, options);

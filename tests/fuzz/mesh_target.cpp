@@ -6,17 +6,16 @@
 #include <cstring>
 
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
-#include "ductile/meshadapt/vtu.hpp"
 #include "oracle.hpp"
 
 namespace ductile::fuzz {
 namespace {
 
 using meshadapt::AnyMesh;
-using meshadapt::GmfOptions;
+using meshadapt::WriteOptions;
 
 template <int Corners>
 void expect_cells(const meshadapt::Cells<Corners>& cells, std::size_t vertices) {
@@ -55,8 +54,9 @@ void expect_whole(const AnyMesh& mesh, std::size_t bytes) {
 void expect_round_trip(const AnyMesh& mesh, std::size_t choice) {
   static MemoryFile file;
   file.set(nullptr, 0);
-  GmfOptions options;
-  options.form = choice % 2 == 0 ? GmfOptions::Form::ascii : GmfOptions::Form::binary;
+  WriteOptions options;
+  options.format = ".mesh";
+  options.form = choice % 2 == 0 ? WriteOptions::Form::ascii : WriteOptions::Form::binary;
   options.version = static_cast<int>(2 + choice / 2 % 3);
   options.byte_order = choice / 6 % 2 == 0 ? std::endian::little : std::endian::big;
   write_mesh(file.path(), mesh, options);
@@ -112,7 +112,7 @@ void use(const AnyMesh& mesh) {
     make<3>(mesh);
   static MemoryFile vtu;
   vtu.set(nullptr, 0);
-  meshadapt::write_vtu(vtu.path(), mesh);
+  meshadapt::write_mesh(vtu.path(), mesh, {.format = ".vtu"});
 }
 
 }  // namespace

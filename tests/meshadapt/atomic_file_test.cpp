@@ -10,7 +10,7 @@
 #include <csignal>
 #include <string>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "io_support.hpp"
 
 namespace ductile::meshadapt::atomic_file_test {
@@ -218,14 +218,14 @@ TEST(AtomicOutputs, ReportAFullDisk) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   const AnyMesh mesh = test::random_mesh(2, 100, 1);
   try {
-    write_mesh("/dev/full", mesh, {.form = GmfOptions::Form::ascii});
+    write_mesh("/dev/full", mesh, {.form = WriteOptions::Form::ascii});
     FAIL() << "nothing thrown";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("/dev/full: cannot write, No space left"),
               std::string::npos)
         << error.what();
   }
-  write_mesh("/dev/null", mesh, {.form = GmfOptions::Form::ascii});
+  write_mesh("/dev/null", mesh, {.form = WriteOptions::Form::ascii});
   EXPECT_FALSE(fs::is_regular_file("/dev/null"));
 }
 

@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
@@ -18,12 +19,17 @@
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/meshadapt/transfer.hpp"
-#include "ductile/meshadapt/vtu.hpp"
 #include "support/broken_input.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::broken_input_test {
 namespace {
+
+/// As a caller would who has a list of fields.
+void write_vtu(const std::filesystem::path& path, const AnyMesh& mesh,
+               const std::vector<NamedField>& fields = {}) {
+  write_mesh(path, mesh, {.fields = fields});
+}
 
 using test::below;
 using test::chance;

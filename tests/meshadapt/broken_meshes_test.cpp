@@ -17,14 +17,13 @@
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "ductile/meshadapt/gmf.hpp"
 #include "ductile/meshadapt/hessian.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/meshadapt/transfer.hpp"
-#include "ductile/meshadapt/vtu.hpp"
 #include "support/broken_input.hpp"
 #include "support/meshes.hpp"
 
@@ -180,8 +179,8 @@ std::vector<OfMesh> functions_of_meshes_and_more(const std::filesystem::path& fo
        },
        of_geometry},
       {"write_mesh", [=](const AnyMesh& m) { write_mesh(folder / "m.meshb", m); }, all_parts},
-      {"write_vtu",
-       [=](const AnyMesh& m) { write_vtu(folder / "m.vtu", m); },
+      {"write_mesh, vtu",
+       [=](const AnyMesh& m) { write_mesh(folder / "m.vtu", m); },
        {Part::vertices, Part::positions, Part::elements, Part::references, Part::facets}},
   };
 }

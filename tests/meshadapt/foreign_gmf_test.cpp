@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "io_support.hpp"
 
 namespace ductile::meshadapt::foreign_gmf_test {
 namespace {
 
-using Form = GmfOptions::Form;
+using Form = WriteOptions::Form;
 using Random = std::mt19937_64;
 
 std::size_t below(Random& random, std::size_t limit) {

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "io_support.hpp"
 
 namespace ductile::meshadapt::gmf_errors_test {
 namespace {
 
-using Form = GmfOptions::Form;
+using Form = WriteOptions::Form;
 
 const std::string good_text =
     "MeshVersionFormatted 2\n"  // 1
@@ -82,7 +82,7 @@ TEST_F(GmfErrors, NameWhatCannotBeRead) {
   expect_says(test::complaint([] { read_mesh(""); }), "expected the name", "empty");
   expect_says(test::complaint([] { read_mesh("/dev/zero"); }), "/dev/zero: ", "found a device");
   expect_says(mesh_complaint(""), "bad.mesh: ", "found an empty file");
-  expect_says(mesh_complaint("$MeshFormat\n4.1 0 8\n"), "bad.mesh:1: ", "MeshVersionFormatted");
+  expect_says(mesh_complaint("$Mesh\n4.1 0 8\n"), "bad.mesh:1: ", "MeshVersionFormatted");
   expect_says(mesh_complaint(" \n\n# nothing\n"), "bad.mesh:4: ", "MeshVersionFormatted");
 }
 
@@ -370,8 +370,8 @@ TEST_F(GmfBinaryErrors, AcceptALastLinkOfZero) {
 
 TEST_F(GmfErrors, WritersRefuseWhatDoesNotFit) {
   const AnyMesh mesh = test::random_mesh(2, 5, 1, true);
-  expect_says(base_name(test::complaint([&] { write_mesh(folder_ / "a.vtk", mesh); })),
-              "a.vtk: ", "ends in .mesh or .meshb");
+  expect_says(base_name(test::complaint([&] { write_mesh(folder_ / "a.xyz", mesh); })),
+              "a.xyz: ", "ends in .mesh, .meshb");
   expect_says(base_name(test::complaint([&] { write_mesh(folder_ / "no/a.mesh", mesh); })),
               "no/a.mesh: ", "there is no folder");
   EXPECT_THROW(write_mesh(folder_ / "a.mesh", mesh, {.version = 5}), InputError);

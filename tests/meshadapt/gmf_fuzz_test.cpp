@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "io_support.hpp"
 
 namespace {
@@ -42,7 +42,7 @@ void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); 
 namespace ductile::meshadapt::gmf_fuzz_test {
 namespace {
 
-using Form = GmfOptions::Form;
+using Form = WriteOptions::Form;
 using Type = AnyField::Type;
 
 /// Changes a few bytes, or takes some out, doubles some, or cuts the end off.

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace ductile::meshadapt::gmf_test {
 namespace {
 
-using Form = GmfOptions::Form;
+using Form = WriteOptions::Form;
 using Type = AnyField::Type;
 
 void expect_same_bits(const std::vector<double>& a, const std::vector<double>& b) {
@@ -53,7 +53,7 @@ void expect_same(const AnyField& a, const AnyField& b) {
 
 class GmfRoundTrip : public testing::TestWithParam<std::tuple<Form, int, std::endian, int>> {
  protected:
-  GmfOptions options() const {
+  WriteOptions options() const {
     const auto [form, version, byte_order, dimension] = GetParam();
     return {.version = version, .form = form, .byte_order = byte_order};
   }

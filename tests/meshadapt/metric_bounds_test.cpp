@@ -14,7 +14,7 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "io_support.hpp"

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "support/preserved.hpp"
 #include "support/random_case.hpp"
 

@@ -13,7 +13,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "support/counted_topology.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"

@@ -1,5 +1,5 @@
-#include "ductile/meshadapt/vtu.hpp"
 #include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/files.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -19,6 +19,12 @@ namespace ductile::meshadapt::vtu_test {
 namespace {
 
 using Type = AnyField::Type;
+
+/// As a caller would who has a list of fields.
+void write_vtu(const std::filesystem::path& path, const AnyMesh& mesh,
+               const std::vector<NamedField>& fields = {}) {
+  write_mesh(path, mesh, {.fields = fields});
+}
 
 // ---- A reader of its own, from the description of the format ----
 
@@ -124,11 +130,18 @@ TEST_P(VtuFile, HoldsTheMesh) {
   ASSERT_EQ(types.size(), offsets.size());
   for (std::size_t i = 0; i < types.size(); ++i)
     ASSERT_EQ(offsets[i] - (i ? offsets[i - 1] : 0), types[i] == 10 ? 4 : types[i] == 5 ? 3 : 2);
-  std::vector<std::int32_t> references = mesh.tetrahedra.reference;
-  references.insert(references.end(), mesh.triangles.reference.begin(),
-                    mesh.triangles.reference.end());
-  references.insert(references.end(), mesh.edges.reference.begin(), mesh.edges.reference.end());
-  EXPECT_EQ(array_of<std::int32_t>(vtu.piece.child("CellData"), "reference"), references);
+  std::vector<std::int32_t> region, boundary;
+  for (const auto* references :
+       {&mesh.tetrahedra.reference, &mesh.triangles.reference, &mesh.edges.reference}) {
+    const bool elements =
+        references == (dimension == 2 ? &mesh.triangles.reference : &mesh.tetrahedra.reference);
+    for (const std::int32_t reference : *references) {
+      region.push_back(elements ? reference : 0);
+      boundary.push_back(elements ? 0 : reference);
+    }
+  }
+  EXPECT_EQ(array_of<std::int32_t>(vtu.piece.child("CellData"), "region"), region);
+  EXPECT_EQ(array_of<std::int32_t>(vtu.piece.child("CellData"), "boundary"), boundary);
   EXPECT_EQ(array_of<std::int32_t>(vtu.piece.child("PointData"), "reference"),
             mesh.vertex_reference);
 }

@@ -27,7 +27,7 @@ VtuSeries::VtuSeries(fs::path index) : index_(std::move(index)) {
 
 void VtuSeries::add(double time, const meshadapt::AnyMesh& mesh,
                     const std::vector<meshadapt::NamedField>& fields) {
-  write_vtu(index_.parent_path() / member(index_, times_.size()), mesh, fields);
+  write_mesh(index_.parent_path() / member(index_, times_.size()), mesh, {.fields = fields});
   times_.push_back(time);
   write_index();
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/vtu.hpp"
+#include "ductile/meshadapt/files.hpp"
 
 namespace ductile::paper {
 

@@ -1,0 +1,123 @@
+#include "formats.hpp"
+
+#include <algorithm>
+#include <new>
+#include <string>
+
+#include "gmf_mesh.hpp"
+#include "msh_read.hpp"
+#include "msh_write.hpp"
+#include "spatial_mesh.hpp"
+#include "vtu_read.hpp"
+#include "vtu_write.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+namespace fs = std::filesystem;
+
+MeshWithFields mesh_from_gmf(const FileBytes& bytes, Warnings* warnings) {
+  return {read_gmf(bytes, warnings), {}};
+}
+
+/// Of readers that know three coordinates only.
+template <SpatialMesh (*Read)(const FileBytes&, Warnings*)>
+MeshWithFields mesh_from(const FileBytes& bytes, Warnings* warnings) {
+  return finish(Read(bytes, warnings), warnings);
+}
+
+// Ending, what it is, is read, is written, holds fields; how it begins, reader, writer. What
+// begins like none of the others is taken for the first.
+constexpr std::array rows{
+    FormatRow{{".mesh", "Medit and Mmg (GMF), text", true, true, false},
+              nullptr,
+              mesh_from_gmf,
+              write_gmf},
+    FormatRow{{".meshb", "Medit and Mmg (GMF), binary", true, true, false},
+              nullptr,
+              mesh_from_gmf,
+              write_gmf},
+    FormatRow{{".msh", "Gmsh, versions 2.2 and 4.1", true, true, true},
+              is_msh,
+              mesh_from<read_msh>,
+              write_msh},
+    FormatRow{{".vtu", "VTK and ParaView, XML", true, true, true},
+              is_vtu,
+              mesh_from<read_vtu>,
+              write_vtu},
+};
+
+const FormatRow* row_with(std::string_view ending) {
+  const auto* const found = std::find_if(
+      rows.begin(), rows.end(), [&](const FormatRow& row) { return row.ending == ending; });
+  return found == rows.end() ? nullptr : found;
+}
+
+const FormatRow& row_of(const FileBytes& bytes) {
+  const std::string_view text(bytes.begin(), bytes.size);
+  for (const FormatRow& row : rows)
+    if (row.is_it != nullptr && row.is_it(text)) return row;
+  return rows[0];
+}
+
+void expect_fields_held(const FormatRow& row, const fs::path& path, const WriteOptions& options) {
+  if (!options.fields.empty() && !row.holds_fields)
+    throw InputError(path.string() + ": files of this format hold no fields; write them by " +
+                     "themselves, to a .sol, or all to a .vtu");
+}
+
+}  // namespace
+
+std::span<const FormatRow> format_rows() { return rows; }
+
+std::vector<MeshFormat> mesh_formats() { return {rows.begin(), rows.end()}; }
+
+const MeshFormat* format_of(const fs::path& path) { return row_with(path.extension().string()); }
+
+std::string written_endings() {
+  std::vector<std::string> endings;
+  for (const FormatRow& row : rows)
+    if (row.is_written) endings.emplace_back(row.ending);
+  std::string list = endings[0];
+  for (std::size_t i = 1; i < endings.size(); ++i)
+    list += (i + 1 == endings.size() ? " or " : ", ") + endings[i];
+  return list;
+}
+
+MeshWithFields read_mesh_with_fields(const fs::path& path, Warnings* warnings) {
+  try {
+    const FileBytes bytes = read_bytes(path);
+    return row_of(bytes).read(bytes, warnings);
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string() +
+                ": not enough memory to read the file; allow more or use a larger machine");
+  }
+}
+
+AnyMesh read_mesh(const fs::path& path, Warnings* warnings) {
+  return read_mesh_with_fields(path, warnings).mesh;
+}
+
+void write_mesh(AtomicOutputs& outputs, const fs::path& path, const AnyMesh& mesh,
+                const WriteOptions& options) {
+  const std::string ending(options.format.empty() ? path.extension().string()
+                                                  : std::string(options.format));
+  const FormatRow* row = row_with(ending);
+  // Whoever says text or binary by another ending than a format's means the first.
+  if (row == nullptr && options.form != WriteOptions::Form::by_name) row = rows.data();
+  if (row == nullptr || row->write == nullptr)
+    throw InputError(path.string() + ": expected a name that ends in " + written_endings() +
+                     ", found '" + ending + "'; choose another name");
+  expect_fields_held(*row, path, options);
+  WriteOptions in_format = options;
+  in_format.format = row->ending;
+  row->write(outputs, path, mesh, in_format);
+}
+
+void write_mesh(const fs::path& path, const AnyMesh& mesh, const WriteOptions& options) {
+  AtomicOutputs outputs;
+  write_mesh(outputs, path, mesh, options);
+  outputs.commit();
+}
+
+}  // namespace ductile::meshadapt

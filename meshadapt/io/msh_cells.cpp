@@ -1,0 +1,105 @@
+#include "msh_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+namespace ductile::meshadapt {
+namespace {
+
+struct Shape {
+  int type;
+  int corners;  ///< 0: not taken
+  const char* name;
+};
+constexpr std::array<Shape, 17> shapes{{{15, 1, "a point"},
+                                        {1, 2, "a line"},
+                                        {2, 3, "a triangle"},
+                                        {4, 4, "a tetrahedron"},
+                                        {3, 0, "a quadrangle"},
+                                        {5, 0, "a hexahedron"},
+                                        {6, 0, "a prism"},
+                                        {7, 0, "a pyramid"},
+                                        {8, 0, "a line of second order"},
+                                        {9, 0, "a triangle of second order"},
+                                        {10, 0, "a quadrangle of second order"},
+                                        {11, 0, "a tetrahedron of second order"},
+                                        {12, 0, "a hexahedron of second order"},
+                                        {13, 0, "a prism of second order"},
+                                        {14, 0, "a pyramid of second order"},
+                                        {16, 0, "a quadrangle of second order"},
+                                        {17, 0, "a hexahedron of second order"}}};
+
+}  // namespace
+
+int msh_corners(const NumberCursor& in, std::int64_t type) {
+  const char* name = "another element";
+  for (const Shape& shape : shapes) {
+    if (shape.type != type) continue;
+    if (shape.corners > 0) return shape.corners;
+    name = shape.name;
+  }
+  const bool of_first_order = type == 3 || (type >= 5 && type <= 7);
+  in.fail(std::string("expected points, lines, triangles and tetrahedra of first order, found ") +
+          name + " (type " + std::to_string(type) + "); " +
+          (of_first_order ? "split such elements into simplices first, in Gmsh do not recombine"
+                          : "write the mesh in first order, as with gmsh -order 1"));
+}
+
+std::uint32_t MshCells::vertex(std::uint64_t node) const {
+  const std::size_t place = index_of_.find(node);
+  if (place == NumberIndex::none)
+    in_.fail("expected the number of a node in $Nodes, found " + std::to_string(node) +
+             "; correct it");
+  return static_cast<std::uint32_t>(place);
+}
+
+template <int Corners>
+void MshCells::append(Cells<Corners>& cells, const std::uint64_t* nodes, MshGroup group) {
+  std::array<std::uint32_t, Corners> corners;
+  for (std::size_t i = 0; i < Corners; ++i) corners[i] = vertex(nodes[i]);
+  cells.add(corners, group.physical);
+  elementary_of_[Corners].push_back(group.elementary);
+  in_groups_[Corners] = in_groups_[Corners] || group.physical != 0;
+}
+
+void MshCells::append_number(std::vector<std::size_t>& places, std::size_t corners,
+                             std::uint64_t number) {
+  places.push_back(places.size());
+  numbers_[corners].push_back(number);
+}
+
+void MshCells::add(std::uint64_t number, int corners, const std::uint64_t* nodes, MshGroup group) {
+  if (corners == 1) {
+    const std::uint32_t at = vertex(nodes[0]);
+    if (group.physical != 0) to_.mesh.vertex_reference[at] = group.physical;
+  } else if (corners == 2) {
+    append(to_.mesh.edges, nodes, group);
+  } else if (corners == 3) {
+    append_number(to_.cell_of_triangle, 3, number);
+    append(to_.mesh.triangles, nodes, group);
+  } else {
+    append_number(to_.cell_of_tetrahedron, 4, number);
+    append(to_.mesh.tetrahedra, nodes, group);
+  }
+}
+
+void MshCells::finish(int dimension, std::vector<std::int32_t>& reference) {
+  const auto corners = static_cast<std::size_t>(dimension + 1);
+  if (in_groups_.at(corners)) return;
+  reference = std::move(elementary_of_.at(corners));
+  if (std::all_of(reference.begin(), reference.end(), [](std::int32_t r) { return r == 0; }))
+    return;
+  // Entities of the geometry are numbered apart from groups, whose names these are.
+  std::erase_if(to_.mesh.names,
+                [&](const ReferenceName& name) { return name.dimension == dimension; });
+}
+
+void MshCells::finish() {
+  finish(1, to_.mesh.edges.reference);
+  finish(2, to_.mesh.triangles.reference);
+  finish(3, to_.mesh.tetrahedra.reference);
+}
+
+}  // namespace ductile::meshadapt

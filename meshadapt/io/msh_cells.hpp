@@ -1,0 +1,58 @@
+/// @file
+/// MshCells: the elements of a Gmsh file as they are collected, whatever the version. What group an
+/// element is in becomes its reference when all are there.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "number_cursor.hpp"
+#include "number_index.hpp"
+#include "spatial_mesh.hpp"
+
+namespace ductile::meshadapt {
+
+/// The shape of Gmsh's elements of a type; throws InputError unless it is a point, line, triangle
+/// or tetrahedron of first order. 1 to 4 corners.
+int msh_corners(const NumberCursor& in, std::int64_t type);
+
+/// What Gmsh says about an element, or a block of them.
+struct MshGroup {
+  std::int32_t physical = 0;    ///< group; 0: none
+  std::int32_t elementary = 0;  ///< entity of the geometry
+};
+
+class MshCells {
+ public:
+  /// `index_of` finds the nodes of the mesh, whose references are there and 0.
+  MshCells(const NumberCursor& in, SpatialMesh& to, const NumberIndex& index_of)
+      : in_(in), to_(to), index_of_(index_of) {}
+
+  /// `nodes` are numbers of `corners` nodes.
+  void add(std::uint64_t number, int corners, const std::uint64_t* nodes, MshGroup group);
+  /// To be called after the last: gives references.
+  void finish();
+  /// The numbers of the tetrahedra or, if there are none, the triangles.
+  const std::vector<std::uint64_t>& numbers() const {
+    return numbers_[4].empty() ? numbers_[3] : numbers_[4];
+  }
+
+ private:
+  std::uint32_t vertex(std::uint64_t node) const;
+  template <int Corners>
+  void append(Cells<Corners>& cells, const std::uint64_t* nodes, MshGroup group);
+  void finish(int dimension, std::vector<std::int32_t>& reference);
+  void append_number(std::vector<std::size_t>& places, std::size_t corners, std::uint64_t number);
+
+  const NumberCursor& in_;
+  SpatialMesh& to_;
+  const NumberIndex& index_of_;
+  // [corners][cell of that shape]
+  std::array<std::vector<std::uint64_t>, 5> numbers_;  ///< of triangles and tetrahedra
+  std::array<std::vector<std::int32_t>, 5> elementary_of_;
+  std::array<bool, 5> in_groups_{};  ///< whether any is
+};
+
+}  // namespace ductile::meshadapt

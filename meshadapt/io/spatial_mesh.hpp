@@ -1,0 +1,56 @@
+/// @file
+/// SpatialMesh: a mesh and fields as files have them that know three coordinates only, and cells of
+/// all shapes in one list. finish() makes of it what the library works on.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/files.hpp"
+
+namespace ductile::meshadapt {
+
+/// A field with as many components as the file says.
+struct SpatialField {
+  std::string name;
+  NamedField::Place place = NamedField::Place::vertices;
+  std::size_t components = 1;
+  std::vector<double> values;  ///< [vertex or number of a cell in the file, component]
+};
+
+struct SpatialMesh {
+  AnyMesh mesh;                                                    ///< of dimension 3
+  std::vector<std::size_t> cell_of_triangle, cell_of_tetrahedron;  ///< their numbers in the file
+  std::vector<SpatialField> fields;
+};
+
+/// Throws InputError for coordinates that are not finite. Becomes a mesh of dimension 2 if it is
+/// flat, see flatten(), without a word if it lies in z = 0. Fields that cannot be used are left
+/// out, with a warning.
+MeshWithFields finish(SpatialMesh&& spatial, Warnings* warnings);
+
+/// How fields go into a file with three coordinates: scalars as they are, vectors with three
+/// components, tensors with nine, row by row; those that the plane lacks are 0.
+SpatialField in_space(const NamedField& field, const AnyMesh& mesh);
+
+/// Three coordinates of each vertex.
+std::vector<double> points_in_space(const AnyMesh& mesh);
+
+/// Throws InputError unless the mesh and the fields are fit for a file: arrays of lengths that
+/// belong together, indices in range, numbers that are finite, fields with names in UTF-8 without
+/// control characters.
+void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields);
+
+/// What a mesh has beside cells and references, for the warning of a format that holds nothing of
+/// it: "corners (3), ridges (2)"; empty if nothing. With names of references if that is asked for.
+std::string beside_cells(const AnyMesh& mesh, bool with_names);
+
+/// Adds the warning, if there is something to say.
+void warn_of_lost(const WriteOptions& options, const std::filesystem::path& path,
+                  const std::string& lost);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,52 @@
+/// @file
+/// How a mesh is laid out in VTK's files: tetrahedra, triangles, edges, in this order. References
+/// of elements are in the array "region", those of other cells in "boundary".
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+
+namespace ductile::meshadapt {
+
+/// VTK's numbers for shapes.
+inline constexpr std::uint8_t vtk_vertex = 1, vtk_line = 3, vtk_triangle = 5, vtk_tetrahedron = 10;
+
+/// Calls visit(cells, VTK's type) for each kind of cell.
+template <class Visit>
+void for_each_cells(const AnyMesh& mesh, const Visit& visit) {
+  visit(mesh.tetrahedra, vtk_tetrahedron);
+  visit(mesh.triangles, vtk_triangle);
+  visit(mesh.edges, vtk_line);
+}
+
+inline std::size_t cell_count(const AnyMesh& mesh) {
+  return mesh.tetrahedra.size() + mesh.triangles.size() + mesh.edges.size();
+}
+
+/// [cell], 0 where it is none of the kind.
+struct CellReferences {
+  std::vector<std::int32_t> region, boundary;
+};
+
+inline CellReferences cell_references(const AnyMesh& mesh) {
+  CellReferences of;
+  for_each_cells(mesh, [&](const auto& cells, std::uint8_t type) {
+    const bool elements = type == (mesh.dimension == 2 ? vtk_triangle : vtk_tetrahedron);
+    auto& those = elements ? of.region : of.boundary;
+    auto& others = elements ? of.boundary : of.region;
+    those.insert(those.end(), cells.reference.begin(), cells.reference.end());
+    others.insert(others.end(), cells.size(), 0);
+  });
+  return of;
+}
+
+/// A name of a reference as files keep it that have no place for such: "2 10 steel".
+inline std::string name_line(const ReferenceName& name) {
+  return std::to_string(name.dimension) + " " + std::to_string(name.reference) + " " + name.name;
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,222 @@
+#include "vtk_decode.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <new>
+
+#include "ductile/meshadapt/error.hpp"
+
+namespace ductile::meshadapt {
+namespace {
+
+constexpr const char* damaged = "; the file is damaged or cut short, write it again";
+
+constexpr auto value_of_letter = [] {
+  std::array<std::int8_t, 256> value{};
+  value.fill(-1);
+  constexpr std::string_view letters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < letters.size(); ++i)
+    value[static_cast<unsigned char>(letters[i])] = static_cast<std::int8_t>(i);
+  return value;
+}();
+
+/// Bytes one after the other, out of raw ones or base64, whose groups of four letters may have been
+/// filled up in between, as VTK does behind the numbers in front.
+class ByteStream {
+ public:
+  ByteStream(std::string_view encoded, bool base64) : rest_(encoded), base64_(base64) {}
+
+  /// At most that many can follow.
+  std::size_t left() const {
+    return waiting_.size() + (base64_ ? rest_.size() / 4 * 3 : rest_.size());
+  }
+
+  std::string take(std::size_t count) {
+    if (count > left()) fail();
+    if (!base64_) {
+      const std::string_view bytes = rest_.substr(0, count);
+      rest_.remove_prefix(count);
+      return std::string(bytes);
+    }
+    std::string bytes = std::move(waiting_);
+    bytes.reserve(count + 3);
+    while (bytes.size() < count) append_group(bytes);
+    waiting_ = bytes.substr(count);
+    bytes.resize(count);
+    return bytes;
+  }
+
+ private:
+  [[noreturn]] static void fail() {
+    throw InputError(std::string("expected more bytes of an array, found its end") + damaged);
+  }
+
+  void append_group(std::string& bytes) {
+    std::uint32_t group = 0;
+    std::size_t letters = 0, filled = 0, at = 0;
+    for (; at < rest_.size() && letters < 4; ++at) {
+      const char c = rest_[at];
+      if (c == ' ' || (c >= '\t' && c <= '\r')) continue;
+      const int value = value_of_letter[static_cast<unsigned char>(c)];
+      if (c != '=' && (value < 0 || filled > 0)) fail();
+      filled += c == '=';
+      group = group << 6U | static_cast<std::uint32_t>(c == '=' ? 0 : value);
+      ++letters;
+    }
+    if (letters < 4 || filled > 2) fail();
+    rest_.remove_prefix(at);
+    for (std::size_t i = 0; i < 3 - filled; ++i)
+      bytes.push_back(static_cast<char>(group >> (16 - 8 * i) & 255U));
+  }
+
+  std::string_view rest_;
+  std::string waiting_;
+  bool base64_;
+};
+
+template <class Number>
+Number number_at(const char* bytes, bool swapped) {
+  unsigned char raw[sizeof(Number)];
+  std::memcpy(raw, bytes, sizeof(Number));
+  if (swapped) std::reverse(std::begin(raw), std::end(raw));
+  Number number;
+  std::memcpy(&number, raw, sizeof(Number));
+  return number;
+}
+
+std::uint64_t take_head(ByteStream& bytes, const VtkEncoding& encoding) {
+  const std::string head = bytes.take(encoding.head_bytes);
+  return encoding.head_bytes == 8 ? number_at<std::uint64_t>(head.data(), encoding.swapped)
+                                  : number_at<std::uint32_t>(head.data(), encoding.swapped);
+}
+
+void append_block(std::string& to, const std::string& block, std::size_t size) {
+  // zlib makes bytes a thousandth at best.
+  if (size / 1100 > block.size() + 100)
+    throw InputError("expected fewer bytes than " + std::to_string(size) +
+                     " in a compressed block" + damaged);
+  const std::size_t start = to.size();
+  to.resize(start + size);
+  uLongf found = static_cast<uLongf>(size);
+  const int result =
+      uncompress(reinterpret_cast<Bytef*>(to.data() + start), &found,
+                 reinterpret_cast<const Bytef*>(block.data()), static_cast<uLong>(block.size()));
+  if (result == Z_MEM_ERROR) throw std::bad_alloc();
+  if (result != Z_OK || found != size)
+    throw InputError(std::string("expected a block that zlib compressed, found other bytes") +
+                     damaged);
+}
+
+std::string decompressed(ByteStream& bytes, const VtkEncoding& encoding) {
+  const std::uint64_t blocks = take_head(bytes, encoding), size = take_head(bytes, encoding),
+                      last = take_head(bytes, encoding);
+  if (blocks > bytes.left() / encoding.head_bytes)
+    throw InputError("expected fewer compressed blocks than " + std::to_string(blocks) + damaged);
+  std::vector<std::uint64_t> compressed(static_cast<std::size_t>(blocks));
+  for (std::uint64_t& bytes_of_block : compressed) bytes_of_block = take_head(bytes, encoding);
+  std::string result;
+  for (std::size_t block = 0; block < compressed.size(); ++block) {
+    const bool is_partial = block + 1 == compressed.size() && last != 0;
+    if (compressed[block] > bytes.left())
+      throw InputError(std::string("expected more compressed bytes") + damaged);
+    append_block(result, bytes.take(static_cast<std::size_t>(compressed[block])),
+                 static_cast<std::size_t>(is_partial ? last : size));
+  }
+  return result;
+}
+
+template <class Number>
+std::vector<double> converted(std::string_view bytes, bool swapped) {
+  std::vector<double> values(bytes.size() / sizeof(Number));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = static_cast<double>(number_at<Number>(bytes.data() + i * sizeof(Number), swapped));
+  return values;
+}
+
+/// Of a number that no double can hold: 0 if it is too small. Infinite ones are refused where they
+/// matter.
+double beyond_range(std::string_view number) {
+  const std::size_t exponent = number.find_first_of("eE");
+  if (exponent != std::string_view::npos && number.substr(exponent + 1).starts_with('-')) return 0;
+  return number.starts_with('-') ? -HUGE_VAL : HUGE_VAL;
+}
+
+}  // namespace
+
+VtkNumber vtk_number(std::string_view type) {
+  constexpr std::array<std::pair<std::string_view, VtkNumber>, 10> numbers{
+      {{"Float64", {8, true, true}},
+       {"Float32", {4, true, true}},
+       {"Int64", {8, false, true}},
+       {"Int32", {4, false, true}},
+       {"Int16", {2, false, true}},
+       {"Int8", {1, false, true}},
+       {"UInt64", {8, false, false}},
+       {"UInt32", {4, false, false}},
+       {"UInt16", {2, false, false}},
+       {"UInt8", {1, false, false}}}};
+  for (const auto& [name, number] : numbers)
+    if (name == type) return number;
+  return {};
+}
+
+std::string vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding& encoding) {
+  ByteStream bytes(encoded, base64);
+  if (encoding.compressed) return decompressed(bytes, encoding);
+  const std::uint64_t size = take_head(bytes, encoding);
+  if (size > bytes.left())
+    throw InputError("expected " + std::to_string(size) + " bytes of an array, found fewer" +
+                     damaged);
+  return bytes.take(static_cast<std::size_t>(size));
+}
+
+std::vector<double> vtk_reals(std::string_view bytes, VtkNumber number, bool swapped) {
+  if (number.is_real)
+    return number.bytes == 8 ? converted<double>(bytes, swapped) : converted<float>(bytes, swapped);
+  switch (number.bytes) {
+    case 8:
+      return number.is_signed ? converted<std::int64_t>(bytes, swapped)
+                              : converted<std::uint64_t>(bytes, swapped);
+    case 4:
+      return number.is_signed ? converted<std::int32_t>(bytes, swapped)
+                              : converted<std::uint32_t>(bytes, swapped);
+    case 2:
+      return number.is_signed ? converted<std::int16_t>(bytes, swapped)
+                              : converted<std::uint16_t>(bytes, swapped);
+    default:
+      return number.is_signed ? converted<std::int8_t>(bytes, swapped)
+                              : converted<std::uint8_t>(bytes, swapped);
+  }
+}
+
+std::vector<double> vtk_reals(std::string_view text) {
+  std::vector<double> values;
+  const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+  for (std::size_t at = 0; at < text.size();) {
+    if (is_space(text[at])) {
+      ++at;
+      continue;
+    }
+    double value = 0;
+    const char* const begin = text.data() + at;
+    const auto [after, error] = std::from_chars(begin, text.data() + text.size(), value);
+    if (error == std::errc::result_out_of_range) value = beyond_range({begin, after});
+    if (error == std::errc::invalid_argument ||
+        (after != text.data() + text.size() && !is_space(*after)))
+      throw InputError(
+          "expected a number in an array of format ascii, found another word; correct "
+          "it");
+    values.push_back(value);
+    at += static_cast<std::size_t>(after - begin);
+  }
+  return values;
+}
+
+}  // namespace ductile::meshadapt

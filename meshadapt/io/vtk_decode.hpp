@@ -1,0 +1,35 @@
+/// @file
+/// The numbers of one array in a VTK XML file, however it is encoded: as text, as base64 or raw
+/// bytes, whole or in blocks that zlib compressed (private to io). Any thread.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ductile::meshadapt {
+
+/// How a file encodes its arrays.
+struct VtkEncoding {
+  bool swapped = false;        ///< the other byte order
+  bool compressed = false;     ///< by zlib
+  std::size_t head_bytes = 4;  ///< of the numbers in front of an array, 4 or 8
+};
+
+/// A kind of number, by its name: "Float64", "UInt8"; 0 bytes if there is none of that name.
+struct VtkNumber {
+  std::size_t bytes = 0;
+  bool is_real = false, is_signed = false;
+};
+VtkNumber vtk_number(std::string_view type);
+
+/// The bytes of an array: base64 as far as it goes, or raw. Memory in proportion to `encoded`.
+/// Throws InputError with a text about what is wrong, which lacks the name of the file.
+std::string vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding& encoding);
+
+/// Real numbers, or whole ones, out of their bytes or text. Throw InputError as above.
+std::vector<double> vtk_reals(std::string_view bytes, VtkNumber number, bool swapped);
+std::vector<double> vtk_reals(std::string_view text);
+
+}  // namespace ductile::meshadapt

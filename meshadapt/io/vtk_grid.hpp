@@ -1,0 +1,37 @@
+/// @file
+/// VtkGrid: an unstructured grid as VTK's files hold it, in XML or not, and the mesh that it is
+/// (private to io). Any thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "spatial_mesh.hpp"
+
+namespace ductile::meshadapt {
+
+/// Values at points or in cells.
+struct VtkArray {
+  std::string name;
+  std::size_t components = 1;
+  std::vector<double> values;
+};
+
+struct VtkGrid {
+  std::string name;                        ///< of the file
+  std::vector<double> points;              ///< [point * 3 + axis]
+  std::vector<std::int64_t> connectivity;  ///< the points of all cells
+  std::vector<std::int64_t> ends;          ///< [cell] where its points end in connectivity
+  std::vector<std::int64_t> types;         ///< [cell]
+  std::vector<VtkArray> point_data, cell_data;
+  std::vector<std::string> names;  ///< of references, "DIMENSION REFERENCE NAME" each
+};
+
+/// Throws InputError for cells that are none of a simplex mesh, points that there are not, and
+/// arrays that do not fit together. References are those in the arrays "region" and "boundary", or
+/// in one that another program gives such a name; all others become fields.
+SpatialMesh mesh_of(VtkGrid&& grid);
+
+}  // namespace ductile::meshadapt
