@@ -8,6 +8,10 @@
 #include "msh_read.hpp"
 #include "msh_write.hpp"
 #include "spatial_mesh.hpp"
+#include "stl_write.hpp"
+#include "su2_write.hpp"
+#include "vtk_read.hpp"
+#include "vtk_write.hpp"
 #include "vtu_read.hpp"
 #include "vtu_write.hpp"
 
@@ -45,6 +49,16 @@ constexpr std::array rows{
               is_vtu,
               mesh_from<read_vtu>,
               write_vtu},
+    FormatRow{{".vtk", "VTK and ParaView, legacy", true, true, true},
+              is_vtk,
+              mesh_from<read_vtk>,
+              write_vtk},
+    FormatRow{
+        {".su2", "SU2, with markers by name", false, true, false}, nullptr, nullptr, write_su2},
+    FormatRow{{".stl", "STL, binary, the surface in 3D", false, true, false},
+              nullptr,
+              nullptr,
+              write_stl},
 };
 
 const FormatRow* row_with(std::string_view ending) {

@@ -44,9 +44,16 @@ inline CellReferences cell_references(const AnyMesh& mesh) {
   return of;
 }
 
-/// A name of a reference as files keep it that have no place for such: "2 10 steel".
-inline std::string name_line(const ReferenceName& name) {
-  return std::to_string(name.dimension) + " " + std::to_string(name.reference) + " " + name.name;
+/// Names of references as files keep them that have no place for such: "2 10 steel", a line each.
+inline std::string name_lines(const AnyMesh& mesh) {
+  std::string text;
+  for (const ReferenceName& name : mesh.names) {
+    const std::string line =
+        std::to_string(name.dimension) + " " + std::to_string(name.reference) + " " + name.name;
+    for (const char c : line) text.push_back(c == '\n' ? ' ' : c);
+    text.push_back('\n');
+  }
+  return text;
 }
 
 }  // namespace ductile::meshadapt

@@ -184,6 +184,18 @@ void take_name(AnyMesh& mesh, std::string_view line) {
   mesh.names.push_back(std::move(name));
 }
 
+void take_names(AnyMesh& mesh, const std::vector<double>& letters) {
+  std::string line;
+  for (const double letter : letters) {
+    if (letter == '\n') {
+      take_name(mesh, line);
+      line.clear();
+    } else if (letter > 0 && letter < 256) {
+      line.push_back(static_cast<char>(static_cast<unsigned char>(letter)));
+    }
+  }
+}
+
 }  // namespace
 
 SpatialMesh mesh_of(VtkGrid&& grid) {
@@ -193,7 +205,7 @@ SpatialMesh mesh_of(VtkGrid&& grid) {
   to.mesh.dimension = 3;
   to.mesh.vertex_reference = first_references(grid.point_data, grid.points.size() / 3);
   take_cells(to, grid, take_cell_references(grid.cell_data, grid.types.size()));
-  for (const std::string& name : grid.names) take_name(to.mesh, name);
+  take_names(to.mesh, grid.names);
   take_fields(to, std::move(grid.point_data), NamedField::Place::vertices);
   take_fields(to, std::move(grid.cell_data), NamedField::Place::elements);
   to.mesh.coordinates = std::move(grid.points);

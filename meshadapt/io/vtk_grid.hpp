@@ -26,7 +26,7 @@ struct VtkGrid {
   std::vector<std::int64_t> ends;          ///< [cell] where its points end in connectivity
   std::vector<std::int64_t> types;         ///< [cell]
   std::vector<VtkArray> point_data, cell_data;
-  std::vector<std::string> names;  ///< of references, "DIMENSION REFERENCE NAME" each
+  std::vector<double> names;  ///< letters of lines "DIMENSION REFERENCE NAME", of references
 };
 
 /// Throws InputError for cells that are none of a simplex mesh, points that there are not, and

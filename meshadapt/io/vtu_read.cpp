@@ -167,27 +167,9 @@ class VtuReader {
     grid.cell_data = arrays_of(piece.child("CellData"), cells);
   }
 
-  /// Texts are letters by their numbers, each text with a 0 behind it.
   void read_names(VtkGrid& grid, pugi::xml_node field_data) const {
     const pugi::xml_node node = field_data.find_child_by_attribute("DataArray", "Name", "names");
-    if (node.attribute("type").value() != std::string("String")) return;
-    std::vector<double> letters;
-    try {
-      letters = node.attribute("format").value() == std::string("ascii")
-                    ? vtk_reals(node.text().get())
-                    : vtk_reals(bytes_of(node), vtk_number("UInt8"), false);
-    } catch (const InputError& error) {
-      fail(where(node) + error.what());
-    }
-    std::string text;
-    for (const double letter : letters) {
-      if (letter != 0) {
-        if (letter > 0 && letter < 256) text.push_back(static_cast<char>(static_cast<int>(letter)));
-        continue;
-      }
-      grid.names.push_back(std::move(text));
-      text.clear();
-    }
+    if (node.attribute("type").value() == std::string("UInt8")) grid.names = numbers_of(node);
   }
 
   static constexpr std::size_t any_count = ~std::size_t{0};

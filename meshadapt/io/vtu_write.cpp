@@ -112,21 +112,13 @@ void add_data(pugi::xml_node piece, const AnyMesh& mesh, std::span<const NamedFi
   }
 }
 
-/// Names of references as an array of strings, "DIMENSION REFERENCE NAME" each.
+/// Names of references, a line each, as the letters of a text: arrays of texts stop some readers.
 void add_names(pugi::xml_node grid, const AnyMesh& mesh) {
   if (mesh.names.empty()) return;
-  std::string text;
-  for (const ReferenceName& name : mesh.names) {
-    for (const char c : name_line(name))
-      text += std::to_string(static_cast<unsigned char>(c)) + " ";
-    text += "0 ";
-  }
-  pugi::xml_node node = add_node(add_node(grid, "FieldData"), "DataArray");
-  add_attribute(node, "type", "String");
-  add_attribute(node, "Name", "names");
-  add_attribute(node, "NumberOfTuples", mesh.names.size());
-  add_attribute(node, "format", "ascii");
-  expect_memory(node.append_child(pugi::node_pcdata).set_value(text.c_str()));
+  const std::string text = name_lines(mesh);
+  const pugi::xml_node data = add_node(grid, "FieldData");
+  add_array(data, "names", 1, std::vector<std::uint8_t>(text.begin(), text.end()));
+  add_attribute(data.first_child(), "NumberOfTuples", text.size());
 }
 
 void add_piece(pugi::xml_node grid, const AnyMesh& mesh, std::span<const NamedField> fields) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -74,7 +75,8 @@ struct Way {
 };
 constexpr Way ways[] = {{".msh", 2, Form::ascii},   {".msh", 2, Form::binary},
                         {".msh", 4, Form::ascii},   {".msh", 4, Form::binary},
-                        {".msh", 0, Form::by_name}, {".vtu", 0, Form::by_name}};
+                        {".msh", 0, Form::by_name}, {".vtu", 0, Form::by_name},
+                        {".vtk", 0, Form::ascii},   {".vtk", 0, Form::binary}};
 
 TEST(Formats, ReadWhatTheyWrite) {
   const test::TemporaryFolder folder;
@@ -131,11 +133,56 @@ TEST(Formats, SayWhatTheyHaveNoPlaceFor) {
     return warnings.empty() ? std::string() : warnings.at(0);
   };
   EXPECT_NE(lost("a.mesh").find("names of references (1)"), std::string::npos);
-  for (const char* name : {"a.msh", "a.vtu"})
+  for (const char* name : {"a.msh", "a.vtu", "a.vtk"})
     EXPECT_NE(lost(name).find("required edges (2)"), std::string::npos) << name;
   EXPECT_NE(test::complaint([&] {
               write_mesh(folder / "b.mesh", mesh, {.fields = fields});
             }).find("hold no fields"),
+            std::string::npos);
+}
+
+TEST(Formats, WriteSu2WithMarkersByName) {
+  const test::TemporaryFolder folder;
+  AnyMesh mesh = rectangle_mesh({1, 1}, {1, 1});
+  mesh.edges.reference = {1, 2, 2, 2};
+  mesh.names = {{1, 2, "outer wall"}, {2, 1, "not this"}};
+  mesh.required_edges = {0};
+  Warnings warnings;
+  WriteOptions options;
+  options.warnings = &warnings;
+  write_mesh(folder / "a.su2", mesh, options);
+  const std::string text = test::get_bytes(folder / "a.su2");
+  EXPECT_TRUE(text.starts_with("NDIME= 2\nNELEM= 2\n5 ")) << text;
+  EXPECT_NE(text.find("NPOIN= 4\n0 0 \n"), std::string::npos) << text;
+  EXPECT_NE(text.find("NMARK= 2\nMARKER_TAG= 1\nMARKER_ELEMS= 1\n3 "), std::string::npos) << text;
+  EXPECT_NE(text.find("MARKER_TAG= outer_wall\nMARKER_ELEMS= 3\n"), std::string::npos) << text;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("required edges (1)"), std::string::npos);
+}
+
+TEST(Formats, WriteTheSurfaceAsStl) {
+  const test::TemporaryFolder folder;
+  const AnyMesh mesh = box_mesh({1, 1, 1}, {3, 3, 3});
+  write_mesh(folder / "a.stl", mesh);
+  const std::string bytes = test::get_bytes(folder / "a.stl");
+  ASSERT_EQ(bytes.size(), 84U + 108U * 50U);  // two triangles on each of six times nine squares
+  double volume = 0, area = 0;
+  for (std::size_t at = 84; at < bytes.size(); at += 50) {
+    std::array<float, 12> x;  // normal, corners
+    std::memcpy(x.data(), &bytes[at], sizeof x);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      const double cross = (x[6 + l] - x[3 + l]) * (x[9 + m] - x[3 + m]) -
+                           (x[6 + m] - x[3 + m]) * (x[9 + l] - x[3 + l]);
+      area += cross * x[k] / 2;
+      volume += cross * x[3 + k] / 6;
+    }
+  }
+  EXPECT_NEAR(area, 6, 1e-5);  // so normals point outwards, and so are the corners turned
+  EXPECT_NEAR(volume, 1, 1e-5);
+  EXPECT_NE(test::complaint([&] {
+              write_mesh(folder / "b.stl", rectangle_mesh({1, 1}, {2, 2}));
+            }).find("dimension 3"),
             std::string::npos);
 }
 
@@ -239,16 +286,20 @@ void expect_two_tetrahedra(const MeshWithFields& file) {
 TEST(Formats, ReadVtksFiles) {
   for (const char* name : {"vtk3d-ascii-32.vtu", "vtk3d-inline-32.vtu", "vtk3d-inline-zlib-64.vtu",
                            "vtk3d-raw-32.vtu", "vtk3d-raw-64.vtu", "vtk3d-raw-zlib-32.vtu",
-                           "vtk3d-base64-64.vtu", "vtk3d-base64-zlib-32.vtu"}) {
+                           "vtk3d-base64-64.vtu", "vtk3d-base64-zlib-32.vtu", "vtk3d-text-42.vtk",
+                           "vtk3d-binary-42.vtk", "vtk3d-text-51.vtk", "vtk3d-binary-51.vtk"}) {
     SCOPED_TRACE(name);
     Warnings warnings;
     expect_two_tetrahedra(foreign(name, &warnings));
     EXPECT_EQ(warnings, Warnings{});
   }
-  const MeshWithFields flat = foreign("vtk2d-raw-zlib-64.vtu");
-  EXPECT_EQ(flat.mesh.dimension, 2);
-  EXPECT_EQ(flat.mesh.edges.reference, (std::vector<std::int32_t>{12, 13, 14, 15}));
-  EXPECT_EQ(flat.fields[1].values, (std::vector<double>{0, 0, .25, 0, .25, .25, 0, .25}));
+  for (const char* name : {"vtk2d-raw-zlib-64.vtu", "vtk2d-text-42.vtk", "vtk2d-binary-42.vtk",
+                           "vtk2d-text-51.vtk", "vtk2d-binary-51.vtk"}) {
+    const MeshWithFields flat = foreign(name);
+    EXPECT_EQ(flat.mesh.dimension, 2);
+    EXPECT_EQ(flat.mesh.edges.reference, (std::vector<std::int32_t>{12, 13, 14, 15}));
+    EXPECT_EQ(flat.fields[1].values, (std::vector<double>{0, 0, .25, 0, .25, .25, 0, .25}));
+  }
 }
 
 // ---- What cannot be read ----
