@@ -237,20 +237,25 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
   return adapted;
 }
 
+/// Says what was warned of, and what does not go into the files, before they have their names: no
+/// memory is taken after that.
 void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector<AnyField>& carried,
-                   const std::string& json) {
+                   const std::string& json, meshadapt::Warnings& warnings) {
   meshadapt::AtomicOutputs outputs;
   std::vector<meshadapt::NamedField> fields;
   if (job.with_metric) fields = meshadapt::named_fields(adapted.metric, "metric");
   for (auto& field : job.fields.named_fields(carried)) fields.push_back(std::move(field));
   meshadapt::WriteOptions with_fields;
   with_fields.fields = fields;
-  meshadapt::write_mesh(outputs, job.output, adapted.mesh,
-                        holds_fields(job.output) ? with_fields : meshadapt::WriteOptions{});
+  meshadapt::WriteOptions as_named;
+  if (holds_fields(job.output)) as_named.fields = fields;
+  as_named.warnings = &warnings;
+  meshadapt::write_mesh(outputs, job.output, adapted.mesh, as_named);
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
   job.fields.write(outputs, carried);
   if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, adapted.mesh, with_fields);
   if (job.json) outputs.stage(*job.json).write(json);
+  print_warnings(warnings, job.verbosity);
   outputs.commit();
 }
 
@@ -281,9 +286,8 @@ int work(const Executor& executor, const Job& job) {
        .keeps_surface = job.adapt.make.surface_tolerance == 0 && !job.adapt.make.lock_boundary,
        .surface_tolerance = job.adapt.make.lock_boundary ? 0 : job.adapt.make.surface_tolerance});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
-  print_warnings(warnings, job.verbosity);
   const std::string said = job.verbosity > 0 ? what_was_done(job, summary) : std::string();
-  write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string());
+  write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string(), warnings);
   std::fputs(said.c_str(), stdout);  // no memory is taken now that the outputs are there
   return done;
 }

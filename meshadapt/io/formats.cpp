@@ -67,7 +67,7 @@ const FormatRow* row_with(std::string_view ending) {
   return found == rows.end() ? nullptr : found;
 }
 
-const FormatRow& row_of(const FileBytes& bytes) {
+const FormatRow& format_row(const FileBytes& bytes) {
   const std::string_view text(bytes.begin(), bytes.size);
   for (const FormatRow& row : rows)
     if (row.is_it != nullptr && row.is_it(text)) return row;
@@ -101,7 +101,7 @@ std::string written_endings() {
 MeshWithFields read_mesh_with_fields(const fs::path& path, Warnings* warnings) {
   try {
     const FileBytes bytes = read_bytes(path);
-    return row_of(bytes).read(bytes, warnings);
+    return format_row(bytes).read(bytes, warnings);
   } catch (const std::bad_alloc&) {
     throw Error(path.string() +
                 ": not enough memory to read the file; allow more or use a larger machine");

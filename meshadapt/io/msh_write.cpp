@@ -44,19 +44,19 @@ class MshSink {
 
 /// Calls visit(dimension, Gmsh's type, cells) for each kind of cell.
 template <class Visit>
-void for_each_cells(const AnyMesh& mesh, const Visit& visit) {
+void for_each_msh_cells(const AnyMesh& mesh, const Visit& visit) {
   visit(1, 1, mesh.edges);
   visit(2, 2, mesh.triangles);
   visit(3, 4, mesh.tetrahedra);
 }
 
-std::size_t point_count(const AnyMesh& mesh) {
+std::size_t msh_point_count(const AnyMesh& mesh) {
   return mesh.vertex_count() - static_cast<std::size_t>(std::count(mesh.vertex_reference.begin(),
                                                                    mesh.vertex_reference.end(), 0));
 }
 
 std::size_t element_count(const AnyMesh& mesh) {
-  return point_count(mesh) + mesh.edges.size() + mesh.triangles.size() + mesh.tetrahedra.size();
+  return msh_point_count(mesh) + mesh.edges.size() + mesh.triangles.size() + mesh.tetrahedra.size();
 }
 
 /// Gmsh's files have no way to write a quotation mark or the end of a line in a name.
@@ -120,11 +120,11 @@ class ElementsIn2 {
 void put_elements_2(MshSink& sink, const AnyMesh& mesh) {
   sink.text("$Elements\n" + std::to_string(element_count(mesh)) + "\n");
   ElementsIn2 elements(sink);
-  elements.begin(15, point_count(mesh));
+  elements.begin(15, msh_point_count(mesh));
   for (std::uint32_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
     if (mesh.vertex_reference[vertex] != 0)
       elements.put<1>({vertex}, mesh.vertex_reference[vertex]);
-  for_each_cells(mesh, [&](int, int type, const auto& cells) {
+  for_each_msh_cells(mesh, [&](int, int type, const auto& cells) {
     elements.begin(type, cells.size());
     for (std::size_t cell = 0; cell < cells.size(); ++cell)
       elements.put(cells.vertices[cell], cells.reference[cell]);
@@ -135,16 +135,17 @@ void put_elements_2(MshSink& sink, const AnyMesh& mesh) {
 // ---- Version 4.1 ----
 
 /// The smallest box, least corner first, around what shares a reference.
-using Box = std::array<double, 6>;
+using EntityBox = std::array<double, 6>;
 
 template <int Corners>
-std::map<std::int32_t, Box> boxes_of(const Cells<Corners>& cells,
-                                     const std::vector<double>& points) {
+std::map<std::int32_t, EntityBox> boxes_of(const Cells<Corners>& cells,
+                                           const std::vector<double>& points) {
   constexpr double inf = std::numeric_limits<double>::infinity();
-  std::map<std::int32_t, Box> box_of;
+  std::map<std::int32_t, EntityBox> box_of;
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-    Box& box = box_of.try_emplace(cells.reference[cell], Box{inf, inf, inf, -inf, -inf, -inf})
-                   .first->second;
+    EntityBox& box =
+        box_of.try_emplace(cells.reference[cell], EntityBox{inf, inf, inf, -inf, -inf, -inf})
+            .first->second;
     for (const std::uint32_t vertex : cells.vertices[cell])
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double x = points[3 * std::size_t{vertex} + axis];
@@ -163,10 +164,10 @@ void put_group(MshSink& sink, std::int32_t reference) {
 /// An entity of the geometry for each reference, and one for each point.
 void put_entities(MshSink& sink, const AnyMesh& mesh, const std::vector<double>& points) {
   sink.text("$Entities\n");
-  sink.put(std::uint64_t{point_count(mesh)});
-  std::array<std::map<std::int32_t, Box>, 3> boxes{boxes_of(mesh.edges, points),
-                                                   boxes_of(mesh.triangles, points),
-                                                   boxes_of(mesh.tetrahedra, points)};
+  sink.put(std::uint64_t{msh_point_count(mesh)});
+  std::array<std::map<std::int32_t, EntityBox>, 3> boxes{boxes_of(mesh.edges, points),
+                                                         boxes_of(mesh.triangles, points),
+                                                         boxes_of(mesh.tetrahedra, points)};
   for (const auto& box_of : boxes) sink.put(std::uint64_t{box_of.size()});
   sink.end_record();
   for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
@@ -228,8 +229,8 @@ std::size_t for_each_block(const std::vector<std::int32_t>& reference, const Vis
 }
 
 void put_elements_4(MshSink& sink, const AnyMesh& mesh) {
-  std::size_t blocks = point_count(mesh);
-  for_each_cells(mesh, [&](int, int, const auto& cells) {
+  std::size_t blocks = msh_point_count(mesh);
+  for_each_msh_cells(mesh, [&](int, int, const auto& cells) {
     blocks += for_each_block(cells.reference, [](std::size_t, std::size_t) {});
   });
   const std::uint64_t count = element_count(mesh);
@@ -250,7 +251,7 @@ void put_elements_4(MshSink& sink, const AnyMesh& mesh) {
     sink.put(std::uint64_t{vertex} + 1);
     sink.end_record();
   }
-  for_each_cells(mesh, [&](int dimension, int type, const auto& cells) {
+  for_each_msh_cells(mesh, [&](int dimension, int type, const auto& cells) {
     for_each_block(cells.reference, [&](std::size_t begin, std::size_t end) {
       begin_block(dimension, cells.reference[begin], type, end - begin);
       for (std::size_t cell = begin; cell < end; ++cell) {

@@ -14,7 +14,6 @@ namespace ductile::meshadapt {
 namespace {
 
 using Type = AnyField::Type;
-using Place = NamedField::Place;
 
 void warn(Warnings* warnings, const std::string& text) {
   if (warnings) warnings->push_back(printable(text));
@@ -82,13 +81,13 @@ Layout layout_of(const SpatialField& field, const std::vector<std::size_t>& plac
 }
 
 std::string what_is(const SpatialField& field) {
-  return std::string(field.place == Place::vertices ? "at vertices" : "in cells") + " '" +
-         field.name + "'";
+  return std::string(field.place == NamedField::Place::vertices ? "at vertices" : "in cells") +
+         " '" + field.name + "'";
 }
 
 /// The numbers in the file of what the field is to have values of.
 std::vector<std::size_t> places_of(const SpatialField& field, const SpatialMesh& spatial) {
-  if (field.place == Place::elements)
+  if (field.place == NamedField::Place::elements)
     return spatial.mesh.dimension == 2 ? spatial.cell_of_triangle : spatial.cell_of_tetrahedron;
   std::vector<std::size_t> all(spatial.mesh.vertex_count());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -151,8 +150,8 @@ void expect_text(const std::string& name, std::size_t index) {
   }
 }
 
-std::size_t places_in(const AnyMesh& mesh, Place place) {
-  if (place == Place::vertices) return mesh.vertex_count();
+std::size_t field_places(const AnyMesh& mesh, NamedField::Place place) {
+  if (place == NamedField::Place::vertices) return mesh.vertex_count();
   return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
@@ -202,7 +201,7 @@ void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields
     if (number < 1 || number > 4)
       throw InputError(place + ".type: expected 1 to 4, found " + std::to_string(number));
     const std::size_t expected =
-        places_in(mesh, at) * static_cast<std::size_t>(component_count(type, mesh.dimension));
+        field_places(mesh, at) * static_cast<std::size_t>(component_count(type, mesh.dimension));
     if (values.size() != expected)
       throw InputError(place + ".values: expected " + std::to_string(expected) +
                        " numbers, found " + std::to_string(values.size()));

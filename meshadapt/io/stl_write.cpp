@@ -16,7 +16,7 @@ namespace ductile::meshadapt {
 namespace {
 
 /// Seen from outside; of a mesh without tetrahedra, all triangles.
-std::vector<Facet<3>> sides_of(const AnyMesh& mesh) {
+std::vector<Facet<3>> stl_sides(const AnyMesh& mesh) {
   if (mesh.tetrahedra.size() == 0) return mesh.triangles.vertices;
   const auto fixed = make_fixed_mesh<3>(runtime::Executor({.threads = 1}), mesh);
   std::vector<Facet<3>> sides;
@@ -78,7 +78,7 @@ void write_stl(AtomicOutputs& outputs, const std::filesystem::path& path, const 
                const WriteOptions& options) {
   expect_fit_for_file(mesh, {});
   expect_surface(mesh, path);
-  const std::vector<Facet<3>> sides = sides_of(mesh);
+  const std::vector<Facet<3>> sides = stl_sides(mesh);
   if (sides.size() > std::numeric_limits<std::uint32_t>::max())
     throw InputError(path.string() + ": too many triangles for this format; write another");
   warn_of_lost(options, path, "references and the inside");

@@ -17,7 +17,7 @@ inline constexpr std::uint8_t vtk_vertex = 1, vtk_line = 3, vtk_triangle = 5, vt
 
 /// Calls visit(cells, VTK's type) for each kind of cell.
 template <class Visit>
-void for_each_cells(const AnyMesh& mesh, const Visit& visit) {
+void for_each_vtk_cells(const AnyMesh& mesh, const Visit& visit) {
   visit(mesh.tetrahedra, vtk_tetrahedron);
   visit(mesh.triangles, vtk_triangle);
   visit(mesh.edges, vtk_line);
@@ -34,7 +34,7 @@ struct CellReferences {
 
 inline CellReferences cell_references(const AnyMesh& mesh) {
   CellReferences of;
-  for_each_cells(mesh, [&](const auto& cells, std::uint8_t type) {
+  for_each_vtk_cells(mesh, [&](const auto& cells, std::uint8_t type) {
     const bool elements = type == (mesh.dimension == 2 ? vtk_triangle : vtk_tetrahedron);
     auto& those = elements ? of.region : of.boundary;
     auto& others = elements ? of.boundary : of.region;

@@ -19,33 +19,33 @@ namespace {
   throw InputError(grid.name + ": " + text);
 }
 
-struct Shape {
+struct VtkShape {
   std::int64_t type;
   std::size_t corners;  ///< 0: not taken
   const char* name;
 };
-constexpr std::array<Shape, 18> shapes{{{vtk_vertex, 1, "a vertex"},
-                                        {vtk_line, 2, "a line"},
-                                        {vtk_triangle, 3, "a triangle"},
-                                        {vtk_tetrahedron, 4, "a tetrahedron"},
-                                        {2, 0, "a poly-vertex"},
-                                        {4, 0, "a poly-line"},
-                                        {6, 0, "a triangle strip"},
-                                        {7, 0, "a polygon"},
-                                        {8, 0, "a pixel"},
-                                        {9, 0, "a quadrangle"},
-                                        {11, 0, "a voxel"},
-                                        {12, 0, "a hexahedron"},
-                                        {13, 0, "a wedge"},
-                                        {14, 0, "a pyramid"},
-                                        {21, 0, "a quadratic edge"},
-                                        {22, 0, "a quadratic triangle"},
-                                        {24, 0, "a quadratic tetrahedron"},
-                                        {42, 0, "a polyhedron"}}};
+constexpr std::array<VtkShape, 18> vtk_shapes{{{vtk_vertex, 1, "a vertex"},
+                                               {vtk_line, 2, "a line"},
+                                               {vtk_triangle, 3, "a triangle"},
+                                               {vtk_tetrahedron, 4, "a tetrahedron"},
+                                               {2, 0, "a poly-vertex"},
+                                               {4, 0, "a poly-line"},
+                                               {6, 0, "a triangle strip"},
+                                               {7, 0, "a polygon"},
+                                               {8, 0, "a pixel"},
+                                               {9, 0, "a quadrangle"},
+                                               {11, 0, "a voxel"},
+                                               {12, 0, "a hexahedron"},
+                                               {13, 0, "a wedge"},
+                                               {14, 0, "a pyramid"},
+                                               {21, 0, "a quadratic edge"},
+                                               {22, 0, "a quadratic triangle"},
+                                               {24, 0, "a quadratic tetrahedron"},
+                                               {42, 0, "a polyhedron"}}};
 
-std::size_t corners_of(const VtkGrid& grid, std::size_t cell) {
+std::size_t vtk_corners(const VtkGrid& grid, std::size_t cell) {
   const char* name = "another cell";
-  for (const Shape& shape : shapes) {
+  for (const VtkShape& shape : vtk_shapes) {
     if (shape.type != grid.types[cell]) continue;
     if (shape.corners > 0) return shape.corners;
     name = shape.name;
@@ -137,7 +137,7 @@ void take_cells(SpatialMesh& to, const VtkGrid& grid, const CellReferences& of) 
   std::size_t begin = 0;
   for (std::size_t cell = 0; cell < grid.types.size(); ++cell) {
     if (grid.types[cell] == 0 && static_cast<std::size_t>(grid.ends[cell]) == begin) continue;
-    const std::size_t corners = corners_of(grid, cell);
+    const std::size_t corners = vtk_corners(grid, cell);
     expect_cell(grid, cell, begin, corners);
     const std::int64_t* const points = &grid.connectivity[begin];
     begin += corners;

@@ -93,12 +93,12 @@ void put_grid(VtkSink& sink, const AnyMesh& mesh) {
     if (i % 3 == 2) sink.end_record();
   }
   std::size_t numbers = 0;
-  for_each_cells(mesh, [&]<int Corners>(const Cells<Corners>& cells, std::uint8_t) {
+  for_each_vtk_cells(mesh, [&]<int Corners>(const Cells<Corners>& cells, std::uint8_t) {
     numbers += cells.size() * (Corners + 1);
   });
   const std::string count = std::to_string(cell_count(mesh));
   sink.text("\nCELLS " + count + " " + std::to_string(numbers) + "\n");
-  for_each_cells(mesh, [&]<int Corners>(const Cells<Corners>& cells, std::uint8_t) {
+  for_each_vtk_cells(mesh, [&]<int Corners>(const Cells<Corners>& cells, std::uint8_t) {
     for (const auto& vertices : cells.vertices) {
       sink.put(std::int32_t{Corners});
       for (const std::uint32_t vertex : vertices) sink.put(static_cast<std::int32_t>(vertex));
@@ -106,7 +106,7 @@ void put_grid(VtkSink& sink, const AnyMesh& mesh) {
     }
   });
   sink.text("\nCELL_TYPES " + count + "\n");
-  for_each_cells(mesh, [&](const auto& cells, std::uint8_t type) {
+  for_each_vtk_cells(mesh, [&](const auto& cells, std::uint8_t type) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       sink.put(std::int32_t{type});
       sink.end_record();

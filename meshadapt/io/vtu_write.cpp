@@ -75,7 +75,7 @@ void add_points(pugi::xml_node piece, const AnyMesh& mesh) {
 void add_cells(pugi::xml_node piece, const AnyMesh& mesh) {
   std::vector<std::int64_t> connectivity, offsets;
   std::vector<std::uint8_t> types;
-  for_each_cells(mesh, [&](const auto& cells, std::uint8_t type) {
+  for_each_vtk_cells(mesh, [&](const auto& cells, std::uint8_t type) {
     for (const auto& vertices : cells.vertices) {
       connectivity.insert(connectivity.end(), vertices.begin(), vertices.end());
       offsets.push_back(static_cast<std::int64_t>(connectivity.size()));

@@ -1,0 +1,103 @@
+/// @file
+/// MshReader: goes through a Gmsh file section by section (private to io). Versions differ in how
+/// sections hold nodes and elements; groups, fields and what surrounds sections are the same.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gmf_left_out.hpp"
+#include "msh_cells.hpp"
+#include "number_cursor.hpp"
+#include "number_index.hpp"
+#include "spatial_mesh.hpp"
+
+namespace ductile::meshadapt {
+
+/// Thread safety: one thread.
+class MshReader {
+ public:
+  MshReader(const FileBytes& bytes, Warnings* warnings) : in_(bytes), warnings_(warnings) {
+    to_.mesh.dimension = 3;
+    to_.mesh.name = bytes.name;
+  }
+
+  SpatialMesh read();
+
+ private:
+  // ---- Sections ----
+  void read_section(const std::string& name, const std::string& where);
+  void skip_section(const std::string& name);
+  void end_section(const std::string& name);
+  void read_format();
+  void read_names();
+  void read_nodes(bool parametric);
+  void read_elements();
+  void expect_sections() const;
+  void say_what_is_left_out();
+
+  // ---- Version 2 ----
+  void read_nodes_2(bool parametric);
+  void read_elements_2(MshCells& cells);
+  void read_element_2(MshCells& cells, std::uint64_t number, int corners, std::int32_t tags);
+
+  // ---- Version 4.1 ----
+  struct Entity {
+    std::int32_t physical = 0;
+    bool between_parts = false;
+  };
+  void read_entities(bool partitioned);
+  void read_entity(int dimension, bool partitioned);
+  void read_nodes_4();
+  void read_elements_4(MshCells& cells);
+
+  // ---- Fields ----
+  struct DataHead {
+    std::string name;
+    std::int64_t components = 0;
+    std::uint64_t count = 0;
+  };
+  DataHead read_data_head();
+  void read_data(NamedField::Place place, const std::string& section);
+
+  // ---- Numbers ----
+  void begin_numbers() {
+    if (binary_) in_.set_binary(swapped_);
+  }
+  std::int32_t number(const char* what) { return in_.integer<std::int32_t>(what); }
+  /// What the format calls a size_t.
+  std::uint64_t size(const char* what) {
+    if (in_.is_binary())
+      return size_bytes_ == 4 ? in_.integer<std::uint32_t>(what) : in_.integer<std::uint64_t>(what);
+    const auto value = in_.integer<std::int64_t>(what);
+    if (value < 0)
+      in_.fail(std::string("expected ") + what + " from 0, found " + std::to_string(value) +
+               "; correct it");
+    return static_cast<std::uint64_t>(value);
+  }
+  void read_point() {
+    for (int axis = 0; axis < 3; ++axis) to_.mesh.coordinates.push_back(in_.real("a coordinate"));
+  }
+
+  NumberCursor in_;
+  Warnings* warnings_;
+  SpatialMesh to_;
+  int version_ = 0;  ///< 2 or 4; 0: not known yet
+  bool binary_ = false, swapped_ = false;
+  std::uint64_t size_bytes_ = 8;
+  bool has_nodes_ = false, has_elements_ = false;
+  std::vector<std::uint64_t> node_numbers_;
+  NumberIndex node_index_;
+  std::vector<std::uint64_t> element_numbers_;
+  std::optional<NumberIndex> element_index_;  ///< made when it is wanted
+  std::map<std::pair<int, std::int32_t>, Entity> entity_of_;
+  std::map<std::pair<bool, std::string>, std::size_t> field_of_;  ///< [in cells, name]
+  gmf::LeftOut left_out_;
+  std::size_t several_groups_ = 0, between_parts_ = 0, in_parts_ = 0;
+};
+
+}  // namespace ductile::meshadapt

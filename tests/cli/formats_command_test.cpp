@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "program.hpp"
+
+namespace ductile::cli::formats_command_test {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Does what it is told to without a warning.
+void expect_done(const Folder& folder, const std::string& words) {
+  const Outcome outcome = folder.run(words);
+  EXPECT_EQ(outcome.status, 0) << words << "\n" << outcome.err;
+  EXPECT_EQ(outcome.err, "") << words;
+}
+
+/// Two squares with names, as Gmsh wrote them.
+class FormatsCommand : public testing::Test {
+ protected:
+  FormatsCommand() {
+    std::filesystem::copy_file(std::string(DUCTILE_TEST_FILES) + "/square-41-text.msh",
+                               folder_.path() / "part.msh");
+  }
+  /// Where they all are.
+  void expect_names(const std::string& mesh) const {
+    const std::string info = folder_.run("info " + mesh).out;
+    for (const char* part : {"3 (corner): 1", "5 (wall): ", "10 (steel): ", "20 (soft rubber): ",
+                             "dimension 2", "valid: it can be adapted"})
+      EXPECT_TRUE(contains(info, part)) << mesh << "\n" << info;
+  }
+
+  Folder folder_;
+};
+
+TEST_F(FormatsCommand, AdaptKeepsNamesInEveryFormatThatHoldsThem) {
+  for (const std::string output : {"out.vtu", "out.vtk", "out.msh"}) {
+    expect_done(folder_, "adapt part.msh -hsiz .1 -v 0 -o " + output);
+    EXPECT_EQ(folder_.file_count(), 2U) << output;  // the metric is in it
+    expect_names(output);
+    // So it is adapted to that without a word, and has it when it is told to a third.
+    expect_done(folder_, "adapt " + output + " -o again.msh -v 1");
+    expect_done(folder_, "info " + output + " -sol " + output);
+    for (const std::string& name : {std::string("again.msh"), output})
+      std::filesystem::remove(folder_.path() / name);
+  }
+  expect_done(folder_, "adapt part.msh -hsiz .2 -v 0 --no-metric");
+  expect_names("part.o.msh");
+  EXPECT_FALSE(contains(folder_.read("part.o.msh"), "NodeData"));
+  EXPECT_TRUE(
+      contains(folder_.run("adapt part.msh -hsiz .2 -v 1 -o part.mesh").err, "no place for names"));
+}
+
+TEST_F(FormatsCommand, MetricsAndFieldsMayBeInThem) {
+  expect_done(folder_, "metric implied part.msh -o sizes.vtu -v 0");
+  expect_done(folder_, "metric bound part.msh sizes.vtu -hmax .1 -o fine.sol -v 0");
+  expect_done(folder_, "metric bound part.msh sizes.vtu -hmax .1 -o fine.msh -v 0");
+  expect_done(folder_, "adapt part.msh -sol fine.msh -v 0 -o a.meshb");
+  expect_done(folder_, "adapt part.msh -sol fine.sol -v 0 -o b.meshb");
+  EXPECT_EQ(folder_.read("a.meshb"), folder_.read("b.meshb"));
+  expect_done(folder_, "adapt part.msh -hsiz .2 --field sizes.vtu -v 0 -o carried.vtk");
+  EXPECT_TRUE(contains(folder_.read("carried.vtk"), "sizes 9 "));
+  expect_done(folder_, "convert fine.msh again.sol");
+  EXPECT_TRUE(contains(folder_.read("again.sol"), "SolAtVertices"));
+  EXPECT_TRUE(contains(folder_.run("metric bound part.msh part.msh -hmax 1 -o c.sol").err,
+                       "part.msh: expected a field 'metric'"));
+}
+
+TEST_F(FormatsCommand, ConvertGoesFromEachToEach) {
+  for (const std::string from : {"part.msh", "a.vtu", "a.vtk"}) {
+    for (const std::string to : {"a.vtu", "a.vtk", "b.msh"}) {
+      if (to == from) continue;
+      expect_done(folder_, "convert " + from + " " + to);
+      expect_names(to);
+    }
+    EXPECT_EQ(folder_.run("convert " + from + " b.meshb").status, 0);
+    EXPECT_EQ(folder_.run("convert " + from + " b.su2").status, 0);
+    EXPECT_TRUE(contains(folder_.read("b.su2"), "MARKER_TAG= wall"));
+  }
+  expect_done(folder_, "convert part.msh c.msh --version-of-file 2 --binary");
+  EXPECT_TRUE(folder_.read("c.msh").starts_with("$MeshFormat\n2.2 1 8\n"));
+  expect_names("c.msh");
+  expect_done(folder_, "view a.vtu -o a.svg");
+  EXPECT_EQ(folder_.run("convert part.msh a.stl").status, 2);
+}
+
+}  // namespace
+}  // namespace ductile::cli::formats_command_test
