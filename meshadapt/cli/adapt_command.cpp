@@ -92,16 +92,28 @@ fs::path only_mesh(const Arguments& arguments) {
   if (const auto mesh = arguments.text("-in")) meshes.push_back(*mesh);
   if (meshes.size() != 1)
     throw UsageError("expected one mesh, found " + std::to_string(meshes.size()));
-  return meshes[0];
+  return input_of(meshes[0]);
+}
+
+/// Nothing is beside standard output.
+void set_output(Job& job, const Arguments& arguments) {
+  const auto out = arguments.text("-o");
+  if (!out && job.input == "/dev/stdin")
+    throw UsageError("expected -o, because the mesh is read from standard input, found none");
+  job.output = out ? output_of(*out) : default_output(job.input);
+  expect_mesh_name(job.output);
+  job.with_metric = !arguments.has("--no-metric");
+  if (holds_fields(job.output)) return;
+  if (is_standard_output(job.output) && arguments.has("--field"))
+    throw UsageError(
+        "option --field: expected an output beside which fields can be, or -.vtu, found " +
+        job.output.string());
+  if (job.with_metric && !is_standard_output(job.output)) job.metric_out = field_beside(job.output);
 }
 
 void set_files(Job& job, const Arguments& arguments) {
   job.input = only_mesh(arguments);
-  job.output = default_output(job.input);
-  if (const auto out = arguments.text("-o")) job.output = *out;
-  expect_mesh_name(job.output);
-  job.with_metric = !arguments.has("--no-metric");
-  if (job.with_metric && !holds_fields(job.output)) job.metric_out = field_beside(job.output);
+  set_output(job, arguments);
   job.json = arguments.text("--json");
   job.vtu = arguments.text("--vtu");
   if (job.vtu && job.vtu->extension() != ".vtu")
@@ -144,7 +156,7 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
 }
 
 std::vector<fs::path> outputs_of(const Job& job) {
-  std::vector<fs::path> paths = {job.output};
+  std::vector<fs::path> paths = {place_of(job.output)};
   if (job.metric_out) paths.push_back(*job.metric_out);
   paths.insert(paths.end(), job.fields.outputs().begin(), job.fields.outputs().end());
   for (const auto& path : {job.vtu, job.json})
@@ -250,7 +262,9 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector
   meshadapt::WriteOptions as_named;
   if (holds_fields(job.output)) as_named.fields = fields;
   as_named.warnings = &warnings;
-  meshadapt::write_mesh(outputs, job.output, adapted.mesh, as_named);
+  const std::string ending = job.output.extension().string();
+  as_named.format = ending;
+  meshadapt::write_mesh(outputs, place_of(job.output), adapted.mesh, as_named);
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
   job.fields.write(outputs, carried);
   if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, adapted.mesh, with_fields);
@@ -288,7 +302,8 @@ int work(const Executor& executor, const Job& job) {
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   const std::string said = job.verbosity > 0 ? what_was_done(job, summary) : std::string();
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string(), warnings);
-  std::fputs(said.c_str(), stdout);  // no memory is taken now that the outputs are there
+  // No memory is taken now that the outputs are there.
+  std::fputs(said.c_str(), is_standard_output(job.output) ? stderr : stdout);
   return done;
 }
 

@@ -26,10 +26,10 @@ std::optional<Number> parse(std::string_view text) {
   return value;
 }
 
-/// Whether a word asks for an option: "-" is a file and "-1" a number.
+/// Whether a word asks for an option: "-" and "-.vtu" are files and "-1" a number.
 bool looks_like_option(std::string_view word) {
-  if (word.size() < 2 || word[0] != '-') return false;
-  const bool begins_as_number = (word[1] >= '0' && word[1] <= '9') || word[1] == '.';
+  if (word.size() < 2 || word[0] != '-' || word[1] == '.') return false;
+  const bool begins_as_number = word[1] >= '0' && word[1] <= '9';
   return !begins_as_number || !parse<double>(word);
 }
 

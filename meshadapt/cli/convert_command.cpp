@@ -113,7 +113,7 @@ void convert_field(const meshadapt::AnyField& field, const fs::path& to,
                    const meshadapt::WriteOptions& form, meshadapt::Warnings& warnings) {
   if (rounds(to, form)) expect_metric_to_stay(field, to);
   warn_of_rounding(field.values, to, form.version, warnings);
-  meshadapt::write_field(to, field, form);
+  meshadapt::write_field(place_of(to), field, form);
 }
 
 void warn_of_fields(const meshadapt::MeshWithFields& file, const fs::path& to,
@@ -140,7 +140,9 @@ void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arg
     form.fields = file.fields;
   else
     warn_of_fields(file, to, warnings);
-  meshadapt::write_mesh(to, file.mesh, form);
+  const std::string ending = to.extension().string();
+  form.format = ending;
+  meshadapt::write_mesh(place_of(to), file.mesh, form);
 }
 
 /// Only a mesh has room for what is asked for, or nothing has.
@@ -163,6 +165,9 @@ meshadapt::WriteOptions form_of(const Arguments& arguments, const fs::path& to) 
     throw UsageError("option --version-of-file: " + to.string() + " takes none");
   if (is_msh && form.version % 2 != 0)
     throw UsageError("option --version-of-file: " + to.string() + " takes 2 or 4");
+  if (holds_field(to))
+    form.form = to.extension() == ".sol" ? meshadapt::WriteOptions::Form::ascii
+                                         : meshadapt::WriteOptions::Form::binary;
   if (!arguments.has("--binary")) return form;
   if (!is_msh && !is_vtk)
     throw UsageError("option --binary: expected an output .msh or .vtk, found " + to.string());
@@ -174,13 +179,13 @@ int run(const Arguments& arguments) {
   if (arguments.operands().size() != 2)
     throw UsageError("expected an input and an output, found " +
                      std::to_string(arguments.operands().size()) + " files");
-  const fs::path from = arguments.operands()[0], to = arguments.operands()[1];
+  const fs::path from = input_of(arguments.operands()[0]), to = output_of(arguments.operands()[1]);
   expect_names(from, to);
   if (!holds_fields(to) && arguments.has("-sol"))
     throw UsageError("option -sol: expected an output that holds fields, such as .vtu, found " +
                      to.string() + "; convert the field by itself");
   meshadapt::WriteOptions form = form_of(arguments, to);
-  meshadapt::check_writable(to);
+  meshadapt::check_writable(place_of(to));
   meshadapt::Warnings warnings;
   form.warnings = &warnings;
   if (holds_field(from)) {

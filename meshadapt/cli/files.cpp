@@ -55,6 +55,16 @@ void expect_no_input(const fs::path& output, const std::vector<fs::path>& inputs
                        ": is read, and would be replaced; give the output another name");
 }
 
+fs::path input_of(const std::string& word) { return word == "-" ? "/dev/stdin" : word; }
+
+fs::path output_of(const std::string& word) { return word == "-" ? "-.mesh" : word; }
+
+bool is_standard_output(const fs::path& output) { return output.string().starts_with("-."); }
+
+fs::path place_of(const fs::path& output) {
+  return is_standard_output(output) ? fs::path("/dev/stdout") : output;
+}
+
 void expect_mesh_name(const fs::path& path) {
   const auto* const format = meshadapt::format_of(path);
   if (format == nullptr || !format->is_written)

@@ -28,6 +28,16 @@ std::filesystem::path default_output(const std::filesystem::path& mesh);
 /// The same name with the ending of a field: .sol, or .solb for a .meshb.
 std::filesystem::path field_beside(const std::filesystem::path& mesh);
 
+/// What is read for a word of the command line: "-" is standard input.
+std::filesystem::path input_of(const std::string& word);
+
+/// Where a mesh goes for a word of the command line. "-.ENDING" is standard output, in the format
+/// of that ending, and "-" the same as "-.mesh".
+std::filesystem::path output_of(const std::string& word);
+bool is_standard_output(const std::filesystem::path& output);
+/// The file to be written, /dev/stdout for standard output.
+std::filesystem::path place_of(const std::filesystem::path& output);
+
 /// Throws UsageError unless a mesh can be written to a file of this name.
 void expect_mesh_name(const std::filesystem::path& path);
 

@@ -115,7 +115,7 @@ void write_json(const std::string& path, const AnyMesh& mesh, const Validity& va
 
 int work(const Executor& executor, const Arguments& arguments) {
   meshadapt::Warnings warnings;
-  const AnyMesh mesh = meshadapt::read_mesh(arguments.operands()[0], &warnings);
+  const AnyMesh mesh = meshadapt::read_mesh(input_of(arguments.operands()[0]), &warnings);
   std::optional<AnyField> metric;
   if (const auto path = arguments.text("-sol")) metric = read_metric(*path, mesh, warnings);
   const bool has_elements =

@@ -86,7 +86,7 @@ void set_files(Job& job, const Arguments& arguments) {
   if (files < found->least || files > found->most)
     throw UsageError(job.operation + ": expected " + std::string(found->takes) + ", found " +
                      std::to_string(files) + (files == 1 ? " file" : " files"));
-  job.mesh = words[1];
+  job.mesh = input_of(words[1]);
   job.fields.assign(words.begin() + 2, words.end());
   job.output = arguments.text("-o").value_or("");
   if (job.output.extension() != ".sol" && job.output.extension() != ".solb" &&

@@ -50,7 +50,7 @@ PictureFormat format_of(const fs::path& picture) {
 int run(const Arguments& arguments) {
   if (arguments.operands().size() != 1)
     throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
-  const fs::path input = arguments.operands()[0];
+  const fs::path input = input_of(arguments.operands()[0]);
   fs::path picture = arguments.text("-o").value_or("");
   if (picture.empty()) picture = fs::path(input).replace_extension(".png");
   const PictureFormat format = format_of(picture);

@@ -18,12 +18,12 @@ namespace {
 constexpr const char* damaged = "; the file is damaged or cut short, write it again";
 
 constexpr auto value_of_letter = [] {
-  std::array<std::int8_t, 256> value{};
+  std::array<int, 256> value{};
   value.fill(-1);
   constexpr std::string_view letters =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (std::size_t i = 0; i < letters.size(); ++i)
-    value[static_cast<unsigned char>(letters[i])] = static_cast<std::int8_t>(i);
+    value[static_cast<unsigned char>(letters[i])] = static_cast<int>(i);
   return value;
 }();
 

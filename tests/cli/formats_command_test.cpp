@@ -88,5 +88,22 @@ TEST_F(FormatsCommand, ConvertGoesFromEachToEach) {
   EXPECT_EQ(folder_.run("convert part.msh a.stl").status, 2);
 }
 
+TEST_F(FormatsCommand, PipesAreCalledMinus) {
+  const auto out_of = [&](const std::string& words) {
+    const Outcome outcome = folder_.run(words);
+    EXPECT_EQ(outcome.status, 0) << words << "\n" << outcome.err;
+    return outcome.out;
+  };
+  expect_done(folder_, "adapt part.msh -hsiz .2 -v 0 -o a.vtu");
+  EXPECT_TRUE(out_of("adapt - -hsiz .2 -o -.vtu < part.msh") == folder_.read("a.vtu"));
+  EXPECT_TRUE(out_of("adapt - -hsiz .2 -o - < a.vtu").starts_with("MeshVersionFormatted"));
+  folder_.write("c.msh", out_of("convert - -.msh < part.msh"));
+  expect_names("- < c.msh");
+  EXPECT_TRUE(contains(out_of("convert a.vtu -.sol"), "SolAtVertices"));
+  for (const char* words : {"adapt - -hsiz .2 < part.msh", "adapt - -o - --field a.sol < part.msh",
+                            "adapt part.msh -o -.xyz"})
+    EXPECT_EQ(folder_.run(words).status, 2) << words;
+}
+
 }  // namespace
 }  // namespace ductile::cli::formats_command_test
