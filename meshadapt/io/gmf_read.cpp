@@ -32,7 +32,7 @@ void read_version(AsciiCursor& in) {
   if (gmf::keyword_named(first) != Keyword::version)
     in.fail(
         "expected MeshVersionFormatted, the beginning of a Medit file, found something else; "
-        "give a .mesh, .meshb, .sol or .solb file");
+        "give a .mesh, .meshb, .msh, .vtu, .vtk, .sol or .solb file");
   in.enter(Keyword::version, 1);
   const std::int64_t version = in.integer();
   if (version < 0 || version > 4)  // bamg and FreeFEM write 0

@@ -62,6 +62,8 @@ void MshCells::append(Cells<Corners>& cells, const std::uint64_t* nodes, MshGrou
   cells.add(corners, group.physical);
   elementary_of_[Corners].push_back(group.elementary);
   in_groups_[Corners] = in_groups_[Corners] || group.physical != 0;
+  const auto& first = *group_of_[Corners].try_emplace(group.elementary, group.physical).first;
+  repeated_[Corners] = repeated_[Corners] || first.second != group.physical;
 }
 
 void MshCells::append_number(std::vector<std::size_t>& places, std::size_t corners,
@@ -96,10 +98,46 @@ void MshCells::finish(int dimension, std::vector<std::int32_t>& reference) {
                 [&](const ReferenceName& name) { return name.dimension == dimension; });
 }
 
-void MshCells::finish() {
+template <int Corners>
+std::size_t MshCells::drop_repeated(Cells<Corners>& cells) {
+  if (!repeated_[Corners]) return 0;
+  std::vector<std::pair<std::array<std::uint32_t, Corners>, std::size_t>> sorted;
+  sorted.reserve(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    sorted.emplace_back(cells.vertices[i], i);
+    std::sort(sorted.back().first.begin(), sorted.back().first.end());
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<bool> goes(cells.size(), false);
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    goes[sorted[i].second] = sorted[i].first == sorted[i - 1].first;
+  std::size_t kept = 0;
+  auto& numbers = numbers_[Corners];
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (goes[i]) continue;
+    cells.vertices[kept] = cells.vertices[i];
+    cells.reference[kept] = cells.reference[i];
+    elementary_of_[Corners][kept] = elementary_of_[Corners][i];
+    if (!numbers.empty()) numbers[kept] = numbers[i];
+    ++kept;
+  }
+  const std::size_t gone = cells.size() - kept;
+  cells.vertices.resize(kept);
+  cells.reference.resize(kept);
+  elementary_of_[Corners].resize(kept);
+  if (!numbers.empty()) numbers.resize(kept);
+  return gone;
+}
+
+std::size_t MshCells::finish() {
+  const std::size_t gone = drop_repeated(to_.mesh.edges) + drop_repeated(to_.mesh.triangles) +
+                           drop_repeated(to_.mesh.tetrahedra);
+  to_.cell_of_triangle.resize(to_.mesh.triangles.size());
+  to_.cell_of_tetrahedron.resize(to_.mesh.tetrahedra.size());
   finish(1, to_.mesh.edges.reference);
   finish(2, to_.mesh.triangles.reference);
   finish(3, to_.mesh.tetrahedra.reference);
+  return gone;
 }
 
 }  // namespace ductile::meshadapt

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "number_cursor.hpp"
@@ -32,8 +33,9 @@ class MshCells {
 
   /// `nodes` are numbers of `corners` nodes.
   void add(std::uint64_t number, int corners, const std::uint64_t* nodes, MshGroup group);
-  /// To be called after the last: gives references.
-  void finish();
+  /// To be called after the last: gives references. Returns how many elements went because they
+  /// were listed before, as version 2 does for each group of an entity.
+  std::size_t finish();
   /// The numbers of the tetrahedra or, if there are none, the triangles.
   const std::vector<std::uint64_t>& numbers() const {
     return numbers_[4].empty() ? numbers_[3] : numbers_[4];
@@ -44,6 +46,8 @@ class MshCells {
   template <int Corners>
   void append(Cells<Corners>& cells, const std::uint64_t* nodes, MshGroup group);
   void finish(int dimension, std::vector<std::int32_t>& reference);
+  template <int Corners>
+  std::size_t drop_repeated(Cells<Corners>& cells);
   void append_number(std::vector<std::size_t>& places, std::size_t corners, std::uint64_t number);
 
   const NumberCursor& in_;
@@ -53,6 +57,8 @@ class MshCells {
   std::array<std::vector<std::uint64_t>, 5> numbers_;  ///< of triangles and tetrahedra
   std::array<std::vector<std::int32_t>, 5> elementary_of_;
   std::array<bool, 5> in_groups_{};  ///< whether any is
+  std::array<bool, 5> repeated_{};   ///< whether an entity is in several groups
+  std::array<std::map<std::int32_t, std::int32_t>, 5> group_of_;  ///< [elementary] the first
 };
 
 }  // namespace ductile::meshadapt

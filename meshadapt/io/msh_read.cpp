@@ -19,19 +19,18 @@ SpatialMesh MshReader::read() {
       in_.fail("expected the beginning of a section, such as $Nodes, found " + quoted(word) +
                "; correct it, or the count of the section before");
     const std::string name(word.substr(1, 40));
-    const std::string where = in_.where();
     in_.line();
     if (version_ == 0 && name != "MeshFormat" && name != "Comments")
       in_.fail("expected $MeshFormat first, found " + quoted(word) +
                "; write the file in version 4.1 or 2.2");
-    read_section(name, where);
+    read_section(name);
   }
   expect_sections();
   say_what_is_left_out();
   return std::move(to_);
 }
 
-void MshReader::read_section(const std::string& name, const std::string& where) {
+void MshReader::read_section(const std::string& name) {
   if (name == "MeshFormat")
     read_format();
   else if (name == "PhysicalNames")
@@ -49,10 +48,15 @@ void MshReader::read_section(const std::string& name, const std::string& where) 
   else if (name == "ElementData")
     return read_data(NamedField::Place::elements, name);
   else {
-    if (name != "Comments") left_out_.add(where, name);
+    if (name != "Comments") leave_out(name);
     return skip_section(name);
   }
   end_section(name);
+}
+
+/// Lines are counted for the first one only.
+void MshReader::leave_out(const std::string& section, const std::string& note) {
+  left_out_.add(left_out_.warning().empty() ? in_.where() : std::string(), section, note);
 }
 
 void MshReader::skip_section(const std::string& name) {
@@ -129,7 +133,7 @@ void MshReader::read_elements() {
   has_elements_ = true;
   MshCells cells(in_, to_, node_index_);
   version_ == 2 ? read_elements_2(cells) : read_elements_4(cells);
-  cells.finish();
+  repeated_ = cells.finish();
   element_numbers_ = cells.numbers();
 }
 
@@ -148,6 +152,9 @@ void MshReader::say_what_is_left_out() {
     warnings_->push_back(printable(text));
   warn(several_groups_,
        " entities are in several physical groups; their elements have the reference of the first");
+  warn(repeated_,
+       " elements are listed again for further physical groups; they have the reference of the "
+       "first");
   warn(between_parts_, " elements between partitions are left out");
   warn(in_parts_, " elements say which partition they are in, which is left out");
 }
@@ -175,7 +182,6 @@ MshReader::DataHead MshReader::read_data_head() {
 }
 
 void MshReader::read_data(NamedField::Place place, const std::string& section) {
-  const std::string where = in_.where();
   if (!has_nodes_ || (place == NamedField::Place::elements && !has_elements_))
     in_.fail("expected $Nodes and $Elements before $" + section + ", found none; put them first");
   const DataHead head = read_data_head();
@@ -183,9 +189,9 @@ void MshReader::read_data(NamedField::Place place, const std::string& section) {
   const std::size_t wanted = (at_vertices ? node_numbers_ : element_numbers_).size();
   const bool usable = head.components == 1 || head.components == 3 || head.components == 9;
   if (!usable || head.count < wanted || wanted == 0) {
-    left_out_.add(where, section,
-                  " '" + head.name + "' (" + std::to_string(head.components) + " components, " +
-                      std::to_string(head.count) + " of " + std::to_string(wanted) + " values)");
+    leave_out(section, " '" + head.name + "' (" + std::to_string(head.components) +
+                           " components, " + std::to_string(head.count) + " of " +
+                           std::to_string(wanted) + " values)");
     return skip_section(section);
   }
   const auto components = static_cast<std::size_t>(head.components);

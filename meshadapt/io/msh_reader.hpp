@@ -30,7 +30,8 @@ class MshReader {
 
  private:
   // ---- Sections ----
-  void read_section(const std::string& name, const std::string& where);
+  void read_section(const std::string& name);
+  void leave_out(const std::string& section, const std::string& note = "");
   void skip_section(const std::string& name);
   void end_section(const std::string& name);
   void read_format();
@@ -97,7 +98,7 @@ class MshReader {
   std::map<std::pair<int, std::int32_t>, Entity> entity_of_;
   std::map<std::pair<bool, std::string>, std::size_t> field_of_;  ///< [in cells, name]
   gmf::LeftOut left_out_;
-  std::size_t several_groups_ = 0, between_parts_ = 0, in_parts_ = 0;
+  std::size_t several_groups_ = 0, repeated_ = 0, between_parts_ = 0, in_parts_ = 0;
 };
 
 }  // namespace ductile::meshadapt

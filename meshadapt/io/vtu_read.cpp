@@ -102,8 +102,8 @@ class VtuReader {
 
   std::vector<double> numbers_of(pugi::xml_node node) const {
     try {
-      if (node.attribute("format").value() == std::string("ascii"))
-        return vtk_reals(node.text().get());
+      const std::string format = node.attribute("format").value();
+      if (format != "binary" && format != "appended") return vtk_reals(node.text().get());
       const VtkNumber number = vtk_number(node.attribute("type").value());
       if (number.bytes == 0)
         throw InputError("expected numbers, found type " +

@@ -54,9 +54,9 @@ struct MeshWithFields {
 /// and tetrahedra, or a section whose name is one letter away from one that is read.
 AnyMesh read_mesh(const std::filesystem::path& path, Warnings* warnings = nullptr);
 
-/// The same with the fields that the file has beside the mesh, all values finite. Those that the
-/// mesh has no place for (of other numbers of components, on other cells) are left out with a
-/// warning.
+/// The same with the fields that the file has beside the mesh, whose values are numbers, which may
+/// be infinite. Those that the mesh has no place for (of other numbers of components, on other
+/// cells) are left out with a warning.
 MeshWithFields read_mesh_with_fields(const std::filesystem::path& path,
                                      Warnings* warnings = nullptr);
 
