@@ -206,8 +206,8 @@ const Command convert_command{
     "convert",
     "IN OUT [-sol FIELD]",
     "writes a mesh or a field in another format",
-    "Meshes: .mesh, .meshb, .msh, .vtu, .vtk (read and written), .su2, .stl (written). Fields:\n"
-    ".sol, .solb, to which those at the vertices of a .msh, .vtu or .vtk can be written, too.",
+    "Meshes in the formats that ductile help lists. Fields: .sol, .solb, to which those at the\n"
+    "vertices can be written, too, of a mesh whose format holds fields.",
     options,
     run};
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "version.hpp"
 
 namespace ductile::cli {
@@ -27,8 +28,13 @@ void print_overview(std::FILE* to) {
   for (const Command* command : all_commands)
     std::fprintf(to, "  ductile %-8s %s\n", std::string(command->name).c_str(),
                  std::string(command->summary).c_str());
+  std::fprintf(to, "  ductile help COMMAND  shows its options\n\nMeshes:\n");
+  for (const meshadapt::MeshFormat& format : meshadapt::mesh_formats())
+    std::fprintf(to, "  %-8s %s%s%s\n", std::string(format.ending).c_str(),
+                 std::string(format.what).c_str(), format.holds_fields ? ", with fields" : "",
+                 format.is_read ? "" : " (written only)");
   std::fprintf(to,
-               "  ductile help COMMAND  shows its options\n\n"
+               "\n"
                "Exit status: 0 the output is valid and written; 1 it could not be done;\n"
                "2 the command line or the input is wrong.\n");
 }
