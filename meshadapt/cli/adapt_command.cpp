@@ -280,12 +280,23 @@ std::string what_was_done(const Job& job, const AdaptSummary& summary) {
   return text + meshadapt::printable(written) + "\n";
 }
 
+void warn_of_fields_left(const Job& job, const meshadapt::MeshWithFields& file,
+                         meshadapt::Warnings& warnings) {
+  std::string names;
+  for (const meshadapt::NamedField& field : file.fields)
+    if (field.name != "metric") names += (names.empty() ? "" : ", ") + field.name;
+  if (!names.empty() && job.fields.inputs().empty())
+    warnings.push_back(file.mesh.name + ": its fields are not carried: " + names +
+                       "; --field takes those at the vertices of a file along");
+}
+
 int work(const Executor& executor, const Job& job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
   if (!job.unneeded.empty()) warnings.push_back(job.unneeded);
   const meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
   const AnyMesh& mesh = file.mesh;
+  warn_of_fields_left(job, file, warnings);
   const AnyField metric = choose_metric(executor, job, file, warnings);
   const CarriedFields::Values fields = job.fields.read(mesh, warnings);
 

@@ -64,6 +64,8 @@ TEST_F(FormatsCommand, MetricsAndFieldsMayBeInThem) {
   EXPECT_EQ(folder_.read("a.meshb"), folder_.read("b.meshb"));
   expect_done(folder_, "adapt part.msh -hsiz .2 --field sizes.vtu -v 0 -o carried.vtk");
   EXPECT_TRUE(contains(folder_.read("carried.vtk"), "sizes 9 "));
+  EXPECT_TRUE(contains(folder_.run("adapt carried.vtk -hsiz .3 -o d.vtu").err,
+                       "carried.vtk: its fields are not carried: sizes"));
   expect_done(folder_, "convert fine.msh again.sol");
   EXPECT_TRUE(contains(folder_.read("again.sol"), "SolAtVertices"));
   EXPECT_TRUE(contains(folder_.run("metric bound part.msh part.msh -hmax 1 -o c.sol").err,
