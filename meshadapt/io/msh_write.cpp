@@ -301,7 +301,7 @@ void write_msh(AtomicOutputs& outputs, const std::filesystem::path& path, const 
                      std::to_string(options.version));
   expect_fit_for_file(mesh, options.fields);
   expect_few_enough(mesh, path);
-  warn_of_lost(options, path, beside_cells(mesh, false));
+  warn_of_lost(options, path, beside_cells(mesh));
   const bool binary = options.form == WriteOptions::Form::binary, old = options.version == 2;
   MshSink sink(outputs.stage(path), binary);
   sink.text(std::string("$MeshFormat\n") + (old ? "2.2 " : "4.1 ") + (binary ? "1 8\n" : "0 8\n"));

@@ -209,19 +209,16 @@ void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields
   }
 }
 
-std::string beside_cells(const AnyMesh& mesh, bool with_names) {
+std::string beside_cells(const AnyMesh& mesh) {
   std::string text;
   const auto add = [&text](const char* what, std::size_t count) {
     if (count > 0)
       text += (text.empty() ? "" : ", ") + std::string(what) + " (" + std::to_string(count) + ")";
   };
-  add("corners", mesh.corners.size());
-  add("ridges", mesh.ridges.size());
   add("required vertices", mesh.required_vertices.size());
   add("required edges", mesh.required_edges.size());
   add("required triangles", mesh.required_triangles.size());
   add("required tetrahedra", mesh.required_tetrahedra.size());
-  if (with_names) add("names of references", mesh.names.size());
   return text;
 }
 

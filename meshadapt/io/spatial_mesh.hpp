@@ -46,8 +46,9 @@ std::vector<double> points_in_space(const AnyMesh& mesh);
 void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields);
 
 /// What a mesh has beside cells and references, for the warning of a format that holds nothing of
-/// it: "corners (3), ridges (2)"; empty if nothing. With names of references if that is asked for.
-std::string beside_cells(const AnyMesh& mesh, bool with_names);
+/// it: "required vertices (3), required edges (2)"; empty if nothing. Corners and ridges are not
+/// told of: they are found again by their angles. With names of references if that is asked for.
+std::string beside_cells(const AnyMesh& mesh);
 
 /// Adds the warning, if there is something to say.
 void warn_of_lost(const WriteOptions& options, const std::filesystem::path& path,

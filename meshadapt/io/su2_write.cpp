@@ -89,7 +89,7 @@ bool several(const std::vector<std::int32_t>& reference) {
 void write_su2(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const WriteOptions& options) {
   expect_fit_for_file(mesh, {});
-  std::string lost = beside_cells(mesh, false);
+  std::string lost = beside_cells(mesh);
   const bool flat = mesh.dimension == 2;
   if (several(flat ? mesh.triangles.reference : mesh.tetrahedra.reference))
     lost += std::string(lost.empty() ? "" : ", ") + "references of elements";

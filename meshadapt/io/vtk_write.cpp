@@ -152,7 +152,7 @@ void write_vtk(AtomicOutputs& outputs, const std::filesystem::path& path, const 
   if (mesh.vertex_count() > std::numeric_limits<std::int32_t>::max())
     throw InputError(path.string() +
                      ": too large for this format, whose numbers have 32 bits; write a .vtu");
-  warn_of_lost(options, path, beside_cells(mesh, false));
+  warn_of_lost(options, path, beside_cells(mesh));
   const bool binary = options.form == WriteOptions::Form::binary;
   VtkSink sink(outputs.stage(path), binary);
   sink.text(std::string("# vtk DataFile Version 4.2\nwritten by Ductile\n") +

@@ -136,7 +136,7 @@ void add_piece(pugi::xml_node grid, const AnyMesh& mesh, std::span<const NamedFi
 void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                const WriteOptions& options) {
   expect_fit_for_file(mesh, options.fields);
-  warn_of_lost(options, path, beside_cells(mesh, false));
+  warn_of_lost(options, path, beside_cells(mesh));
   pugi::xml_document document;
   const pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   add_attribute(declaration, "version", "1.0");
