@@ -47,7 +47,7 @@ void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields
 
 /// What a mesh has beside cells and references, for the warning of a format that holds nothing of
 /// it: "required vertices (3), required edges (2)"; empty if nothing. Corners and ridges are not
-/// told of: they are found again by their angles. With names of references if that is asked for.
+/// told of: they are found again by their angles.
 std::string beside_cells(const AnyMesh& mesh);
 
 /// Adds the warning, if there is something to say.
