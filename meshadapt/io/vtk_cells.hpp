@@ -32,10 +32,12 @@ struct CellReferences {
   std::vector<std::int32_t> region, boundary;
 };
 
+/// Of a surface in space, triangles are the elements: readers see no more than cells.
 inline CellReferences cell_references(const AnyMesh& mesh) {
   CellReferences of;
+  const std::uint8_t element = mesh.tetrahedra.size() == 0 ? vtk_triangle : vtk_tetrahedron;
   for_each_vtk_cells(mesh, [&](const auto& cells, std::uint8_t type) {
-    const bool elements = type == (mesh.dimension == 2 ? vtk_triangle : vtk_tetrahedron);
+    const bool elements = type == element;
     auto& those = elements ? of.region : of.boundary;
     auto& others = elements ? of.boundary : of.region;
     those.insert(those.end(), cells.reference.begin(), cells.reference.end());

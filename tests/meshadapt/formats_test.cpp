@@ -101,6 +101,24 @@ TEST(Formats, ReadWhatTheyWrite) {
       }
 }
 
+TEST(Formats, KeepSurfacesInSpace) {
+  const test::TemporaryFolder folder;
+  AnyMesh mesh = box_mesh({1, 1, 1}, {2, 2, 2});
+  mesh.tetrahedra = {};
+  mesh.edges.add({0, 1}, 9);
+  for (const Way& way : ways) {
+    const auto path = folder / ("a" + std::string(way.ending));
+    WriteOptions options;
+    options.version = way.version;
+    options.form = way.form;
+    write_mesh(path, mesh, options);
+    const AnyMesh found = read_mesh(path);
+    EXPECT_EQ(found.dimension, 3);
+    EXPECT_EQ(found.triangles, mesh.triangles) << way.ending << way.version;
+    EXPECT_EQ(found.edges, mesh.edges) << way.ending << way.version;
+  }
+}
+
 TEST(Formats, KeepReferencesThatAreAllZeroAndNoFields) {
   const test::TemporaryFolder folder;
   for (const Way& way : ways) {
