@@ -10,8 +10,8 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/fields.hpp"
-#include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 
