@@ -114,7 +114,7 @@ Formula<3> formula_of(const runtime::Executor& executor, const CaseInfo& info, d
 }
 
 AnyMesh regular_mesh(int dimension, int cells) {
-  return dimension == 2 ? meshadapt::rectangle_mesh({1, 1}, {cells, cells})
+  return dimension == 2 ? meshadapt::box_mesh<2>({1, 1}, {cells, cells})
                         : meshadapt::box_mesh({1, 1, 1}, {cells, cells, cells});
 }
 

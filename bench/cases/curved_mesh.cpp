@@ -11,7 +11,7 @@ using meshadapt::AnyMesh;
 
 AnyMesh curved_mesh(int dimension, int cells) {
   const int across = std::max(1, cells / 4);
-  AnyMesh mesh = dimension == 2 ? meshadapt::rectangle_mesh({0.5, 2}, {across, cells})
+  AnyMesh mesh = dimension == 2 ? meshadapt::box_mesh<2>({0.5, 2}, {across, cells})
                                 : meshadapt::box_mesh({0.5, 2, 2}, {across, cells, cells});
   const auto stride = static_cast<std::size_t>(dimension);
   for (std::size_t at = 0; at < mesh.coordinates.size(); at += stride) {

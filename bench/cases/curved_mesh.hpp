@@ -8,7 +8,7 @@ namespace ductile::bench {
 
 /// All between the radii 1/2 and 1 and within an angle of 1 to either side, in 3D of longitude and
 /// of latitude: a sector of a ring, or of a hollow ball. `cells` along an angle, a fourth of that
-/// along the radius, cut as those of rectangle_mesh() and box_mesh(), with their references.
+/// along the radius, cut as those of box_mesh(), with their references.
 meshadapt::AnyMesh curved_mesh(int dimension, int cells);
 
 }  // namespace ductile::bench

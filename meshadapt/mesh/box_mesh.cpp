@@ -99,7 +99,8 @@ void add_sides(AnyMesh& mesh, const std::array<int, 3>& cells, std::size_t axis)
 
 }  // namespace
 
-AnyMesh rectangle_mesh(const std::array<double, 2>& extent, const std::array<int, 2>& cells) {
+template <>
+AnyMesh box_mesh<2>(const std::array<double, 2>& extent, const std::array<int, 2>& cells) {
   expect_box(extent, cells);
   AnyMesh mesh;
   mesh.dimension = 2;
@@ -125,7 +126,8 @@ AnyMesh rectangle_mesh(const std::array<double, 2>& extent, const std::array<int
   return mesh;
 }
 
-AnyMesh box_mesh(const std::array<double, 3>& extent, const std::array<int, 3>& cells) {
+template <>
+AnyMesh box_mesh<3>(const std::array<double, 3>& extent, const std::array<int, 3>& cells) {
   expect_box(extent, cells);
   AnyMesh mesh;
   mesh.dimension = 3;

@@ -148,7 +148,7 @@ TEST(AdaptSummary, WarnsOfEdgesThatAreTooLong) {
 
 /// Writes arc.mesh, with radii from 1 to 2.
 void add_arc(const Folder& folder) {
-  meshadapt::AnyMesh mesh = meshadapt::rectangle_mesh({1, 1}, {40, 40});
+  meshadapt::AnyMesh mesh = meshadapt::box_mesh<2>({1, 1}, {40, 40});
   for (std::size_t at = 0; at < mesh.coordinates.size(); at += 2) {
     const double radius = 1 + mesh.coordinates[at], angle = mesh.coordinates[at + 1];
     mesh.coordinates[at] = radius * std::cos(angle);

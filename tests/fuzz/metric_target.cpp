@@ -51,7 +51,7 @@ class Numbers {
 
 AnyMesh small_mesh(Numbers& numbers) {
   const int n = 1 + static_cast<int>(numbers.byte() % 3);
-  AnyMesh mesh = numbers.byte() % 2 == 0 ? meshadapt::rectangle_mesh({1, 1}, {n, 2})
+  AnyMesh mesh = numbers.byte() % 2 == 0 ? meshadapt::box_mesh<2>({1, 1}, {n, 2})
                                          : meshadapt::box_mesh({1, 1, 1}, {n, 1, 1});
   mesh.name = "mesh";
   return mesh;

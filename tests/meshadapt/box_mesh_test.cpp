@@ -28,7 +28,7 @@ void expect_sides(const AnyMesh& mesh, const std::array<double, Dim>& extent,
 
 TEST(BoxMesh, IsAValidMeshOfTheRectangleWhoseSidesAreTold) {
   const runtime::Executor executor({.threads = 2});
-  const AnyMesh mesh = rectangle_mesh({2, 0.5}, {4, 3});
+  const AnyMesh mesh = box_mesh<2>({2, 0.5}, {4, 3});
   EXPECT_TRUE(check_mesh(executor, mesh).empty());
   EXPECT_EQ(mesh.triangles.size(), 24U);
   expect_sides<2>(mesh, {2, 0.5}, {3, 3, 4, 4});
@@ -49,8 +49,8 @@ TEST(BoxMesh, IsAValidMeshOfTheBoxWhoseSidesAreTold) {
 }
 
 TEST(BoxMesh, RefusesBoxesWithoutExtentOrCells) {
-  EXPECT_THROW(rectangle_mesh({1, 0}, {1, 1}), InputError);
-  EXPECT_THROW(rectangle_mesh({1, 1}, {0, 1}), InputError);
+  EXPECT_THROW(box_mesh<2>({1, 0}, {1, 1}), InputError);
+  EXPECT_THROW(box_mesh<2>({1, 1}, {0, 1}), InputError);
   EXPECT_THROW(box_mesh({1, 1, -1}, {1, 1, 1}), InputError);
   EXPECT_THROW(box_mesh({1, 1, 1.0 / 0.0}, {1, 1, 1}), InputError);
   EXPECT_THROW(box_mesh({1, 1, 1}, {2000, 2000, 2000}), InputError);

@@ -214,7 +214,7 @@ TEST(Vtu, RefusesAFieldOfAnotherMesh) {
 
 TEST(Vtu, RefusesAMeshThatLacksReferences) {
   const test::TemporaryFolder folder;
-  AnyMesh mesh = rectangle_mesh({1, 1}, {2, 2});
+  AnyMesh mesh = box_mesh<2>({1, 1}, {2, 2});
   mesh.triangles.reference.pop_back();
   EXPECT_NE(test::complaint([&] { write_vtu(folder / "a.vtu", mesh, {}); }), "");
   EXPECT_EQ(folder.file_count(), 0U);
@@ -232,7 +232,7 @@ void* allocate_while_there_is(std::size_t bytes) {
 
 TEST(Vtu, IsWholeOrNotThereIfMemoryRunsOut) {
   const test::TemporaryFolder folder;
-  const AnyMesh mesh = rectangle_mesh({1, 1}, {120, 120});
+  const AnyMesh mesh = box_mesh<2>({1, 1}, {120, 120});
   const std::vector<NamedField> fields = {
       {"u", Type::scalar, std::vector<double>(mesh.vertex_count(), 0.5)}};
   write_vtu(folder / "whole.vtu", mesh, fields);

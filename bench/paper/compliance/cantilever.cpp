@@ -13,7 +13,7 @@ using meshadapt::VertexId;
 namespace {
 
 AnyMesh box(std::integral_constant<int, 2> /*dimension*/, int cells) {
-  return meshadapt::rectangle_mesh({1, height}, {2 * cells, cells});
+  return meshadapt::box_mesh<2>({1, height}, {2 * cells, cells});
 }
 AnyMesh box(std::integral_constant<int, 3> /*dimension*/, int cells) {
   return meshadapt::box_mesh({1, height, width}, {2 * cells, cells, cells / 2});

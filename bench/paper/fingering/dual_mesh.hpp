@@ -40,7 +40,7 @@ struct DualMesh {
   std::vector<EdgeId> around;
 };
 
-/// Expects the sides of meshadapt::rectangle_mesh().
+/// Expects the sides of meshadapt::box_mesh<2>().
 DualMesh make_dual_mesh(const runtime::Executor& executor, const AnyMesh& mesh);
 
 /// 1 if a positive flux along the edge leaves the vertex, -1 if it enters.

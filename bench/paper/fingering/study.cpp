@@ -25,7 +25,7 @@ double saturation_at_start(const meshadapt::Vector<2>& point) {
 std::unique_ptr<Simulation> run_case(const runtime::Executor& executor, const RunOptions& options,
                                      const Watch& watch) {
   auto run = std::make_unique<Simulation>(
-      executor, Fluids{}, meshadapt::rectangle_mesh({2, 1}, {2 * options.cells, options.cells}),
+      executor, Fluids{}, meshadapt::box_mesh<2>({2, 1}, {2 * options.cells, options.cells}),
       saturation_at_start);
   const bool adapts = options.adapt_every > 0;
   AdaptGoal goal = options.goal;

@@ -107,7 +107,7 @@ std::size_t element_count(const AnyMesh& mesh) {
 }
 
 AnyMesh start_mesh_of(int dimension, int cells) {
-  return dimension == 2 ? meshadapt::rectangle_mesh({1, 1}, {cells, cells})
+  return dimension == 2 ? meshadapt::box_mesh<2>({1, 1}, {cells, cells})
                         : meshadapt::box_mesh({1, 1, 1}, {cells, cells, cells});
 }
 

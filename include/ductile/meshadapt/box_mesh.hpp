@@ -1,6 +1,6 @@
 /// @file
-/// Meshes to start from: a rectangle or a box, from the origin on, cut into equal cells and those
-/// into triangles or tetrahedra. Their boundaries are listed; references tell the sides apart, and
+/// A mesh to start from: a box, in 2D a rectangle, from the origin on, cut into equal cells and
+/// those into triangles or tetrahedra. Its boundary is listed; references tell the sides apart, and
 /// adaptation keeps them, so boundary conditions can be found by them.
 #pragma once
 
@@ -16,12 +16,16 @@ struct Side {
   static constexpr int left = 1, right = 2, bottom = 3, top = 4, front = 5, back = 6;
 };
 
-/// Two triangles a cell, with diagonals that alternate. `extent` along x and y, `cells` along each.
-/// Throws InputError unless extents are positive and there is a cell along each axis.
-/// Elements have reference 1. Thread safety: any thread.
-AnyMesh rectangle_mesh(const std::array<double, 2>& extent, const std::array<int, 2>& cells);
+/// In 2D two triangles a cell, with diagonals that alternate; in 3D six tetrahedra a cell (Kuhn).
+/// `extent` and `cells` are along each axis. Throws InputError unless extents are positive, there
+/// is a cell along each axis, and 32 bits can count the vertices. Elements have reference 1.
+/// Thread safety: any thread.
+template <int Dim = 3>
+AnyMesh box_mesh(const std::array<double, Dim>& extent, const std::array<int, Dim>& cells);
 
-/// Six tetrahedra a cell (Kuhn). Throws as above. Thread safety: any thread.
-AnyMesh box_mesh(const std::array<double, 3>& extent, const std::array<int, 3>& cells);
+template <>
+AnyMesh box_mesh<2>(const std::array<double, 2>& extent, const std::array<int, 2>& cells);
+template <>
+AnyMesh box_mesh<3>(const std::array<double, 3>& extent, const std::array<int, 3>& cells);
 
 }  // namespace ductile::meshadapt

@@ -1,0 +1,200 @@
+#include "ductile/meshadapt/mesh_from_arrays.hpp"
+
+#include <algorithm>
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/orientation.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/unset_vector.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh/finite_values.hpp"
+#include "mesh/first_bad.hpp"
+#include "mesh/indices.hpp"
+#include "mesh/wording.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+
+namespace {
+
+/// What cells of one shape are given as.
+template <class Index>
+struct GivenCells {
+  std::span<const Index> corners;
+  std::span<const std::int32_t> reference;
+};
+
+/// References as given, or 0 for each of so many entities.
+std::vector<std::int32_t> references(std::span<const std::int32_t> given, std::size_t count) {
+  if (given.empty()) return std::vector<std::int32_t>(count, 0);
+  return {given.begin(), given.end()};
+}
+
+/// The array of an AnyMesh for cells with so many corners: "triangles".
+template <std::size_t N>
+std::string array_of() {
+  return N == 2 ? "edges" : N == 3 ? "triangles" : "tetrahedra";
+}
+
+/// Throws InputError unless numbers name vertices of the mesh.
+template <std::size_t N, class Index>
+void expect_indices(const Executor& executor, const AnyMesh& mesh, std::span<const Index> corners) {
+  const auto is_bad = [&](std::size_t i) {
+    return corners[i] < 0 || static_cast<std::uint64_t>(corners[i]) >= mesh.vertex_count();
+  };
+  const std::size_t bad = first_bad(executor, corners.size(), is_bad);
+  if (bad == no_index) return;
+  throw InputError(name_of(mesh) + ": " + array_of<N>() + ".vertices[" + std::to_string(bad / N) +
+                   "] names vertex " + std::to_string(corners[bad]) + ", but there are only " +
+                   std::to_string(mesh.vertex_count()) + ", counted from 0");
+}
+
+template <int N, class Index>
+void take_cells(const Executor& executor, const GivenCells<Index>& given, const AnyMesh& mesh,
+                Cells<N>& cells) {
+  constexpr auto corners = static_cast<std::size_t>(N);
+  if (given.corners.size() % corners != 0)
+    throw InputError(name_of(mesh) + ": expected " + std::to_string(N) +
+                     " corners for each of the " + array_of<corners>() + ", found " +
+                     std::to_string(given.corners.size()) + " numbers in " + array_of<corners>() +
+                     ".vertices");
+  expect_indices<corners>(executor, mesh, given.corners);
+  const std::size_t count = given.corners.size() / corners;
+  cells.vertices = runtime::make_vector<std::array<std::uint32_t, corners>>(executor, count);
+  runtime::parallel_for(executor, count, [&](std::size_t i) {
+    for (std::size_t k = 0; k < corners; ++k)
+      cells.vertices[i][k] = static_cast<std::uint32_t>(given.corners[i * corners + k]);
+  });
+  cells.reference = references(given.reference, count);
+}
+
+/// A facet of an element: its corners in ascending order, by which it is found, and which it is.
+template <int Dim>
+struct ElementFacet {
+  Facet<Dim> corners;
+  ElementId element = none;
+  int number = 0;
+  friend auto operator<=>(const ElementFacet&, const ElementFacet&) = default;
+
+  bool is_same(const ElementFacet& other) const { return corners == other.corners; }
+};
+
+template <int Dim>
+Facet<Dim> ascending(Facet<Dim> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+/// Of all elements, sorted.
+template <int Dim>
+runtime::UnsetVector<ElementFacet<Dim>> all_facets(const Executor& executor, const AnyMesh& mesh) {
+  const auto& elements = elements_in<Dim>(mesh).vertices;
+  auto all = runtime::make_unset_vector<ElementFacet<Dim>>(executor, (Dim + 1) * elements.size());
+  runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
+    for (int i = 0; i <= Dim; ++i)
+      all[(Dim + 1) * e + static_cast<std::size_t>(i)] = {
+          ascending<Dim>(facet_of<Dim>(elements[e], i)), static_cast<ElementId>(e), i};
+  });
+  runtime::parallel_sort(executor, std::span(all));
+  return all;
+}
+
+/// Those to be listed, of the elements of lower numbers, in their order.
+template <int Dim>
+runtime::UnsetVector<ElementFacet<Dim>> unlisted_boundary(const Executor& executor,
+                                                          const AnyMesh& mesh) {
+  const auto& listed_facets = facets_in<Dim>(mesh).vertices;
+  std::vector<Facet<Dim>> listed(listed_facets.size());
+  runtime::parallel_for(executor, listed.size(),
+                        [&](std::size_t f) { listed[f] = ascending<Dim>(listed_facets[f]); });
+  runtime::parallel_sort(executor, std::span(listed));
+  const auto all = all_facets<Dim>(executor, mesh);
+  const auto& reference_of = elements_in<Dim>(mesh).reference;
+  const auto find = [&](std::size_t i, auto&& append) {
+    if (i != 0 && all[i].is_same(all[i - 1])) return;
+    const bool has_two = i + 1 < all.size() && all[i].is_same(all[i + 1]);
+    if (has_two && reference_of[all[i].element] == reference_of[all[i + 1].element]) return;
+    if (!std::binary_search(listed.begin(), listed.end(), all[i].corners)) append(all[i]);
+  };
+  auto found = runtime::parallel_collect<ElementFacet<Dim>>(executor, all.size(), find);
+  const auto comes_first = [](const ElementFacet<Dim>& a, const ElementFacet<Dim>& b) {
+    return std::pair(a.element, a.number) < std::pair(b.element, b.number);
+  };
+  std::sort(found.begin(), found.end(), comes_first);
+  return found;
+}
+
+/// The corners of an element's facet as they turn seen from outside.
+template <int Dim>
+Facet<Dim> outward(const AnyMesh& mesh, const ElementFacet<Dim>& facet) {
+  const Corners<Dim>& corners = elements_in<Dim>(mesh).vertices[facet.element];
+  std::array<Vector<Dim>, Dim + 1> points;
+  for (std::size_t i = 0; i <= Dim; ++i) points[i] = position_in<Dim>(mesh, corners[i]);
+  Facet<Dim> result = facet_of<Dim>(corners, facet.number);
+  if (orientation<Dim>(points) < 0) std::swap(result[0], result[1]);
+  return result;
+}
+
+template <int Dim>
+std::size_t list_boundary_in(const Executor& executor, AnyMesh& mesh) {
+  expect_references(mesh);
+  expect_all_vertices(mesh);
+  expect_finite_coordinates(executor, mesh);
+  const auto found = unlisted_boundary<Dim>(executor, mesh);
+  for (const ElementFacet<Dim>& facet : found)
+    facets_in<Dim>(mesh).add(outward<Dim>(mesh, facet), 0);
+  return found.size();
+}
+
+}  // namespace
+
+template <std::signed_integral Index>
+AnyMesh mesh_from_arrays(const Executor& executor, const MeshArrays<Index>& arrays) {
+  AnyMesh mesh;
+  mesh.dimension = arrays.dimension;
+  mesh.name = arrays.name;
+  if (mesh.dimension != 2 && mesh.dimension != 3)
+    throw InputError(name_of(mesh) + ": expected dimension 2 or 3, found " +
+                     std::to_string(mesh.dimension));
+  mesh.coordinates.assign(arrays.coordinates.begin(), arrays.coordinates.end());
+  mesh.vertex_reference = references(
+      arrays.vertex_reference, mesh.coordinates.size() / static_cast<std::size_t>(mesh.dimension));
+  expect_coordinates(mesh);
+  if (mesh.vertex_count() >= none)
+    throw InputError(name_of(mesh) + ": expected fewer than " + std::to_string(none) +
+                     " vertices, found " + std::to_string(mesh.vertex_count()));
+  const GivenCells<Index> elements{arrays.elements, arrays.element_reference};
+  const GivenCells<Index> facets{arrays.facets, arrays.facet_reference};
+  if (mesh.dimension == 2) {
+    take_cells(executor, elements, mesh, mesh.triangles);
+    take_cells(executor, facets, mesh, mesh.edges);
+  } else {
+    take_cells(executor, elements, mesh, mesh.tetrahedra);
+    take_cells(executor, facets, mesh, mesh.triangles);
+  }
+  list_boundary(executor, mesh);
+  return mesh;
+}
+
+std::size_t list_boundary(const Executor& executor, AnyMesh& mesh) {
+  expect_coordinates(mesh);
+  return mesh.dimension == 2 ? list_boundary_in<2>(executor, mesh)
+                             : list_boundary_in<3>(executor, mesh);
+}
+
+template AnyMesh mesh_from_arrays(const Executor&, const MeshArrays<int>&);
+template AnyMesh mesh_from_arrays(const Executor&, const MeshArrays<long>&);
+template AnyMesh mesh_from_arrays(const Executor&, const MeshArrays<long long>&);
+
+}  // namespace ductile::meshadapt
