@@ -238,7 +238,10 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
   const ProgressLine line(job.verbosity > 0 && stderr_is_terminal());
   AdaptOptions adapt = job.adapt;
   adapt.memory_limit = memory_left(job.memory);
-  adapt.progress = [&line](const meshadapt::AdaptProgress& progress) { line.show(progress); };
+  adapt.progress = [&line](const meshadapt::AdaptProgress& progress) {
+    line.show(progress);
+    return true;
+  };
   AdaptedMesh adapted = meshadapt::adapt(executor, mesh, metric, adapt);
   if (adapted.report.checked) return adapted;
   const auto faults =

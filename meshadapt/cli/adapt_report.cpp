@@ -58,6 +58,13 @@ std::string short_figures(const meshadapt::MeshStatistics& s) {
   return text.data();
 }
 
+/// A line about edges that required entities keep too long or too short, if there are such.
+std::string held_edges(const AdaptReport& report) {
+  if (report.held_long_edges + report.held_short_edges == 0) return {};
+  return "  required entities hold " + with_commas(report.held_long_edges) + " edges longer and " +
+         with_commas(report.held_short_edges) + " shorter than asked for\n";
+}
+
 std::string figures(const MeshSummary& mesh, bool with_histograms) {
   if (!mesh.statistics) return {};
   return with_histograms ? to_text(*mesh.statistics) : short_figures(*mesh.statistics);
@@ -191,7 +198,8 @@ std::string to_text(const AdaptSummary& summary, bool with_histograms) {
     text += " " + std::string(name) + " " + seconds(kernel->seconds) + ",";
   text += " set-up " + seconds(report.setup_seconds) + ", renumbering " +
           seconds(report.renumber_seconds) + "\n";
-  return text + counts(summary.after) + figures(summary.after, with_histograms);
+  return text + counts(summary.after) + figures(summary.after, with_histograms) +
+         held_edges(report);
 }
 
 std::string to_json(const AdaptSummary& summary) {
@@ -206,8 +214,11 @@ std::string to_json(const AdaptSummary& summary) {
          ", \"deterministic\": " + (summary.deterministic ? "true" : "false") +
          ", \"instructions\": " + json_string(std::string(report.instructions)) +
          ", \"iterations\": " + std::to_string(report.iterations) +
-         ", \"converged\": " + (report.converged ? "true" : "false") + ",\n \"kernels\": {" +
-         kernel_list + "},\n \"seconds\": {\"total\": " + json_number(report.total_seconds) +
+         ", \"converged\": " + (report.converged ? "true" : "false") +
+         ", \"held_long_edges\": " + std::to_string(report.held_long_edges) +
+         ", \"held_short_edges\": " + std::to_string(report.held_short_edges) +
+         ",\n \"kernels\": {" + kernel_list +
+         "},\n \"seconds\": {\"total\": " + json_number(report.total_seconds) +
          ", \"setup\": " + json_number(report.setup_seconds) +
          ", \"renumber\": " + json_number(report.renumber_seconds) +
          "},\n \"peak_memory_bytes\": " + std::to_string(summary.peak_memory) +

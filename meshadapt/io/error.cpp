@@ -52,6 +52,9 @@ InputError::InputError(const std::string& what, const std::string& in_file)
     : Error(what), in_file_(std::make_shared<const std::string>(in_file)) {}
 InputError::~InputError() = default;
 
+Cancelled::Cancelled() : Error("cancelled, as asked for") {}
+Cancelled::~Cancelled() = default;
+
 const char* InputError::in_file() const noexcept { return in_file_ ? in_file_->c_str() : what(); }
 
 }  // namespace ductile::meshadapt

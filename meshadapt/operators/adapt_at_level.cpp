@@ -20,6 +20,7 @@
 #include "geometry/curvature.hpp"
 #include "metric/demand.hpp"
 #include "operators/adapter.hpp"
+#include "operators/held_edges.hpp"
 #include "operators/processor_level.hpp"
 #include "operators/rescue.hpp"
 #include "operators/round_boundary.hpp"
@@ -228,6 +229,7 @@ Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const 
   Mesh<Dim> mesh = with_growth_limited(executor, options, metric.name, adapter);
   round_boundary(mesh);
   count_curved_edges(executor, mesh, adapter->report());
+  count_held_edges(executor, mesh, options.rules, adapter->report());
   auto [adapted, metric_on_it] = take_apart(executor, std::move(mesh));
   Attempt result{{std::move(adapted), std::move(metric_on_it), adapter->report()}, may_meet};
   result.adapted.report.warnings = std::move(warnings);

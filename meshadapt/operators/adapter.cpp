@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/complexity.hpp"
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "metric/interpolation.hpp"
@@ -482,7 +483,8 @@ std::size_t Adapter<Dim>::element_count() const {
 
 template <int Dim>
 void Adapter<Dim>::tell(const char* step, std::size_t changes) const {
-  if (options_.progress) options_.progress({step, report_.iterations, changes});
+  if (options_.progress && !options_.progress({step, report_.iterations, changes}))
+    throw Cancelled();
 }
 
 template <int Dim>

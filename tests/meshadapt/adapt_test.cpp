@@ -251,6 +251,7 @@ TEST_P(Adapt, MakesNoDetourByManyElements) {
   const AdaptOptions options{.progress = [](const AdaptProgress& now) {
     if (std::string_view(now.step) == "refine" && now.changes > 5000)
       throw std::runtime_error(std::to_string(now.changes) + " edges are split");
+    return true;
   }};
   AdaptedMesh adapted;
   ASSERT_NO_THROW(adapted =

@@ -32,11 +32,12 @@ void check_after_each_kernel(const Executor& executor, const test::RandomCase& r
   const Adapter<Dim>* driver = nullptr;
   bool sound = true;
   options.progress = [&](const AdaptProgress& progress) {
-    if (!sound) return;
+    if (!sound) return true;
     const auto faults = check_mesh(executor, driver->mesh());
     sound = faults.empty();
     EXPECT_TRUE(sound) << "after " << progress.step << " in iteration " << progress.iteration
                        << test::joined(faults);
+    return true;
   };
   Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours), metric_of);
   driver = &adapter;

@@ -44,7 +44,9 @@ struct AdaptOptions {
   bool insert = true;     ///< split and collapse edges
   Rules rules = {};
   MakeMeshOptions make = {};
-  std::function<void(const AdaptProgress&)> progress = {};  ///< called on the calling thread
+  /// Called on the calling thread after each step, many times a second in small meshes. If it
+  /// returns false, adapt() throws Cancelled; what it throws itself, adapt() throws.
+  std::function<bool(const AdaptProgress&)> progress = {};
 };
 
 /// Seconds and work of one kernel over the whole run.
@@ -67,6 +69,12 @@ struct AdaptReport {
   /// Edges of the adapted mesh on curved boundaries that may change
   /// (MakeMeshOptions::surface_tolerance), and those of them that are shorter than 1/sqrt 2.
   std::size_t curved_edges = 0, curved_edges_short = 0;
+  /// Edges of the adapted mesh that are longer than Rules::long_edge, or shorter than
+  /// Rules::short_edge, because required entities hold them: a long one belongs to a required
+  /// facet, curve or element, so it may not be split; of a short one neither end may be moved onto
+  /// the other, because one at least is required or belongs to such an entity. Remedies are sizes
+  /// that come nearer to those of the required entities, or fewer of these.
+  std::size_t held_long_edges = 0, held_short_edges = 0;
   /// How many times the input was adapted. Where check_adapted() finds something wrong with curved
   /// boundaries, it is adapted again, and facets near there are kept.
   int attempts = 1;
@@ -90,7 +98,8 @@ struct AdaptedMesh {
 /// nothing but the input and the last bits of the C library's exp() and log(), of which glibc has
 /// one version for processors with AVX2 and one for others. Throws InputError for options that make
 /// no sense and input that is not a valid mesh; Error if the elements that the metric asks for
-/// would take more memory than options.memory_limit; std::bad_alloc if memory runs out,
+/// would take more memory than options.memory_limit; Cancelled if options.progress asks for that;
+/// std::bad_alloc if memory runs out,
 /// std::length_error if there would be more entities than 32 bits count. If the executor has a
 /// recording, each kernel gets a section of it: "setup", "coarsen", "refine", "swap", "smooth",
 /// "renumber", and "other" for what is between them. Thread safety: any thread; the work runs on

@@ -40,6 +40,13 @@ class InputError : public Error {
   std::shared_ptr<const std::string> in_file_;  // null: as what()
 };
 
+/// What the caller has asked to be stopped, has stopped; there is no result.
+class Cancelled : public Error {
+ public:
+  Cancelled();
+  ~Cancelled() override;
+};
+
 /// What was met and not taken over, or looks doubtful: one line each, as in an error.
 using Warnings = std::vector<std::string>;
 

@@ -1,0 +1,193 @@
+/// @file
+/// What a program that calls adapt() may count on: it can be cancelled, prints nothing, works in a
+/// forked child, and says what required entities hold.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/runtime/hash.hpp"
+#include "support/random_case.hpp"
+#include "support/trials.hpp"
+
+namespace ductile::meshadapt::callers_test {
+namespace {
+
+using runtime::Executor;
+
+AnyField sizes(const AnyMesh& mesh, double size) {
+  return metric_of(scalar_field(mesh.dimension, std::vector<double>(mesh.vertex_count(), size)),
+                   mesh);
+}
+
+// ---- Progress ----
+
+TEST(Callers, MayCancelAfterAnyStep) {
+  const Executor executor({.threads = 3});
+  const AnyMesh mesh = box_mesh<2>({1, 1}, {8, 8});
+  const AnyField metric = sizes(mesh, 0.06);
+  const AnyMesh expected = adapt(executor, mesh, metric).mesh;
+  int steps = 0, wanted = -1;
+  const AdaptOptions options{.progress = [&](const AdaptProgress&) { return steps++ != wanted; }};
+  EXPECT_EQ(adapt(executor, mesh, metric, options).mesh, expected);
+  const int all = steps;
+  EXPECT_GT(all, 4);
+  for (wanted = 0; wanted < all; wanted += 3) {
+    steps = 0;
+    EXPECT_THROW(adapt(executor, mesh, metric, options), Cancelled) << wanted;
+    EXPECT_EQ(steps, wanted + 1) << "it is not asked again";
+  }
+  EXPECT_EQ(adapt(executor, mesh, metric).mesh, expected) << "nothing is left behind";
+}
+
+TEST(Callers, GetWhatTheirProgressThrows) {
+  const AnyMesh mesh = box_mesh<2>({1, 1}, {4, 4});
+  const AdaptOptions options{
+      .progress = [](const AdaptProgress&) -> bool { throw std::out_of_range("theirs"); }};
+  EXPECT_THROW(adapt(Executor({.threads = 2}), mesh, sizes(mesh, 0.06), options),
+               std::out_of_range);
+}
+
+// ---- Output ----
+
+TEST(Callers, FindNothingPrinted) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  for (std::uint64_t seed = 0; seed < test::trials(8); ++seed) {
+    const test::RandomCase random = test::random_case(seed);
+    adapt(Executor({.threads = 2}), random.mesh, random.metric, random.options);
+  }
+  AnyMesh bad = box_mesh<2>({1, 1}, {2, 2});
+  bad.triangles.vertices[0][0] = 77;
+  EXPECT_THROW(adapt(Executor(), bad, sizes(bad, 0.1)), InputError);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// ---- Forked children ----
+
+std::size_t hash_of(const AnyMesh& mesh) {
+  const auto bytes = [](const auto& values) {
+    return std::hash<std::string_view>()(
+        {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0])});
+  };
+  return bytes(mesh.coordinates) + 3 * bytes(mesh.triangles.vertices) +
+         5 * bytes(mesh.edges.vertices);
+}
+
+/// What a forked child computes; 0 if it does not come back.
+template <class Compute>
+std::size_t in_child(const Compute& compute) {
+  int ends[2];
+  if (::pipe(ends) != 0) return 0;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(60);
+    std::size_t result = 0;
+    try {
+      result = compute();
+    } catch (...) {
+    }
+    const bool written = ::write(ends[1], &result, sizeof result) == sizeof result;
+    ::_exit(written ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::size_t result = 0;
+  if (::read(ends[0], &result, sizeof result) != sizeof result) result = 0;
+  ::close(ends[0]);
+  ::waitpid(child, nullptr, 0);
+  return result;
+}
+
+TEST(Callers, MayForkAndAdaptInTheChild) {
+  const Executor executor({.threads = 4});
+  const AnyMesh mesh = box_mesh<2>({1, 1}, {20, 20});
+  const AnyField metric = sizes(mesh, 0.03);
+  const auto work = [&] { return hash_of(adapt(executor, mesh, metric).mesh); };
+  const std::size_t expected = work();  // by threads that children do not have
+  EXPECT_EQ(in_child(work), expected);
+  EXPECT_EQ(in_child([&] { return in_child(work); }), expected) << "child of a child";
+  bool done = false;  // amid of an adaptation, by the thread that leads its team
+  const AdaptOptions options{.progress = [&](const AdaptProgress&) {
+    if (!std::exchange(done, true)) {
+      EXPECT_EQ(in_child(work), expected);
+    }
+    return true;
+  }};
+  EXPECT_EQ(hash_of(adapt(executor, mesh, metric, options).mesh), expected);
+  EXPECT_EQ(work(), expected);
+}
+
+// ---- Required entities ----
+
+template <int N>
+void add_edges(const Cells<N>& cells, const std::vector<std::uint32_t>& required,
+               std::set<std::pair<VertexId, VertexId>>& edges) {
+  for (const std::uint32_t i : required)
+    for (const VertexId a : cells.vertices[i])
+      for (const VertexId b : cells.vertices[i])
+        if (a < b) edges.emplace(a, b);
+}
+
+template <int Dim>
+std::size_t long_edges(const AdaptedMesh& adapted,
+                       const std::set<std::pair<VertexId, VertexId>>& edges) {
+  const auto site = [&](VertexId v) {
+    Metric<Dim> metric;
+    std::copy_n(&adapted.metric.values[v * metric.m.size()], metric.m.size(), metric.m.begin());
+    return make_site<Dim>(position_in<Dim>(adapted.mesh, v), metric);
+  };
+  return static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), [&](const auto& edge) {
+    return edge_length(site(edge.first), site(edge.second)) > Rules().long_edge;
+  }));
+}
+
+TEST(Callers, GetToKnowHowManyLongEdgesRequiredEntitiesHold) {
+  std::size_t held = 0;
+  for (std::uint64_t seed = 0; seed < test::trials(20); ++seed) {
+    const test::RandomCase random = test::random_case(seed);
+    if (random.options.make.lock_boundary) continue;  // which holds what is not listed, too
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + random.what);
+    const AdaptedMesh adapted =
+        adapt(Executor({.threads = 2}), random.mesh, random.metric, random.options);
+    std::set<std::pair<VertexId, VertexId>> edges;
+    add_edges(adapted.mesh.edges, adapted.mesh.required_edges, edges);
+    add_edges(adapted.mesh.triangles, adapted.mesh.required_triangles, edges);
+    add_edges(adapted.mesh.tetrahedra, adapted.mesh.required_tetrahedra, edges);
+    EXPECT_EQ(adapted.report.held_long_edges, random.mesh.dimension == 2
+                                                  ? long_edges<2>(adapted, edges)
+                                                  : long_edges<3>(adapted, edges));
+    held += adapted.report.held_long_edges;
+  }
+  EXPECT_GT(held, 100U);
+}
+
+TEST(Callers, GetToKnowHowManyShortEdgesRequiredEntitiesHold) {
+  const Executor executor({.threads = 2});
+  AnyMesh mesh = box_mesh<2>({1, 1}, {40, 40});
+  const AnyField metric = sizes(mesh, 0.2);
+  EXPECT_EQ(adapt(executor, mesh, metric).report.held_short_edges, 0U) << "nothing is required";
+  for (std::uint32_t e = 0; e < mesh.edges.size(); ++e)
+    if (mesh.edges.reference[e] == Side::left) mesh.required_edges.push_back(e);
+  const AdaptReport report = adapt(executor, mesh, metric).report;
+  EXPECT_GE(report.held_short_edges, 40U);  // those of the side, and a few that lead to others
+  EXPECT_LE(report.held_short_edges, 50U);
+  EXPECT_EQ(report.held_long_edges, 0U);
+  const AnyMesh box = box_mesh<3>({1, 1, 1}, {4, 4, 4});
+  const AdaptReport locked =
+      adapt(executor, box, sizes(box, 0.1), {.make = {.lock_boundary = true}}).report;
+  EXPECT_EQ(locked.held_long_edges, 288U) << "of 192 triangles";
+  EXPECT_EQ(locked.held_short_edges, 0U);
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt::callers_test
