@@ -32,9 +32,10 @@ void expect_one_metric(const AnyField& field, const AnyMesh& mesh) {
   if (field.types.size() != 1)
     fail(field, "one field, the metric, found " + std::to_string(field.types.size()),
          {"give the metric alone", "keep the metric alone in its file"});
-  if (field.types[0] != Type::scalar && field.types[0] != Type::symmetric)
+  if (field.types[0] == Type::vector)
     fail(field,
-         "a metric, sizes (type 1) or symmetric tensors (type 3), found type " +
+         "a metric, sizes (type 1), symmetric tensors (type 3) or symmetric matrices (type 4), "
+         "found type " +
              std::to_string(static_cast<int>(field.types[0])),
          "give another field");
   if (field.vertex_count != mesh.vertex_count())
@@ -95,6 +96,37 @@ void append_isotropic(AnyField& result, const AnyField& field, std::size_t verte
   result.values.insert(result.values.end(), metric.m.begin(), metric.m.end());
 }
 
+/// The tensor of a full matrix, which rounding may have made a little unsymmetric.
+template <int Dim>
+Metric<Dim> tensor_of_matrix(const AnyField& field, std::size_t vertex) {
+  constexpr double rounding = 1e-6;
+  const auto at = [&](std::size_t row, std::size_t column) {
+    return field.values[(vertex * Dim + row) * Dim + column];
+  };
+  double trace = 0;
+  for (std::size_t i = 0; i < Dim; ++i) trace += std::abs(at(i, i));
+  Metric<Dim> metric;
+  double* component = metric.m.data();
+  for (std::size_t j = 0; j < Dim; ++j)
+    for (std::size_t i = 0; i <= j; ++i) {
+      if (std::abs(at(i, j) - at(j, i)) > rounding * trace)
+        fail_at(field, vertex, "a symmetric matrix",
+                number(at(i, j)) + " in row " + std::to_string(i) + ", column " +
+                    std::to_string(j) + " and " + number(at(j, i)) + " opposite");
+      *component++ = i == j ? at(i, i) : 0.5 * at(i, j) + 0.5 * at(j, i);
+    }
+  return metric;
+}
+
+/// The tensor at a vertex of a field of this dimension.
+template <int Dim>
+Metric<Dim> tensor_at(const AnyField& field, std::size_t vertex) {
+  if (field.types[0] == Type::matrix) return tensor_of_matrix<Dim>(field, vertex);
+  Metric<Dim> metric;
+  std::copy_n(&field.values[vertex * Metric<Dim>::size], metric.m.size(), metric.m.begin());
+  return metric;
+}
+
 /// Which components of a tensor in space are those in a coordinate plane, and which lead out of it.
 struct PlanePart {
   std::array<std::size_t, 3> in;
@@ -108,7 +140,7 @@ constexpr std::array<PlanePart, 3> plane_without{
 Metric<2> plane_part(const AnyField& field, std::size_t vertex, int dropped_axis) {
   constexpr double rounding = 1e-6;
   const PlanePart& part = plane_without.at(static_cast<std::size_t>(dropped_axis));
-  const double* values = &field.values[vertex * Metric<3>::size];
+  const auto values = tensor_at<3>(field, vertex).m;
   const double trace = std::abs(values[0]) + std::abs(values[2]) + std::abs(values[5]);
   for (const std::size_t out : part.out)
     if (!(std::abs(values[out]) <= rounding * trace))
@@ -123,8 +155,7 @@ void append_tensor(AnyField& result, const AnyField& field, std::size_t vertex,
   Metric<Dim> metric;
   if constexpr (Dim == 2)
     if (field.dimension == 3) metric = plane_part(field, vertex, dropped_axis);
-  if (field.dimension == Dim)
-    std::copy_n(&field.values[vertex * Metric<Dim>::size], metric.m.size(), metric.m.begin());
+  if (field.dimension == Dim) metric = tensor_at<Dim>(field, vertex);
   if (has_bounds(bounds) && !in_range(metric)) metric = meshadapt::within_bounds(metric, bounds);
   expect_metric(field, vertex, metric);
   result.values.insert(result.values.end(), metric.m.begin(), metric.m.end());

@@ -43,6 +43,27 @@ TEST(MetricField, TakesTensorsAsTheyAre) {
   EXPECT_EQ(metric_of(field_of(3, Type::symmetric, values), mesh_of(3, 1)).values, values);
 }
 
+TEST(MetricField, TakesFullMatricesThatAreSymmetricButForRounding) {
+  const double off = 1 + 1e-9;
+  EXPECT_EQ(metric_of(field_of(2, Type::matrix, {2, 1, 1, 3}), mesh_of(2, 1)).values,
+            (Values{2, 1, 3}));
+  const Values space = {2, 1, 0.5, off, 3, 0.25, 0.5, 0.25, 4};
+  EXPECT_EQ(metric_of(field_of(3, Type::matrix, space), mesh_of(3, 1)).values,
+            (Values{2, 0.5 + 0.5 * off, 3, 0.5, 0.25, 4}));
+  EXPECT_EQ(metric_of(field_of(3, Type::matrix, {2, 1, 0, 1, 3, 0, 0, 0, 4}), mesh_of(2, 1)).values,
+            (Values{2, 1, 3}));
+  const auto says = [](const Values& values) {
+    return test::complaint(
+        [&] { metric_of(field_of(2, Type::matrix, values), mesh_of(2, values.size() / 4)); });
+  };
+  EXPECT_EQ(says({1, 0, 0, 1, 2, 1, 1.1, 3}),
+            "a.sol: expected a symmetric matrix at values[4], vertex 1, found 1 in row 0, column 1 "
+            "and 1.1 opposite; correct the field there");
+  EXPECT_NE(says({1, 0, 0, 1, 1, 2, 2, 1}).find("positive definite tensor at values[4], vertex 1"),
+            std::string::npos);
+  EXPECT_NE(says({0.0 / 0.0, 0, 0, 1}).find("at values[0], vertex 0"), std::string::npos);
+}
+
 TEST(MetricField, TakesThePlanePartForAFlatMesh) {
   EXPECT_EQ(metric_of(field_of(3, Type::symmetric, {2, 1, 2, 0, 0, 3}), mesh_of(2, 1)).values,
             (Values{2, 1, 2}));

@@ -23,7 +23,8 @@ inline constexpr double largest_size = 1e75;
 inline constexpr double largest_anisotropy = 1e8;
 
 /// Makes one symmetric tensor per vertex of a field that is either one scalar, the size h wanted,
-/// which gives the metric 1/h^2 in every direction, or one symmetric tensor. Of a field of
+/// which gives the metric 1/h^2 in every direction, or one symmetric tensor, as such or as a full
+/// matrix, row by row, whose opposite components differ by at most 1e-6 of its trace. Of a field of
 /// dimension 3 for a mesh that read_mesh found flat, the part in the plane is taken. Where a value
 /// is no metric by itself, bounds hold before it is judged: with a largest size, one that is
 /// infinite is that, and so is the size along an axis of eigenvalue 0. Other values stay as they
