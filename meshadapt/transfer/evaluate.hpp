@@ -1,9 +1,11 @@
 /// @file
-/// evaluate: the values of a field at points of its mesh.
+/// evaluate: the values that a field, linear in each element, has at points of its mesh.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "transfer/locator.hpp"
@@ -33,6 +35,41 @@ void evaluate(const FixedMesh<Dim>& mesh, const Components& field, const Place<D
     }
     result[k] = std::clamp(sum, low, high);
   }
+}
+
+struct Evaluated {
+  std::vector<double> values;  // [point * stride + component]
+  std::size_t outside = 0;     // points that are not in the mesh
+};
+
+/// At so many points, of which find(i, near) gives the places.
+template <int Dim>
+Evaluated evaluate_each(const runtime::Executor& executor, const Locator<Dim>& locator,
+                        const Components& field, std::size_t point_count, auto&& find) {
+  Evaluated result{std::vector<double>(point_count * field.stride)};
+  std::vector<std::uint8_t> outside(point_count);
+  walk_in_blocks(executor, point_count, [&](std::size_t i, ElementId near) {
+    const Place<Dim> place = find(i, near);
+    outside[i] = place.inside ? 0 : 1;
+    evaluate(locator.mesh(), field, place, &result.values[i * field.stride]);
+    return place.element;
+  });
+  result.outside = runtime::parallel_reduce(
+      executor, outside.size(), std::size_t{0}, [&](std::size_t i) { return outside[i]; },
+      [](std::size_t a, std::size_t b) { return a + b; });
+  return result;
+}
+
+/// At coordinates[point * Dim + axis]; outside, at the closest point of the mesh.
+template <int Dim>
+Evaluated evaluate_at(const runtime::Executor& executor, const Locator<Dim>& locator,
+                      const Components& field, std::span<const double> coordinates) {
+  return evaluate_each(executor, locator, field, coordinates.size() / Dim,
+                       [&](std::size_t i, ElementId near) {
+                         Vector<Dim> point;
+                         std::copy_n(&coordinates[i * Dim], Dim, point.x.begin());
+                         return locator.find(point, near);
+                       });
 }
 
 }  // namespace ductile::meshadapt

@@ -55,6 +55,13 @@ class Locator {
   BoxTree<Dim> tree_;
 };
 
+template <int Dim>
+Vector<Dim> centroid_of(const FixedMesh<Dim>& mesh, ElementId element) {
+  Vector<Dim> centroid;
+  for (const Vector<Dim>& corner : mesh.points(element)) centroid += (1.0 / (Dim + 1)) * corner;
+  return centroid;
+}
+
 /// Finds points one after another in fixed blocks, so that walks are short and do not depend on
 /// threads: find_next(i, near) returns the element of point i, given the last one's, or none.
 template <class FindNext>

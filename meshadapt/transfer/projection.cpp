@@ -12,9 +12,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Less of an element than this is outside by rounding only.
-constexpr double least_share = 1e-9;
-
 }  // namespace
 
 template <int Dim>
@@ -32,7 +29,7 @@ Projection<Dim>::Projection(const Executor& executor, const Locator<Dim>& from,
 template <int Dim>
 std::vector<double> Projection<Dim>::run(const ProjectionOptions& options) {
   integrate();
-  sum_up_volumes();
+  coverage_ = meshadapt::coverage(executor_, from_.mesh(), to_, covered_);
   const std::vector<double> integrals = gather();
   std::vector<double> lumped(integrals.size());
   parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
@@ -48,10 +45,7 @@ template <int Dim>
 void Projection<Dim>::integrate() {
   runtime::PerThread<OverlapFinder<Dim>> finder(executor_);
   walk_in_blocks(executor_, to_.element_count(), [&](std::size_t e, ElementId near) {
-    Vector<Dim> centroid;
-    for (const Vector<Dim>& corner : to_.points(static_cast<ElementId>(e)))
-      centroid += (1.0 / (Dim + 1)) * corner;
-    const Place<Dim> centre = from_.find(centroid, near);
+    const Place<Dim> centre = from_.find(centroid_of(to_, static_cast<ElementId>(e)), near);
     integrate(e, centre, finder.mine());
     return centre.element;
   });
@@ -120,22 +114,6 @@ void Projection<Dim>::widen(std::size_t element, const double* values) {
     Range& range = seen_[element * stride() + k];
     range = {std::min(range.low, values[k]), std::max(range.high, values[k])};
   }
-}
-
-template <int Dim>
-void Projection<Dim>::sum_up_volumes() {
-  const auto sum = [&](std::size_t count, auto&& term) {
-    return runtime::parallel_reduce(executor_, count, 0.0, term,
-                                    [](double a, double b) { return a + b; });
-  };
-  const auto shared = [&](std::size_t e) { return to_.volume_of[e] * std::min(1.0, covered_[e]); };
-  const double covered = sum(to_.element_count(), shared);
-  const auto without = [&](const FixedMesh<Dim>& mesh) {
-    const double all = sum(mesh.element_count(), [&](std::size_t e) { return mesh.volume_of[e]; });
-    return all - covered > least_share * all ? all - covered : 0;
-  };
-  volume_outside_ = without(to_);
-  volume_left_out_ = without(from_.mesh());
 }
 
 template <int Dim>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/transfer.hpp"
+#include "transfer/coverage.hpp"
 #include "transfer/evaluate.hpp"
 #include "transfer/mass.hpp"
 #include "transfer/overlaps.hpp"
@@ -23,8 +24,8 @@ class Projection {
 
   std::vector<double> run(const ProjectionOptions& options);
 
-  double volume_outside() const { return volume_outside_; }
-  double volume_left_out() const { return volume_left_out_; }
+  /// After run().
+  const Coverage& coverage() const { return coverage_; }
 
  private:
   struct Range {
@@ -38,7 +39,6 @@ class Projection {
   Square mass_outside(std::size_t element, const Place<Dim>& centre,
                       OverlapFinder<Dim>& finder) const;
   void widen(std::size_t element, const double* values);
-  void sum_up_volumes();
   std::vector<double> gather() const;
   std::vector<Range> ranges() const;
   std::vector<double> blend(const std::vector<double>& lumped, const std::vector<double>& closest,
@@ -57,7 +57,7 @@ class Projection {
   std::vector<double> moments_;  // [(element * corners + corner) * stride + component]
   std::vector<Range> seen_;      // [element * stride + component], of old values around
   std::vector<double> covered_;  // [element], share of its volume
-  double volume_outside_ = 0, volume_left_out_ = 0;
+  Coverage coverage_;
 };
 
 extern template class Projection<2>;

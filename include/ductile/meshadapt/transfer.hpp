@@ -1,12 +1,15 @@
 /// @file
-/// Fields carried from one mesh to another: by interpolation, or by a projection that keeps their
-/// integral. All components of all fields are carried, each for itself; what is linear on the whole
+/// Fields carried from one mesh to another: by value, or by a projection that keeps their integral;
+/// fields at the vertices, which are linear in each element, and fields on the elements. All
+/// components of all fields are carried, each for itself; what is linear on the whole
 /// old mesh arrives exactly. Metrics are better carried by adapt(), which interpolates logarithms.
 /// Results do not depend on the number of threads.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -32,10 +35,10 @@ struct TransferredField {
 };
 
 /// The values that the old field, linear in each element, has at the new vertices. Keeps bounds,
-/// not integrals. A vertex outside the old mesh gets the value at the point of it that is closest.
-/// Throws InputError if a mesh is not valid (see make_fixed_mesh), a vertex of either is not within
-/// -1e150 to 1e150, or the field is not of the old one. Thread safety: one caller; runs on the
-/// executor.
+/// not integrals. A vertex outside the old mesh gets the value at the point of it that is closest;
+/// on a closed crack, that of its own side. Throws InputError if a mesh is not valid (see
+/// make_fixed_mesh), a vertex of either is not within -1e150 to 1e150, or the field is not of the
+/// old one. Thread safety: one caller; runs on the executor.
 TransferredField interpolate_field(const runtime::Executor& executor, const FieldOnMesh& from,
                                    const AnyMesh& to);
 
@@ -64,5 +67,41 @@ struct ProjectionOptions {
 /// Thread safety: one caller; runs on the executor.
 TransferredField project_field(const runtime::Executor& executor, const FieldOnMesh& from,
                                const AnyMesh& to, const ProjectionOptions& options = {});
+
+/// How a field gets to another mesh.
+enum class Carrying : std::uint8_t {
+  /// At the vertices: interpolate_field(). On the elements: a new element gets the value of the old
+  /// one in which its centroid lies, or which is closest to it. Values of any kind stay what they
+  /// are: numbers of materials, flags.
+  by_value,
+  /// At the vertices: project_field(). On the elements: a new element gets the mean of the old
+  /// values over its volume, by the exact volumes that it shares with old elements. Where both
+  /// meshes cover the same domain, the integral of each component is kept to rounding, and no value
+  /// is beyond those of the old elements that it overlaps. The part of a new element that no old
+  /// one
+  /// covers counts with the value at its centroid as above.
+  conservatively
+};
+
+/// Fields by name, at the vertices or on the elements of the mesh that they live on. It refers to
+/// both, so it is for passing them only.
+struct NamedFieldsOnMesh {
+  const AnyMesh& mesh;
+  std::span<const NamedField> fields;
+};
+
+struct TransferredFields {
+  std::vector<NamedField> fields;  ///< in the order in which they were given
+  TransferReport report;  ///< vertices if there are fields on them, volumes if some are carried
+                          ///< conservatively
+};
+
+/// Carries fields to another mesh: all in the same way, if `carrying` has one entry, or each in its
+/// own. Throws InputError, naming the field, unless it has a value for each entity of its mesh, and
+/// conservatively only finite ones; and as interpolate_field() does.
+/// Thread safety: one caller; runs on the executor.
+TransferredFields transfer_fields(const runtime::Executor& executor, const NamedFieldsOnMesh& from,
+                                  const AnyMesh& to,
+                                  const std::vector<Carrying>& carrying = {Carrying::by_value});
 
 }  // namespace ductile::meshadapt

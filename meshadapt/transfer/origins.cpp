@@ -1,0 +1,143 @@
+#include "ductile/meshadapt/origins.hpp"
+
+#include <algorithm>
+#include <compare>
+#include <span>
+#include <string>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh/indices.hpp"
+#include "mesh/wording.hpp"
+#include "transfer/locator.hpp"
+#include "transfer/places.hpp"
+#include "transfer/vertex_places.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+using runtime::parallel_for;
+
+namespace {
+
+/// A listed facet by its corners.
+template <int Dim>
+struct ListedFacet {
+  Facet<Dim> corners;  // ascending
+  std::uint32_t index = none;
+  friend auto operator<=>(const ListedFacet&, const ListedFacet&) = default;
+};
+
+template <int Dim>
+class OriginFinder {
+ public:
+  OriginFinder(const Executor& executor, const AnyMesh& before, const AnyMesh& after)
+      : executor_(executor),
+        before_(before),
+        after_(after),
+        old_mesh_(make_fixed_mesh<Dim>(executor, before)),
+        locator_(executor, old_mesh_),
+        places_(executor, locator_, after) {}
+
+  Origins find() {
+    find_hosts();
+    found_.vertex = places_.take_origins();
+    find_elements();
+    find_facets();
+    return std::move(found_);
+  }
+
+ private:
+  void find_hosts() {
+    const std::size_t vertices = after_.vertex_count();
+    runtime::resize_empty(executor_, runtime::EmptyVector{found_.host, vertices},
+                          runtime::EmptyVector{found_.weight, (Dim + 1) * vertices});
+    walk_in_blocks(executor_, vertices, [&](std::size_t v, ElementId near) {
+      const Place<Dim> place = places_.find(static_cast<VertexId>(v), near);
+      found_.host[v] = place.element;
+      double* const weight = &found_.weight[(Dim + 1) * v];
+      std::copy(place.weight.begin(), place.weight.end(), weight);
+      const bool is_turned =
+          old_mesh_.corners_of[place.element] != elements_in<Dim>(before_).vertices[place.element];
+      if (is_turned) std::swap(weight[0], weight[1]);
+      return place.element;
+    });
+  }
+
+  // ---- Elements and facets, by their vertices ----
+
+  void find_elements() {
+    const auto& cells = elements_in<Dim>(after_);
+    found_.element = runtime::make_vector<ElementId>(executor_, cells.size());
+    parallel_for(executor_, cells.size(), [&](std::size_t e) {
+      Corners<Dim> corners = cells.vertices[e];
+      for (VertexId& v : corners) v = found_.vertex[v];
+      found_.element[e] =
+          contains(corners, none) ? none : same_element(corners, cells.reference[e]);
+    });
+  }
+
+  ElementId same_element(const Corners<Dim>& corners, std::int32_t reference) const {
+    for (const ElementId e : old_mesh_.elements_of(corners[0])) {
+      bool same = elements_in<Dim>(before_).reference[e] == reference;
+      for (const VertexId v : corners) same = same && contains(old_mesh_.corners_of[e], v);
+      if (same) return e;
+    }
+    return none;
+  }
+
+  void find_facets() {
+    const auto& old_facets = facets_in<Dim>(before_).vertices;
+    const auto& facets = facets_in<Dim>(after_).vertices;
+    std::vector<ListedFacet<Dim>> listed(old_facets.size());
+    parallel_for(executor_, listed.size(), [&](std::size_t f) {
+      listed[f] = {old_facets[f], static_cast<std::uint32_t>(f)};
+      std::sort(listed[f].corners.begin(), listed[f].corners.end());
+    });
+    runtime::parallel_sort(executor_, std::span(listed));
+    found_.facet = runtime::make_vector<std::uint32_t>(executor_, facets.size());
+    parallel_for(executor_, facets.size(), [&](std::size_t f) {
+      Facet<Dim> corners = facets[f];
+      for (VertexId& v : corners) v = found_.vertex[v];
+      std::sort(corners.begin(), corners.end());
+      const auto at = std::lower_bound(listed.begin(), listed.end(), ListedFacet<Dim>{corners, 0});
+      found_.facet[f] = at != listed.end() && at->corners == corners ? at->index : none;
+    });
+  }
+
+  const Executor& executor_;
+  const AnyMesh& before_;
+  const AnyMesh& after_;
+  const FixedMesh<Dim> old_mesh_;
+  const Locator<Dim> locator_;
+  VertexPlaces<Dim> places_;
+  Origins found_;
+};
+
+template <int Dim>
+Origins origins_in(const Executor& executor, const AnyMesh& before, const AnyMesh& after) {
+  expect_places(executor, before.coordinates, Dim, "old vertex");
+  expect_places(executor, after.coordinates, Dim, "new vertex");
+  return OriginFinder<Dim>(executor, before, after).find();
+}
+
+}  // namespace
+
+Origins origins(const Executor& executor, const AnyMesh& before, const AnyMesh& after) {
+  for (const AnyMesh* mesh : {&before, &after}) {
+    expect_coordinates(*mesh);
+    expect_references(*mesh);
+    expect_all_vertices(*mesh);
+  }
+  if (before.dimension != after.dimension)
+    throw InputError(name_of(after) + ": expected dimension " + std::to_string(before.dimension) +
+                     ", that of " + name_of(before) + ", found " + std::to_string(after.dimension));
+  return before.dimension == 2 ? origins_in<2>(executor, before, after)
+                               : origins_in<3>(executor, before, after);
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,28 @@
+/// @file
+/// Whether points can be located: whether coordinates are so small that squares of distances are
+/// numbers.
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
+
+namespace ductile::meshadapt {
+
+/// Throws InputError, naming the first point, unless they can; `what` one of them is.
+inline void expect_places(const runtime::Executor& executor, std::span<const double> coordinates,
+                          int dimension, const char* what) {
+  const std::size_t bad = first_bad(executor, coordinates.size(), [&](std::size_t i) {
+    return !(std::abs(coordinates[i]) <= 1e150);
+  });
+  if (bad == no_index) return;
+  const std::size_t point = bad / static_cast<std::size_t>(dimension);
+  refuse("expected coordinates from -1e150 to 1e150, found others at " +
+         Wording("coordinates[" + std::to_string(bad) + "], " + what + " " + std::to_string(point),
+                 entity(what, point)));
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,149 @@
+/// @file
+/// VertexPlaces<Dim>: where the vertices of another mesh lie in one, on their own side of a closed
+/// crack. A vertex at the place of an old one is that; of several at one place, the one whose
+/// elements look into the direction of its own. Others are found by walking from inside of an
+/// element of their own to them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "transfer/evaluate.hpp"
+#include "transfer/locator.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+class VertexPlaces {
+ public:
+  /// Refers to the locator, that of the old mesh, and to the new mesh.
+  VertexPlaces(const runtime::Executor& executor, const Locator<Dim>& locator, const AnyMesh& mesh)
+      : executor_(executor),
+        locator_(locator),
+        old_mesh_(locator.mesh()),
+        mesh_(mesh),
+        element_at_(executor, mesh.vertex_count(), none),
+        origin_of_(mesh.vertex_count()) {
+    find_elements();
+    find_origins();
+  }
+
+  /// Thread safety: any thread.
+  Place<Dim> find(VertexId v, ElementId near) const {
+    const VertexId origin = origin_of_[v];
+    if (origin == none)
+      return locator_.find(position_in<Dim>(mesh_, v), locator_.find(inside_near(v), near).element);
+    Place<Dim> place{old_mesh_.elements_of(origin)[0], {}, true};
+    const int corner = corner_of(old_mesh_.corners_of[place.element], origin);
+    place.weight[static_cast<std::size_t>(corner)] = 1;
+    return place;
+  }
+
+  /// [vertex of the new mesh] That of the old mesh at the same place, or none; the end of this
+  /// object's work.
+  std::vector<VertexId> take_origins() { return std::move(origin_of_); }
+
+ private:
+  /// A vertex of the old mesh by its place.
+  struct Spot {
+    Vector<Dim> position;
+    VertexId vertex = none;
+    friend auto operator<=>(const Spot& a, const Spot& b) {
+      if (const auto order = a.position.x <=> b.position.x; order != 0) return order;
+      return std::partial_ordering(a.vertex <=> b.vertex);
+    }
+  };
+
+  /// One of the elements around each vertex of the new mesh.
+  void find_elements() {
+    const auto& elements = elements_in<Dim>(mesh_).vertices;
+    runtime::parallel_for(executor_, elements.size(), [&](std::size_t e) {
+      for (const VertexId v : elements[e])
+        runtime::atomic_min(element_at_[v], static_cast<ElementId>(e));
+    });
+  }
+
+  /// Where a vertex of the new mesh is seen from inside of it.
+  Vector<Dim> inside_near(VertexId v) const {
+    if (element_at_[v] == none) return position_in<Dim>(mesh_, v);
+    Vector<Dim> centre;
+    for (const VertexId corner : elements_in<Dim>(mesh_).vertices[element_at_[v]])
+      centre += (1.0 / (Dim + 1)) * position_in<Dim>(mesh_, corner);
+    return centre;
+  }
+
+  // ---- Vertices, by their places ----
+
+  void find_origins() {
+    std::vector<Spot> spots(old_mesh_.vertex_count());
+    runtime::parallel_for(executor_, spots.size(), [&](std::size_t v) {
+      spots[v] = {old_mesh_.position_of[v], static_cast<VertexId>(v)};
+    });
+    std::erase_if(spots,
+                  [&](const Spot& spot) { return old_mesh_.elements_of(spot.vertex).empty(); });
+    runtime::parallel_sort(executor_, std::span(spots));
+    runtime::parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
+      const Vector<Dim> position = position_in<Dim>(mesh_, v);
+      const auto begin = std::lower_bound(spots.begin(), spots.end(), Spot{position, 0});
+      const auto end = std::upper_bound(begin, spots.end(), Spot{position, none});
+      origin_of_[v] = same_side({begin, end}, static_cast<VertexId>(v));
+    });
+  }
+
+  /// Of vertices at one place the one whose elements look into the direction of those of v.
+  VertexId same_side(std::span<const Spot> spots, VertexId v) const {
+    if (spots.empty()) return none;
+    if (spots.size() == 1) return spots[0].vertex;
+    const Vector<Dim> inside = inside_near(v);
+    VertexId best = none;
+    double best_depth = 0;
+    for (const Spot& spot : spots)
+      for (const ElementId e : old_mesh_.elements_of(spot.vertex))
+        if (const double depth = depth_in_cone(e, spot.vertex, inside);
+            best == none || depth > best_depth) {
+          best = spot.vertex;
+          best_depth = depth;
+        }
+    return best;
+  }
+
+  /// How far a point is inside of an element that would go on without end from one corner: above 0
+  /// inside, whatever the distance from that corner.
+  double depth_in_cone(ElementId element, VertexId apex, const Vector<Dim>& point) const {
+    const Weights<Dim> weight = barycentric<Dim>(old_mesh_.points(element), point);
+    double lowest = 1, sum = 0;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      if (old_mesh_.corners_of[element][i] == apex) continue;
+      lowest = std::min(lowest, weight[i]);
+      sum += std::abs(weight[i]);
+    }
+    return sum > 0 ? lowest / sum : 0;
+  }
+
+  const runtime::Executor& executor_;
+  const Locator<Dim>& locator_;
+  const FixedMesh<Dim>& old_mesh_;
+  const AnyMesh& mesh_;
+  runtime::FilledArray<ElementId> element_at_;  // [vertex], one of those around it, or none
+  std::vector<VertexId> origin_of_;             // [vertex]
+};
+
+/// The values that a field has at the vertices of another mesh.
+template <int Dim>
+Evaluated evaluate_at_vertices(const runtime::Executor& executor, const Locator<Dim>& locator,
+                               const Components& field, const AnyMesh& mesh) {
+  const VertexPlaces<Dim> places(executor, locator, mesh);
+  return evaluate_each(
+      executor, locator, field, mesh.vertex_count(),
+      [&](std::size_t v, ElementId near) { return places.find(static_cast<VertexId>(v), near); });
+}
+
+}  // namespace ductile::meshadapt
