@@ -1,11 +1,11 @@
-# Installs the libraries and the package that `find_package(Ductile COMPONENTS runtime meshadapt)`
+# Installs the libraries and the package that `find_package(Ductile COMPONENTS runtime meshadapt c)`
 # finds. Each component has its own export, so that runtime installs without mesh adaptation.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(ductile_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Ductile)
 
-# Installs one library with its headers and its export. `component` is runtime or meshadapt.
+# Installs one library with its headers and its export. `component` is runtime, meshadapt or c.
 function(ductile_install_component target component)
   set_target_properties(${target} PROPERTIES
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -22,6 +22,14 @@ endfunction()
 ductile_install_component(ductile_runtime runtime)
 if(DUCTILE_BUILD_MESHADAPT)
   ductile_install_component(ductile_meshadapt meshadapt)
+endif()
+if(TARGET ductile_c)
+  ductile_install_component(ductile_c c)
+  configure_file(${PROJECT_SOURCE_DIR}/c/ductile.pc.in ${PROJECT_BINARY_DIR}/ductile.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/ductile.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT c)
+  install(FILES ${PROJECT_SOURCE_DIR}/c/ductile.f90
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT c)
 endif()
 if(TARGET ductile)
   file(RELATIVE_PATH ductile_libraries_from_program

@@ -37,7 +37,7 @@ void pass_on(int number, siginfo_t* info, void* context) {
   }
 }
 
-extern "C" void ductile_on_steal_signal(int number, siginfo_t* info, void* context) {
+extern "C" void on_steal_signal(int number, siginfo_t* info, void* context) {
   const int error_before = errno;
   if (info->si_code == SI_QUEUE && info->si_pid == getpid()) {
     loan.handler(info->si_value.sival_ptr);
@@ -76,7 +76,7 @@ StealSignal::StealSignal(Handler handler) noexcept {
   if (loan.users == 0) {
     const int number = choose_number();
     struct sigaction action = {};
-    action.sa_sigaction = ductile_on_steal_signal;
+    action.sa_sigaction = on_steal_signal;
     action.sa_flags = SA_SIGINFO | SA_RESTART;
     sigfillset(&action.sa_mask);
     if (number == 0 || sigaction(number, nullptr, &loan.before) != 0) return;

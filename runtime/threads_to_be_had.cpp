@@ -47,7 +47,7 @@ thread_local int kept = 1;
 /// So often it runs alone before threads are tried out again.
 thread_local int calls_alone = 0;
 
-extern "C" void* ductile_wait_at_gate(void* gate) {
+extern "C" void* wait_at_gate(void* gate) {
   const std::lock_guard lock(*static_cast<std::mutex*>(gate));
   return nullptr;
 }
@@ -60,7 +60,7 @@ bool can_make_threads(std::size_t count) {
   {
     const std::lock_guard lock(gate);
     for (pthread_t thread{}; threads.size() < count; threads.push_back(thread))
-      if (::pthread_create(&thread, nullptr, ductile_wait_at_gate, &gate) != 0) break;
+      if (::pthread_create(&thread, nullptr, wait_at_gate, &gate) != 0) break;
   }
   for (const pthread_t thread : threads) ::pthread_join(thread, nullptr);
   return threads.size() == count;

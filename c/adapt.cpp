@@ -1,0 +1,113 @@
+/// @file
+/// Adaptation of ductile.h, and what a program does with its result.
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "handles.hpp"
+
+namespace ductile::c {
+
+namespace {
+
+using meshadapt::AdaptReport;
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using meshadapt::InputError;
+using Type = AnyField::Type;
+
+/// The kind of metric that has so many components.
+Type type_of(int components, int dimension) {
+  for (const Type type : {Type::scalar, Type::symmetric, Type::matrix})
+    if (component_count(type, dimension) == components) return type;
+  throw InputError("components: expected 1, " +
+                   std::to_string(component_count(Type::symmetric, dimension)) + " or " +
+                   std::to_string(component_count(Type::matrix, dimension)) + ", found " +
+                   std::to_string(components));
+}
+
+AnyField metric_of(const AnyMesh& mesh, int components, const double* values,
+                   const ductile_options& options) {
+  if (values == nullptr)
+    return meshadapt::default_metric(runtime::Executor(options.executor), mesh);
+  const Type type = type_of(components, mesh.dimension);
+  const std::size_t count = mesh.vertex_count() * static_cast<std::size_t>(components);
+  const AnyField given{
+      mesh.dimension, mesh.vertex_count(), {type}, {values, values + count}, "metric"};
+  return meshadapt::metric_of(given, mesh,
+                              {options.adapt.smallest_size, options.adapt.largest_size});
+}
+
+/// Of the C library's indices, which are signed.
+void expect_signed(const AnyMesh& mesh) {
+  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
+  if (mesh.vertex_count() > most || mesh.triangles.size() > most || mesh.tetrahedra.size() > most)
+    throw meshadapt::Error("the adapted mesh has more entities than 31 bits can count");
+}
+
+double figure(const AdaptReport& report, std::string_view name) {
+  const std::array<std::pair<std::string_view, double>, 7> figures{
+      {{"iterations", report.iterations},
+       {"converged", report.converged ? 1 : 0},
+       {"seconds", report.total_seconds},
+       {"fixed_vertices", static_cast<double>(report.fixed_vertices)},
+       {"held_long_edges", static_cast<double>(report.held_long_edges)},
+       {"held_short_edges", static_cast<double>(report.held_short_edges)},
+       {"warnings", static_cast<double>(report.warnings.size())}}};
+  std::string names;
+  for (const auto& [known, value] : figures) {
+    if (known == name) return value;
+    names += names.empty() ? "" : ", ";
+    names += known;
+  }
+  throw InputError("figure " + std::string(name) + ": expected one of " + names);
+}
+
+}  // namespace
+}  // namespace ductile::c
+
+using namespace ductile;  // NOLINT: what follows is not theirs
+
+extern "C" {
+
+int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric,
+                  const ductile_options* options, ductile_mesh** adapted) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_given(adapted, "adapted");
+    const ductile_options defaults;
+    const ductile_options& used = options == nullptr ? defaults : *options;
+    const meshadapt::AnyField wanted = c::metric_of(mesh->mesh, components, metric, used);
+    auto result =
+        meshadapt::adapt(runtime::Executor(used.executor), mesh->mesh, wanted, used.adapt);
+    c::expect_signed(result.mesh);
+    *adapted = std::make_unique<ductile_mesh>(ductile_mesh{std::move(result.mesh),
+                                                           std::move(result.metric),
+                                                           std::move(result.report)})
+                   .release();
+  });
+}
+
+int ductile_mesh_report(const ductile_mesh* adapted, const char* name, double* value) {
+  return c::guarded([&] {
+    c::expect_given(adapted, "adapted");
+    c::expect_given(name, "name");
+    c::expect_given(value, "value");
+    *value = c::figure(adapted->report, name);
+  });
+}
+
+const char* ductile_mesh_warning(const ductile_mesh* adapted, int64_t i) {
+  const auto& warnings = adapted->report.warnings;
+  if (i < 0 || static_cast<std::size_t>(i) >= warnings.size()) return nullptr;
+  return warnings[static_cast<std::size_t>(i)].c_str();
+}
+
+}  // extern "C"

@@ -1,0 +1,201 @@
+! The C library of Ductile from Fortran: see ductile.h, of which this has every function under its
+! name. Vertices, facets and elements are numbered from 0 here, too. Where C takes NULL, give
+! c_null_ptr; where it takes an array that may be NULL, c_loc(array). Compile this file with the
+! program, and link with -lductile.
+module ductile
+  use, intrinsic :: iso_c_binding
+  implicit none
+
+  integer(c_int), parameter :: DUCTILE_OK = 0, DUCTILE_FAILED = 1, DUCTILE_WRONG_INPUT = 2
+  integer(c_int), parameter :: DUCTILE_VERTICES = 0, DUCTILE_RIDGES = 1, DUCTILE_FACETS = 2, &
+                               DUCTILE_ELEMENTS = 3, DUCTILE_CONSERVATIVE = 16
+
+  interface
+    ! Arrays may have two dimensions, as corners(3, count) has.
+    integer(c_int) function ductile_mesh_set_elements(mesh, count, corners, reference) bind(C)
+      import :: c_int, c_int32_t, c_int64_t, c_ptr
+      type(c_ptr), value :: mesh, reference
+      integer(c_int64_t), value :: count
+      integer(c_int32_t), intent(in) :: corners(*)
+    end function
+    integer(c_int) function ductile_mesh_set_elements_64(mesh, count, corners, reference) bind(C)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: mesh, reference
+      integer(c_int64_t), value :: count
+      integer(c_int64_t), intent(in) :: corners(*)
+    end function
+    integer(c_int) function ductile_mesh_set_facets(mesh, count, corners, reference) bind(C)
+      import :: c_int, c_int32_t, c_int64_t, c_ptr
+      type(c_ptr), value :: mesh, reference
+      integer(c_int64_t), value :: count
+      integer(c_int32_t), intent(in) :: corners(*)
+    end function
+    integer(c_int) function ductile_mesh_set_facets_64(mesh, count, corners, reference) bind(C)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: mesh, reference
+      integer(c_int64_t), value :: count
+      integer(c_int64_t), intent(in) :: corners(*)
+    end function
+    integer(c_int) function ductile_mesh_create(dimension, mesh) bind(C)
+      import :: c_int, c_ptr
+      integer(c_int), value :: dimension
+      type(c_ptr), intent(out) :: mesh
+    end function
+    integer(c_int) function ductile_mesh_set_vertices(mesh, count, coordinates, reference) bind(C)
+      import :: c_int, c_int64_t, c_double, c_ptr
+      type(c_ptr), value :: mesh, reference
+      integer(c_int64_t), value :: count
+      real(c_double), intent(in) :: coordinates(*)
+    end function
+    integer(c_int) function ductile_mesh_require(mesh, kind, count, indices) bind(C)
+      import :: c_int, c_int32_t, c_int64_t, c_ptr
+      type(c_ptr), value :: mesh
+      integer(c_int), value :: kind
+      integer(c_int64_t), value :: count
+      integer(c_int32_t), intent(in) :: indices(*)
+    end function
+    integer(c_int) function ductile_mesh_read(path, mesh) bind(C)
+      import :: c_int, c_char, c_ptr
+      character(kind=c_char), intent(in) :: path(*)  ! ends with c_null_char
+      type(c_ptr), intent(out) :: mesh
+    end function
+    integer(c_int) function ductile_mesh_write(mesh, path) bind(C)
+      import :: c_int, c_char, c_ptr
+      type(c_ptr), value :: mesh
+      character(kind=c_char), intent(in) :: path(*)
+    end function
+    subroutine ductile_mesh_destroy(mesh) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: mesh
+    end subroutine
+    integer(c_int) function ductile_mesh_dimension(mesh) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: mesh
+    end function
+    integer(c_int64_t) function ductile_mesh_count(mesh, kind) bind(C)
+      import :: c_int, c_int64_t, c_ptr
+      type(c_ptr), value :: mesh
+      integer(c_int), value :: kind
+    end function
+    ! Arrays of the mesh: c_f_pointer() makes arrays of Fortran's of them.
+    type(c_ptr) function ductile_mesh_coordinates(mesh) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: mesh
+    end function
+    type(c_ptr) function ductile_mesh_corners(mesh, kind) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: mesh
+      integer(c_int), value :: kind
+    end function
+    type(c_ptr) function ductile_mesh_references(mesh, kind) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: mesh
+      integer(c_int), value :: kind
+    end function
+    type(c_ptr) function ductile_mesh_metric(mesh) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: mesh
+    end function
+
+    integer(c_int) function ductile_options_create(options) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), intent(out) :: options
+    end function
+    subroutine ductile_options_destroy(options) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: options
+    end subroutine
+    integer(c_int) function ductile_options_set(options, name, value) bind(C)
+      import :: c_int, c_char, c_double, c_ptr
+      type(c_ptr), value :: options
+      character(kind=c_char), intent(in) :: name(*)
+      real(c_double), value :: value
+    end function
+    integer(c_int) function ductile_options_set_progress(options, progress, context) bind(C)
+      import :: c_int, c_funptr, c_ptr
+      type(c_ptr), value :: options, context
+      type(c_funptr), value :: progress
+    end function
+
+    integer(c_int) function ductile_adapt(mesh, components, metric, options, adapted) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: mesh, metric, options
+      integer(c_int), value :: components
+      type(c_ptr), intent(out) :: adapted
+    end function
+    integer(c_int) function ductile_mesh_report(adapted, name, value) bind(C)
+      import :: c_int, c_char, c_double, c_ptr
+      type(c_ptr), value :: adapted
+      character(kind=c_char), intent(in) :: name(*)
+      real(c_double), intent(out) :: value
+    end function
+    type(c_ptr) function ductile_mesh_warning(adapted, i) bind(C)
+      import :: c_int64_t, c_ptr
+      type(c_ptr), value :: adapted
+      integer(c_int64_t), value :: i
+    end function
+    integer(c_int) function ductile_transfer_create(before, after, transfer) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: before, after
+      type(c_ptr), intent(out) :: transfer
+    end function
+    subroutine ductile_transfer_destroy(transfer) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: transfer
+    end subroutine
+    type(c_ptr) function ductile_transfer_origins(transfer, kind) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: transfer
+      integer(c_int), value :: kind
+    end function
+    type(c_ptr) function ductile_transfer_hosts(transfer) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: transfer
+    end function
+    type(c_ptr) function ductile_transfer_weights(transfer) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: transfer
+    end function
+    integer(c_int) function ductile_transfer_carry(transfer, how, components, values, result) &
+        bind(C)
+      import :: c_int, c_double, c_ptr
+      type(c_ptr), value :: transfer
+      integer(c_int), value :: how, components
+      real(c_double), intent(in) :: values(*)
+      real(c_double), intent(out) :: result(*)
+    end function
+
+    type(c_ptr) function ductile_version() bind(C)
+      import :: c_ptr
+    end function
+    type(c_ptr) function ductile_last_error() bind(C)
+      import :: c_ptr
+    end function
+  end interface
+
+contains
+
+  ! A text of C's, such as ductile_last_error(), as one of Fortran's.
+  function ductile_text(text) result(string)
+    type(c_ptr), intent(in) :: text
+    character(len=:), allocatable :: string
+    character(kind=c_char), pointer :: characters(:)
+    integer :: i
+    interface
+      integer(c_size_t) function string_length(text) bind(C, name="strlen")
+        import :: c_size_t, c_ptr
+        type(c_ptr), value :: text
+      end function
+    end interface
+    if (.not. c_associated(text)) then
+      string = ""
+      return
+    end if
+    call c_f_pointer(text, characters, [string_length(text)])
+    allocate (character(len=size(characters)) :: string)
+    do i = 1, size(characters)
+      string(i:i) = characters(i)
+    end do
+  end function
+
+end module ductile

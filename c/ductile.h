@@ -1,0 +1,150 @@
+/** @file
+ * Ductile from C, Fortran and all that can call C: a mesh is adapted so that its edges have the
+ * lengths that a metric asks for. Plain arrays in and out; vertices are numbered from 0.
+ *
+ * Functions that can fail return a code: DUCTILE_OK; DUCTILE_FAILED, as where memory runs out or
+ * the caller has cancelled; DUCTILE_WRONG_INPUT, for arrays, names or files that are wrong. What
+ * went wrong is the text of ductile_last_error(). Results are written only if all went well.
+ * Nothing is printed. Handles belong to the caller, who destroys them. Thread safety: any thread;
+ * one handle may be read by several threads, and changed by one while no other uses it.
+ */
+#ifndef DUCTILE_H
+#define DUCTILE_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { DUCTILE_OK = 0, DUCTILE_FAILED = 1, DUCTILE_WRONG_INPUT = 2 };
+
+/** Kinds of entities. Elements are triangles in 2D and tetrahedra in 3D; facets, of the boundary
+ * and of interfaces, are edges in 2D and triangles in 3D; ridges are edges in 3D, along curves. */
+enum { DUCTILE_VERTICES = 0, DUCTILE_RIDGES = 1, DUCTILE_FACETS = 2, DUCTILE_ELEMENTS = 3 };
+
+/** To be added to a kind, see ductile_transfer_carry(). */
+enum { DUCTILE_CONSERVATIVE = 16 };
+
+typedef struct ductile_mesh ductile_mesh;
+typedef struct ductile_options ductile_options;
+typedef struct ductile_transfer ductile_transfer;
+
+/** "0.1.0". */
+const char* ductile_version(void);
+
+/** What the last call on this thread that failed has to say, one line; never NULL. Entries of
+ * arrays are counted from 0. Valid until the next call on this thread fails. */
+const char* ductile_last_error(void);
+
+/* ---- Meshes ---- */
+
+/** An empty mesh of dimension 2 or 3. */
+int ductile_mesh_create(int dimension, ductile_mesh** mesh);
+
+/** Gives it `count` vertices, in place of all that it had: coordinates[vertex * dimension + axis];
+ * reference[vertex], or NULL for 0. Arrays are copied, here and below. */
+int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* coordinates,
+                              const int32_t* reference);
+
+/** Gives it elements, triangles in 2D and tetrahedra in 3D, in place of all cells that it had:
+ * corners[element * (dimension + 1) + corner]; reference[element], or NULL for 0. The boundary, and
+ * interfaces between elements of different references, become facets of reference 0. */
+int ductile_mesh_set_elements(ductile_mesh* mesh, int64_t count, const int32_t* corners,
+                              const int32_t* reference);
+int ductile_mesh_set_elements_64(ductile_mesh* mesh, int64_t count, const int64_t* corners,
+                                 const int32_t* reference);
+
+/** Puts these facets first, corners[facet * dimension + corner]; facets found before and not among
+ * them follow. Forgets which facets are required. reference[facet], or NULL for 0. */
+int ductile_mesh_set_facets(ductile_mesh* mesh, int64_t count, const int32_t* corners,
+                            const int32_t* reference);
+int ductile_mesh_set_facets_64(ductile_mesh* mesh, int64_t count, const int64_t* corners,
+                               const int32_t* reference);
+
+/** The entities that must not change, by their indices, in place of those required before. `kind`
+ * is DUCTILE_VERTICES, DUCTILE_FACETS or DUCTILE_ELEMENTS. */
+int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int32_t* indices);
+
+/** From and to a file in the GMF format of Medit and Mmg, .mesh or .meshb; to .vtu as well. */
+int ductile_mesh_read(const char* path, ductile_mesh** mesh);
+int ductile_mesh_write(const ductile_mesh* mesh, const char* path);
+
+/** NULL is fine. */
+void ductile_mesh_destroy(ductile_mesh* mesh);
+
+/** 2 or 3. */
+int ductile_mesh_dimension(const ductile_mesh* mesh);
+
+/** How many there are; -1 for an unknown kind. */
+int64_t ductile_mesh_count(const ductile_mesh* mesh, int kind);
+
+/** Arrays of the mesh, valid until it is changed or destroyed; NULL where there are none.
+ * [vertex * dimension + axis] */
+const double* ductile_mesh_coordinates(const ductile_mesh* mesh);
+/** [entity * corners of one + corner], of ridges, facets or elements. */
+const int32_t* ductile_mesh_corners(const ductile_mesh* mesh, int kind);
+/** [entity] */
+const int32_t* ductile_mesh_references(const ductile_mesh* mesh, int kind);
+/** Of an adapted mesh, the metric at its vertices, [vertex * components + component]: in 2D
+ * m11 m12 m22, in 3D m11 m12 m22 m13 m23 m33. NULL of others. */
+const double* ductile_mesh_metric(const ductile_mesh* mesh);
+
+/* ---- Options ---- */
+
+int ductile_options_create(ductile_options** options);
+void ductile_options_destroy(ductile_options* options);
+
+/** Sets one by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hausd", "ar",
+ * "iterations", "threads", "memory" in megabytes; "nomove", "noswap", "noinsert", "nosurf",
+ * "thorough" and "racing", which are 0 or 1. */
+int ductile_options_set(ductile_options* options, const char* name, double value);
+
+/** Called after each step of the adaptation, on the thread that called ductile_adapt(): the step's
+ * name, the iteration and the number of changes. Returns 0 to cancel, anything else to go on. */
+typedef int (*ductile_progress)(const char* step, int iteration, int64_t changes, void* context);
+int ductile_options_set_progress(ductile_options* options, ductile_progress progress,
+                                 void* context);
+
+/* ---- Adaptation ---- */
+
+/** Adapts a mesh. `components` says what the metric has at each vertex: 1, the size wanted; 3 in
+ * 2D, 6 in 3D, a symmetric tensor in the order above; 4 in 2D, 9 in 3D, a full matrix. NULL for
+ * `metric`: the sizes that the mesh has. NULL for `options`: the defaults. */
+int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric,
+                  const ductile_options* options, ductile_mesh** adapted);
+
+/** A figure of the adaptation that a mesh came from: "iterations", "converged", "seconds",
+ * "fixed_vertices", "held_long_edges", "held_short_edges", "warnings". */
+int ductile_mesh_report(const ductile_mesh* adapted, const char* name, double* value);
+/** The text of warning i; NULL beyond the last. */
+const char* ductile_mesh_warning(const ductile_mesh* adapted, int64_t i);
+
+/* ---- From one mesh to another ---- */
+
+/** How the mesh `after` lies in `before`, from which it was made. Refers to both: they must not be
+ * changed or destroyed before it is. */
+int ductile_transfer_create(const ductile_mesh* before, const ductile_mesh* after,
+                            ductile_transfer** transfer);
+void ductile_transfer_destroy(ductile_transfer* transfer);
+
+/** For each vertex, facet or element of `after` the index of what is the same in `before`: a vertex
+ * at the same place, what has the same vertices; -1 where there is none. NULL for other kinds. */
+const int32_t* ductile_transfer_origins(const ductile_transfer* transfer, int kind);
+/** For each vertex of `after` the element of `before` in which it lies, or which is closest. */
+const int32_t* ductile_transfer_hosts(const ductile_transfer* transfer);
+/** Its barycentric weights there, [vertex * (dimension + 1) + corner]. */
+const double* ductile_transfer_weights(const ductile_transfer* transfer);
+
+/** Carries values, [entity * components + component], to `result`, which has room for those of
+ * `after`. `how` is DUCTILE_VERTICES, values at vertices, linear in each element, or
+ * DUCTILE_ELEMENTS, values on elements; plus DUCTILE_CONSERVATIVE to keep integrals where both
+ * meshes cover the same domain. */
+int ductile_transfer_carry(const ductile_transfer* transfer, int how, int components,
+                           const double* values, double* result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

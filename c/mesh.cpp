@@ -1,0 +1,271 @@
+/// @file
+/// Meshes of ductile.h: from arrays, from files, and their arrays.
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/mesh_from_arrays.hpp"
+#include "ductile/meshadapt/vtu.hpp"
+#include "handles.hpp"
+
+namespace ductile::c {
+
+namespace {
+
+using meshadapt::AnyMesh;
+using meshadapt::InputError;
+using meshadapt::MeshArrays;
+
+constexpr std::int64_t most_entities = std::numeric_limits<std::int32_t>::max();
+
+thread_local std::string last_error;  // NOLINT: what the functions of C have in place of exceptions
+
+/// An array as a span of so many entries with `each` numbers; of references, which may be left out,
+/// none.
+template <class T>
+std::span<const T> span_of(const T* array, std::int64_t count, std::int64_t each) {
+  if (array == nullptr) return {};
+  return {array, static_cast<std::size_t>(count * each)};
+}
+
+void expect_count(std::int64_t count, const char* name) {
+  if (count > most_entities)
+    throw InputError(std::string(name) + ": expected at most " + std::to_string(most_entities) +
+                     " entries, found " + std::to_string(count));
+}
+
+/// What cells are given as; `each` corners.
+template <class Index>
+struct GivenCells {
+  std::int64_t count;
+  const Index* corners;
+  const std::int32_t* reference;
+};
+
+/// The vertices of a mesh with elements, or facets, that are given; both are checked.
+template <class Index>
+AnyMesh with_cells(const AnyMesh& mesh, const GivenCells<Index>& given, int each) {
+  expect_array(given.corners, given.count, "corners");
+  expect_count(given.count, "corners");
+  MeshArrays<Index> arrays{.dimension = mesh.dimension,
+                           .coordinates = mesh.coordinates,
+                           .elements = {},
+                           .vertex_reference = mesh.vertex_reference};
+  const bool are_elements = each == mesh.dimension + 1;
+  (are_elements ? arrays.elements : arrays.facets) = span_of(given.corners, given.count, each);
+  (are_elements ? arrays.element_reference : arrays.facet_reference) =
+      span_of(given.reference, given.count, 1);
+  return meshadapt::mesh_from_arrays(runtime::Executor(), arrays);
+}
+
+template <class Index>
+int set_elements(ductile_mesh* handle, const GivenCells<Index>& given) {
+  return guarded([&] {
+    expect_given(handle, "mesh");
+    *handle = {with_cells(handle->mesh, given, handle->mesh.dimension + 1), {}, {}};
+  });
+}
+
+template <class Index>
+int set_facets(ductile_mesh* handle, const GivenCells<Index>& given) {
+  return guarded([&] {
+    expect_given(handle, "mesh");
+    AnyMesh mesh = handle->mesh;
+    AnyMesh listed = with_cells(mesh, given, mesh.dimension);
+    if (mesh.dimension == 2) {
+      mesh.edges = std::move(listed.edges);
+      mesh.required_edges.clear();
+      mesh.ridges.clear();
+    } else {
+      mesh.triangles = std::move(listed.triangles);
+      mesh.required_triangles.clear();
+    }
+    meshadapt::list_boundary(runtime::Executor(), mesh);
+    handle->mesh = std::move(mesh);
+  });
+}
+
+/// The list of required entities of a kind, and how many such entities there are.
+std::vector<std::uint32_t>& required_of(AnyMesh& mesh, int kind, std::size_t& count) {
+  const bool flat = mesh.dimension == 2;
+  switch (kind) {
+    case DUCTILE_VERTICES:
+      count = mesh.vertex_count();
+      return mesh.required_vertices;
+    case DUCTILE_FACETS:
+      count = flat ? mesh.edges.size() : mesh.triangles.size();
+      return flat ? mesh.required_edges : mesh.required_triangles;
+    case DUCTILE_ELEMENTS:
+      count = flat ? mesh.triangles.size() : mesh.tetrahedra.size();
+      return flat ? mesh.required_triangles : mesh.required_tetrahedra;
+    default:
+      throw InputError(
+          "kind: expected DUCTILE_VERTICES, DUCTILE_FACETS or DUCTILE_ELEMENTS, found " +
+          std::to_string(kind));
+  }
+}
+
+/// Calls use(cells) with those of a kind; false if there is no such kind of cells.
+bool visit_cells(const AnyMesh& mesh, int kind, auto&& use) {
+  const bool flat = mesh.dimension == 2;
+  if (kind == DUCTILE_RIDGES && !flat) return use(mesh.edges), true;
+  if (kind == DUCTILE_FACETS) return flat ? use(mesh.edges) : use(mesh.triangles), true;
+  if (kind == DUCTILE_ELEMENTS) return flat ? use(mesh.triangles) : use(mesh.tetrahedra), true;
+  return false;
+}
+
+template <class T>
+const T* data_of(const std::vector<T>& values) {
+  return values.empty() ? nullptr : values.data();
+}
+
+}  // namespace
+
+void keep_error(const char* text) noexcept {
+  try {
+    last_error = text;
+  } catch (...) {
+    last_error = "no memory";  // short enough to need none
+  }
+}
+
+}  // namespace ductile::c
+
+using namespace ductile;  // NOLINT: what follows is not theirs
+
+extern "C" {
+
+const char* ductile_version() { return DUCTILE_VERSION; }
+
+const char* ductile_last_error() { return c::last_error.c_str(); }
+
+int ductile_mesh_create(int dimension, ductile_mesh** mesh) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    if (dimension != 2 && dimension != 3)
+      throw meshadapt::InputError("dimension: expected 2 or 3, found " + std::to_string(dimension));
+    auto made = std::make_unique<ductile_mesh>();
+    made->mesh.dimension = dimension;
+    *mesh = made.release();
+  });
+}
+
+int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* coordinates,
+                              const int32_t* reference) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_array(coordinates, count, "coordinates");
+    c::expect_count(count, "coordinates");
+    const c::MeshArrays<int32_t> arrays{
+        .dimension = mesh->mesh.dimension,
+        .coordinates = c::span_of(coordinates, count, mesh->mesh.dimension),
+        .elements = {},
+        .vertex_reference = c::span_of(reference, count, 1)};
+    *mesh = {meshadapt::mesh_from_arrays(runtime::Executor(), arrays), {}, {}};
+  });
+}
+
+int ductile_mesh_set_elements(ductile_mesh* mesh, int64_t count, const int32_t* corners,
+                              const int32_t* reference) {
+  return c::set_elements<int32_t>(mesh, {count, corners, reference});
+}
+
+int ductile_mesh_set_elements_64(ductile_mesh* mesh, int64_t count, const int64_t* corners,
+                                 const int32_t* reference) {
+  return c::set_elements<int64_t>(mesh, {count, corners, reference});
+}
+
+int ductile_mesh_set_facets(ductile_mesh* mesh, int64_t count, const int32_t* corners,
+                            const int32_t* reference) {
+  return c::set_facets<int32_t>(mesh, {count, corners, reference});
+}
+
+int ductile_mesh_set_facets_64(ductile_mesh* mesh, int64_t count, const int64_t* corners,
+                               const int32_t* reference) {
+  return c::set_facets<int64_t>(mesh, {count, corners, reference});
+}
+
+int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int32_t* indices) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_array(indices, count, "indices");
+    std::size_t entities = 0;
+    std::vector<std::uint32_t>& required = c::required_of(mesh->mesh, kind, entities);
+    for (std::int64_t i = 0; i < count; ++i)
+      if (indices[i] < 0 || static_cast<std::size_t>(indices[i]) >= entities)
+        throw meshadapt::InputError(
+            "indices[" + std::to_string(i) + "]: expected an index from 0 and below " +
+            std::to_string(entities) + ", found " + std::to_string(indices[i]));
+    required.assign(indices, indices + count);
+  });
+}
+
+int ductile_mesh_read(const char* path, ductile_mesh** mesh) {
+  return c::guarded([&] {
+    c::expect_given(path, "path");
+    c::expect_given(mesh, "mesh");
+    auto read = std::make_unique<ductile_mesh>();
+    read->mesh = meshadapt::read_mesh(path);
+    meshadapt::list_boundary(runtime::Executor(), read->mesh);
+    *mesh = read.release();
+  });
+}
+
+int ductile_mesh_write(const ductile_mesh* mesh, const char* path) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_given(path, "path");
+    const std::filesystem::path file(path);
+    if (file.extension() != ".vtu") return meshadapt::write_mesh(file, mesh->mesh);
+    const bool has_metric = !mesh->metric.values.empty();
+    meshadapt::write_vtu(file, mesh->mesh,
+                         has_metric ? meshadapt::named_fields(mesh->metric, "metric")
+                                    : std::vector<meshadapt::NamedField>());
+  });
+}
+
+void ductile_mesh_destroy(ductile_mesh* mesh) { delete mesh; }
+
+int ductile_mesh_dimension(const ductile_mesh* mesh) { return mesh->mesh.dimension; }
+
+int64_t ductile_mesh_count(const ductile_mesh* mesh, int kind) {
+  if (kind == DUCTILE_VERTICES) return static_cast<int64_t>(mesh->mesh.vertex_count());
+  int64_t count = kind == DUCTILE_RIDGES ? 0 : -1;
+  c::visit_cells(mesh->mesh, kind,
+                 [&](const auto& cells) { count = static_cast<int64_t>(cells.size()); });
+  return count;
+}
+
+const double* ductile_mesh_coordinates(const ductile_mesh* mesh) {
+  return c::data_of(mesh->mesh.coordinates);
+}
+
+const int32_t* ductile_mesh_corners(const ductile_mesh* mesh, int kind) {
+  const int32_t* corners = nullptr;
+  c::visit_cells(mesh->mesh, kind, [&](const auto& cells) {
+    if (cells.size() != 0)  // the signed type of theirs, which may be looked at as that
+      corners = reinterpret_cast<const int32_t*>(cells.vertices[0].data());
+  });
+  return corners;
+}
+
+const int32_t* ductile_mesh_references(const ductile_mesh* mesh, int kind) {
+  if (kind == DUCTILE_VERTICES) return c::data_of(mesh->mesh.vertex_reference);
+  const int32_t* reference = nullptr;
+  c::visit_cells(mesh->mesh, kind,
+                 [&](const auto& cells) { reference = c::data_of(cells.reference); });
+  return reference;
+}
+
+const double* ductile_mesh_metric(const ductile_mesh* mesh) {
+  return c::data_of(mesh->metric.values);
+}
+
+}  // extern "C"

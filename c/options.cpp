@@ -1,0 +1,114 @@
+/// @file
+/// Options of ductile.h by their names: a name that a later version adds changes no function.
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "handles.hpp"
+
+namespace ductile::c {
+
+namespace {
+
+using meshadapt::InputError;
+
+[[noreturn]] void refuse(const std::string& name, const std::string& expected, double found) {
+  throw InputError("option " + name + ": expected " + expected + ", found " +
+                   std::to_string(found));
+}
+
+int whole(const std::string& name, double value, int low, int high) {
+  if (!(value >= low && value <= high && std::floor(value) == value))
+    refuse(name, "a whole number from " + std::to_string(low) + " to " + std::to_string(high),
+           value);
+  return static_cast<int>(value);
+}
+
+bool flag(const std::string& name, double value) { return whole(name, value, 0, 1) == 1; }
+
+std::size_t megabytes(const std::string& name, double value) {
+  return static_cast<std::size_t>(whole(name, value, 0, 1 << 30)) << 20U;
+}
+
+/// One option: its name and how it is set.
+struct Named {
+  std::string_view name;
+  void (*set)(ductile_options& options, const std::string& name, double value);
+};
+
+using Options = ductile_options;
+using Text = std::string;
+
+constexpr std::array<Named, 14> all_options{{
+    {"hmin", [](Options& o, const Text&, double x) { o.adapt.smallest_size = x; }},
+    {"hmax", [](Options& o, const Text&, double x) { o.adapt.largest_size = x; }},
+    {"hgrad", [](Options& o, const Text&, double x) { o.adapt.gradation = x; }},
+    {"hausd", [](Options& o, const Text&, double x) { o.adapt.make.surface_tolerance = x; }},
+    {"ar", [](Options& o, const Text&, double x) { o.adapt.make.ridge_angle = x; }},
+    {"iterations",
+     [](Options& o, const Text& n, double x) { o.adapt.iterations = whole(n, x, 0, 1000); }},
+    {"threads",
+     [](Options& o, const Text& n, double x) { o.executor.threads = whole(n, x, 0, 4096); }},
+    {"memory", [](Options& o, const Text& n, double x) { o.adapt.memory_limit = megabytes(n, x); }},
+    {"nomove", [](Options& o, const Text& n, double x) { o.adapt.move = !flag(n, x); }},
+    {"noswap", [](Options& o, const Text& n, double x) { o.adapt.swap = !flag(n, x); }},
+    {"noinsert", [](Options& o, const Text& n, double x) { o.adapt.insert = !flag(n, x); }},
+    {"nosurf",
+     [](Options& o, const Text& n, double x) { o.adapt.make.lock_boundary = flag(n, x); }},
+    {"thorough", [](Options& o, const Text& n, double x) { o.adapt.thorough = flag(n, x); }},
+    {"racing", [](Options& o, const Text& n, double x) { o.executor.deterministic = !flag(n, x); }},
+}};
+
+std::string all_names() {
+  std::string names;
+  for (const Named& option : all_options) {
+    if (!names.empty()) names += ", ";
+    names += option.name;
+  }
+  return names;
+}
+
+}  // namespace
+}  // namespace ductile::c
+
+using namespace ductile;  // NOLINT: what follows is not theirs
+
+extern "C" {
+
+int ductile_options_create(ductile_options** options) {
+  return c::guarded([&] {
+    c::expect_given(options, "options");
+    *options = std::make_unique<ductile_options>().release();
+  });
+}
+
+void ductile_options_destroy(ductile_options* options) { delete options; }
+
+int ductile_options_set(ductile_options* options, const char* name, double value) {
+  return c::guarded([&] {
+    c::expect_given(options, "options");
+    c::expect_given(name, "name");
+    for (const c::Named& option : c::all_options)
+      if (option.name == name) return option.set(*options, name, value);
+    throw meshadapt::InputError("option " + std::string(name) + ": expected one of " +
+                                c::all_names());
+  });
+}
+
+int ductile_options_set_progress(ductile_options* options, ductile_progress progress,
+                                 void* context) {
+  return c::guarded([&] {
+    c::expect_given(options, "options");
+    options->adapt.progress = {};
+    if (progress == nullptr) return;
+    options->adapt.progress = [progress, context](const meshadapt::AdaptProgress& now) {
+      return progress(now.step, now.iteration, static_cast<std::int64_t>(now.changes), context) !=
+             0;
+    };
+  });
+}
+
+}  // extern "C"

@@ -1,0 +1,199 @@
+/* What the C library promises, in C: codes and texts of errors, that results stay as they were
+ * where a call fails, cancelling, both widths of indices, origins and transfer. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ductile.h"
+
+static int failures = 0;
+
+#define EXPECT(condition)                                                      \
+  do {                                                                         \
+    if (!(condition)) {                                                        \
+      ++failures;                                                              \
+      printf("line %d: %s; %s\n", __LINE__, #condition, ductile_last_error()); \
+    }                                                                          \
+  } while (0)
+
+#define EXPECT_TEXT(text)                                                             \
+  do {                                                                                \
+    if (strcmp(ductile_last_error(), text) != 0) {                                    \
+      ++failures;                                                                     \
+      printf("line %d: '%s'\n  is not '%s'\n", __LINE__, ductile_last_error(), text); \
+    }                                                                                 \
+  } while (0)
+
+static const double square[] = {0, 0, 1, 0, 1, 1, 0, 1};
+static const int32_t halves[] = {0, 1, 2, 0, 2, 3};
+static const int64_t halves_64[] = {0, 1, 2, 0, 2, 3};
+
+static ductile_mesh* make_square(void) {
+  ductile_mesh* mesh = NULL;
+  const int32_t inflow[] = {3, 0}, reference[] = {7};
+  EXPECT(ductile_mesh_create(2, &mesh) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_vertices(mesh, 4, square, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_elements(mesh, 2, halves, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_facets(mesh, 1, inflow, reference) == DUCTILE_OK);
+  return mesh;
+}
+
+static void test_meshes(void) {
+  ductile_mesh* mesh = make_square();
+  EXPECT(ductile_mesh_dimension(mesh) == 2);
+  EXPECT(ductile_mesh_count(mesh, DUCTILE_VERTICES) == 4);
+  EXPECT(ductile_mesh_count(mesh, DUCTILE_ELEMENTS) == 2);
+  EXPECT(ductile_mesh_count(mesh, DUCTILE_FACETS) == 4);
+  EXPECT(ductile_mesh_count(mesh, DUCTILE_RIDGES) == 0);
+  EXPECT(ductile_mesh_count(mesh, 9) == -1);
+  EXPECT(memcmp(ductile_mesh_coordinates(mesh), square, sizeof square) == 0);
+  EXPECT(memcmp(ductile_mesh_corners(mesh, DUCTILE_ELEMENTS), halves, sizeof halves) == 0);
+  EXPECT(ductile_mesh_references(mesh, DUCTILE_FACETS)[0] == 7);
+  EXPECT(ductile_mesh_references(mesh, DUCTILE_FACETS)[1] == 0);
+  EXPECT(ductile_mesh_corners(mesh, DUCTILE_VERTICES) == NULL);
+  EXPECT(ductile_mesh_metric(mesh) == NULL);
+  const int32_t regions[] = {5, 6};
+  const int64_t inflow[] = {3, 0};
+  EXPECT(ductile_mesh_set_elements_64(mesh, 2, halves_64, regions) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_facets_64(mesh, 1, inflow, NULL) == DUCTILE_OK);
+  EXPECT(memcmp(ductile_mesh_corners(mesh, DUCTILE_ELEMENTS), halves, sizeof halves) == 0);
+  EXPECT(ductile_mesh_references(mesh, DUCTILE_ELEMENTS)[1] == 6);
+  EXPECT(ductile_mesh_count(mesh, DUCTILE_FACETS) == 5); /* with the interface */
+  ductile_mesh_destroy(mesh);
+  ductile_mesh_destroy(NULL);
+}
+
+static void test_errors(void) {
+  ductile_mesh* mesh = NULL;
+  const int32_t wrong[] = {0, 1, 2, 0, 2, 4}, beyond[] = {0, 4};
+  const int64_t huge[] = {0, 1, 2, 0, 2, (int64_t)1 << 40};
+  EXPECT(ductile_mesh_create(5, &mesh) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("dimension: expected 2 or 3, found 5");
+  EXPECT(ductile_mesh_create(2, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT(mesh == NULL);
+  EXPECT(ductile_mesh_set_vertices(mesh, 4, square, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("mesh: expected a pointer, found NULL");
+  mesh = make_square();
+  EXPECT(ductile_mesh_set_elements(mesh, 2, wrong, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("mesh: triangles.vertices[1] names vertex 4, but there are only 4, counted from 0");
+  EXPECT(ductile_mesh_set_elements_64(mesh, 2, huge, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_mesh_set_vertices(mesh, -4, square, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("coordinates: expected 0 entries or more, found -4");
+  EXPECT(ductile_mesh_set_vertices(mesh, 4, NULL, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("coordinates: expected a pointer, found NULL");
+  EXPECT(ductile_mesh_require(mesh, DUCTILE_FACETS, 2, beyond) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("indices[1]: expected an index from 0 and below 4, found 4");
+  EXPECT(ductile_mesh_require(mesh, DUCTILE_RIDGES, 0, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_mesh_set_facets(mesh, 1, beyond, NULL) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_mesh_references(mesh, DUCTILE_FACETS)[0] == 7); /* as it was */
+  EXPECT(ductile_mesh_read("no such.mesh", &mesh) == DUCTILE_WRONG_INPUT);
+  ductile_mesh* adapted = NULL;
+  const double sizes[] = {.1, .1, -1, .1};
+  EXPECT(ductile_adapt(mesh, 1, sizes, NULL, &adapted) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT(
+      "metric: expected a size from 1e-75 to 1e75 at values[2], vertex 2, found -1; correct the "
+      "field there");
+  EXPECT(ductile_adapt(mesh, 2, sizes, NULL, &adapted) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("components: expected 1, 3 or 4, found 2");
+  EXPECT(adapted == NULL);
+  ductile_mesh_destroy(mesh);
+}
+
+static int stop_at_third(const char* step, int iteration, int64_t changes, void* context) {
+  EXPECT(step != NULL && iteration >= 0 && changes >= 0);
+  return ++*(int*)context < 3;
+}
+
+static void test_options(void) {
+  ductile_options* options = NULL;
+  EXPECT(ductile_options_create(&options) == DUCTILE_OK);
+  EXPECT(ductile_options_set(options, "hmax", .2) == DUCTILE_OK);
+  EXPECT(ductile_options_set(options, "threads", 2) == DUCTILE_OK);
+  EXPECT(ductile_options_set(options, "threads", 1.5) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set(options, "nosurf", 2) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set(options, "hgard", 1) == DUCTILE_WRONG_INPUT);
+  EXPECT(strncmp(ductile_last_error(), "option hgard: expected one of hmin, hmax,", 41) == 0);
+  int steps = 0;
+  ductile_mesh *mesh = make_square(), *adapted = NULL;
+  EXPECT(ductile_options_set_progress(options, stop_at_third, &steps) == DUCTILE_OK);
+  const double sizes[] = {.1, .1, .1, .1};
+  EXPECT(ductile_adapt(mesh, 1, sizes, options, &adapted) == DUCTILE_FAILED);
+  EXPECT_TEXT("cancelled, as asked for");
+  EXPECT(steps == 3 && adapted == NULL);
+  ductile_options_destroy(options);
+  ductile_mesh_destroy(mesh);
+}
+
+static void test_adaptation(void) {
+  ductile_mesh *mesh = make_square(), *adapted = NULL, *tensors = NULL;
+  const int32_t required[] = {0};
+  EXPECT(ductile_mesh_require(mesh, DUCTILE_FACETS, 1, required) == DUCTILE_OK);
+  const double sizes[] = {.1, .1, .1, .1};
+  double matrices[16];
+  for (int v = 0; v < 4; ++v) {
+    matrices[4 * v] = matrices[4 * v + 3] = 1 / (.1 * .1);
+    matrices[4 * v + 1] = matrices[4 * v + 2] = 0;
+  }
+  EXPECT(ductile_adapt(mesh, 1, sizes, NULL, &adapted) == DUCTILE_OK);
+  EXPECT(ductile_adapt(mesh, 4, matrices, NULL, &tensors) == DUCTILE_OK);
+  const int64_t n = ductile_mesh_count(adapted, DUCTILE_VERTICES),
+                elements = ductile_mesh_count(adapted, DUCTILE_ELEMENTS);
+  EXPECT(elements > 100 && elements == ductile_mesh_count(tensors, DUCTILE_ELEMENTS));
+  EXPECT(ductile_mesh_metric(adapted) != NULL);
+  double held = 0, warnings = 1;
+  EXPECT(ductile_mesh_report(adapted, "held_long_edges", &held) == DUCTILE_OK);
+  EXPECT(held == 1);
+  EXPECT(ductile_mesh_report(adapted, "warnings", &warnings) == DUCTILE_OK && warnings == 0);
+  EXPECT(ductile_mesh_warning(adapted, 0) == NULL);
+  EXPECT(ductile_mesh_report(adapted, "colour", &held) == DUCTILE_WRONG_INPUT);
+
+  double* values = (double*)malloc((size_t)(2 * n) * sizeof *values);
+  double* carried = (double*)malloc((size_t)elements * sizeof *carried);
+  ductile_transfer* transfer = NULL;
+  EXPECT(ductile_transfer_create(mesh, adapted, &transfer) == DUCTILE_OK);
+  const int32_t *vertex = ductile_transfer_origins(transfer, DUCTILE_VERTICES),
+                *host = ductile_transfer_hosts(transfer);
+  EXPECT(ductile_transfer_origins(transfer, DUCTILE_RIDGES) == NULL);
+  EXPECT(ductile_transfer_weights(transfer)[0] >= 0);
+  int64_t kept = 0;
+  for (int64_t v = 0; v < n; ++v) {
+    kept += vertex[v] != -1;
+    EXPECT(host[v] == 0 || host[v] == 1);
+    if (vertex[v] >= 0) {
+      EXPECT(memcmp(&ductile_mesh_coordinates(adapted)[2 * v], &square[2 * vertex[v]],
+                    2 * sizeof *square) == 0);
+    }
+  }
+  EXPECT(kept == 4);
+  EXPECT(ductile_transfer_carry(transfer, DUCTILE_VERTICES, 2, square, values) == DUCTILE_OK);
+  for (int64_t i = 0; i < 2 * n; ++i) /* the coordinates are linear, so they arrive */
+    EXPECT(fabs(values[i] - ductile_mesh_coordinates(adapted)[i]) < 1e-12);
+  const double density[] = {1, 3};
+  EXPECT(ductile_transfer_carry(transfer, DUCTILE_ELEMENTS + DUCTILE_CONSERVATIVE, 1, density,
+                                carried) == DUCTILE_OK);
+  for (int64_t e = 0; e < elements; ++e) EXPECT(carried[e] >= 1 && carried[e] <= 3);
+  EXPECT(ductile_transfer_carry(transfer, 9, 1, density, carried) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_mesh_write(adapted, "c_test.mesh") == DUCTILE_OK);
+  ductile_mesh* read = NULL;
+  EXPECT(ductile_mesh_read("c_test.mesh", &read) == DUCTILE_OK);
+  EXPECT(ductile_mesh_count(read, DUCTILE_ELEMENTS) == elements);
+  remove("c_test.mesh");
+  EXPECT(ductile_mesh_write(adapted, "c_test.tif") == DUCTILE_WRONG_INPUT);
+  free(values), free(carried);
+  ductile_transfer_destroy(transfer);
+  ductile_mesh_destroy(read);
+  ductile_mesh_destroy(tensors);
+  ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(mesh);
+}
+
+int main(void) {
+  EXPECT(strcmp(ductile_last_error(), "") == 0 && strlen(ductile_version()) >= 5);
+  test_meshes();
+  test_errors();
+  test_options();
+  test_adaptation();
+  printf("%d failures\n", failures);
+  return failures != 0;
+}
