@@ -21,7 +21,9 @@
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/mesh_from_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/origins.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "support/broken_input.hpp"
@@ -154,6 +156,14 @@ std::vector<OfMesh> functions_of_meshes_and_more(const std::filesystem::path& fo
                     std::vector<double>(mesh.vertex_count(), 0.5),
                     ""};
   };
+  const auto on_elements = [](const AnyMesh& mesh) {
+    std::vector<NamedField> fields(1);
+    fields[0] = {"f", AnyField::Type::scalar, {}, NamedField::Place::elements};
+    fields[0].values.assign(elements_in<Dim>(mesh).size(), 0.5);
+    return fields;
+  };
+  const PartSet of_cells{Part::vertices, Part::positions, Part::elements, Part::references,
+                         Part::facets};
   const auto whole = std::make_shared<AnyMesh>(small_mesh<Dim>());
   return {
       {"recover_hessian", [=](const AnyMesh& m) { recover_hessian(executor, m, scalars(m)); },
@@ -178,10 +188,23 @@ std::vector<OfMesh> functions_of_meshes_and_more(const std::filesystem::path& fo
          project_field(executor, {*whole, scalars(*whole)}, m);
        },
        of_geometry},
+      {"transfer_fields, from",
+       [=](const AnyMesh& m) {
+         transfer_fields(executor, {m, on_elements(m)}, *whole);
+       },
+       of_geometry},
+      {"transfer_fields, to",
+       [=](const AnyMesh& m) {
+         transfer_fields(executor, {*whole, on_elements(*whole)}, m, {Carrying::conservatively});
+       },
+       of_geometry},
+      {"origins, before", [=](const AnyMesh& m) { origins(executor, m, *whole); }, of_cells},
+      {"origins, after", [=](const AnyMesh& m) { origins(executor, *whole, m); }, of_cells},
+      {"list_boundary", [](AnyMesh m) { list_boundary(executor, m); }, of_cells},
       {"write_mesh", [=](const AnyMesh& m) { write_mesh(folder / "m.meshb", m); }, all_parts},
       {"write_mesh, vtu",
        [=](const AnyMesh& m) { write_mesh(folder / "m.vtu", m); },
-       {Part::vertices, Part::positions, Part::elements, Part::references, Part::facets}},
+       of_cells},
   };
 }
 

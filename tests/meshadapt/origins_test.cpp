@@ -212,27 +212,5 @@ TYPED_TEST(OriginsIn, TellBothSidesOfAClosedCrackApart) {
   EXPECT_GT(made, 4U);
 }
 
-/// As doors get to see it.
-TYPED_TEST(OriginsIn, RefuseMeshesThatAreNone) {
-  constexpr int Dim = TypeParam::value;
-  const Executor executor({.threads = 1});
-  const AnyMesh good = test::small_mesh<Dim>();
-  test::Random random(6);
-  for (int i = 0; i < 60; ++i) {
-    AnyMesh bad = good;
-    if (i % 6 == 0) bad.coordinates[test::below(random, bad.coordinates.size())] = 1e200;
-    if (i % 6 == 1) test::change_length(random, bad.coordinates);
-    if (i % 6 == 2) test::change_length(random, elements_in<Dim>(bad).reference);
-    if (i % 6 == 3) bad.dimension = 5 - Dim;
-    if (i % 6 >= 4) {
-      auto& cells =
-          i % 6 == 4 ? elements_in<Dim>(bad).vertices[0] : elements_in<Dim>(bad).vertices[1];
-      cells[test::below(random, cells.size())] = test::bad_index(random, bad.vertex_count());
-    }
-    test::expect_refused([&] { origins(executor, bad, good); }, "before");
-    test::expect_refused([&] { origins(executor, good, bad); }, "after");
-  }
-}
-
 }  // namespace
 }  // namespace ductile::meshadapt::origins_test
