@@ -20,11 +20,15 @@ extern "C" {
 enum { DUCTILE_OK = 0, DUCTILE_FAILED = 1, DUCTILE_WRONG_INPUT = 2 };
 
 /** Kinds of entities. Elements are triangles in 2D and tetrahedra in 3D; facets, of the boundary
- * and of interfaces, are edges in 2D and triangles in 3D; ridges are edges in 3D, along curves. */
-enum { DUCTILE_VERTICES = 0, DUCTILE_RIDGES = 1, DUCTILE_FACETS = 2, DUCTILE_ELEMENTS = 3 };
-
-/** To be added to a kind, see ductile_transfer_carry(). */
-enum { DUCTILE_CONSERVATIVE = 16 };
+ * and of interfaces, are edges in 2D and triangles in 3D; ridges are edges in 3D, along curves.
+ * What may be added to a kind: see ductile_transfer_carry(). */
+enum {
+  DUCTILE_VERTICES = 0,
+  DUCTILE_RIDGES = 1,
+  DUCTILE_FACETS = 2,
+  DUCTILE_ELEMENTS = 3,
+  DUCTILE_CONSERVATIVE = 16
+};
 
 typedef struct ductile_mesh ductile_mesh;
 typedef struct ductile_options ductile_options;
