@@ -1,5 +1,6 @@
 /// @file
 /// Adaptation of ductile.h, and what a program does with its result.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "handles.hpp"
 
@@ -43,6 +45,30 @@ AnyField metric_of(const AnyMesh& mesh, int components, const double* values,
       mesh.dimension, mesh.vertex_count(), {type}, {values, values + count}, "metric"};
   return meshadapt::metric_of(given, mesh,
                               {options.adapt.smallest_size, options.adapt.largest_size});
+}
+
+/// A field of so many scalars.
+AnyField solution_of(const AnyMesh& mesh, int components, const double* values) {
+  if (components < 1)
+    throw InputError("components: expected 1 or more, found " + std::to_string(components));
+  const auto each = static_cast<std::size_t>(components);
+  return {mesh.dimension,
+          mesh.vertex_count(),
+          std::vector<Type>(each, Type::scalar),
+          {values, values + mesh.vertex_count() * each},
+          "values"};
+}
+
+meshadapt::SolutionMetricOptions goal_of(const AnyMesh& mesh, const ductile_options& options) {
+  if (!(options.elements > 0))
+    throw InputError("option elements: expected a number above 0, found " +
+                     std::to_string(options.elements));
+  return {
+      .goal = {.norm = options.norm,
+               .complexity = meshadapt::complexity_of_elements(mesh.dimension, options.elements),
+               .bounds = {.smallest = options.adapt.smallest_size,
+                          .largest = options.adapt.largest_size}},
+      .gradation = options.adapt.gradation};
 }
 
 /// Of the C library's indices, which are signed.
@@ -92,6 +118,20 @@ int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric
                                                            std::move(result.metric),
                                                            std::move(result.report)})
                    .release();
+  });
+}
+
+int ductile_solution_metric(const ductile_mesh* mesh, int components, const double* values,
+                            const ductile_options* options, double* metric) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_given(values, "values");
+    c::expect_given(options, "options");
+    c::expect_given(metric, "metric");
+    const auto found = meshadapt::solution_metric(runtime::Executor(options->executor), mesh->mesh,
+                                                  c::solution_of(mesh->mesh, components, values),
+                                                  c::goal_of(mesh->mesh, *options));
+    std::copy(found.metric.values.begin(), found.metric.values.end(), metric);
   });
 }
 

@@ -117,6 +117,14 @@ module ductile
       type(c_funptr), value :: progress
     end function
 
+    integer(c_int) function ductile_solution_metric(mesh, components, values, options, metric) &
+        bind(C)
+      import :: c_int, c_double, c_ptr
+      type(c_ptr), value :: mesh, options
+      integer(c_int), value :: components
+      real(c_double), intent(in) :: values(*)
+      real(c_double), intent(out) :: metric(*)
+    end function
     integer(c_int) function ductile_adapt(mesh, components, metric, options, adapted) bind(C)
       import :: c_int, c_ptr
       type(c_ptr), value :: mesh, metric, options

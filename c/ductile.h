@@ -100,8 +100,8 @@ int ductile_options_create(ductile_options** options);
 void ductile_options_destroy(ductile_options* options);
 
 /** Sets one by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hausd", "ar",
- * "iterations", "threads", "memory" in megabytes; "nomove", "noswap", "noinsert", "nosurf",
- * "thorough" and "racing", which are 0 or 1. */
+ * "iterations", "threads", "memory" in megabytes, "elements", "norm"; "nomove", "noswap",
+ * "noinsert", "nosurf", "thorough" and "racing", which are 0 or 1. */
 int ductile_options_set(ductile_options* options, const char* name, double value);
 
 /** Called after each step of the adaptation, on the thread that called ductile_adapt(): the step's
@@ -111,6 +111,13 @@ int ductile_options_set_progress(ductile_options* options, ductile_progress prog
                                  void* context);
 
 /* ---- Adaptation ---- */
+
+/** The metric, in the order of ductile_mesh_metric(), in which linear interpolation of a solution
+ * has the smallest error that about "elements" elements allow, an option that must be set, in the
+ * norm L^"norm" (2 by default); within "hmin", "hmax" and "hgrad". values[vertex * components +
+ * component]: the metric suits all components. */
+int ductile_solution_metric(const ductile_mesh* mesh, int components, const double* values,
+                            const ductile_options* options, double* metric);
 
 /** Adapts a mesh. `components` says what the metric has at each vertex: 1, the size wanted; 3 in
  * 2D, 6 in 3D, a symmetric tensor in the order above; 4 in 2D, 9 in 3D, a full matrix. NULL for

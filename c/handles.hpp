@@ -22,6 +22,7 @@ struct ductile_mesh {
 struct ductile_options {
   ductile::meshadapt::AdaptOptions adapt;
   ductile::runtime::ExecutorOptions executor;
+  double elements = 0, norm = 2;  // of the metric of a solution
 };
 
 namespace ductile::c {

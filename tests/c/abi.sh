@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Whether what ductile.h declares is still what c/ductile.abi says that it was, by abidiff: a change
 # breaks programs that are not compiled anew, so it is to be meant. Functions' types, which hold all
-# other types, and the values of constants are looked at as the members of one variable.
+# other types, and the values of constants are looked at as those of variables.
 #   abi.sh SOURCE_FOLDER WORK_FOLDER C_COMPILER [--update]
 # --update writes c/ductile.abi. Exit status 77 where abidiff is missing, or on another processor than
 # that of c/ductile.abi.
@@ -15,10 +15,8 @@ cd "$work"
 header=$source/c/ductile.h
 {
   echo '#include "ductile.h"'
-  echo 'struct ductile_api {'
-  sed -n 's/^ *\(ductile_[a-z_0-9]*\);$/  __typeof__(\&\1) \1;/p' "$source/c/ductile.map"
-  grep -o 'DUCTILE_[A-Z_]* = ' "$header" | sed 's/ = //; s/.*/  char & [1 + &];/; s/ \(DUCTILE[A-Z_]*\) \[/ value_of_\1[/'
-  echo '} ductile_api;'
+  sed -n 's/^ *\(ductile_[a-z_0-9]*\);$/__typeof__(\&\1) api_of_\1;/p' "$source/c/ductile.map"
+  grep -o 'DUCTILE_[A-Z_]* = ' "$header" | sed 's/ = //; s/.*/char value_of_&[1 + &];/'
 } >api.c
 "$cc" -std=gnu99 -g -shared -fPIC -I "$source/c" api.c -o libductile_api.so
 abidw --no-corpus-path --no-comp-dir-path --no-show-locs libductile_api.so |

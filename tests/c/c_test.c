@@ -188,12 +188,38 @@ static void test_adaptation(void) {
   ductile_mesh_destroy(mesh);
 }
 
+static void test_solution_metric(void) {
+  ductile_mesh *mesh = make_square(), *fine = NULL, *adapted = NULL;
+  ductile_options* options = NULL;
+  const double sizes[] = {.05, .05, .05, .05};
+  EXPECT(ductile_adapt(mesh, 1, sizes, NULL, &fine) == DUCTILE_OK);
+  const int64_t n = ductile_mesh_count(fine, DUCTILE_VERTICES);
+  double* values = (double*)malloc((size_t)n * sizeof *values);
+  double* metric = (double*)malloc((size_t)(3 * n) * sizeof *metric);
+  for (int64_t v = 0; v < n; ++v)
+    values[v] = tanh(20 * (ductile_mesh_coordinates(fine)[2 * v] - .5));
+  EXPECT(ductile_options_create(&options) == DUCTILE_OK);
+  EXPECT(ductile_solution_metric(fine, 1, values, options, metric) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set(options, "elements", 500) == DUCTILE_OK);
+  EXPECT(ductile_solution_metric(fine, 0, values, options, metric) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_solution_metric(fine, 1, values, options, metric) == DUCTILE_OK);
+  EXPECT(ductile_adapt(fine, 3, metric, options, &adapted) == DUCTILE_OK);
+  const int64_t elements = ductile_mesh_count(adapted, DUCTILE_ELEMENTS);
+  EXPECT(elements > 350 && elements < 700);
+  free(values), free(metric);
+  ductile_options_destroy(options);
+  ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(fine);
+  ductile_mesh_destroy(mesh);
+}
+
 int main(void) {
   EXPECT(strcmp(ductile_last_error(), "") == 0 && strlen(ductile_version()) >= 5);
   test_meshes();
   test_errors();
   test_options();
   test_adaptation();
+  test_solution_metric();
   printf("%d failures\n", failures);
   return failures != 0;
 }
