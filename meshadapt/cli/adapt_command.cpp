@@ -33,7 +33,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 24> own_options{{
+constexpr std::array<Option, 25> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
@@ -42,6 +42,8 @@ constexpr std::array<Option, 24> own_options{{
     {"-hmin", "X", "asks for no edge shorter than X"},
     {"-hmax", "X", "asks for no edge longer than X"},
     {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length (default: no limit)"},
+    {"-hgradreq", "X",
+     "takes sizes from what is required, to grow and fall by X at most (default: as asked)"},
     {"-nomove", "", "moves no vertex"},
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
@@ -130,16 +132,23 @@ void set_files(Job& job, const Arguments& arguments) {
   if (!job.size && !job.metric_in && !job.keep_sizes) job.metric_in = metric_beside(job.input);
 }
 
+/// A factor; 0 for none, which is 0 or less, as in Mmg.
+double gradation_of(const Arguments& arguments, std::string_view option) {
+  const double factor = arguments.number(option).value_or(0);
+  if (factor > 0 && factor < 1)
+    throw UsageError("option " + std::string(option) +
+                     ": expected a factor of 1 or more, or -1 for none, found '" +
+                     *arguments.text(option) + "'");
+  return std::max(factor, 0.0);
+}
+
 void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   adapt.smallest_size = arguments.size("-hmin").value_or(0);
   adapt.largest_size = arguments.size("-hmax").value_or(0);
   if (adapt.largest_size > 0 && adapt.smallest_size > adapt.largest_size)
     throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
-  const double gradation = arguments.number("-hgrad").value_or(0);  // as in Mmg, 0 or less: none
-  if (gradation > 0 && gradation < 1)
-    throw UsageError("option -hgrad: expected a factor of 1 or more, or -1 for none, found '" +
-                     *arguments.text("-hgrad") + "'");
-  adapt.gradation = gradation > 0 ? gradation : 0;
+  adapt.gradation = gradation_of(arguments, "-hgrad");
+  if (!arguments.has("-nosizreq")) adapt.required_gradation = gradation_of(arguments, "-hgradreq");
   adapt.thorough = arguments.has("--thorough");
   adapt.move = !arguments.has("-nomove");
   adapt.swap = !arguments.has("-noswap");

@@ -13,9 +13,8 @@
 namespace ductile::cli {
 
 /// Options without a line in help. A value in brackets is a number that may be missing.
-inline constexpr std::array<Option, 15> mmg_options{{{"-d", "", ""},
+inline constexpr std::array<Option, 14> mmg_options{{{"-d", "", ""},
                                                      {"-default", "", ""},
-                                                     {"-hgradreq", "X", ""},
                                                      {"-in", "MESH", ""},
                                                      {"-isoref", "N", ""},
                                                      {"-keep-ref", "", ""},

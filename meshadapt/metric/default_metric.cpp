@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <span>
 #include <string>
@@ -18,6 +17,7 @@
 #include "mesh/first_bad.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/wording.hpp"
+#include "metric/little_stretch.hpp"
 #include "metric/metric_of_element.hpp"
 
 namespace ductile::meshadapt {
@@ -123,20 +123,6 @@ struct ElementsAround {
     return {around.data() + first[vertex], first[vertex + 1] - first[vertex]};
   }
 };
-
-/// A logarithm of a metric without the little stretch that isotropic meshes have by chance; its
-/// determinant stays.
-template <int Dim>
-Metric<Dim> without_little_stretch(const Metric<Dim>& log_metric) {
-  PrincipalAxes<Dim> axes = principal_axes(log_metric);
-  const auto [least, most] = std::minmax_element(axes.value.begin(), axes.value.end());
-  const double log_stretch = (*most - *least) / 2;  // of sizes
-  const double t = std::clamp(log_stretch / std::numbers::ln2 - 1, 0.0, 1.0);
-  const double kept = t * t * (3 - 2 * t);
-  const double mean = std::accumulate(axes.value.begin(), axes.value.end(), 0.0) / Dim;
-  for (double& value : axes.value) value = mean + kept * (value - mean);
-  return compose(axes);
-}
 
 template <int Dim>
 class DefaultMetric {

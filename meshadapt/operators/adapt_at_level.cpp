@@ -19,6 +19,7 @@
 #include "ductile/runtime/recording.hpp"
 #include "geometry/curvature.hpp"
 #include "metric/demand.hpp"
+#include "metric/required_sizes.hpp"
 #include "operators/adapter.hpp"
 #include "operators/held_edges.hpp"
 #include "operators/processor_level.hpp"
@@ -43,6 +44,17 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+template <int Dim>
+void limit_growth(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                  const AdaptOptions& options, const std::string& name,
+                  std::vector<Metric<Dim>>& metric_of, std::vector<std::string>& warnings) {
+  if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.surface_tolerance, metric_of);
+  const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
+  if (!report.converged)
+    warnings.push_back(name + ": sizes still grow faster than asked for in places, after " +
+                       std::to_string(report.sweeps) + " sweeps over the edges");
+}
+
 /// Makes the metrics keep the sizes and the growth that the options allow.
 template <int Dim>
 void limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
@@ -50,13 +62,13 @@ void limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                  std::vector<Metric<Dim>>& metric_of, std::vector<std::string>& warnings) {
   const SizeBounds bounds{options.smallest_size, options.largest_size};
   bound_sizes(executor, metric_of, bounds);
-  if (options.gradation <= 0) return;
-  if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.surface_tolerance, metric_of);
-  const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
-  if (!report.converged)
-    warnings.push_back(name + ": sizes still grow faster than asked for in places, after " +
-                       std::to_string(report.sweeps) + " sweeps over the edges");
-  bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
+  if (options.gradation > 0) {
+    limit_growth(executor, mesh, options, name, metric_of, warnings);
+    bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
+  }
+  if (options.required_gradation > 0 &&
+      !take_required_sizes(executor, mesh, options.required_gradation, metric_of).converged)
+    warnings.push_back(name + ": sizes still differ more than asked for from required ones");
 }
 
 /// The metrics of the field, limited.

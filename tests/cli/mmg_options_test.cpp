@@ -22,7 +22,7 @@ TEST(MmgOptions, AreTakenWithOneWarningAndChangeNothing) {
   ASSERT_EQ(folder.run("adapt waves2d.mesh -hmin 0.05 -o plain.mesh").err, "");
   for (const char* words :
        {"-nofem", "-opnbdy", "-nosizreq", "-keep-ref", "-d", "-val", "-default", "-nr", "-octree 8",
-        "-rn", "-rn 0", "-hgradreq -1", "-isoref 10", "-rmc", "-rmc 1e-3", "-ar 30",
+        "-rn", "-rn 0", "-isoref 10", "-rmc", "-rmc 1e-3", "-ar 30",
         "-nofem -opnbdy -nosizreq -keep-ref -d -val -default -nr -octree 8 -rn 1 -hgradreq 1.3"}) {
     const Outcome outcome =
         folder.run("adapt waves2d.mesh -hmin 0.05 -o mmg.mesh " + std::string(words));
@@ -36,6 +36,26 @@ TEST(MmgOptions, AreTakenWithOneWarningAndChangeNothing) {
   EXPECT_EQ(in.status, 0);
   EXPECT_EQ(in.err, "");
   EXPECT_EQ(folder.read("mmg.mesh"), folder.read("plain.mesh"));
+}
+
+/// Sizes at a frozen boundary far coarser than the metric asks for, unless they are asked not to
+/// be.
+TEST(MmgOptions, HgradreqTakesSizesFromWhatIsRequired) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const std::string adapt = "adapt waves2d.mesh -hsiz 0.01 -nosurf --iterations 2 -o ";
+  ASSERT_EQ(folder.run(adapt + "plain.mesh").status, 0);
+  ASSERT_EQ(folder.run(adapt + "taken.mesh -hgradreq 2.3").err, "");
+  EXPECT_LT(folder.read("taken.mesh").size(),
+            0.9 * static_cast<double>(folder.read("plain.mesh").size()));
+  for (const char* without : {"-hgradreq -1", "-hgradreq 0", "-hgradreq 2.3 -nosizreq"}) {
+    ASSERT_EQ(folder.run(adapt + "same.mesh " + without).status, 0);
+    EXPECT_EQ(folder.read("same.mesh"), folder.read("plain.mesh")) << without;
+  }
+  const Outcome wrong = folder.run("adapt waves2d.mesh -hgradreq 0.5");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(contains(wrong.err, "option -hgradreq: expected a factor of 1 or more, or -1"))
+      << wrong.err;
 }
 
 /// A number after -rn belongs to it, a mesh does not.

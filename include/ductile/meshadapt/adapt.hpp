@@ -35,6 +35,11 @@ struct AdaptOptions {
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
                              ///< limit_gradation), from what make.surface_tolerance allows on
                              ///< curved boundaries; 0 or less: as given. Mmg's default is 1.3
+  double required_gradation = 0;  ///< sizes at required facets, edges and elements, and at all
+                                  ///< facets with make.lock_boundary, are those that these have,
+                                  ///< whatever metric and bounds ask for; from there they grow, or
+                                  ///< fall, by at most this factor per unit of metric length; 0 or
+                                  ///< less: as given. Mmg's default is 2.3
   std::size_t memory_limit =
       0;                  ///< bytes that adapt() may take; metrics that ask for more elements
                           ///< than certainly fit are refused before the work; 0: no limit
