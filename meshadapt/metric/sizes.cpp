@@ -1,0 +1,336 @@
+#include "ductile/meshadapt/sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
+#include "metric/distance_tree.hpp"
+#include "metric/entities_of.hpp"
+#include "metric/spectrum.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+bool is_size(double size) { return size >= smallest_size && size <= largest_size; }
+
+bool is_finite(const Vector<3>& point) {
+  return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
+}
+
+Vector<3> in_space(const AnyMesh& mesh, std::size_t vertex) {
+  Vector<3> position;
+  for (int axis = 0; axis < mesh.dimension; ++axis)
+    position[axis] = mesh.coordinates[vertex * static_cast<std::size_t>(mesh.dimension) +
+                                      static_cast<std::size_t>(axis)];
+  return position;
+}
+
+// ---- What makes sense ----
+
+void expect_growth(const SizeGrowth& growth, double size) {
+  const auto [grow, largest, distance] = growth;
+  if (!(grow == 0 || (grow >= 1 && std::isfinite(grow))))
+    throw InputError("expected a growth of 1 or more, or 0 for none, found " + number(grow));
+  if (largest != 0 && !(largest >= size && largest <= largest_size))
+    throw InputError("expected to grow to a size of " + number(size) + " or more, found " +
+                     number(largest));
+  if (!(distance >= 0 && std::isfinite(distance)))
+    throw InputError("expected to grow over a distance above 0, found " + number(distance));
+  if (distance > 0 && largest == 0)
+    throw InputError("expected a largest size to grow to over the distance of " + number(distance));
+}
+
+void expect_place(const Ball& ball) {
+  if (!is_finite(ball.centre) || !(ball.radius >= 0 && std::isfinite(ball.radius)))
+    throw InputError("expected a centre and a radius of 0 or more, found a radius of " +
+                     number(ball.radius));
+}
+void expect_place(const AxisBox& box) {
+  for (int i = 0; i < 3; ++i)
+    if (!(box.low[i] <= box.high[i]) || !is_finite(box.low) || !is_finite(box.high))
+      throw InputError("expected a box from its lowest to its highest corner, found one from " +
+                       number(box.low[i]) + " to " + number(box.high[i]) + " along axis " +
+                       std::to_string(i));
+}
+void expect_points(const std::vector<Vector<3>>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!is_finite(points[i]))
+      throw InputError("points[" + std::to_string(i) + "]: expected finite coordinates");
+}
+void expect_place(const Polyline& line) {
+  if (line.points.empty()) throw InputError("expected points, found none");
+  expect_points(line.points);
+}
+void expect_place(const TriangleSurface& surface) {
+  if (surface.triangles.empty()) throw InputError("expected triangles, found none");
+  expect_points(surface.points);
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i)
+    for (const std::uint32_t corner : surface.triangles[i])
+      if (corner >= surface.points.size())
+        throw InputError("triangles[" + std::to_string(i) + "]: expected points below " +
+                         std::to_string(surface.points.size()) + ", found " +
+                         std::to_string(corner));
+}
+void expect_place(const Referenced& entities) {
+  if (entities.dimension < 0 || entities.dimension > 3)
+    throw InputError("expected entities of a dimension from 0 to 3, found " +
+                     std::to_string(entities.dimension));
+}
+void expect_place(const Named&) {}
+
+void expect_source(const SizeSource& source) {
+  if (!is_size(source.size))
+    throw InputError("expected a size from 1e-75 to 1e75, found " + number(source.size));
+  expect_growth(source.growth, source.size);
+  std::visit([](const auto& place) { expect_place(place); }, source.place);
+}
+
+// ---- Pieces that distances are measured to ----
+
+Piece point_piece(const Vector<3>& a) { return {{a, a, a}, 1}; }
+Piece segment_piece(const Vector<3>& a, const Vector<3>& b) { return {{a, b, a}, 2}; }
+
+std::vector<Piece> pieces_of(const Polyline& line) {
+  std::vector<Piece> pieces;
+  if (line.points.size() == 1) pieces.push_back(point_piece(line.points[0]));
+  for (std::size_t i = 1; i < line.points.size(); ++i)
+    pieces.push_back(segment_piece(line.points[i - 1], line.points[i]));
+  return pieces;
+}
+
+std::vector<Piece> pieces_of(const TriangleSurface& surface) {
+  std::vector<Piece> pieces;
+  pieces.reserve(surface.triangles.size());
+  for (const auto& [a, b, c] : surface.triangles)
+    pieces.push_back({{surface.points[a], surface.points[b], surface.points[c]}, 3});
+  return pieces;
+}
+
+std::vector<Piece> pieces_of(const AnyMesh& mesh, const EntityList& list) {
+  std::vector<Piece> pieces;
+  pieces.reserve(list.corners.size());
+  for (const auto& corners : list.corners) {
+    Piece piece = point_piece(in_space(mesh, corners[0]));
+    piece.corners = static_cast<std::size_t>(list.dimension) + 1;
+    for (std::size_t c = 1; c < piece.corners; ++c) piece.corner[c] = in_space(mesh, corners[c]);
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+/// The facets of elements of a reference with none of them on the other side.
+template <int Dim>
+std::vector<Piece> rim_of(const AnyMesh& mesh, const FixedMesh<Dim>& fixed,
+                          std::int32_t reference) {
+  const auto& reference_of = elements_in<Dim>(mesh).reference;
+  std::vector<Piece> pieces;
+  for (std::size_t e = 0; e < fixed.element_count(); ++e) {
+    if (reference_of[e] != reference) continue;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      const ElementId other = fixed.neighbour_of[e][i];
+      if (other != none && reference_of[other] == reference) continue;
+      const auto facet = facet_of<Dim>(fixed.corners_of[e], static_cast<int>(i));
+      Piece piece = point_piece(in_space(mesh, facet[0]));
+      piece.corners = Dim;
+      for (std::size_t c = 1; c < Dim; ++c) piece.corner[c] = in_space(mesh, facet[c]);
+      pieces.push_back(piece);
+    }
+  }
+  return pieces;
+}
+
+// ---- Evaluation ----
+
+bool grows(const SizeGrowth& growth) { return growth.grow > 0 || growth.distance > 0; }
+
+/// A size as a function of the distance.
+struct GrowingSize {
+  explicit GrowingSize(const SizeSource& source) : size(source.size) {
+    const auto [factor, most, distance] = source.growth;
+    if (!grows(source.growth)) return;
+    slope = distance > 0 ? (most - size) / distance : std::log(factor);
+    if (most > 0) largest = most;
+  }
+
+  double at(double distance) const {
+    if (slope == infinity) return distance < here() ? size : infinity;
+    return slope > 0 ? std::min(largest, size + slope * distance) : size;
+  }
+  /// From this distance on it is no finer than another size.
+  double reach(double other) const {
+    if (slope == infinity) return here();
+    return slope > 0 ? (other - size) / slope : infinity;
+  }
+  double here() const { return 1e-9 * size; }  // but for rounding
+
+  double size, slope = infinity, largest = infinity;
+};
+
+class Evaluation {
+ public:
+  Evaluation(const Executor& executor, const AnyMesh& mesh)
+      : executor_(executor), mesh_(mesh), size_of_(mesh.vertex_count(), infinity) {}
+
+  /// Regions come first, because they take the place of the size elsewhere.
+  std::vector<double> run(const Sizes& sizes) {
+    each_source(sizes, [&](const SizeSource& source) { take_regions(source); });
+    const double elsewhere = sizes.elsewhere > 0 ? sizes.elsewhere : extent();
+    for (double& size : size_of_)
+      if (size == infinity) size = elsewhere;
+    each_source(sizes, [&](const SizeSource& source) {
+      std::visit([&](const auto& place) { refine(source, place); }, source.place);
+    });
+    const auto [smallest, largest, anisotropy] = sizes.bounds;
+    for (double& size : size_of_) {
+      if (largest > 0) size = std::min(size, largest);
+      size = std::clamp(std::max(size, smallest), smallest_size, largest_size);
+    }
+    return std::move(size_of_);
+  }
+
+ private:
+  using References = std::set<std::pair<int, std::int32_t>>;  // dimension, reference
+
+  template <class Take>
+  static void each_source(const Sizes& sizes, Take&& take) {
+    for (std::size_t i = 0; i < sizes.sources.size(); ++i) try {
+        take(sizes.sources[i]);
+      } catch (const InputError& error) {
+        throw InputError("sources[" + std::to_string(i) + "]: " + error.what());
+      }
+  }
+
+  References references(const SizePlace& place) const {
+    if (const auto* entities = std::get_if<Referenced>(&place))
+      return {{entities->dimension, entities->reference}};
+    if (const auto* named = std::get_if<Named>(&place)) return references_named(mesh_, named->name);
+    return {};
+  }
+
+  EntityList entities(int dimension, std::int32_t reference) const {
+    EntityList list = entities_of(mesh_, dimension, reference);
+    if (list.corners.empty())
+      throw InputError("expected " + std::string(entities_word(dimension)) + " of reference " +
+                       std::to_string(reference) + " in " + name_of(mesh_) + ", found none");
+    return list;
+  }
+
+  void take_regions(const SizeSource& source) {
+    for (const auto& [dimension, reference] : references(source.place))
+      if (dimension == mesh_.dimension) take_at(entities(dimension, reference), source.size);
+  }
+
+  void take_at(const EntityList& list, double size) {
+    for (const auto& corners : list.corners)
+      for (std::size_t c = 0; c <= static_cast<std::size_t>(list.dimension); ++c)
+        size_of_[corners[c]] = std::min(size_of_[corners[c]], size);
+  }
+
+  /// Of the box around the vertices, its diagonal.
+  double extent() const {
+    Box<3> box = Box<3>::empty();
+    for (std::size_t v = 0; v < size_of_.size(); ++v) {
+      const Vector<3> at = in_space(mesh_, v);
+      box = join(box, {at, at});
+    }
+    const double diagonal = size_of_.empty() ? 1 : norm(box.high - box.low);
+    return is_size(diagonal) ? diagonal : largest_size;
+  }
+
+  void refine(const SizeSource& source, const Ball& ball) {
+    grow(source, [&](const Vector<3>& at, double) {
+      return std::max(0.0, norm(at - ball.centre) - ball.radius);
+    });
+  }
+  void refine(const SizeSource& source, const AxisBox& box) {
+    grow(source, [&](const Vector<3>& at, double) {
+      Vector<3> beyond;
+      for (int i = 0; i < mesh_.dimension; ++i)
+        beyond[i] = std::max({box.low[i] - at[i], at[i] - box.high[i], 0.0});
+      return norm(beyond);
+    });
+  }
+  void refine(const SizeSource& source, const Polyline& line) { refine(source, pieces_of(line)); }
+  void refine(const SizeSource& source, const TriangleSurface& surface) {
+    refine(source, pieces_of(surface));
+  }
+  void refine(const SizeSource& source, const std::vector<Piece>& pieces) {
+    const DistanceTree tree(executor_, pieces);
+    grow(source, [&](const Vector<3>& at, double most) { return tree.distance(at, most); });
+  }
+  void refine(const SizeSource& source, const Referenced&) { refine_entities(source); }
+  void refine(const SizeSource& source, const Named&) { refine_entities(source); }
+
+  void refine_entities(const SizeSource& source) {
+    for (const auto& [dimension, reference] : references(source.place)) {
+      if (dimension < mesh_.dimension) {
+        const EntityList list = entities(dimension, reference);
+        take_at(list, source.size);
+        if (grows(source.growth)) refine(source, pieces_of(mesh_, list));
+      } else if (grows(source.growth)) {
+        refine(source, mesh_.dimension == 2 ? rim_of<2>(mesh_, fixed(plane_), reference)
+                                            : rim_of<3>(mesh_, fixed(space_), reference));
+      }
+    }
+  }
+
+  template <int Dim>
+  const FixedMesh<Dim>& fixed(std::vector<FixedMesh<Dim>>& made) {
+    if (made.empty()) made.push_back(make_fixed_mesh<Dim>(executor_, mesh_));
+    return made.front();
+  }
+
+  /// Makes sizes finer; distance(position, most) may say `most` where it is farther.
+  template <class Distance>
+  void grow(const SizeSource& source, Distance&& distance) {
+    const GrowingSize growing(source);
+    runtime::parallel_for(executor_, size_of_.size(), [&](std::size_t v) {
+      double& size = size_of_[v];
+      if (!(source.size < size)) return;
+      size = std::min(size, growing.largest);
+      size = std::min(size, growing.at(distance(in_space(mesh_, v), growing.reach(size))));
+    });
+  }
+
+  const Executor& executor_;
+  const AnyMesh& mesh_;
+  std::vector<double> size_of_;  // [vertex]
+  std::vector<FixedMesh<2>> plane_;
+  std::vector<FixedMesh<3>> space_;  // made when a region grows
+};
+
+}  // namespace
+
+AnyField size_field(const Executor& executor, const AnyMesh& mesh, const Sizes& sizes) {
+  expect_coordinates(mesh);
+  expect_references(mesh);
+  if (sizes.elsewhere != 0 && !is_size(sizes.elsewhere))
+    throw InputError("elsewhere: expected a size from 1e-75 to 1e75, or 0 for none, found " +
+                     number(sizes.elsewhere));
+  expect_bounds(sizes.bounds);
+  for (std::size_t i = 0; i < sizes.sources.size(); ++i) try {
+      expect_source(sizes.sources[i]);
+    } catch (const InputError& error) {
+      throw InputError("sources[" + std::to_string(i) + "]: " + error.what());
+    }
+  Evaluation evaluation(executor, mesh);
+  return scalar_field(mesh.dimension, evaluation.run(sizes), mesh.name);
+}
+
+}  // namespace ductile::meshadapt

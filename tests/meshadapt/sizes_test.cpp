@@ -1,0 +1,275 @@
+// Sizes said by places, compared with what a search over everything finds.
+
+#include "ductile/meshadapt/sizes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "geometry/distance.hpp"
+#include "io_support.hpp"
+#include "support/meshes.hpp"
+#include "support/trials.hpp"
+
+namespace ductile::meshadapt::sizes_test {
+namespace {
+
+using runtime::Executor;
+using test::below;
+using test::chance;
+using test::Random;
+using test::uniform;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Vector<3> place_of(const AnyMesh& mesh, std::size_t v) {
+  Vector<3> at;
+  for (int i = 0; i < mesh.dimension; ++i)
+    at[i] = mesh.coordinates[v * static_cast<std::size_t>(mesh.dimension) +
+                             static_cast<std::size_t>(i)];
+  return at;
+}
+
+double to_segment(const Vector<3>& a, const Vector<3>& b, const Vector<3>& at) {
+  return norm(at - closest_point(std::array{a, b}, at));
+}
+double to_triangle(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c,
+                   const Vector<3>& at) {
+  return norm(at - closest_point(std::array{a, b, c}, at));
+}
+
+/// The distance to the nearest entity of a reference; of elements, 0 at their corners and that to
+/// their sides elsewhere, because nothing else of them is nearer.
+double to_entities(const AnyMesh& mesh, int dimension, int reference, const Vector<3>& at) {
+  double least = infinity;
+  const auto p = [&](std::uint32_t v) { return place_of(mesh, v); };
+  if (dimension == 0)
+    for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
+      if (mesh.vertex_reference[v] == reference) least = std::min(least, norm(p(v) - at));
+  if (dimension == 1)
+    for (std::size_t i = 0; i < mesh.edges.size(); ++i)
+      if (mesh.edges.reference[i] == reference)
+        least = std::min(
+            least, to_segment(p(mesh.edges.vertices[i][0]), p(mesh.edges.vertices[i][1]), at));
+  if (dimension == 2)
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+      if (const auto& [a, b, c] = mesh.triangles.vertices[i];
+          mesh.triangles.reference[i] == reference)
+        least = std::min(least, to_triangle(p(a), p(b), p(c), at));
+  if (dimension == 3)
+    for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i)
+      if (const auto& [a, b, c, d] = mesh.tetrahedra.vertices[i];
+          mesh.tetrahedra.reference[i] == reference)
+        least =
+            std::min({least, to_triangle(p(a), p(b), p(c), at), to_triangle(p(a), p(b), p(d), at),
+                      to_triangle(p(a), p(c), p(d), at), to_triangle(p(b), p(c), p(d), at)});
+  return least;
+}
+
+/// One way to say a size, and the distance that it is about.
+struct Way {
+  SizePlace place;
+  std::function<double(const Vector<3>&)> distance;
+  bool region = false;
+};
+
+Vector<3> random_point(Random& random, int dimension) {
+  Vector<3> p;
+  for (int i = 0; i < dimension; ++i) p[i] = uniform(random, -0.2, 1.2);
+  return p;
+}
+
+Way random_entities(Random& random, const AnyMesh& mesh) {
+  const int d = mesh.dimension;
+  const std::size_t kind = below(random, 4);
+  const int dimension = kind == 0 ? d : kind == 1 ? 0 : d - 1;
+  const int reference = kind == 0   ? 1 + static_cast<int>(below(random, 2))
+                        : kind == 1 ? static_cast<int>(below(random, 3))
+                                    : 1 + static_cast<int>(below(random, 2 * mesh.dimension));
+  Way way{Referenced{dimension, reference},
+          [=, &mesh](const Vector<3>& at) { return to_entities(mesh, dimension, reference, at); },
+          dimension == d};
+  if (chance(random, 0.3))
+    way.place = Named{"d" + std::to_string(dimension) + "r" + std::to_string(reference)};
+  return way;
+}
+
+Way random_way(Random& random, const AnyMesh& mesh) {
+  const int d = mesh.dimension;
+  std::vector<Vector<3>> points;
+  for (std::size_t i = 0; i < 1 + below(random, 20); ++i) points.push_back(random_point(random, d));
+  switch (below(random, 6)) {
+    case 0: {
+      const Ball ball{points[0], chance(random, 0.3) ? 0 : uniform(random, 0, 0.5)};
+      return {ball, [=](const Vector<3>& at) {
+                return std::max(0.0, norm(at - ball.centre) - ball.radius);
+              }};
+    }
+    case 1: {
+      AxisBox box{points[0], points.back()};
+      for (int i = 0; i < 3; ++i)
+        if (box.low[i] > box.high[i]) std::swap(box.low[i], box.high[i]);
+      if (d == 2) box.low[2] = box.high[2] = 7;  // which does not count
+      return {box, [=](const Vector<3>& at) {
+                Vector<3> nearest = at;
+                for (int i = 0; i < d; ++i) nearest[i] = std::clamp(at[i], box.low[i], box.high[i]);
+                return norm(at - nearest);
+              }};
+    }
+    case 2:
+      return {Polyline{points}, [=](const Vector<3>& at) {
+                double least = norm(at - points[0]);
+                for (std::size_t i = 1; i < points.size(); ++i)
+                  least = std::min(least, to_segment(points[i - 1], points[i], at));
+                return least;
+              }};
+    case 3: {
+      TriangleSurface surface{points, {}};
+      for (int i = 0; i < 10; ++i) {
+        const auto any = [&] { return static_cast<std::uint32_t>(below(random, points.size())); };
+        surface.triangles.push_back({any(), any(), any()});
+      }
+      return {surface, [=](const Vector<3>& at) {
+                double least = infinity;
+                for (const auto& [a, b, c] : surface.triangles)
+                  least = std::min(least, to_triangle(points[a], points[b], points[c], at));
+                return least;
+              }};
+    }
+    default:
+      return random_entities(random, mesh);
+  }
+}
+
+SizeGrowth random_growth(Random& random, double size) {
+  switch (below(random, 5)) {
+    case 0:
+      return {};
+    case 1:
+      return {.grow = 0};
+    case 2:
+      return {.grow = uniform(random, 1, 3), .largest = size * uniform(random, 1, 4)};
+    case 3:
+      return {.largest = size * uniform(random, 1, 9), .distance = uniform(random, 0.1, 1)};
+    default:
+      return {.grow = chance(random, 0.2) ? 1 : uniform(random, 1, 3)};
+  }
+}
+
+double grown(double size, const SizeGrowth& growth, double distance) {
+  if (distance < 1e-9 * size) return size;
+  if (growth.distance > 0)
+    return std::min(growth.largest, size + (growth.largest - size) * distance / growth.distance);
+  if (growth.grow == 0) return infinity;
+  const double there = size + distance * std::log(growth.grow);
+  return growth.largest > 0 ? std::min(growth.largest, there) : there;
+}
+
+AnyMesh random_mesh(Random& random, int dimension) {
+  test::Grid grid = test::unit_grid(dimension, dimension == 2 ? 9 : 5);
+  grid.region = test::random_regions(random(), 2, false);
+  AnyMesh mesh = test::make_grid(grid);
+  test::jiggle(mesh, random, 0.3);
+  for (auto& reference : mesh.vertex_reference) reference = static_cast<int>(below(random, 3));
+  for (int d = 0; d <= dimension; ++d)
+    for (int r = 0; r <= 2 * dimension; ++r)
+      mesh.names.push_back({d, r, "d" + std::to_string(d) + "r" + std::to_string(r)});
+  mesh.name = "a.mesh";
+  return mesh;
+}
+
+TEST(Sizes, AreTheFinestThatAnyPlaceAsksFor) {
+  for (std::uint64_t seed = 0; seed < test::trials(80); ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const AnyMesh mesh = random_mesh(random, seed % 2 == 0 ? 2 : 3);
+    Sizes sizes{.elsewhere = uniform(random, 0.05, 0.5)};
+    if (chance(random, 0.3)) sizes.bounds = {0.04, 0.2};
+    std::vector<Way> ways;
+    for (std::size_t i = 0; i <= below(random, 5); ++i) {
+      ways.push_back(random_way(random, mesh));
+      const double size = std::pow(10, uniform(random, -2, -0.5));
+      sizes.add(ways.back().place, size, random_growth(random, size));
+    }
+    const AnyField field =
+        size_field(Executor({.threads = 1 + static_cast<int>(seed % 4 / 2)}), mesh, sizes);
+    ASSERT_EQ(field.values.size(), mesh.vertex_count());
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+      const Vector<3> at = place_of(mesh, v);
+      double finest = infinity, base = infinity;
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        const auto& [place, size, growth] = sizes.sources[i];
+        const double distance = ways[i].distance(at);
+        finest = std::min(finest, grown(size, growth, distance));
+        if (ways[i].region && distance < 1e-12) base = std::min(base, size);
+      }
+      finest = std::min(finest, base == infinity ? sizes.elsewhere : base);
+      if (sizes.bounds.largest > 0) finest = std::clamp(finest, 0.04, 0.2);
+      EXPECT_NEAR(field.values[v], finest, 1e-9) << "vertex " << v;
+    }
+    EXPECT_NO_THROW(metric_of(field, mesh));
+  }
+}
+
+TEST(Sizes, AreTheExtentWhereNothingIsSaid) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(3, 2));
+  const Executor executor({.threads = 1});
+  for (const double size : size_field(executor, mesh, {}).values)
+    EXPECT_DOUBLE_EQ(size, std::sqrt(3.0));
+  EXPECT_EQ(size_field(executor, mesh, {.bounds = {.largest = 0.5}}).values[0], 0.5);
+}
+
+TEST(Sizes, SayWhatMakesNoSense) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(2, 2));
+  mesh.name = "a.mesh";
+  mesh.names = {{1, 1, "wall"}, {2, 1, "steel"}};
+  struct Fault {
+    SizeSource source;
+    const char* text;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Ball ball{{0.5, 0.5}, 0.1};
+  for (const auto& [source, text] : std::vector<Fault>{
+           {{ball, 0}, "expected a size from 1e-75 to 1e75, found 0"},
+           {{ball, nan}, "expected a size from 1e-75 to 1e75, found nan"},
+           {{ball, 0.1, {.grow = 0.5}}, "expected a growth of 1 or more, or 0 for none, found 0.5"},
+           {{ball, 0.1, {.largest = 0.05}},
+            "expected to grow to a size of 0.1 or more, found 0.05"},
+           {{ball, 0.1, {.distance = 1}}, "expected a largest size to grow to"},
+           {{ball, 0.1, {.largest = 1, .distance = -1}}, "over a distance above 0, found -1"},
+           {{Ball{{nan, 0}, 1}, 0.1}, "expected a centre and a radius of 0 or more"},
+           {{Ball{{0, 0}, -1}, 0.1}, "a radius of 0 or more, found a radius of -1"},
+           {{AxisBox{{0, 1}, {1, 0}}, 0.1}, "found one from 1 to 0 along axis 1"},
+           {{Polyline{}, 0.1}, "expected points, found none"},
+           {{Polyline{{{0, 0}, {0, infinity}}}, 0.1}, "points[1]: expected finite coordinates"},
+           {{TriangleSurface{}, 0.1}, "expected triangles, found none"},
+           {{TriangleSurface{{{0, 0}}, {{0, 0, 1}}}, 0.1},
+            "triangles[0]: expected points below 1, found 1"},
+           {{Referenced{4, 1}, 0.1}, "expected entities of a dimension from 0 to 3, found 4"},
+           {{Referenced{1, 77}, 0.1}, "expected edges of reference 77 in a.mesh, found none"},
+           {{Named{"wal"}, 0.1}, "one of steel, wall; found 'wal'"}}) {
+    const std::string said = test::complaint([&, source = source] {
+      Sizes sizes{.sources = {{ball, 0.1}, source}};
+      size_field(Executor({.threads = 1}), mesh, sizes);
+    });
+    EXPECT_NE(said.find(std::string("sources[1]: ")), std::string::npos) << said;
+    EXPECT_NE(said.find(text), std::string::npos) << said << ", expected " << text;
+  }
+  const Executor executor({.threads = 1});
+  EXPECT_THROW(size_field(executor, mesh, {.elsewhere = -1}), InputError);
+  EXPECT_THROW(size_field(executor, mesh, {.bounds = {2, 1}}), InputError);
+  for (auto& corners : mesh.edges.vertices) corners[0] = 99;
+  EXPECT_THROW(size_field(executor, mesh, Sizes{}.add(Named{"wall"}, 0.1)), InputError);
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt::sizes_test
