@@ -17,6 +17,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "files.hpp"
 #include "run_in_team.hpp"
+#include "size_options.hpp"
 
 namespace ductile::cli {
 
@@ -28,7 +29,7 @@ using meshadapt::AnyMesh;
 using meshadapt::Metric;
 using runtime::Executor;
 
-constexpr std::array<Option, 12> options{{
+constexpr std::array<Option, 16> options{{
     {"-o", "OUT", "where the metric goes, a .sol or .solb; with the mesh into a .vtu or .msh",
      "--out"},
     {"--complexity", "X", "make, scale: the integral of sqrt(det metric) to reach"},
@@ -36,6 +37,11 @@ constexpr std::array<Option, 12> options{{
     {"--error", "X", "make: the interpolation error to reach instead"},
     {"--norm", "P", "make: the L^P norm that the error is measured in, or inf (default: 2)"},
     {"--recovery", "HOW", "make: second derivatives by least-squares (default) or projection"},
+    {"--default", "H", "size: where nothing finer is asked for (default: the extent of the mesh)"},
+    {"--near", "PLACE:H[:GROW]",
+     "size: H in a point, sphere, box, line or file, growing around it; may be given again"},
+    {"--on", "BOUNDARY:H[:GROW]", "size: H on a boundary, by its reference or name; likewise"},
+    {"--in", "REGION:H[:GROW]", "size: H in a region, instead of the default; likewise"},
     {"-hmin", "X", "asks for no edge shorter than X"},
     {"-hmax", "X", "asks for no edge longer than X"},
     {"--anisotropy", "X", "lets sizes differ by a factor of X at most between directions"},
@@ -50,6 +56,7 @@ struct Job {
   fs::path mesh, output;
   std::vector<fs::path> fields;
   meshadapt::SolutionMetricOptions fit;  // fit.goal.bounds hold for all operations
+  SizeOptions sizes;
   double elements = 0;
   double gradation = 0;
   int threads = 0, verbosity = 1;
@@ -67,8 +74,9 @@ void set_files(Job& job, const Arguments& arguments) {
     std::string_view name, takes;
     std::size_t least, most;  // files
   };
-  constexpr std::array<Operation, 6> operations{
+  constexpr std::array<Operation, 7> operations{
       {{"make", "a mesh and a field", 2, 2},
+       {"size", "a mesh", 1, 1},
        {"implied", "a mesh", 1, 1},
        {"intersect", "a mesh and two metrics or more", 3, std::string::npos},
        {"scale", "a mesh and a metric", 2, 2},
@@ -79,7 +87,7 @@ void set_files(Job& job, const Arguments& arguments) {
     return !words.empty() && one.name == words[0];
   });
   if (found == operations.end())
-    throw UsageError("expected make, implied, intersect, scale, bound or grade, found " +
+    throw UsageError("expected make, size, implied, intersect, scale, bound or grade, found " +
                      (words.empty() ? "nothing" : "'" + words[0] + "'"));
   job.operation = words[0];
   const std::size_t files = words.size() - 1;
@@ -132,6 +140,16 @@ void set_goal(Job& job, const Arguments& arguments) {
   if (recovery == "projection") job.fit.recovery = meshadapt::Recovery::double_projection;
 }
 
+void set_sizes(Job& job, const Arguments& arguments) {
+  if (job.operation != "size")
+    return refuse(job, arguments, {"--default", "--near", "--on", "--in"});
+  refuse(job, arguments, {"--anisotropy"});
+  job.sizes = SizeOptions(arguments);
+  if (job.sizes.empty())
+    throw UsageError("size: expected some of --default, --near, --on and --in");
+  for (const fs::path& input : job.sizes.inputs()) expect_no_input(job.output, {input});
+}
+
 void set_limits(Job& job, const Arguments& arguments) {
   auto& bounds = job.fit.goal.bounds;
   bounds.smallest = arguments.size("-hmin").value_or(0);
@@ -155,6 +173,7 @@ Job read_job(const Arguments& arguments) {
   Job job;
   set_files(job, arguments);
   set_goal(job, arguments);
+  set_sizes(job, arguments);
   set_limits(job, arguments);
   job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
   job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
@@ -177,6 +196,7 @@ class Work {
     start();
     meshadapt::bound_sizes(executor_, metric_of_, goal_.bounds);
     if (job_.gradation > 0) grade();
+    if (job_.operation == "size") return sizes();
     AnyField metric = meshadapt::symmetric_field(executor_, metric_of_, job_.output.string());
     expect_metric(metric);
     return metric;
@@ -216,6 +236,7 @@ class Work {
   void start() {
     if (job_.operation == "make") return make();
     if (job_.operation == "implied") return imply();
+    if (job_.operation == "size") return size();
     metric_of_ = metrics(job_.fields[0]);
     if (job_.operation == "scale") scale();
     for (std::size_t i = 1; i < job_.fields.size(); ++i)
@@ -237,6 +258,20 @@ class Work {
   void imply() {
     metric_of_ =
         meshadapt::tensors_of<Dim>(executor_, meshadapt::implied_tensors(executor_, mesh_));
+  }
+
+  void size() {
+    const AnyField field =
+        meshadapt::size_field(executor_, mesh_, job_.sizes.sizes_for(mesh_, warnings_));
+    metric_of_ = meshadapt::tensors_of<Dim>(executor_, meshadapt::metric_of(field, mesh_));
+  }
+
+  /// Of metrics that are alike in all directions, which bounds and gradation keep.
+  AnyField sizes() const {
+    std::vector<double> size_of(metric_of_.size());
+    runtime::parallel_for(executor_, size_of.size(),
+                          [&](std::size_t v) { size_of[v] = 1 / std::sqrt(metric_of_[v].m[0]); });
+    return meshadapt::scalar_field(Dim, std::move(size_of), job_.output.string());
   }
 
   void scale() {
@@ -310,17 +345,23 @@ int run(const Arguments& arguments) {
 
 const Command metric_command{
     "metric",
-    "make|implied|intersect|scale|bound|grade MESH [FILE...] -o OUT",
+    "make|size|implied|intersect|scale|bound|grade MESH [FILE...] -o OUT",
     "makes metrics from fields, and changes them",
     "  make MESH FIELD           the metric in which linear interpolation of all that FIELD has "
     "at\n"
     "                            the vertices is best, for a complexity or an error\n"
+    "  size MESH                 sizes by places, boundaries and regions; the finest holds\n"
     "  implied MESH              the metric that the mesh is adapted to as it is\n"
     "  intersect MESH A B ...    the finest sizes that any of the metrics asks for\n"
     "  scale MESH METRIC         multiplied by one factor, to reach a complexity\n"
     "  bound MESH METRIC         with sizes and anisotropy within bounds\n"
     "  grade MESH METRIC         with sizes that grow no faster than -hgrad says\n"
-    "Bounds and -hgrad go with all of them; make and scale reach the complexity within the bounds.",
+    "Bounds and -hgrad go with all of them; make and scale reach the complexity within the "
+    "bounds.\n"
+    "Places of sizes are point:X,Y,Z, sphere:X,Y,Z,R, box:X,Y,Z,X,Y,Z, line:X,Y,Z,X,Y,Z,... and\n"
+    "file:MESH, for its triangles or edges. GROW is a factor per unit length, as of -hgrad "
+    "(default:\n"
+    "1.3; 0: none), or FACTOR:HMAX, or HMAX/DISTANCE to grow evenly.",
     options,
     run};
 

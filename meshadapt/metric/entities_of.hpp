@@ -74,8 +74,9 @@ inline std::set<std::pair<int, std::int32_t>> references_named(const AnyMesh& me
   if (!found.empty()) return found;
   std::string known;
   for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
-  throw InputError("expected a name that the mesh has" +
-                   (known.empty() ? std::string(", which are none") : ", one of " + known) +
+  throw InputError("expected " +
+                   (known.empty() ? std::string("a number, because the mesh has no names")
+                                  : "a name that the mesh has, one of " + known) +
                    "; found '" + name + "'");
 }
 

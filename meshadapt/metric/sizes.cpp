@@ -101,6 +101,20 @@ void expect_source(const SizeSource& source) {
   std::visit([](const auto& place) { expect_place(place); }, source.place);
 }
 
+/// Lets errors say which source they are about.
+template <class Take>
+void each_source(const Sizes& sizes, Take&& take) {
+  for (std::size_t i = 0; i < sizes.sources.size(); ++i) {
+    const SizeSource& source = sizes.sources[i];
+    try {
+      take(source);
+    } catch (const InputError& error) {
+      const std::string index = "sources[" + std::to_string(i) + "]";
+      throw InputError((source.name.empty() ? index : source.name) + ": " + error.what());
+    }
+  }
+}
+
 // ---- Pieces that distances are measured to ----
 
 Piece point_piece(const Vector<3>& a) { return {{a, a, a}, 1}; }
@@ -206,15 +220,6 @@ class Evaluation {
 
  private:
   using References = std::set<std::pair<int, std::int32_t>>;  // dimension, reference
-
-  template <class Take>
-  static void each_source(const Sizes& sizes, Take&& take) {
-    for (std::size_t i = 0; i < sizes.sources.size(); ++i) try {
-        take(sizes.sources[i]);
-      } catch (const InputError& error) {
-        throw InputError("sources[" + std::to_string(i) + "]: " + error.what());
-      }
-  }
 
   References references(const SizePlace& place) const {
     if (const auto* entities = std::get_if<Referenced>(&place))
@@ -324,11 +329,7 @@ AnyField size_field(const Executor& executor, const AnyMesh& mesh, const Sizes& 
     throw InputError("elsewhere: expected a size from 1e-75 to 1e75, or 0 for none, found " +
                      number(sizes.elsewhere));
   expect_bounds(sizes.bounds);
-  for (std::size_t i = 0; i < sizes.sources.size(); ++i) try {
-      expect_source(sizes.sources[i]);
-    } catch (const InputError& error) {
-      throw InputError("sources[" + std::to_string(i) + "]: " + error.what());
-    }
+  each_source(sizes, expect_source);
   Evaluation evaluation(executor, mesh);
   return scalar_field(mesh.dimension, evaluation.run(sizes), mesh.name);
 }

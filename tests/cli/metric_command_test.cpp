@@ -199,7 +199,7 @@ TEST(MetricCommand, TellsWhatIsWrongWithACommandLine) {
     EXPECT_EQ(outcome.status, 2) << words;
     EXPECT_TRUE(contains(outcome.err, part)) << words << ": " << outcome.err;
   };
-  expect("", "expected make, implied, intersect, scale, bound or grade, found nothing");
+  expect("", "expected make, size, implied, intersect, scale, bound or grade, found nothing");
   expect("mak a.mesh a.sol -o b.sol", "found 'mak'");
   expect("make a.mesh -o b.sol --error 1", "expected a mesh and a field, found 1 file");
   expect("implied a.mesh a.sol -o b.sol", "expected a mesh, found 2 files");
@@ -236,6 +236,73 @@ TEST(MetricCommand, TellsWhatIsWrongWithAFieldAndLeavesOldOutput) {
         << outcome.err;
   }
   EXPECT_EQ(scene.folder.read("old.sol"), "old metric");
+}
+
+// ---- Sizes by places ----
+
+TEST(MetricCommand, SaysSizesByPlacesThatAdaptTakes) {
+  struct Line {
+    std::string name, places;
+    double smallest, largest;
+  };
+  for (const auto& [name, places, smallest, largest] : std::vector<Line>{
+           {"waves2d", "--default 0.2", 0.2, 0.2},
+           {"waves2d", "--default 0.2 --near sphere:0.5,0.5,0.1:0.05", 0.05, 0.2},
+           {"waves2d", "--default 0.2 --near=sphere:0.5,0.5,0.1:0.05:1.1:0.06", 0.05, 0.06},
+           {"waves2d", "--default 0.2 --near line:0,0,1,0:0.05:0", 0.05, 0.2},
+           {"waves2d", "--default 0.2 --on 1:0.03:0.1/0.2 --in 1:0.3", 0.03, 0.1},
+           {"waves2d", "--near box:0.9,0.9,0,0:0.07:0 --default 0.1 -hmin 0.08", 0.08, 0.1},
+           {"waves2d", "--near file:waves2d.mesh:0.02:1", 0.02, 0.02},
+           {"waves3d", "--default 0.3 --near point:0,0,0:0.1:0.3/0.5 -hmax 0.25", 0.1, 0.25},
+           {"waves3d", "--default 0.3 --near file:waves3d.mesh:0.1:1.5:0.2", 0.1, 0.2}}) {
+    Scene scene(name);
+    const Outcome made = scene.folder.run("metric size " + name + ".mesh " + places + " -o s.sol");
+    ASSERT_EQ(made.status, 0) << places << ": " << made.err;
+    EXPECT_EQ(made.err, "");
+    const AnyField field = meshadapt::read_field(scene.folder.path() / "s.sol");
+    EXPECT_EQ(field.types, std::vector{AnyField::Type::scalar});
+    const auto [least, most] = std::minmax_element(field.values.begin(), field.values.end());
+    EXPECT_NEAR(*least, smallest, 1e-12) << places;
+    EXPECT_NEAR(*most, largest, 1e-12) << places;
+    EXPECT_EQ(
+        scene.folder.run("adapt " + name + ".mesh -sol s.sol --iterations 1 -o a.mesh").status, 0);
+  }
+}
+
+TEST(MetricCommand, SaysWhatIsWrongWithPlaces) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  struct Line {
+    const char *words, *text;
+  };
+  for (const auto& [words, text] : std::vector<Line>{
+           {"", "size: expected some of --default, --near, --on and --in"},
+           {"--near ball:0,0,1:0.1", "expected point, sphere, box, line or file, found 'ball'"},
+           {"--near sphere:0,0,1", "expected SHAPE:WHERE:H[:GROW]"},
+           {"--near sphere:0,0,0,1:0.1", "the mesh has dimension 2, found 4 numbers"},
+           {"--near sphere:0,x,1:0.1", "(X,Y,R in 2D), found '0,x,1'"},
+           {"--near sphere:0,0,-1:0.1", "expected a radius of 0 or more"},
+           {"--near line:0,0,1:0.1", "found 3 numbers"},
+           {"--near file:not.mesh:0.1", "not.mesh: "},
+           {"--on 1:0", "expected a size from 1e-75 to 1e75, found '0'"},
+           {"--on 1", "expected NAME:H[:GROW], or a number for NAME"},
+           {"--on :0.1", "expected a place, found nothing"},
+           {"--on 1:0.1:0.9", "expected a growth of 1 or more, or 0 for none, found '0.9'"},
+           {"--on 1:0.1:0.05/1", "expected to grow to a size of at least '0.1', found '0.05'"},
+           {"--on 1:0.1:0.2/0", "with a distance above 0"},
+           {"--on 77:0.1", "option --on 77:0.1: expected edges of reference 77"},
+           {"--in wall:0.1", "option --in wall:0.1: expected a number, because the mesh has no"},
+           {"--default 0.1 --anisotropy 2", "option --anisotropy: size takes none"},
+           {"--near file:waves2d.mesh:0.1 -o waves2d.sol", ""}}) {
+    const std::string out = std::string(words).find("-o w") == std::string::npos ? " -o s.sol" : "";
+    const Outcome outcome = folder.run("metric size waves2d.mesh " + std::string(words) + out);
+    EXPECT_EQ(outcome.status, *text == 0 ? 0 : 2) << words;
+    EXPECT_TRUE(contains(outcome.err, text)) << words << ": " << outcome.err;
+  }
+  EXPECT_FALSE(folder.has("s.sol"));
+  EXPECT_TRUE(
+      contains(folder.run("metric bound waves2d.mesh waves2d.sol -hmin 1 --on 1:1 -o s.sol").err,
+               "option --on: bound takes none"));
 }
 
 }  // namespace

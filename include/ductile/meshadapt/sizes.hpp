@@ -79,6 +79,7 @@ struct SizeSource {
   SizePlace place = {};
   double size = 0;
   SizeGrowth growth = {};
+  std::string name = {};  ///< for messages, which otherwise say sources[7]
 };
 
 struct Sizes {
@@ -89,13 +90,13 @@ struct Sizes {
   SizeBounds bounds = {};  ///< which hold in the end; their anisotropy says nothing here
 
   Sizes& add(SizePlace place, double size, SizeGrowth growth = {}) {
-    sources.push_back({std::move(place), size, growth});
+    sources.push_back({std::move(place), size, growth, {}});
     return *this;
   }
 };
 
 /// The size at each vertex of the mesh, one scalar field. Linear in vertices and entities, times a
-/// logarithm, for each source. Throws InputError, naming the source by its index, for sizes that
+/// logarithm, for each source. Throws InputError, naming the source, for sizes that
 /// are not from 1e-75 to 1e75, growth or places that make no sense, and references or names that
 /// the mesh does not have; for a mesh whose elements are none where a region grows. The result does
 /// not depend on the number of threads. Thread safety: any thread; runs on the executor.

@@ -1,0 +1,50 @@
+/// @file
+/// Sizes by places as the command line says them: --near sphere:0,0,0,0.1:0.01:1.2, --on wall:0.01,
+/// --in 3:0.05. What is wrong with the words is found before any file is read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "arguments.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/sizes.hpp"
+
+namespace ductile::cli {
+
+/// What --default, --near, --on and --in say, but for what depends on the mesh.
+class SizeOptions {
+ public:
+  SizeOptions() = default;
+  /// Throws UsageError.
+  explicit SizeOptions(const Arguments& arguments);
+
+  bool empty() const { return elsewhere_ == 0 && words_.empty(); }
+
+  /// Files that places are read from.
+  std::vector<std::filesystem::path> inputs() const;
+
+  /// For this mesh, whose dimension says how many coordinates a point has. Reads the files of
+  /// places. Throws UsageError where other numbers are needed, InputError for files.
+  meshadapt::Sizes sizes_for(const meshadapt::AnyMesh& mesh, meshadapt::Warnings& warnings) const;
+
+ private:
+  struct Words {
+    std::string all;    // the option and its value, for messages
+    std::string shape;  // "sphere"; "on" and "in" for references and names
+    std::string name;   // of a reference or a file
+    std::vector<double> numbers;
+    double size = 0;
+    meshadapt::SizeGrowth growth;
+  };
+  static Words read(const std::string& option, const std::string& value);
+  static meshadapt::SizePlace place_of(const Words& words, const meshadapt::AnyMesh& mesh,
+                                       meshadapt::Warnings& warnings);
+
+  double elsewhere_ = 0;
+  std::vector<Words> words_;
+};
+
+}  // namespace ductile::cli
