@@ -18,6 +18,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/memory.hpp"
 #include "files.hpp"
+#include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "run_in_team.hpp"
 #include "system.hpp"
@@ -33,7 +34,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 25> own_options{{
+constexpr std::array<Option, 26> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
@@ -44,6 +45,7 @@ constexpr std::array<Option, 25> own_options{{
     {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length (default: no limit)"},
     {"-hgradreq", "X",
      "takes sizes from what is required, to grow and fall by X at most (default: as asked)"},
+    {"-f", "FILE", "bounds on sizes by reference, as Mmg's (default: NAME.mmg2d or NAME.mmg3d)"},
     {"-nomove", "", "moves no vertex"},
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
@@ -76,7 +78,7 @@ constexpr auto options = [] {
 /// All that the command line says, checked before any file is read.
 struct Job {
   fs::path input, output;
-  std::optional<fs::path> metric_in, metric_out, json, vtu;
+  std::optional<fs::path> metric_in, metric_out, parameters, json, vtu;
   CarriedFields fields;
   std::string unneeded;  // options of Mmg's
   std::optional<double> size;
@@ -121,6 +123,7 @@ void set_files(Job& job, const Arguments& arguments) {
   if (job.vtu && job.vtu->extension() != ".vtu")
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
   job.fields = CarriedFields(arguments, job.output);
+  job.parameters = arguments.text("-f");
   job.size = arguments.size("-hsiz");
   job.metric_in = arguments.text("-sol");
   if (job.size && job.metric_in)
@@ -177,6 +180,7 @@ std::vector<fs::path> outputs_of(const Job& job) {
 void expect_inputs_to_stay(const Job& job) {
   std::vector<fs::path> inputs = {job.input}, fields = job.fields.inputs();
   if (job.metric_in) fields.push_back(*job.metric_in);
+  if (job.parameters) fields.push_back(*job.parameters);
   inputs.insert(inputs.end(), fields.begin(), fields.end());
   for (const auto& path : {job.json, job.vtu})
     if (path) expect_no_input(*path, inputs);
@@ -302,14 +306,16 @@ void warn_of_fields_left(const Job& job, const meshadapt::MeshWithFields& file,
                        "; --field takes those at the vertices of a file along");
 }
 
-int work(const Executor& executor, const Job& job) {
+int work(const Executor& executor, Job job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
   if (!job.unneeded.empty()) warnings.push_back(job.unneeded);
   const meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
   const AnyMesh& mesh = file.mesh;
   warn_of_fields_left(job, file, warnings);
-  const AnyField metric = choose_metric(executor, job, file, warnings);
+  AnyField metric = choose_metric(executor, job, file, warnings);
+  bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings), metric,
+                job.adapt);
   const CarriedFields::Values fields = job.fields.read(mesh, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);

@@ -7,10 +7,9 @@ namespace {
 struct Refused {
   std::string_view name, instead;
 };
-constexpr std::array<Refused, 11> refused{{
+constexpr std::array<Refused, 10> refused{{
     {"3dMedit", "Mmg's, not here: flat meshes of dimension 3 are read, and written in dimension 2"},
     {"A", "Mmg's, not here: sizes differ between directions where the metric has tensors"},
-    {"f", "Mmg's, not here: put sizes that differ by reference into the metric"},
     {"lag", "Mmg's, not here: meshes are not moved along displacements"},
     {"ls", "Mmg's, not here: level sets must be cut out before"},
     {"lssurf", "Mmg's, not here: level sets must be cut out before"},

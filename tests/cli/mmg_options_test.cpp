@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "program.hpp"
 
@@ -56,6 +57,40 @@ TEST(MmgOptions, HgradreqTakesSizesFromWhatIsRequired) {
   EXPECT_EQ(wrong.status, 2);
   EXPECT_TRUE(contains(wrong.err, "option -hgradreq: expected a factor of 1 or more, or -1"))
       << wrong.err;
+}
+
+/// Beside the mesh, or given: local bounds take the place of others, for boundaries and regions.
+TEST(MmgOptions, LocalParametersBoundSizesByReference) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  const auto size = [&](const std::string& words) {
+    const Outcome outcome =
+        folder.run("adapt waves2d.mesh -hsiz 0.1 -o o.mesh --iterations 3 " + words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return std::pair(folder.read("o.mesh").size(), outcome.err);
+  };
+  const auto [plain, nothing] = size("");
+  EXPECT_EQ(nothing, "");
+  folder.write("given.mmg2d", "Parameters\n1\n1 Edges 0.004 0.005 0\n");
+  for (const char* words : {"-f given.mmg2d", "-f given.mesh -hmin 0.05", "-f given"}) {
+    const auto [finer, said] = size(words);
+    EXPECT_GT(finer, 2 * plain) << words;
+    EXPECT_EQ(said, "");
+  }
+  folder.write("DEFAULT.mmg2d", "parameters 1 1 Triangle 0.2 0.3 0.01 # all");
+  const auto [coarser, said] = size("-hmax 0.15");
+  EXPECT_LT(coarser, plain / 2);
+  EXPECT_TRUE(contains(said, "DEFAULT.mmg2d: local parameters found; they bound sizes")) << said;
+  EXPECT_TRUE(contains(said, "DEFAULT.mmg2d: left out hausd")) << said;
+  folder.write("waves2d.mmg2d", "parameters 1 77 Triangle 0.2 0.3 0");
+  const auto [same, why] = size("");
+  EXPECT_EQ(same, plain);
+  EXPECT_TRUE(contains(why, "nothing in the mesh has the references 77")) << why;
+  const Outcome wrong = folder.run("adapt waves2d.mesh -f none.mmg2d -o o.mesh");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(contains(wrong.err, "none.mmg2d: cannot read")) << wrong.err;
+  folder.write("given.mmg2d", "Parameters 1 1 Tetrahedra 1 1 0");
+  EXPECT_TRUE(contains(folder.run("adapt waves2d.mesh -f given.mmg2d").err, "found tetrahedra"));
 }
 
 /// A number after -rn belongs to it, a mesh does not.

@@ -80,7 +80,7 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adapt a.mesh -hmn 1", "did you mean -hmin?");
   expect("adapt a.mesh --itertions 1", "did you mean --iterations?");
   for (const char* refused :
-       {"3dMedit", "A", "f", "lag", "ls", "lssurf", "nreg", "nsd", "optimLES", "xreg"})
+       {"3dMedit", "A", "lag", "ls", "lssurf", "nreg", "nsd", "optimLES", "xreg"})
     expect(("adapt a.mesh -" + std::string(refused) + " 1").c_str(),
            ("unknown option -" + std::string(refused) + "; Mmg's, not here: ").c_str());
   expect("adapt a.mesh -in b.mesh", "expected one mesh, found 2");
@@ -94,6 +94,7 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adapt a.mesh -hmin nan", "found 'nan'");
   expect("adapt a.mesh -hmin 2 -hmax 1", "-hmin to be the smaller");
   expect("adapt a.mesh -hgrad 0.5", "1 or more");
+  expect("adapt a.mesh -hgradreq 0.5", "1 or more");
   expect("adapt a.mesh --threads 0", "a whole number from 1");
   expect("adapt a.mesh --threads 1.5", "a whole number from 1");
   expect("adapt a.mesh --racing=yes", "takes no value");

@@ -1,4 +1,4 @@
-// Sizes said by places, compared with what a search over everything finds.
+// Sizes said by places, and bounds by reference, compared with what a search over everything finds.
 
 #include "ductile/meshadapt/sizes.hpp"
 
@@ -13,6 +13,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/local_sizes.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/distance.hpp"
@@ -73,6 +74,22 @@ double to_entities(const AnyMesh& mesh, int dimension, int reference, const Vect
             std::min({least, to_triangle(p(a), p(b), p(c), at), to_triangle(p(a), p(b), p(d), at),
                       to_triangle(p(a), p(c), p(d), at), to_triangle(p(b), p(c), p(d), at)});
   return least;
+}
+
+/// Whether a vertex belongs to an entity of a reference.
+bool belongs(const AnyMesh& mesh, int dimension, int reference, std::size_t vertex) {
+  const auto among = [&](const auto& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (cells.reference[i] == reference &&
+          std::find(cells.vertices[i].begin(), cells.vertices[i].end(), vertex) !=
+              cells.vertices[i].end())
+        return true;
+    return false;
+  };
+  return dimension == 0   ? mesh.vertex_reference[vertex] == reference
+         : dimension == 1 ? among(mesh.edges)
+         : dimension == 2 ? among(mesh.triangles)
+                          : among(mesh.tetrahedra);
 }
 
 /// One way to say a size, and the distance that it is about.
@@ -200,8 +217,7 @@ TEST(Sizes, AreTheFinestThatAnyPlaceAsksFor) {
       const double size = std::pow(10, uniform(random, -2, -0.5));
       sizes.add(ways.back().place, size, random_growth(random, size));
     }
-    const AnyField field =
-        size_field(Executor({.threads = 1 + static_cast<int>(seed % 4 / 2)}), mesh, sizes);
+    const AnyField field = size_field(Executor({.threads = seed % 8 < 7 ? 1 : 2}), mesh, sizes);
     ASSERT_EQ(field.values.size(), mesh.vertex_count());
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
       const Vector<3> at = place_of(mesh, v);
@@ -269,6 +285,114 @@ TEST(Sizes, SayWhatMakesNoSense) {
   EXPECT_THROW(size_field(executor, mesh, {.bounds = {2, 1}}), InputError);
   for (auto& corners : mesh.edges.vertices) corners[0] = 99;
   EXPECT_THROW(size_field(executor, mesh, Sizes{}.add(Named{"wall"}, 0.1)), InputError);
+}
+
+// ---- Bounds by reference ----
+
+TEST(LocalSizes, BoundSizesWhereTheirEntitiesAre) {
+  for (std::uint64_t seed = 0; seed < test::trials(60); ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const AnyMesh mesh = random_mesh(random, seed % 2 == 0 ? 2 : 3);
+    const int d = mesh.dimension;
+    std::vector<LocalSize> locals;
+    for (std::size_t i = 0; i <= below(random, 5); ++i) {
+      const double a = uniform(random, 0.01, 1), b = uniform(random, 0.01, 1);
+      locals.push_back({static_cast<int>(below(random, static_cast<std::size_t>(d) + 1)),
+                        static_cast<int>(below(random, 5)), std::min(a, b), std::max(a, b)});
+      if (chance(random, 0.2)) locals.back().smallest = 0;
+      if (chance(random, 0.2)) locals.back().largest = 0;
+    }
+    const SizeBounds elsewhere{chance(random, 0.5) ? 0.05 : 0, chance(random, 0.5) ? 0.3 : 0};
+    std::vector<double> size_of;
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+      size_of.push_back(uniform(random, 0.02, 2));
+    const AnyField asked = metric_of(scalar_field(d, size_of), mesh);
+    const AnyField bound =
+        bound_sizes_locally(Executor({.threads = 1}), mesh, asked, locals, elsewhere);
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+      SizeBounds here = elsewhere;
+      int of = d + 1;
+      for (const LocalSize& local : locals) {
+        if (local.dimension > of || !belongs(mesh, local.dimension, local.reference, v)) continue;
+        const double least = local.smallest > 0 ? local.smallest : elsewhere.smallest;
+        const double most = local.largest > 0 ? local.largest : elsewhere.largest;
+        const bool first = local.dimension < of;
+        of = local.dimension;
+        here.smallest = first ? least : std::min(least, here.smallest);
+        here.largest = first || here.largest == 0 ? most
+                       : most == 0                ? here.largest
+                                                  : std::min(most, here.largest);
+      }
+      double expected = size_of[v];
+      if (here.smallest > 0) expected = std::max(expected, here.smallest);
+      if (here.largest > 0) expected = std::min(expected, here.largest);
+      const double found = 1 / std::sqrt(bound.values[v * stride_of(bound)]);
+      EXPECT_NEAR(found, expected, 1e-9) << "vertex " << v;
+    }
+  }
+}
+
+TEST(LocalSizes, AreReadFromMmgsFiles) {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& text, Warnings* warnings = nullptr) {
+    test::put_bytes(folder / "a.mmg3d", text);
+    return read_local_sizes(folder / "a.mmg3d", warnings);
+  };
+  const auto found = read(
+      "# by hand\nPARAMETERS 3\n38 Triangles 1.8 2.2 0.01\n-7 tetrahedron 0 +1e-1 0 7 eDGE -1 -1 "
+      "-1\n");
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].dimension, 2);
+  EXPECT_EQ(found[0].reference, 38);
+  EXPECT_EQ(found[0].smallest, 1.8);
+  EXPECT_EQ(found[0].largest, 2.2);
+  EXPECT_EQ(found[0].surface_tolerance, 0.01);
+  EXPECT_EQ(found[1].dimension, 3);
+  EXPECT_EQ(found[1].reference, -7);
+  EXPECT_EQ(found[1].largest, 0.1);
+  EXPECT_EQ(found[2].dimension, 1);
+  EXPECT_EQ(found[2].smallest, 0);  // which is no bound
+  Warnings warnings;
+  EXPECT_EQ(read("LSReferences\n2\n3 nosplit\n2 1 5\nLSBaseReferences\n1\n4\nparameters\n1\n"
+                 "1 Vertices 0.1 0.2 0",
+                 &warnings)
+                .size(),
+            1U);
+  EXPECT_EQ(warnings.size(), 2U);
+  EXPECT_TRUE(read("parameters 0\n").empty());
+  struct Fault {
+    const char *text, *said;
+  };
+  for (const auto& [text, said] : std::vector<Fault>{
+           {"sizes 1", "a.mmg3d:1: expected Parameters, found 'sizes'"},
+           {"parameters\nmany", ":2: expected the number of references, found 'many'"},
+           {"parameters -1", ":1: expected a number of references of 0 or more"},
+           {"parameters 2\n1 Edge 1 2 3\n", "expected a reference, found the end of the file"},
+           {"parameters 1\n1.5 Edge 1 2 3", ":2: expected a reference, found '1.5'"},
+           {"parameters 1\n99999999999 Edge 1 2 3", ":2: expected a reference, found '9999"},
+           {"parameters 1\n1 Quads 1 2 3", "expected Vertex, Edge, Triangle or Tetrahedron, found"},
+           {"parameters 1\n1 Edge x 2 3", ":2: expected hmin, found 'x'"},
+           {"parameters 1\n1 Edge 1 inf 3", ":2: expected hmax, found one that is not finite"},
+           {"parameters 1\n1 Edge 2 1 3", ":2: expected hmin not to be above hmax"},
+           {"parameters 1\n1 Edge 1 2", "expected hausd, found the end of the file"},
+           {"parameters 1\n1 Edge 1 2 3 4", "expected Parameters, found '4'"}})
+    EXPECT_NE(test::complaint([&, text = text] { read(text); }).find(said), std::string::npos)
+        << text << ": " << test::complaint([&, text = text] { read(text); });
+}
+
+TEST(LocalSizes, RefuseWhatMakesNoSense) {
+  const AnyMesh mesh = test::make_grid(test::unit_grid(2, 2));
+  const AnyField metric =
+      metric_of(scalar_field(2, std::vector<double>(mesh.vertex_count(), 0.1)), mesh);
+  const Executor executor({.threads = 1});
+  for (const LocalSize& local : {LocalSize{3, 1, 0.1, 0.2}, LocalSize{-1, 1, 0.1, 0.2},
+                                 LocalSize{1, 1, 0.2, 0.1}, LocalSize{1, 1, infinity, 0}})
+    EXPECT_NE(test::complaint([&] {
+                bound_sizes_locally(executor, mesh, metric, {{1, 2, 0.1}, local});
+              }).find("local_sizes[1]: "),
+              std::string::npos);
+  EXPECT_EQ(bound_sizes_locally(executor, mesh, metric, {{1, 55, 1, 2}}).values, metric.values);
 }
 
 }  // namespace
