@@ -170,7 +170,31 @@ Metric<Dim> log_of_entity(const Mesh<Dim>& mesh, const EntityCorners<Dim>& corne
   return compose(axes);
 }
 
-/// The mean over required entities, or nothing if there are none.
+/// A logarithm of a metric with no more stretch than this factor between sizes: the shortest ones
+/// are longer. To lead over from entities that are stretched more would take too many elements, and
+/// slivers are.
+template <int Dim>
+Metric<Dim> with_stretch_up_to(double most, const Metric<Dim>& log_metric) {
+  PrincipalAxes<Dim> axes = principal_axes(log_metric);
+  const double least = *std::min_element(axes.value.begin(), axes.value.end());
+  for (double& value : axes.value) value = std::min(value, least + 2 * std::log(most));
+  return compose(axes);
+}
+
+/// The longest edge of a vertex, in a metric.
+template <int Dim>
+double longest_edge(const Mesh<Dim>& mesh, VertexId v, const Metric<Dim>& metric) {
+  double square = 0;
+  for (const ElementId e : mesh.elements_of.of(v))
+    for (const VertexId w : mesh.corners_of[e])
+      square = std::max(
+          square, squared_length(metric, mesh.site_of[w].position - mesh.site_of[v].position));
+  return std::sqrt(square);
+}
+
+/// The mean over required entities, or nothing if there are none. It makes no sizes shorter than
+/// 1/50 of the longest edge of the vertex: along that, sizes are interpolated, and those much below
+/// it would hold over far too much of it.
 template <int Dim>
 std::optional<Metric<Dim>> metric_of_required(const Mesh<Dim>& mesh, RequiredAround<Dim>& around,
                                               VertexId v, const Metric<Dim>& asked) {
@@ -181,7 +205,12 @@ std::optional<Metric<Dim>> metric_of_required(const Mesh<Dim>& mesh, RequiredAro
   Metric<Dim> mean;
   for (const auto& corners : entities)
     mean += 1.0 / static_cast<double>(entities.size()) * log_of_entity(mesh, corners, space);
-  return brought_into_range(space.back(exponential(without_little_stretch(mean))));
+  constexpr double most_stretch = 16, parts = 50;
+  PrincipalAxes<Dim> axes =
+      principal_axes(with_stretch_up_to(most_stretch, without_little_stretch(mean)));
+  const double finest = std::max(0.0, 2 * std::log(parts / longest_edge(mesh, v, asked)));
+  for (double& value : axes.value) value = std::exp(std::min(value, finest));
+  return brought_into_range(space.back(compose(axes)));
 }
 
 }  // namespace ductile::meshadapt

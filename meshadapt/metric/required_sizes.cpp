@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -34,37 +35,70 @@ Metric<Dim> inverted(const Metric<Dim>& tensor) {
   return compose(axes);
 }
 
+/// The metric at one end of an edge as it may be at the other at most, if sizes grow at this rate:
+/// a size h along one of its axes becomes h g^(1/2) g_h^(1/2), where g = 1 + l rate with the length
+/// l of the edge in the metric, and g_h = 1 + |edge|/h rate. Nothing if no size is below
+/// `coarsest`.
 template <int Dim>
-double largest_value(const Metric<Dim>& tensor) {
-  const auto value = principal_axes(tensor).value;
-  return *std::max_element(value.begin(), value.end());
-}
+struct Growing {
+  double rate, coarsest;
 
-/// How coarse sizes must be at least, from the sources on: a Jacobi iteration like that of
-/// limit_gradation, on the tensors of squared sizes, the inverses of the metrics. What is coarser
-/// than something in either of two metrics is the intersection of their inverses.
+  std::optional<Metric<Dim>> operator()(const Metric<Dim>& metric, const Vector<Dim>& edge) const {
+    const double length = std::sqrt(std::max(0.0, squared_length(metric, edge)));
+    const double in_metric = 1 + length * rate, in_space = norm(edge) * rate;
+    PrincipalAxes<Dim> axes = principal_axes(metric);
+    bool finer = false;
+    for (double& value : axes.value) {
+      value /= in_metric * (1 + in_space * std::sqrt(value));  // a squared factor
+      finer = finer || value * coarsest * coarsest > 1;
+    }
+    if (!finer) return std::nullopt;
+    return compose(axes);
+  }
+};
+
+/// The same for tensors of squared sizes, the inverses of metrics: how large they must be at least.
+/// Nothing if no size is above `finest`.
 template <int Dim>
-class Falling {
+struct Falling {
+  double rate, finest;
+
+  std::optional<Metric<Dim>> operator()(const Metric<Dim>& squares, const Vector<Dim>& edge) const {
+    const PrincipalAxes<Dim> axes = principal_axes(squares);
+    double square = 0, largest = 0;
+    for (std::size_t i = 0; i < Dim; ++i) {
+      const double along = dot(axes.vector[i], edge);
+      square += along * along / axes.value[i];
+      largest = std::max(largest, axes.value[i]);
+    }
+    const double left = 1 - std::sqrt(square) * rate;
+    if (!(left * std::sqrt(largest) > finest)) return std::nullopt;
+    return left * left * squares;
+  }
+};
+
+/// Spreads tensors from sources over the edges of a mesh, where they change by a law and are
+/// intersected: a Jacobi iteration like that of limit_gradation, of what comes from sources only.
+template <int Dim, class Law>
+class Spreading {
  public:
-  /// Sizes below `finest` are not looked at.
-  Falling(const Executor& executor, const Mesh<Dim>& mesh, double factor, double finest)
+  Spreading(const Executor& executor, const Mesh<Dim>& mesh, const Law& law)
       : executor_(executor),
         mesh_(mesh),
-        rate_(std::log(factor)),
-        finest_(finest),
-        squares_of_(mesh.vertex_slots()),
+        law_(law),
+        tensor_of_(mesh.vertex_slots()),
         is_reached_(mesh.vertex_slots(), 0),
         has_changed_(mesh.vertex_slots(), 0),
         neighbours_(executor),
         wake_(executor, {.unique = true}) {}
 
-  GradationReport run(const std::vector<Source<Dim>>& sources) {
-    for (const auto& [vertex, metric] : sources) {
-      squares_of_[vertex] = inverted(metric);
-      is_reached_[vertex] = 1;
-      has_changed_[vertex] = 1;
-      changed_.push_back(vertex);
-    }
+  void start(VertexId vertex, const Metric<Dim>& tensor) {
+    tensor_of_[vertex] = tensor;
+    is_reached_[vertex] = has_changed_[vertex] = 1;
+    changed_.push_back(vertex);
+  }
+
+  GradationReport run() {
     GradationReport report;
     while (!changed_.empty() && report.sweeps < GradationOptions{}.sweeps) {
       sweep();
@@ -75,12 +109,10 @@ class Falling {
     return report;
   }
 
-  /// The metric, or one that is coarser where it must be.
-  Metric<Dim> coarsened(VertexId v, const Metric<Dim>& metric) const {
-    if (!is_reached_[v]) return metric;
-    const Metric<Dim> squares = inverted(metric);
-    const Metric<Dim> coarse = intersect(squares, squares_of_[v]);
-    return coarse == squares ? metric : brought_into_range(inverted(coarse));
+  /// The tensor intersected with what has come to a vertex, if anything has; itself, bit for bit,
+  /// if that changes nothing.
+  Metric<Dim> at(VertexId v, const Metric<Dim>& tensor) const {
+    return is_reached_[v] ? intersect(tensor, tensor_of_[v]) : tensor;
   }
 
  private:
@@ -89,47 +121,28 @@ class Falling {
     const auto active = woken();
     const auto raised = runtime::parallel_collect<Source<Dim>>(
         executor_, active.size(), [&](std::size_t i, auto&& append) {
-          Metric<Dim> squares = squares_of_[active[i]];
-          if (raise_from_neighbours(squares, active[i])) append(Source<Dim>{active[i], squares});
+          Metric<Dim> tensor = tensor_of_[active[i]];
+          if (raise_from_neighbours(tensor, active[i])) append(Source<Dim>{active[i], tensor});
         });
     for (const VertexId v : changed_) has_changed_[v] = 0;
     changed_.clear();
-    for (const auto& [vertex, squares] : raised) {
-      squares_of_[vertex] = squares;
-      is_reached_[vertex] = 1;
-      has_changed_[vertex] = 1;
-      changed_.push_back(vertex);
-    }
+    for (const auto& [vertex, tensor] : raised) start(vertex, tensor);
   }
 
-  bool raise_from_neighbours(Metric<Dim>& squares, VertexId vertex) {
+  bool raise_from_neighbours(Metric<Dim>& tensor, VertexId vertex) {
     bool is_reached = is_reached_[vertex] != 0, raised = false;
     for (const VertexId from : neighbours(vertex)) {
       if (!has_changed_[from]) continue;
-      const Metric<Dim> least = fallen(from, vertex);
-      if (!(least.m[0] > 0)) continue;
-      const Metric<Dim> both = is_reached ? intersect(squares, least) : least;
+      const Vector<Dim> edge = mesh_.site_of[vertex].position - mesh_.site_of[from].position;
+      const auto carried = law_(tensor_of_[from], edge);
+      if (!carried) continue;
+      const Metric<Dim> both = is_reached ? intersect(tensor, *carried) : *carried;
       constexpr double tolerance = 1e-3;  // of the product of squared sizes
-      if (is_reached && !(determinant(both) > (1 + tolerance) * determinant(squares))) continue;
-      squares = both;
+      if (is_reached && !(determinant(both) > (1 + tolerance) * determinant(tensor))) continue;
+      tensor = both;
       is_reached = raised = true;
     }
     return raised;
-  }
-
-  /// The squared sizes at `from` as they must be at `to` at least; 0 if they may be anything.
-  Metric<Dim> fallen(VertexId from, VertexId to) const {
-    const Vector<Dim> edge = mesh_.site_of[to].position - mesh_.site_of[from].position;
-    const PrincipalAxes<Dim> axes = principal_axes(squares_of_[from]);
-    double square = 0, largest = 0;
-    for (std::size_t i = 0; i < Dim; ++i) {
-      const double along = dot(axes.vector[i], edge);
-      square += along * along / axes.value[i];
-      largest = std::max(largest, axes.value[i]);
-    }
-    const double left = 1 - std::sqrt(square) * rate_;
-    if (!(left * std::sqrt(largest) > finest_)) return {};
-    return left * left * squares_of_[from];
   }
 
   /// In the order of their numbers; valid until the thread asks again.
@@ -156,8 +169,8 @@ class Falling {
 
   const Executor& executor_;
   const Mesh<Dim>& mesh_;
-  double rate_, finest_;
-  std::vector<Metric<Dim>> squares_of_;    // [vertex], where it is reached
+  Law law_;
+  std::vector<Metric<Dim>> tensor_of_;     // [vertex], where it is reached
   std::vector<std::uint8_t> is_reached_;   // [vertex]
   std::vector<VertexId> changed_;          // in the last sweep
   std::vector<std::uint8_t> has_changed_;  // [vertex]
@@ -205,16 +218,19 @@ GradationReport take_required_sizes(const Executor& executor, const Mesh<Dim>& m
   const std::vector<Source<Dim>> sources = sources_in(executor, mesh, metric_of);
   if (sources.empty()) return {.converged = true};
   const auto [finest, coarsest] = sizes_in(executor, metric_of);
-  const double no_limit = std::min(2 * coarsest, largest_size);
-  std::vector<Metric<Dim>> growing(metric_of.size(), isotropic<Dim>(no_limit));
-  for (const auto& [vertex, metric] : sources) growing[vertex] = metric;
-  const GradationReport up =
-      limit_gradation(executor, growing, mesh, GradationOptions{.factor = factor});
-  Falling<Dim> falling(executor, mesh, factor, finest);
-  const GradationReport down = falling.run(sources);
+  const double rate = std::log(factor);
+  Spreading<Dim, Growing<Dim>> growing(executor, mesh, {rate, coarsest});
+  Spreading<Dim, Falling<Dim>> falling(executor, mesh, {rate, finest});
+  for (const auto& [vertex, metric] : sources) {
+    growing.start(vertex, metric);
+    falling.start(vertex, inverted(metric));
+  }
+  const GradationReport up = growing.run(), down = falling.run();
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t i) {
     const auto v = static_cast<VertexId>(i);
-    metric_of[v] = brought_into_range(intersect(falling.coarsened(v, metric_of[v]), growing[v]));
+    const Metric<Dim> squares = inverted(metric_of[v]), coarse = falling.at(v, squares);
+    const Metric<Dim> asked = coarse == squares ? metric_of[v] : inverted(coarse);
+    metric_of[v] = brought_into_range(growing.at(v, asked));
   });
   for (const auto& [vertex, metric] : sources) metric_of[vertex] = metric;
   return {std::max(up.sweeps, down.sweeps), up.raised + down.raised,

@@ -16,19 +16,21 @@ namespace ductile::meshadapt {
 
 /// At the vertices of required facets, edges and elements, metric_of becomes the mean, of
 /// logarithms, of metrics in which their edges have length 1. Where the edges are no more stretched
-/// there than by a factor of 2 beside what the metric asks for, that is the metric times a factor.
-/// Across a facet, or an edge, sizes change by the same factor as along it, but not beyond its own
-/// edges. Edges between two required vertices that nothing else says anything of count if they are
-/// too short, because they cannot be removed.
+/// there than by a factor of 2 beside what the metric asks for, that is the metric times a factor;
+/// no metric is stretched by more than 16 beside it, and none has sizes below 1/50 of the longest
+/// edge there. Across a facet, or an edge, sizes change by the same factor as along it, but not
+/// beyond its own edges. Edges between two required vertices that nothing else says anything of
+/// count if they are too short, because they cannot be removed.
 ///
 /// From these vertices sizes change by at most `factor` per unit of metric length, up to where the
-/// metric asks for what is allowed: those that it asks for elsewhere are made finer as
-/// limit_gradation does it, and coarser along each edge pq so that a size h of M_p is at least
-/// h (1 - l ln(factor)) at q, where l is the length of pq in M_p. Where both hold, the finer sizes
-/// are taken. No other metric changes.
+/// metric asks for what is allowed. Along each edge pq, of length l in M_p, a size h along an axis
+/// of M_p may be at most h sqrt(g g_h) at q, where g = 1 + l ln(factor) and g_h = 1 + |pq|/h
+/// ln(factor), and must be at least h (1 - l ln(factor)). For isotropic metrics that is h + |pq|
+/// ln(factor) and h - |pq| ln(factor). Where both say something, the finer sizes are taken. No
+/// other metric changes.
 ///
-/// Does not depend on the number of threads. Throws InputError if the factor is below 1 or not
-/// finite; std::bad_alloc if memory runs out. Thread safety: one caller; runs on the executor.
+/// Does not depend on the number of threads. Expects a factor of 1 or more. Throws
+/// std::bad_alloc if memory runs out. Thread safety: one caller; runs on the executor.
 template <int Dim>
 GradationReport take_required_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                     double factor, std::vector<Metric<Dim>>& metric_of);
