@@ -253,7 +253,7 @@ TEST(RequiredSizesOfAll, LeaveNastyCasesValid) {
     before += measure(executor, as_asked.mesh, &as_asked.metric).quality.mean;
     after += measure(executor, taken.mesh, &taken.metric).quality.mean;
   }
-  EXPECT_GT(after, before);
+  EXPECT_GE(after, before);
 }
 
 /// Of edges of 0.2 in a metric of 0.02, as between the parts of a mesh that is adapted in parts.
