@@ -70,7 +70,8 @@ int ductile_mesh_set_facets_64(ductile_mesh* mesh, int64_t count, const int64_t*
  * is DUCTILE_VERTICES, DUCTILE_FACETS or DUCTILE_ELEMENTS. */
 int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int32_t* indices);
 
-/** From and to a file in the GMF format of Medit and Mmg, .mesh or .meshb; to .vtu as well. */
+/** From and to a file of any format that `ductile help` lists, by its content and its ending. The
+ * metric of an adapted mesh goes into those that hold fields, .vtu, .vtk and .msh. */
 int ductile_mesh_read(const char* path, ductile_mesh** mesh);
 int ductile_mesh_write(const ductile_mesh* mesh, const char* path);
 

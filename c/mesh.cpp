@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/fields.hpp"
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/mesh_from_arrays.hpp"
-#include "ductile/meshadapt/vtu.hpp"
 #include "handles.hpp"
 
 namespace ductile::c {
@@ -223,11 +222,11 @@ int ductile_mesh_write(const ductile_mesh* mesh, const char* path) {
     c::expect_given(mesh, "mesh");
     c::expect_given(path, "path");
     const std::filesystem::path file(path);
-    if (file.extension() != ".vtu") return meshadapt::write_mesh(file, mesh->mesh);
-    const bool has_metric = !mesh->metric.values.empty();
-    meshadapt::write_vtu(file, mesh->mesh,
-                         has_metric ? meshadapt::named_fields(mesh->metric, "metric")
-                                    : std::vector<meshadapt::NamedField>());
+    const auto* const format = meshadapt::format_of(file);
+    std::vector<meshadapt::NamedField> fields;
+    if (format != nullptr && format->holds_fields && !mesh->metric.values.empty())
+      fields = meshadapt::named_fields(mesh->metric, "metric");
+    meshadapt::write_mesh(file, mesh->mesh, {.fields = fields});
   });
 }
 

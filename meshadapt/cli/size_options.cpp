@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "ductile/meshadapt/gmf.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
 namespace ductile::cli {

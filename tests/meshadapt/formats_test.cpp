@@ -122,7 +122,7 @@ TEST(Formats, KeepSurfacesInSpace) {
 TEST(Formats, KeepReferencesThatAreAllZeroAndNoFields) {
   const test::TemporaryFolder folder;
   for (const Way& way : ways) {
-    AnyMesh mesh = rectangle_mesh({1, 1}, {2, 3});
+    AnyMesh mesh = box_mesh<2>({1, 1}, {2, 3});
     mesh.triangles.reference.assign(mesh.triangles.size(), 0);
     const auto path = folder / ("a" + std::string(way.ending));
     WriteOptions options;
@@ -138,7 +138,7 @@ TEST(Formats, KeepReferencesThatAreAllZeroAndNoFields) {
 
 TEST(Formats, SayWhatTheyHaveNoPlaceFor) {
   const test::TemporaryFolder folder;
-  AnyMesh mesh = rectangle_mesh({1, 1}, {2, 2});
+  AnyMesh mesh = box_mesh<2>({1, 1}, {2, 2});
   mesh.required_edges = {0, 1};
   mesh.names = {{2, 1, "steel"}};
   const std::vector<NamedField> fields = {
@@ -161,7 +161,7 @@ TEST(Formats, SayWhatTheyHaveNoPlaceFor) {
 
 TEST(Formats, WriteSu2WithMarkersByName) {
   const test::TemporaryFolder folder;
-  AnyMesh mesh = rectangle_mesh({1, 1}, {1, 1});
+  AnyMesh mesh = box_mesh<2>({1, 1}, {1, 1});
   mesh.edges.reference = {1, 2, 2, 2};
   mesh.names = {{1, 2, "outer wall"}, {2, 1, "not this"}};
   mesh.required_edges = {0};
@@ -199,7 +199,7 @@ TEST(Formats, WriteTheSurfaceAsStl) {
   EXPECT_NEAR(area, 6, 1e-5);  // so normals point outwards, and so are the corners turned
   EXPECT_NEAR(volume, 1, 1e-5);
   EXPECT_NE(test::complaint([&] {
-              write_mesh(folder / "b.stl", rectangle_mesh({1, 1}, {2, 2}));
+              write_mesh(folder / "b.stl", box_mesh<2>({1, 1}, {2, 2}));
             }).find("dimension 3"),
             std::string::npos);
 }
