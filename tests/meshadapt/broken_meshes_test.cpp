@@ -202,9 +202,7 @@ std::vector<OfMesh> functions_of_meshes_and_more(const std::filesystem::path& fo
       {"origins, after", [=](const AnyMesh& m) { origins(executor, *whole, m); }, of_cells},
       {"list_boundary", [](AnyMesh m) { list_boundary(executor, m); }, of_cells},
       {"write_mesh", [=](const AnyMesh& m) { write_mesh(folder / "m.meshb", m); }, all_parts},
-      {"write_mesh, vtu",
-       [=](const AnyMesh& m) { write_mesh(folder / "m.vtu", m); },
-       of_cells},
+      {"write_mesh, vtu", [=](const AnyMesh& m) { write_mesh(folder / "m.vtu", m); }, of_cells},
   };
 }
 
