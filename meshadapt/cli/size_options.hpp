@@ -14,7 +14,8 @@
 
 namespace ductile::cli {
 
-/// What --default, --near, --on and --in say, but for what depends on the mesh.
+/// What --default, --near, --on and --in say. Names and references are looked up when the mesh is
+/// known.
 class SizeOptions {
  public:
   SizeOptions() = default;

@@ -88,7 +88,7 @@ void add_cells(pugi::xml_node piece, const AnyMesh& mesh) {
   add_array(cells, "types", 1, types);
 }
 
-/// Values in elements, which come first but for tetrahedra, none of them in dimension 2.
+/// Values in elements, which are the first cells; other cells get a value that is not a number.
 void add_cell_field(pugi::xml_node cell_data, const NamedField& field, const AnyMesh& mesh) {
   SpatialField wide = in_space(field, mesh);
   wide.values.resize(cell_count(mesh) * wide.components, std::numeric_limits<double>::quiet_NaN());
@@ -112,7 +112,8 @@ void add_data(pugi::xml_node piece, const AnyMesh& mesh, std::span<const NamedFi
   }
 }
 
-/// Names of references, a line each, as the letters of a text: arrays of texts stop some readers.
+/// Names of references as one text, a line for each, in an array of its bytes: some readers stop at
+/// arrays of strings.
 void add_names(pugi::xml_node grid, const AnyMesh& mesh) {
   if (mesh.names.empty()) return;
   const std::string text = name_lines(mesh);

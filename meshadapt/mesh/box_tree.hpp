@@ -3,11 +3,9 @@
 /// its elements. For what a walk does not find: points outside, or behind a hole.
 #pragma once
 
-#include <vector>
-
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "mesh/hilbert.hpp"
+#include "mesh/box_hierarchy.hpp"
 #include "mesh/walk.hpp"
 
 namespace ductile::meshadapt {
@@ -28,15 +26,11 @@ class BoxTree {
   /// Thread safety: any thread.
   ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
 
-  std::size_t bytes() const;
+  std::size_t bytes() const { return boxes_.bytes(); }
 
  private:
-  void look_into(std::size_t level, std::size_t index, const Vector<Dim>& point,
-                 ClosestPoint<Dim>& best) const;
-
   Simplices<Dim> mesh_;
-  std::vector<ElementId> order_;                 // along a space-filling curve
-  std::vector<std::vector<Box<Dim>>> boxes_of_;  // [level][index]: of `width` boxes a level below
+  BoxHierarchy<Dim> boxes_;  // of elements
 };
 
 extern template class BoxTree<2>;

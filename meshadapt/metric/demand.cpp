@@ -51,6 +51,30 @@ double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim>& 
   return runtime::parallel_reduce(executor, mesh.element_slots(), 0.0, of_element, std::plus<>());
 }
 
+template <int Dim>
+double share_of_steep(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
+  struct Complexity {
+    double all = 0, of_steep = 0;
+  };
+  const auto of_element = [&](std::size_t e) {
+    CornerPlaces<Dim> corner;
+    LogDensities<Dim> densities;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      const Site<Dim>& site = mesh.site_of[mesh.corners_of[e][i]];
+      corner[i] = site.position;
+      densities[i] = 0.5 * Dim * std::log(site.scale);
+    }
+    const double all = complexity_of_element<Dim>(densities, corner);
+    return Complexity{all, is_steep<Dim>(densities, corner) ? all : 0};
+  };
+  const Complexity sum =
+      runtime::parallel_reduce(executor, mesh.element_slots(), Complexity{}, of_element,
+                               [](const Complexity& a, const Complexity& b) {
+                                 return Complexity{a.all + b.all, a.of_steep + b.of_steep};
+                               });
+  return sum.of_steep / sum.all;
+}
+
 void expect_countable(const std::string& name, double complexity) {
   if (complexity > none)
     refuse(name + ": asks for more than " + number(complexity) +
@@ -76,5 +100,8 @@ template double complexity_of_demand(const runtime::Executor&, const Mesh<2>&,
                                      const std::vector<Metric<2>>&);
 template double complexity_of_demand(const runtime::Executor&, const Mesh<3>&,
                                      const std::vector<Metric<3>>&);
+
+template double share_of_steep(const runtime::Executor&, const Mesh<2>&);
+template double share_of_steep(const runtime::Executor&, const Mesh<3>&);
 
 }  // namespace ductile::meshadapt

@@ -18,6 +18,11 @@ template <int Dim>
 double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                             const std::vector<Metric<Dim>>& metric_of);
 
+/// How much of what the metrics of a mesh ask for lies in elements that are much too coarse for how
+/// sizes change (see is_steep). All elements must be there. Thread safety: as above.
+template <int Dim>
+double share_of_steep(const runtime::Executor& executor, const Mesh<Dim>& mesh);
+
 /// Throws InputError if there would be more elements than 32 bits count.
 void expect_countable(const std::string& name, double complexity);
 
@@ -29,5 +34,7 @@ extern template double complexity_of_demand(const runtime::Executor&, const Mesh
                                             const std::vector<Metric<2>>&);
 extern template double complexity_of_demand(const runtime::Executor&, const Mesh<3>&,
                                             const std::vector<Metric<3>>&);
+extern template double share_of_steep(const runtime::Executor&, const Mesh<2>&);
+extern template double share_of_steep(const runtime::Executor&, const Mesh<3>&);
 
 }  // namespace ductile::meshadapt

@@ -9,7 +9,7 @@
 
 #include "ductile/meshadapt/vector.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "mesh/box.hpp"
+#include "mesh/box_hierarchy.hpp"
 
 namespace ductile::meshadapt {
 
@@ -22,18 +22,15 @@ struct Piece {
 class DistanceTree {
  public:
   /// Throws std::bad_alloc.
-  DistanceTree(const runtime::Executor& executor, std::vector<Piece> pieces);
+  DistanceTree(const runtime::Executor& executor, const std::vector<Piece>& pieces);
 
   /// The distance to the nearest piece, or `most` if none is closer than that. Thread safety: any
   /// thread.
   double distance(const Vector<3>& point, double most) const;
 
  private:
-  void look_into(std::size_t level, std::size_t index, const Vector<3>& point,
-                 double& square) const;
-
-  std::vector<Piece> pieces_;                  // along a space-filling curve
-  std::vector<std::vector<Box<3>>> boxes_of_;  // [level][index]: of `width` boxes a level below
+  BoxHierarchy<3> boxes_;
+  std::vector<Piece> pieces_;  // as they are in the order of their boxes
 };
 
 }  // namespace ductile::meshadapt

@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <numeric>
 
-#include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/meshadapt/vector.hpp"
@@ -36,24 +35,6 @@ double log_density_of_log(const Metric<Dim>& log_metric) {
 /// Where an element's corners lie.
 template <int Dim>
 using CornerPlaces = std::array<Vector<Dim>, Dim + 1>;
-
-template <int Dim>
-struct DensitiesAt {
-  LogDensities<Dim> densities;
-  CornerPlaces<Dim> corner;
-};
-
-/// Those of an element of a mesh, which must be there, with the metrics that the mesh has.
-template <int Dim>
-DensitiesAt<Dim> densities_of(const Mesh<Dim>& mesh, ElementId element) {
-  DensitiesAt<Dim> result;
-  for (std::size_t i = 0; i <= Dim; ++i) {
-    const Site<Dim>& site = mesh.site_of[mesh.corners_of[element][i]];
-    result.corner[i] = site.position;
-    result.densities[i] = 0.5 * Dim * std::log(site.scale);
-  }
-  return result;
-}
 
 /// Does the product of the sizes differ by a factor of more than 100 between the corners?
 template <std::size_t Corners>

@@ -14,12 +14,12 @@
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/unset_vector.hpp"
-#include "ductile/runtime/worklist.hpp"
 #include "mesh/first_bad.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"
 #include "metric/metric_range.hpp"
 #include "metric/spectrum.hpp"
+#include "metric/vertex_neighbours.hpp"
 
 namespace ductile::meshadapt {
 
@@ -144,15 +144,6 @@ template <int Dim>
 const Vector<Dim>& place_of(const FixedMesh<Dim>& mesh, VertexId vertex) {
   return mesh.position_of[vertex];
 }
-template <int Dim>
-auto elements_around(const Mesh<Dim>& mesh, VertexId vertex) {
-  return mesh.elements_of.of(vertex);
-}
-template <int Dim>
-auto elements_around(const FixedMesh<Dim>& mesh, VertexId vertex) {
-  return mesh.elements_of(vertex);
-}
-
 /// The Jacobi iteration of limit_gradation. After the first sweep only vertices with a neighbour
 /// that changed in the sweep before are looked at, and only against such neighbours: metrics never
 /// get coarser, so a bound that held still does.
@@ -169,8 +160,7 @@ class Gradation {
         changed_(metric_of.size()),
         has_changed_(metric_of.size(), 1),
         axes_of_(metric_of.size()),
-        neighbours_(executor),
-        wake_(executor, {.unique = true}) {
+        neighbours_(executor, mesh) {
     std::iota(changed_.begin(), changed_.end(), VertexId{0});
   }
 
@@ -181,7 +171,7 @@ class Gradation {
       sweep(active);
       ++report.sweeps;
       report.raised += changed_.size();
-      active = woken();
+      active = neighbours_.of_all(changed_);
     }
     report.converged = active.empty();
     if (report.raised > 0)
@@ -225,7 +215,7 @@ class Gradation {
 
   bool raise_from_neighbours(Metric<Dim>& metric, VertexId vertex) {
     bool raised = false;
-    for (const VertexId from : neighbours(vertex)) {
+    for (const VertexId from : neighbours_.of(vertex)) {
       if (!has_changed_[from]) continue;
       const Metric<Dim> reaching = grown(from, vertex);
       if (!surely_finer(metric, reaching, options_.tolerance))
@@ -249,28 +239,6 @@ class Gradation {
     return compose(axes);
   }
 
-  /// In the order of their numbers; valid until the thread asks again.
-  std::span<const VertexId> neighbours(VertexId vertex) {
-    std::vector<VertexId>& found = neighbours_.mine();
-    found.clear();
-    for (const ElementId element : elements_around(mesh_, vertex))
-      for (const VertexId corner : mesh_.corners_of[element])
-        if (corner != vertex) found.push_back(corner);
-    std::sort(found.begin(), found.end());
-    return {found.begin(), std::unique(found.begin(), found.end())};
-  }
-
-  runtime::UnsetVector<VertexId> woken() {
-    runtime::parallel_for(executor_, changed_.size(),
-                          [&](std::size_t i) {
-                            for (const VertexId neighbour : neighbours(changed_[i]))
-                              wake_.append(neighbour);
-                          },
-                          {.serial_below = 256});
-    wake_.collect();
-    return wake_.take();
-  }
-
   const Executor& executor_;
   std::vector<Metric<Dim>>& metric_of_;  // [vertex]
   const AMesh& mesh_;
@@ -279,8 +247,7 @@ class Gradation {
   std::vector<VertexId> changed_;                     // in the last sweep, all before the first
   std::vector<std::uint8_t> has_changed_;             // [vertex]
   runtime::UnsetVector<PrincipalAxes<Dim>> axes_of_;  // [vertex], of those that changed
-  runtime::PerThread<std::vector<VertexId>> neighbours_;
-  runtime::Worklist<VertexId> wake_;
+  VertexNeighbours<AMesh> neighbours_;
 };
 
 [[noreturn]] void refuse_gradation(double factor) {

@@ -95,7 +95,7 @@ struct UnitSpace {
       result += dot(axes.vector[i], d) / axes.value[i] * axes.vector[i];
     return result;
   }
-  /// A tensor that is there, as the tensor that it is here.
+  /// The tensor of the space before the map whose lengths are those of `tensor` after it.
   Metric<Dim> back(const Metric<Dim>& tensor) const {
     Metric<Dim> result;
     std::array<Vector<Dim>, Dim> image;  // [axis], of a unit vector of space

@@ -5,15 +5,14 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/worklist.hpp"
 #include "metric/metric_range.hpp"
 #include "metric/required_entities.hpp"
+#include "metric/vertex_neighbours.hpp"
 
 namespace ductile::meshadapt {
 
@@ -89,8 +88,7 @@ class Spreading {
         tensor_of_(mesh.vertex_slots()),
         is_reached_(mesh.vertex_slots(), 0),
         has_changed_(mesh.vertex_slots(), 0),
-        neighbours_(executor),
-        wake_(executor, {.unique = true}) {}
+        neighbours_(executor, mesh) {}
 
   void start(VertexId vertex, const Metric<Dim>& tensor) {
     tensor_of_[vertex] = tensor;
@@ -118,7 +116,7 @@ class Spreading {
  private:
   /// Finds the new tensors from the old ones, then puts them in place.
   void sweep() {
-    const auto active = woken();
+    const auto active = neighbours_.of_all(changed_);
     const auto raised = runtime::parallel_collect<Source<Dim>>(
         executor_, active.size(), [&](std::size_t i, auto&& append) {
           Metric<Dim> tensor = tensor_of_[active[i]];
@@ -131,7 +129,7 @@ class Spreading {
 
   bool raise_from_neighbours(Metric<Dim>& tensor, VertexId vertex) {
     bool is_reached = is_reached_[vertex] != 0, raised = false;
-    for (const VertexId from : neighbours(vertex)) {
+    for (const VertexId from : neighbours_.of(vertex)) {
       if (!has_changed_[from]) continue;
       const Vector<Dim> edge = mesh_.site_of[vertex].position - mesh_.site_of[from].position;
       const auto carried = law_(tensor_of_[from], edge);
@@ -145,28 +143,6 @@ class Spreading {
     return raised;
   }
 
-  /// In the order of their numbers; valid until the thread asks again.
-  std::span<const VertexId> neighbours(VertexId vertex) {
-    std::vector<VertexId>& found = neighbours_.mine();
-    found.clear();
-    for (const ElementId element : mesh_.elements_of.of(vertex))
-      for (const VertexId corner : mesh_.corners_of[element])
-        if (corner != vertex) found.push_back(corner);
-    std::sort(found.begin(), found.end());
-    return {found.begin(), std::unique(found.begin(), found.end())};
-  }
-
-  runtime::UnsetVector<VertexId> woken() {
-    runtime::parallel_for(executor_, changed_.size(),
-                          [&](std::size_t i) {
-                            for (const VertexId neighbour : neighbours(changed_[i]))
-                              wake_.append(neighbour);
-                          },
-                          {.serial_below = 256});
-    wake_.collect();
-    return wake_.take();
-  }
-
   const Executor& executor_;
   const Mesh<Dim>& mesh_;
   Law law_;
@@ -174,8 +150,7 @@ class Spreading {
   std::vector<std::uint8_t> is_reached_;   // [vertex]
   std::vector<VertexId> changed_;          // in the last sweep
   std::vector<std::uint8_t> has_changed_;  // [vertex]
-  runtime::PerThread<std::vector<VertexId>> neighbours_;
-  runtime::Worklist<VertexId> wake_;
+  VertexNeighbours<Mesh<Dim>> neighbours_;
 };
 
 template <int Dim>

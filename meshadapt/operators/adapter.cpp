@@ -10,7 +10,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/run_rounds.hpp"
-#include "metric/interpolation.hpp"
+#include "metric/demand.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/kernel_timer.hpp"
 #include "operators/metric_path.hpp"
@@ -156,32 +156,15 @@ std::size_t Adapter<Dim>::elements_changed_after(std::uint32_t epoch) const {
 template <int Dim>
 bool Adapter<Dim>::is_far() const {
   const double slivers = share(elements_below(Tuning<Dim>::far));
-  return slivers > 0.5 || (slivers > 0.02 && share_of_steep() > much_of_demand);
-}
-
-/// How much of what the metric asks for lies in elements that are much too coarse for how sizes
-/// change (see is_steep).
-template <int Dim>
-double Adapter<Dim>::share_of_steep() const {
-  const auto complexity = [&](bool of_all) {
-    const auto of_element = [&](std::size_t e) {
-      const auto [densities, corner] = densities_of(mesh_, static_cast<ElementId>(e));
-      return of_all || is_steep<Dim>(densities, corner)
-                 ? complexity_of_element<Dim>(densities, corner)
-                 : 0.0;
-    };
-    return runtime::parallel_reduce(executor_, mesh_.element_slots(), 0.0, of_element,
-                                    std::plus<>());
-  };
-  const double of_steep = complexity(false);
-  return of_steep > 0 ? of_steep / complexity(true) : 0;
+  return slivers > 0.5 || (slivers > 0.02 && share_of_steep(executor_, mesh_) > much_of_demand);
 }
 
 /// Adapts to metrics on the way to one that is far, roughly, before what is done for any.
 template <int Dim>
 void Adapter<Dim>::come_near() {
   constexpr int most_rounds = 6;  // to each
-  MetricPath<Dim> path(executor_, mesh_, background_, share_of_steep() > much_of_demand);
+  MetricPath<Dim> path(executor_, mesh_, background_,
+                       share_of_steep(executor_, mesh_) > much_of_demand);
   stage_ = std::size(Tuning<Dim>::stages) - 1;  // none is far from the one before
   for (int step = 1; step <= path.steps(); ++step) {
     if (step > 1 && has_too_many()) step = path.steps();

@@ -66,7 +66,6 @@ class Adapter {
 
   // ---- Steps, in the order of a run ----
   bool is_far() const;
-  double share_of_steep() const;
   void come_near();
   bool has_too_many() const;
   void take_metrics();

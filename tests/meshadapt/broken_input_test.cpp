@@ -25,7 +25,7 @@
 namespace ductile::meshadapt::broken_input_test {
 namespace {
 
-/// As a caller would who has a list of fields.
+/// Callers often have their fields in a vector.
 void write_vtu(const std::filesystem::path& path, const AnyMesh& mesh,
                const std::vector<NamedField>& fields = {}) {
   write_mesh(path, mesh, {.fields = fields});

@@ -1,0 +1,66 @@
+/// @file
+/// VertexNeighbours: the vertices that an edge leads to, for iterations over the edges of a mesh of
+/// either kind in which what has changed wakes what is next to it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/unset_vector.hpp"
+#include "ductile/runtime/worklist.hpp"
+
+namespace ductile::meshadapt {
+
+template <int Dim>
+auto elements_around(const Mesh<Dim>& mesh, VertexId vertex) {
+  return mesh.elements_of.of(vertex);
+}
+template <int Dim>
+auto elements_around(const FixedMesh<Dim>& mesh, VertexId vertex) {
+  return mesh.elements_of(vertex);
+}
+
+template <class AMesh>
+class VertexNeighbours {
+ public:
+  VertexNeighbours(const runtime::Executor& executor, const AMesh& mesh)
+      : executor_(executor), mesh_(mesh), found_(executor), wake_(executor, {.unique = true}) {}
+
+  /// In the order of their numbers; valid until the thread asks again. Thread safety: threads of
+  /// the executor.
+  std::span<const VertexId> of(VertexId vertex) {
+    std::vector<VertexId>& found = found_.mine();
+    found.clear();
+    for (const ElementId element : elements_around(mesh_, vertex))
+      for (const VertexId corner : mesh_.corners_of[element])
+        if (corner != vertex) found.push_back(corner);
+    std::sort(found.begin(), found.end());
+    return {found.begin(), std::unique(found.begin(), found.end())};
+  }
+
+  /// Those of any of these, each once. Thread safety: one caller; runs on the executor.
+  runtime::UnsetVector<VertexId> of_all(std::span<const VertexId> vertices) {
+    runtime::parallel_for(executor_, vertices.size(),
+                          [&](std::size_t i) {
+                            for (const VertexId neighbour : of(vertices[i]))
+                              wake_.append(neighbour);
+                          },
+                          {.serial_below = 256});
+    wake_.collect();
+    return wake_.take();
+  }
+
+ private:
+  const runtime::Executor& executor_;
+  const AMesh& mesh_;
+  runtime::PerThread<std::vector<VertexId>> found_;
+  runtime::Worklist<VertexId> wake_;
+};
+
+}  // namespace ductile::meshadapt
