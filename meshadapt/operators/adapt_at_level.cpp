@@ -44,10 +44,17 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// What limits metrics, and what is to be said about it.
+struct SizeLimits {
+  const AdaptOptions& options;
+  const std::string& name;  ///< of the metric
+  std::vector<std::string>& warnings;
+};
+
 template <int Dim>
 void limit_growth(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                  const AdaptOptions& options, const std::string& name,
-                  std::vector<Metric<Dim>>& metric_of, std::vector<std::string>& warnings) {
+                  const SizeLimits& limits, std::vector<Metric<Dim>>& metric_of) {
+  const auto& [options, name, warnings] = limits;
   if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.surface_tolerance, metric_of);
   const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
   if (!report.converged)
@@ -57,18 +64,19 @@ void limit_growth(const runtime::Executor& executor, const Mesh<Dim>& mesh,
 
 /// Makes the metrics keep the sizes and the growth that the options allow.
 template <int Dim>
-void limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                 const AdaptOptions& options, const std::string& name,
-                 std::vector<Metric<Dim>>& metric_of, std::vector<std::string>& warnings) {
+void limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, const SizeLimits& limits,
+                 std::vector<Metric<Dim>>& metric_of) {
+  const AdaptOptions& options = limits.options;
   const SizeBounds bounds{options.smallest_size, options.largest_size};
   bound_sizes(executor, metric_of, bounds);
   if (options.gradation > 0) {
-    limit_growth(executor, mesh, options, name, metric_of, warnings);
+    limit_growth(executor, mesh, limits, metric_of);
     bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
   }
   if (options.required_gradation > 0 &&
       !take_required_sizes(executor, mesh, options.required_gradation, metric_of).converged)
-    warnings.push_back(name + ": sizes still differ more than asked for from required ones");
+    limits.warnings.push_back(limits.name +
+                              ": sizes still differ more than asked for from required ones");
 }
 
 /// The metrics of the field, limited.
@@ -80,7 +88,7 @@ std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const Any
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric_of[v].m.begin());
   });
-  limit_sizes(executor, mesh, options, field.name, metric_of, warnings);
+  limit_sizes(executor, mesh, {options, field.name, warnings}, metric_of);
   return metric_of;
 }
 
@@ -200,7 +208,7 @@ Mesh<Dim> with_growth_limited(const runtime::Executor& executor, const AdaptOpti
                           [&](std::size_t v) { metric_of[v] = mesh.site_of[v].metric; });
     const double before = complexity_of_demand(executor, mesh, metric_of);
     std::vector<std::string> told;  // by the first metrics
-    limit_sizes(executor, mesh, options, name, metric_of, told);
+    limit_sizes(executor, mesh, {options, name, told}, metric_of);
     if (complexity_of_demand(executor, mesh, metric_of) < much * before) break;
     expect_possible(executor, mesh, metric_of, name, options);
     AdaptReport report = std::move(adapter->report());
