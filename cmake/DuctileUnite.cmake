@@ -6,10 +6,6 @@ foreach(library ductile_runtime ductile_meshadapt)
       UNITY_BUILD_CODE_BEFORE_INCLUDE "#pragma GCC diagnostic ignored \"-Wshadow\"")
   endif()
 endforeach()
-# These have names in common with others.
+# It has names in common with others.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/runtime/steal_by_signal.cpp
   TARGET_DIRECTORY ductile_runtime PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-if(TARGET ductile_meshadapt)
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/meshadapt/io/vtu.cpp
-    TARGET_DIRECTORY ductile_meshadapt PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-endif()

@@ -25,7 +25,7 @@ using runtime::Executor;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 bool is_size(double size) { return size >= smallest_size && size <= largest_size; }
 
@@ -183,30 +183,30 @@ struct GrowingSize {
   }
 
   double at(double distance) const {
-    if (slope == infinity) return distance < here() ? size : infinity;
+    if (slope == unlimited) return distance < here() ? size : unlimited;
     return slope > 0 ? std::min(largest, size + slope * distance) : size;
   }
   /// From this distance on it is no finer than another size.
   double reach(double other) const {
-    if (slope == infinity) return here();
-    return slope > 0 ? (other - size) / slope : infinity;
+    if (slope == unlimited) return here();
+    return slope > 0 ? (other - size) / slope : unlimited;
   }
   double here() const { return 1e-9 * size; }  // but for rounding
 
-  double size, slope = infinity, largest = infinity;
+  double size, slope = unlimited, largest = unlimited;
 };
 
 class Evaluation {
  public:
   Evaluation(const Executor& executor, const AnyMesh& mesh)
-      : executor_(executor), mesh_(mesh), size_of_(mesh.vertex_count(), infinity) {}
+      : executor_(executor), mesh_(mesh), size_of_(mesh.vertex_count(), unlimited) {}
 
   /// Regions come first, because they take the place of the size elsewhere.
   std::vector<double> run(const Sizes& sizes) {
     each_source(sizes, [&](const SizeSource& source) { take_regions(source); });
     const double elsewhere = sizes.elsewhere > 0 ? sizes.elsewhere : extent();
     for (double& size : size_of_)
-      if (size == infinity) size = elsewhere;
+      if (size == unlimited) size = elsewhere;
     each_source(sizes, [&](const SizeSource& source) {
       std::visit([&](const auto& place) { refine(source, place); }, source.place);
     });
