@@ -1,0 +1,127 @@
+"""Arguments as the C++ library reads them: contiguous arrays of its types, copied only if they are of
+another layout, and refused by array and index if they are wrong."""
+
+from __future__ import annotations
+
+from typing import Any, Sequence
+
+import numpy as np
+
+from ._ductile import FieldType, InputError
+
+Array = np.ndarray
+
+
+def _converted(values: Any, name: str) -> Array:
+    try:
+        return np.asarray(values)
+    except (ValueError, TypeError) as error:
+        raise InputError(f"{name}: expected an array of numbers, found {error}") from None
+
+
+def floats(values: Any, name: str) -> Array:
+    """The values as float64, in C order; the same array if it is that."""
+    array = _converted(values, name)
+    if array.dtype.kind not in "fiub":
+        raise InputError(f"{name}: expected an array of real numbers, found one of {array.dtype}")
+    return np.asarray(array, dtype=np.float64, order="C")
+
+
+def finite(array: Array, name: str) -> Array:
+    """The array, in which every number is finite."""
+    fine = np.isfinite(array)
+    if not fine.all():
+        at = np.unravel_index(int(np.argmin(fine)), array.shape)
+        index = ", ".join(str(int(i)) for i in at)
+        raise InputError(f"{name}[{index}]: expected a finite number, found {array[at]}")
+    return array
+
+
+def indices(values: Any, name: str, columns: int, count: int) -> Array:
+    """Indices of entities, of which there are `count`, in rows; int32 and int64 stay as they are."""
+    array = _converted(values, name)
+    if array.size == 0:
+        return np.zeros((0, columns), np.int32)
+    if array.dtype.kind not in "iu":
+        raise InputError(f"{name}: expected whole numbers, found {array.dtype}")
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise InputError(f"{name}: expected shape (n, {columns}), found {array.shape}")
+    low, high = array.min(), array.max()
+    if low < 0 or high >= count:
+        row, column = np.unravel_index(int(np.argmax((array < 0) | (array >= count))), array.shape)
+        raise InputError(f"{name}[{row}, {column}]: expected a vertex from 0 to {count - 1}, found "
+                         f"{array[row, column]}")
+    kept = array.dtype if array.dtype in (np.int32, np.int64) else np.int64
+    return np.ascontiguousarray(array, dtype=kept)
+
+
+def references(values: Any, name: str, count: int) -> Array:
+    """One int32 for each of `count` entities, or none for any if they are not given."""
+    if values is None:
+        return np.zeros(0, np.int32)
+    array = _converted(values, name)
+    if array.shape != (count,):
+        raise InputError(f"{name}: expected shape ({count},), found {array.shape}")
+    whole = array.astype(np.int32)
+    wrong = whole != array
+    if wrong.any():
+        at = int(np.argmax(wrong))
+        raise InputError(f"{name}[{at}]: expected a whole number of 32 bits, found {array[at]}")
+    return np.ascontiguousarray(whole)
+
+
+def chosen(values: Any, name: str, count: int) -> Array:
+    """Indices of entities, as int32, that are given as such or by an array of booleans."""
+    array = _converted(values, name)
+    if array.dtype == bool:
+        if array.shape != (count,):
+            raise InputError(f"{name}: expected shape ({count},), found {array.shape}")
+        return np.flatnonzero(array).astype(np.int32)
+    if array.size == 0:
+        return np.zeros(0, np.int32)
+    if array.dtype.kind not in "iu" or array.ndim != 1:
+        raise InputError(f"{name}: expected indices or booleans in one dimension, found "
+                         f"{array.dtype} of shape {array.shape}")
+    wrong = (array < 0) | (array >= count)
+    if wrong.any():
+        at = int(np.argmax(wrong))
+        raise InputError(f"{name}[{at}]: expected an index from 0 to {count - 1}, found {array[at]}")
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def point(values: Any, name: str) -> list[float]:
+    """A point in the plane or in space, as three coordinates."""
+    array = finite(floats(values, name), name)
+    if array.shape not in ((2,), (3,)):
+        raise InputError(f"{name}: expected 2 or 3 coordinates, found shape {array.shape}")
+    return [*map(float, array), 0.0][:3]
+
+
+def points(values: Any, name: str) -> Array:
+    """Points in the plane or in space, with three coordinates each."""
+    array = finite(floats(values, name), name)
+    if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) == 0:
+        raise InputError(f"{name}: expected shape (n, 2) or (n, 3), found {array.shape}")
+    if array.shape[1] == 3:
+        return array
+    return np.column_stack([array, np.zeros(len(array))])
+
+
+def number(value: Any, name: str) -> float:
+    """A float; what is None or no number is refused."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected a number, found {value!r}") from None
+
+
+def field_type(components: int, dimension: int) -> FieldType | None:
+    """The type of field with so many components; None if there is none."""
+    return {1: FieldType.scalar, dimension: FieldType.vector,
+            dimension * (dimension + 1) // 2: FieldType.symmetric,
+            dimension * dimension: FieldType.matrix}.get(components)
+
+
+def component_count(shape: Sequence[int]) -> int:
+    """Of one entity of a field, of any shape."""
+    return int(np.prod(shape[1:], dtype=int))

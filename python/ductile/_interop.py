@@ -1,0 +1,157 @@
+"""To and from meshio, VTK and PETSc. Each is imported when it is asked for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Mapping, Optional
+
+import numpy as np
+
+from ._ductile import InputError
+
+if TYPE_CHECKING:
+    from ._mesh import Mesh
+
+_REFERENCES = ("gmsh:physical", "medit:ref", "ref", "region", "boundary", "cell_tags")
+
+
+def _apart(mesh: Mesh, fields: Optional[Mapping[str, Any]]) -> tuple[dict, dict]:
+    """Fields at vertices and on cells; by default those of the mesh."""
+    from ._mesh import _place_of
+    if fields is None:
+        return dict(mesh.fields), dict(mesh.cell_fields)
+    at: tuple[dict, dict] = ({}, {})
+    for name, values in fields.items():
+        array = np.asarray(values)
+        at[_place_of(array, mesh._data, None) == "cells"][name] = array
+    return at
+
+
+# ---- meshio ----
+
+def to_meshio(mesh: Mesh, fields: Optional[Mapping[str, Any]]) -> dict[str, Any]:
+    cell, facet = ("triangle", "line") if mesh.dim == 2 else ("tetra", "triangle")
+    cells = [(cell, mesh.cells), (facet, mesh.facets)]
+    refs = [mesh.refs, mesh.facet_refs]
+    if mesh.dim == 3 and len(mesh.edges):
+        cells.append(("line", mesh.edges))
+        refs.append(mesh.edge_refs)
+    at_points, on_cells = _apart(mesh, fields)
+    cell_data: dict[str, list[np.ndarray]] = {"gmsh:physical": refs, "gmsh:geometrical": refs}
+    for name, values in on_cells.items():
+        array = np.asarray(values, float)
+        cell_data[name] = [array] + [np.full((len(c), *array.shape[1:]), np.nan)
+                                     for _, c in cells[1:]]
+    return {"points": mesh.points, "cells": cells, "point_data": at_points, "cell_data": cell_data,
+            "field_data": {name: np.array([ref, dim]) for name, dim, ref in mesh.names}}
+
+
+def from_meshio(m: Any) -> Mesh:
+    """A mesh of meshio's: its triangles or tetrahedra, and what lies on their boundary.
+
+    References are taken from "gmsh:physical", "medit:ref" and the like, names from field_data, fields
+    from point_data and, of cells, cell_data. Other cells raise `InputError`.
+    """
+    from ._mesh import Mesh
+    blocks: dict[str, list[int]] = {}
+    for i, block in enumerate(m.cells):
+        blocks.setdefault(block.type, []).append(i)
+    cell = "tetra" if "tetra" in blocks else "triangle"
+    facet, edge = ("triangle", "line") if cell == "tetra" else ("line", None)
+    for kind in blocks:
+        if kind not in ("vertex", "line", "triangle", "tetra"):
+            raise InputError(f"cells[{blocks[kind][0]}]: expected triangles, tetrahedra, lines or "
+                             f"vertices, found {kind}")
+    if cell not in blocks:
+        raise InputError("cells: expected triangles or tetrahedra, found none")
+    refs_key = next((key for key in _REFERENCES if key in m.cell_data), None)
+
+    def all_of(kind: Optional[str]) -> tuple[Optional[np.ndarray], Optional[np.ndarray]]:
+        if kind not in blocks:
+            return None, None
+        corners = np.concatenate([m.cells[i].data for i in blocks[kind]])
+        refs = None if refs_key is None else \
+            np.concatenate([m.cell_data[refs_key][i] for i in blocks[kind]]).astype(np.int32)
+        return corners, refs
+
+    cells, refs = all_of(cell)
+    facets, facet_refs = all_of(facet)
+    edges, edge_refs = all_of(edge)
+    names = [(name, int(where[1]), int(where[0])) for name, where in m.field_data.items()
+             if np.shape(where) == (2,)]
+    mesh = Mesh(m.points, cells, refs=refs, facets=facets, facet_refs=facet_refs, names=names)
+    if edges is not None:
+        mesh = mesh.replace(edges=edges, edge_refs=edge_refs)
+    mesh.fields = {name: np.asarray(values) for name, values in m.point_data.items()}
+    mesh.cell_fields = {name: np.concatenate([values[i] for i in blocks[cell]])
+                        for name, values in m.cell_data.items() if name not in _REFERENCES
+                        and name != "gmsh:geometrical"}
+    return mesh
+
+
+# ---- VTK ----
+
+def to_vtk(mesh: Mesh, fields: Optional[Mapping[str, Any]], boundary: bool) -> Any:
+    try:
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        from vtkmodules.vtkCommonCore import vtkPoints
+        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+    except ImportError as error:
+        raise ImportError("to_vtk needs the Python module of VTK: install vtk, or python3-vtk9 on "
+                          "Debian") from error
+    grid = vtkUnstructuredGrid()
+    points = vtkPoints()
+    spatial = mesh.points if mesh.dim == 3 else \
+        np.column_stack([mesh.points, np.zeros(len(mesh.points))])
+    points.SetData(numpy_to_vtk(spatial))
+    grid.SetPoints(points)
+    triangle, tetrahedron, line = 5, 10, 3
+    kinds = [(triangle if mesh.dim == 2 else tetrahedron, mesh.cells)]
+    if boundary:
+        kinds.append((line if mesh.dim == 2 else triangle, mesh.facets))
+    types = np.concatenate([np.full(len(c), kind, np.uint8) for kind, c in kinds])
+    corners = np.concatenate([np.full(len(c), c.shape[1], np.int32) for _, c in kinds])
+    offsets = np.concatenate([[0], np.cumsum(corners)]).astype(np.int32)
+    connectivity = mesh.cells.ravel() if not boundary else \
+        np.concatenate([c.ravel() for _, c in kinds])
+    cells = vtkCellArray()
+    cells.SetData(numpy_to_vtk(offsets), numpy_to_vtk(connectivity))
+    grid.SetCells(numpy_to_vtk(types), cells)
+    at_points, on_cells = _apart(mesh, fields)
+    rest = len(types) - len(mesh.cells)
+    zeros, before = np.zeros(rest, np.int32), np.zeros(len(mesh.cells), np.int32)
+    arrays = {"region": np.concatenate([mesh.refs, zeros])}
+    if boundary:
+        arrays["boundary"] = np.concatenate([before, mesh.facet_refs])
+    for name, values in on_cells.items():
+        array = np.asarray(values, float).reshape(len(mesh.cells), -1)
+        arrays[name] = np.concatenate([array, np.full((rest, array.shape[1]), np.nan)])
+    for data, named in ((grid.GetPointData(), at_points), (grid.GetCellData(), arrays)):
+        for name, values in named.items():
+            array = numpy_to_vtk(np.ascontiguousarray(np.reshape(values, (len(values), -1))))
+            array.SetName(name)
+            data.AddArray(array)
+    return grid
+
+
+# ---- PETSc ----
+
+def to_dmplex(mesh: Mesh, comm: Any) -> Any:
+    try:
+        from petsc4py import PETSc
+    except ImportError as error:
+        raise ImportError("to_dmplex needs petsc4py: install it, or python3-petsc4py on Debian") \
+            from error
+    comm = PETSc.COMM_SELF if comm is None else comm
+    integers = PETSc.IntType
+    plex = PETSc.DMPlex().createFromCellList(mesh.dim, mesh.cells.astype(integers), mesh.points,
+                                             interpolate=True, comm=comm)
+    first_cell, _ = plex.getHeightStratum(0)
+    first_vertex, _ = plex.getDepthStratum(0)
+    plex.createLabel("Cell Sets")
+    plex.createLabel("Face Sets")
+    for cell, ref in enumerate(mesh.refs.tolist()):
+        plex.setLabelValue("Cell Sets", first_cell + cell, ref)
+    facets = (mesh.facets + first_vertex).astype(integers)
+    for corners, ref in zip(facets, mesh.facet_refs.tolist()):
+        plex.setLabelValue("Face Sets", int(plex.getFullJoin(corners)[0]), ref)
+    return plex

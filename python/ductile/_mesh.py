@@ -1,0 +1,614 @@
+"""Mesh: points and cells, adapted, measured, saved."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _ductile, _html, _interop
+from ._arrays import (chosen, component_count, field_type, finite, floats, indices, number,
+                      references)
+from ._ductile import InputError
+from ._metric import MetricLike, as_rows, as_tensors, full, packed
+from ._size import Size
+
+ProgressFunction = Callable[[str, int, int], Optional[bool]]
+Names = Union[Mapping[str, "tuple[int, int]"], Iterable["tuple[str, int, int]"]]
+
+
+class InputWarning(UserWarning):
+    """What a file has and a mesh has no place for, or looks doubtful."""
+
+
+class Origin(NamedTuple):
+    """What an adapted mesh still has of the mesh that it was made from, and where the rest lies."""
+
+    vertices: np.ndarray
+    """(n,) The vertex at exactly the same place; -1: there is none, the vertex is new or has moved."""
+    facets: np.ndarray
+    """(k,) The facet that has the same vertices, or -1."""
+    cells: np.ndarray
+    """(m,) The cell that has the same vertices, or -1."""
+    host: np.ndarray
+    """(n,) The cell in which each vertex lies, or which is closest."""
+    weights: np.ndarray
+    """(n, d + 1) Its barycentric weights there."""
+
+
+def _warn(lines: Sequence[str]) -> None:
+    for line in lines:
+        warnings.warn(line, InputWarning, stacklevel=3)
+
+
+class Mesh:
+    """A mesh of triangles in the plane or of tetrahedra in space. It does not change.
+
+    Parameters
+    ----------
+    points : (n, 2) or (n, 3) array_like
+        Coordinates. Triangles in a plane of constant z become a mesh of dimension 2.
+    cells : (m, 3) or (m, 4) array_like of int
+        Vertices of triangles or tetrahedra, from 0.
+    refs : (m,) array_like of int, optional
+        References (tags) of cells. Between cells of different references there is an interface, which
+        is kept.
+    facets : (k, d) array_like of int, optional
+        Edges in 2D, triangles in 3D, of the boundary or inside. Facets of the boundary and of
+        interfaces that are not given follow those that are, with reference 0.
+    facet_refs, vertex_refs : array_like of int, optional
+        Their references.
+    names : dict of str to (dimension, reference), optional
+        What entities of a dimension with a reference are called.
+
+    Attributes
+    ----------
+    points, cells, facets, edges, refs, facet_refs, edge_refs, vertex_refs : ndarray
+        Views of the memory that C++ works on; they cannot be written to, see `replace`. In 3D, `edges`
+        are those of ridges; in 2D they are the facets.
+    dim : int
+        2 or 3.
+    fields, cell_fields : dict of str to ndarray
+        Values at vertices and on cells: what a file has, or what you put there. `save` writes them.
+    metric : ndarray or None
+        Of an adapted mesh, the metric at its vertices.
+    report : Report or None
+        Of an adapted mesh, how the adaptation went.
+
+    Examples
+    --------
+    >>> mesh = ductile.Mesh([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1, 2], [0, 2, 3]])
+    >>> mesh.remesh(0.1)
+    Mesh(dim=2, points=123, cells=204, facets=40)
+
+    Notes
+    -----
+    Thread safety: any number of threads may use one mesh. Work is done without the interpreter's lock.
+    """
+
+    def __init__(self, points: Any, cells: Any, *, refs: Any = None, facets: Any = None,
+                 facet_refs: Any = None, vertex_refs: Any = None, names: Names = ()) -> None:
+        state = {"points": points, "cells": cells, "refs": refs, "facets": facets,
+                 "facet_refs": facet_refs, "vertex_refs": vertex_refs, "names": names}
+        self._set(_data_of(state))
+
+    # ---- Inside ----
+
+    @classmethod
+    def _of(cls, data: _ductile.MeshData) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._set(data)
+        return mesh
+
+    def _set(self, data: _ductile.MeshData) -> None:
+        self._data = data
+        self.fields: dict[str, np.ndarray] = {}
+        self.cell_fields: dict[str, np.ndarray] = {}
+        self.metric: Optional[np.ndarray] = None
+        self.report: Optional[_ductile.Report] = None
+        self._source: Optional[_ductile.MeshData] = None
+        self._tolerance = 0.0
+        self._origin: Optional[Origin] = None
+
+    def _state(self) -> dict[str, Any]:
+        data = self._data
+        state: dict[str, Any] = {name: getattr(data, name) for name in
+                                 ("points", "cells", "refs", "facets", "facet_refs",
+                                  "vertex_refs", "names")}
+        if data.dimension == 3:
+            state["edges"], state["edge_refs"] = data.edges, data.edge_refs
+        state["required"] = {kind: data.required(kind) for kind in _KINDS}
+        return state
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"mesh": self._state(), "fields": self.fields, "cell_fields": self.cell_fields,
+                "metric": self.metric}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._set(_data_of(state["mesh"]))
+        self.fields, self.cell_fields = state["fields"], state["cell_fields"]
+        self.metric = state["metric"]
+
+    def _require_source(self, source: Optional[Mesh] = None) -> _ductile.MeshData:
+        if source is not None:
+            return source._data
+        if self._source is None:
+            raise InputError("this mesh was not made by remesh (and after pickling it does not know "
+                             "of what): pass the other mesh as source=")
+        return self._source
+
+    def _tensors(self, M: Optional[MetricLike]) -> Optional[np.ndarray]:
+        """A metric of this mesh, or of the one it was made from, as tensors at the vertices here."""
+        if M is None:
+            return self.metric
+        if self._source is None or isinstance(M, Size) or np.ndim(M) == 0 \
+                or len(M) == len(self.points):
+            return as_tensors(self, M)
+        return _carried(full(as_tensors(Mesh._of(self._source), M)), self._source, self.origin)
+
+    # ---- What it has ----
+
+    @property
+    def dim(self) -> int:
+        return self._data.dimension
+
+    @property
+    def points(self) -> np.ndarray:
+        return self._data.points
+
+    @property
+    def cells(self) -> np.ndarray:
+        return self._data.cells
+
+    @property
+    def facets(self) -> np.ndarray:
+        return self._data.facets
+
+    @property
+    def edges(self) -> np.ndarray:
+        return self._data.edges
+
+    @property
+    def refs(self) -> np.ndarray:
+        return self._data.refs
+
+    @property
+    def facet_refs(self) -> np.ndarray:
+        return self._data.facet_refs
+
+    @property
+    def edge_refs(self) -> np.ndarray:
+        return self._data.edge_refs
+
+    @property
+    def vertex_refs(self) -> np.ndarray:
+        return self._data.vertex_refs
+
+    @property
+    def names(self) -> list[tuple[str, int, int]]:
+        """Names of references: name, dimension of the entities, reference."""
+        return self._data.names
+
+    @property
+    def required_vertices(self) -> np.ndarray:
+        """Indices of the vertices that adaptation must not touch."""
+        return self._data.required("vertices")
+
+    @property
+    def required_facets(self) -> np.ndarray:
+        """Indices of the facets that adaptation must not touch."""
+        return self._data.required("facets")
+
+    @property
+    def required_cells(self) -> np.ndarray:
+        """Indices of the cells that adaptation must not touch."""
+        return self._data.required("cells")
+
+    def facets_on(self, name: str) -> np.ndarray:
+        """Which facets carry a reference of this name, ``(k,)`` of bool."""
+        return np.isin(self.facet_refs, self._references_of(name, self.dim - 1))
+
+    def cells_in(self, name: str) -> np.ndarray:
+        """Which cells carry a reference of this name, ``(m,)`` of bool."""
+        return np.isin(self.refs, self._references_of(name, self.dim))
+
+    def _references_of(self, name: str, dimension: int) -> list[int]:
+        found = [ref for named, dim, ref in self.names if named == name and dim == dimension]
+        if not found:
+            known = sorted({named for named, dim, _ in self.names if dim == dimension})
+            raise InputError(f"name {name!r}: expected one of {', '.join(known) or 'none'}")
+        return found
+
+    def __repr__(self) -> str:
+        return (f"Mesh(dim={self.dim}, points={len(self.points)}, cells={len(self.cells)}, "
+                f"facets={len(self.facets)})")
+
+    def _repr_html_(self) -> str:
+        return _html.page(self)
+
+    # ---- Adaptation ----
+
+    def remesh(self, metric: Optional[MetricLike] = None, *, hsiz: Optional[float] = None,
+               hmin: float = 0, hmax: float = 0, hgrad: float = 0, hgradreq: float = 0,
+               hausd: float = 0, ar: float = 45, iterations: int = 16, thorough: bool = False,
+               nomove: bool = False, noswap: bool = False, noinsert: bool = False,
+               nosurf: bool = False, required_vertices: Any = None, required_facets: Any = None,
+               required_cells: Any = None, memory: int = 0, threads: int = 0,
+               deterministic: bool = True, progress: Optional[ProgressFunction] = None) -> Mesh:
+        """The mesh adapted so that edges have the lengths that are asked for.
+
+        Parameters
+        ----------
+        metric : float, Size or array_like, optional
+            A size everywhere; a `Size`; a size at each vertex, ``(n,)``; or a metric tensor,
+            ``(n, 3)`` in 2D and ``(n, 6)`` in 3D (m11 m12 m22 m13 m23 m33, as in files, not in the
+            order of Mmg's own functions), or ``(n, d, d)``. By default the sizes that the mesh has,
+            within `hmin` and `hmax`.
+        hsiz : float, optional
+            The same as a number for `metric`, by Mmg's name.
+        hmin, hmax : float, optional
+            No edge shorter or longer than this is asked for; 0: no bound.
+        hgrad : float, optional
+            Sizes grow by at most this factor per unit of metric length; Mmg's default is 1.3. 0: as
+            given.
+        hgradreq : float, optional
+            Sizes at required entities are those that these have, and grow or fall by at most this
+            factor from there; Mmg's default is 2.3. 0: as given.
+        hausd : float, optional
+            How far curved boundaries may be from where they were; 0: they keep their facets.
+        ar : float, optional
+            Facets that turn by as many degrees meet at a ridge, which stays.
+        iterations : int, optional
+            At most this many rounds.
+        thorough : bool, optional
+            Better shapes and lengths for more time.
+        nomove, noswap, noinsert : bool, optional
+            Do not smooth vertices; swap edges and faces; split and collapse edges.
+        nosurf : bool, optional
+            Leave boundaries and interfaces as they are.
+        required_vertices, required_facets, required_cells : array_like of bool or int, optional
+            Entities that must not be touched, besides those that the mesh has: one bool for each, or
+            indices.
+        memory : int, optional
+            At most so many megabytes; 0: no limit.
+        threads : int, optional
+            0: as many as there are cores.
+        deterministic : bool, optional
+            The same mesh, bit for bit, on any number of threads. False is somewhat faster.
+        progress : callable, optional
+            ``progress(step, iteration, changes)`` is called after each step, on the thread that called
+            `remesh`. If it returns False, `Cancelled` is raised; what it raises itself comes through.
+
+        Returns
+        -------
+        Mesh
+            With `metric`, `report` and `origin`; with the names, not the fields of this one, see
+            `transfer`.
+
+        Raises
+        ------
+        InputError
+            For arrays and options that are wrong, by name and index.
+        Cancelled
+            If `progress` returned False. Ctrl-C raises KeyboardInterrupt.
+        MemoryError, Error
+            If memory runs out, or would.
+
+        Examples
+        --------
+        >>> out = mesh.remesh(hmax=0.1, hausd=0.001, hgrad=1.3)
+        >>> out = mesh.remesh(M, required_facets=mesh.facet_refs == 99)
+        """
+        if hsiz is not None:
+            if metric is not None:
+                raise InputError("remesh: expected one of metric and hsiz, found both")
+            metric = number(hsiz, "hsiz")
+        data = _with_required(self._data, vertices=required_vertices, facets=required_facets,
+                              cells=required_cells)
+        options = _options(smallest_size=number(hmin, "hmin"), largest_size=number(hmax, "hmax"),
+                           gradation=number(hgrad, "hgrad"),
+                           required_gradation=number(hgradreq, "hgradreq"),
+                           surface_tolerance=number(hausd, "hausd"), ridge_angle=number(ar, "ar"),
+                           iterations=iterations, thorough=thorough, move=not nomove,
+                           swap=not noswap, insert=not noinsert, lock_boundary=nosurf,
+                           memory_limit=int(memory) << 20)
+        rows, kind = (None, _ductile.FieldType.scalar) if metric is None \
+            else as_rows(self, metric, threads)
+        adapted, at_vertices, report = _ductile.remesh(
+            data, rows, kind, options, _ductile.Executor(threads, deterministic), progress)
+        out = Mesh._of(adapted)
+        out.metric, out.report = at_vertices, report
+        out._source, out._tolerance = data, number(hausd, "hausd")
+        return out
+
+    @property
+    def origin(self) -> Origin:
+        """Of an adapted mesh: which vertex, facet and cell of the mesh it was made from each one is."""
+        if self._origin is None:
+            self._origin = Origin(*_ductile.origins(self._require_source(), self._data))
+        return self._origin
+
+    def transfer(self, u: Any, *, conservative: bool = False, on: Optional[str] = None,
+                 source: Optional[Mesh] = None, threads: int = 0,
+                 deterministic: bool = True) -> Any:
+        """Values on the mesh that this one was made from, on this one.
+
+        Parameters
+        ----------
+        u : array_like, or dict of str to array_like
+            A row for each vertex or each cell of the other mesh; rows may have any shape.
+        conservative : bool, optional
+            Keep integrals, where both meshes cover the same domain, and bounds. Otherwise values are
+            interpolated at vertices; a cell gets that of the cell in which its centroid lies, so
+            integers stay integers.
+        on : "vertices" or "cells", optional
+            Where the values live, if there are as many of both.
+        source : Mesh, optional
+            The other mesh, if this one was not made from it by `remesh`.
+
+        Returns
+        -------
+        ndarray or dict
+            Likewise for the vertices or cells of this mesh.
+
+        Examples
+        --------
+        >>> new = mesh.remesh(M)
+        >>> u = new.transfer(u, conservative=True)
+        """
+        how = {"conservative": conservative, "on": on, "source": source, "threads": threads,
+               "deterministic": deterministic}
+        if isinstance(u, Mapping):
+            return {name: self.transfer(values, **how) for name, values in u.items()}
+        before = self._require_source(source)
+        array = np.asarray(u)
+        if array.dtype.kind == "c":
+            return (self.transfer(array.real, **how) + 1j * self.transfer(array.imag, **how))
+        on_cells = _place_of(array, before, on) == "cells"
+        values = floats(array, "u")
+        if conservative:
+            finite(values, "u")
+        columns = component_count(values.shape)
+        rows = values.reshape(len(values), columns)
+        executor = _ductile.Executor(threads, deterministic)
+        kind = field_type(columns, before.dimension)
+        parts = [(rows, kind)] if kind is not None else \
+            [(np.ascontiguousarray(rows[:, [i]]), _ductile.FieldType.scalar)
+             for i in range(columns)]
+        carried = [_ductile.transfer(before, self._data, part, part_kind, on_cells, conservative,
+                                     executor)[0] for part, part_kind in parts]
+        result = carried[0] if len(carried) == 1 else np.column_stack(carried)
+        result = result.reshape(-1, *values.shape[1:])
+        return result.astype(array.dtype) if on_cells and not conservative else result
+
+    def at(self, u: Any, points: Any) -> np.ndarray:
+        """Values at the vertices of this mesh, interpolated at points; outside, at the closest."""
+        values, places = floats(u, "u"), finite(floats(points, "points"), "points")
+        if values.ndim == 0 or len(values) != len(self.points):
+            raise InputError(f"u: expected {len(self.points)} rows, one for each vertex, found shape "
+                             f"{values.shape}")
+        if places.ndim != 2 or places.shape[1] != self.dim:
+            raise InputError(f"points: expected shape (n, {self.dim}), found {places.shape}")
+        rows = values.reshape(len(values), component_count(values.shape))
+        return _ductile.interpolate_at(self._data, rows, places).reshape(-1, *values.shape[1:])
+
+    # ---- Measures and checks ----
+
+    def quality(self, M: Optional[MetricLike] = None) -> np.ndarray:
+        """The quality of each cell: its mean ratio, 1 if ideal, 0 if flat. `M` is as in `info`."""
+        return _ductile.quality(self._data, self._tensors(M))
+
+    def check(self) -> list[str]:
+        """What is wrong with the mesh, a line for each kind of fault; empty if nothing is.
+
+        Entities are counted from 1 there, as in a file. Of an adapted mesh the domain and its topology
+        are compared with those of the mesh that it was made from as well.
+        """
+        if self._source is None:
+            return _ductile.check(self._data)
+        return _ductile.check_adapted(self._source, self._data, self._tolerance)
+
+    # ---- Out ----
+
+    def save(self, path: Union[str, os.PathLike[str]], *,
+             fields: Optional[Mapping[str, Any]] = None) -> None:
+        """Writes a file, of the format that its name says: .mesh, .meshb, .msh, .vtu, .vtk, .stl, .su2.
+
+        Parameters
+        ----------
+        path : path
+        fields : dict of str to array_like, optional
+            A row for each vertex or each cell. By default `fields` and `cell_fields` of the mesh and
+            its metric, as far as the format holds them.
+        """
+        name = os.fspath(path)
+        given = []
+        if fields is not None:
+            given = [_field(key, values, self._data, None) for key, values in fields.items()]
+        elif _ductile.holds_fields(name):
+            own = dict(self.fields)
+            if self.metric is not None:
+                own.setdefault("metric", self.metric)
+            given = [_field(key, values, self._data, "vertices") for key, values in own.items()]
+            given += [_field(key, values, self._data, "cells")
+                      for key, values in self.cell_fields.items()]
+        _warn(_ductile.save(self._data, name, given))
+
+    def to_meshio(self, fields: Optional[Mapping[str, Any]] = None) -> dict[str, Any]:
+        """Arguments of ``meshio.Mesh``; references are in "gmsh:physical", names in field_data."""
+        return _interop.to_meshio(self, fields)
+
+    def to_vtk(self, fields: Optional[Mapping[str, Any]] = None, *, boundary: bool = False) -> Any:
+        """A ``vtkUnstructuredGrid``, which pyvista wraps; with facets, too, if `boundary` is true.
+
+        Needs the Python module of VTK. References are in the arrays "region" and "boundary".
+        """
+        return _interop.to_vtk(self, fields, boundary)
+
+    def to_dmplex(self, comm: Any = None) -> Any:
+        """A ``petsc4py.PETSc.DMPlex`` with labels "Cell Sets" and "Face Sets". Needs petsc4py."""
+        return _interop.to_dmplex(self, comm)
+
+    def replace(self, **arrays: Any) -> Mesh:
+        """The same mesh with other arrays, by the names of `Mesh`'s parameters.
+
+        Examples
+        --------
+        >>> moved = mesh.replace(points=mesh.points + displacement)
+        """
+        state = self._state()
+        unknown = set(arrays) - set(state) - {"edges", "edge_refs"}
+        if unknown:
+            raise InputError(f"replace: expected names of arrays, found {sorted(unknown)[0]!r}")
+        return Mesh._of(_data_of({**state, **arrays}))
+
+
+# ---- Meshes from elsewhere ----
+
+def read(path: Union[str, os.PathLike[str]]) -> Mesh:
+    """Reads a mesh of Gmsh, Medit, Mmg or VTK, whatever its name; see `Mesh.save` for the others.
+
+    Fields in the file are in `fields` and `cell_fields`. What has no place in a `Mesh` is left out with
+    an `InputWarning`. Raises `InputError`, naming file and line, for what is no mesh.
+    """
+    data, fields, lines = _ductile.read(os.fspath(path))
+    _warn(lines)
+    mesh = Mesh._of(data)
+    for name, on_cells, values in fields:
+        (mesh.cell_fields if on_cells else mesh.fields)[name] = values
+    return mesh
+
+
+def read_field(path: Union[str, os.PathLike[str]]) -> Any:
+    """Reads a .sol or .solb: the array at the vertices, or a list of them if there are several."""
+    arrays, lines = _ductile.read_field(os.fspath(path))
+    _warn(lines)
+    return arrays[0] if len(arrays) == 1 else arrays
+
+
+def save_field(path: Union[str, os.PathLike[str]], mesh: Mesh, values: Any) -> None:
+    """Writes values at the vertices of a mesh, such as a metric, as a .sol or .solb."""
+    _, kind, _, rows = _field("values", values, mesh._data, "vertices")
+    _ductile.save_field(os.fspath(path), rows, kind, mesh.dim)
+
+
+def box(extent: Sequence[float], cells: Sequence[int]) -> Mesh:
+    """A rectangle or a box from the origin on, cut into cells and those into triangles or tetrahedra.
+
+    References of facets: 1 and 2 at the ends of x, 3 and 4 at those of y, 5 and 6 at those of z.
+
+    Examples
+    --------
+    >>> mesh = ductile.box((1, 1, 1), (10, 10, 10))
+    """
+    if len(extent) not in (2, 3) or len(cells) != len(extent):
+        raise InputError(f"box: expected 2 or 3 extents and as many numbers of cells, found "
+                         f"{len(extent)} and {len(cells)}")
+    return Mesh._of(_ductile.box([number(x, "extent") for x in extent], [int(n) for n in cells]))
+
+
+def transfer(before: Mesh, u: Any, after: Mesh, **options: Any) -> Any:
+    """Values on one mesh, on another; see `Mesh.transfer`."""
+    return after.transfer(u, source=before, **options)
+
+
+# ---- Inside ----
+
+_KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
+
+
+def _flat(points: np.ndarray, cells: Any) -> np.ndarray:
+    """Points of triangles in a plane of constant z without their z."""
+    columns = np.shape(cells)[1:]
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        raise InputError(f"points: expected shape (n, 2) or (n, 3), found {points.shape}")
+    if points.shape[1] == 3 and columns == (3,):
+        if len(points) and np.ptp(points[:, 2]) > 1e-6 * np.ptp(points[:, :2]):
+            raise InputError("points: expected a constant z, because cells are triangles: surfaces in "
+                             "space are not supported")
+        return np.ascontiguousarray(points[:, :2])
+    return points
+
+
+def _data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
+    points = finite(_flat(floats(state["points"], "points"), state["cells"]), "points")
+    count, dim = points.shape
+    cells = indices(state["cells"], "cells", dim + 1, count)
+    facets = state["facets"]
+    facets = indices(() if facets is None else facets, "facets", dim, count)
+    data = _ductile.from_arrays(
+        points, cells, references(state["refs"], "refs", len(cells)), facets,
+        references(state["facet_refs"], "facet_refs", len(facets)),
+        references(state["vertex_refs"], "vertex_refs", count))
+    if len(state.get("edges", ())):
+        edges = indices(state["edges"], "edges", 2, count).astype(np.int32)
+        data.set_edges(edges, references(state["edge_refs"], "edge_refs", len(edges)))
+    for kind, entities in state.get("required", {}).items():
+        if dim == 3 or kind != "edges":
+            data.require(kind, entities)
+    names = state["names"]
+    if isinstance(names, Mapping):
+        names = [(name, *where) for name, where in names.items()]
+    data.names = list(names)
+    return data
+
+
+def _with_required(data: _ductile.MeshData, **given: Any) -> _ductile.MeshData:
+    """The mesh with more required entities; itself if there are none."""
+    asked = {kind: entities for kind, entities in given.items() if entities is not None}
+    if not asked:
+        return data
+    data = data.copy()
+    counts = {"vertices": len(data.points), "facets": len(data.facets), "cells": len(data.cells)}
+    for kind, entities in asked.items():
+        more = chosen(entities, f"required_{kind}", counts[kind])
+        data.require(kind, np.union1d(data.required(kind), more).astype(np.int32))
+    return data
+
+
+def _options(**values: Any) -> _ductile.Options:
+    options = _ductile.Options()
+    for name, value in values.items():
+        try:
+            setattr(options, name, value)
+        except TypeError:
+            raise InputError(f"remesh: expected a number for {name}, found {value!r}") from None
+    return options
+
+
+def _place_of(array: np.ndarray, data: _ductile.MeshData, on: Optional[str]) -> str:
+    counts = {"vertices": len(data.points), "cells": len(data.cells)}
+    if on is not None and on not in counts:
+        raise InputError(f"on: expected 'vertices' or 'cells', found {on!r}")
+    length = len(array) if array.ndim > 0 else -1
+    places = [place for place, count in counts.items() if count == length and on in (None, place)]
+    if len(places) == 1:
+        return places[0]
+    if places:
+        raise InputError("u: there are as many vertices as cells: say on='vertices' or on='cells'")
+    expected = f"{counts[on]} {on}" if on is not None else \
+        f"{counts['vertices']} vertices or {counts['cells']} cells"
+    raise InputError(f"u: expected a row for each of {expected}, found shape {array.shape}")
+
+
+def _field(name: str, values: Any, data: _ductile.MeshData, on: Optional[str]) -> tuple:
+    """A field as files have it."""
+    array = floats(values, name)
+    place = _place_of(array, data, on)
+    columns = component_count(array.shape)
+    kind = field_type(columns, data.dimension)
+    if kind is None:
+        raise InputError(f"{name}: expected 1 component, a vector, a symmetric tensor or a matrix, "
+                         f"found {columns} components")
+    return name, kind, place == "cells", array.reshape(len(array), columns)
+
+
+def _carried(tensors: np.ndarray, source: _ductile.MeshData, origin: Origin) -> np.ndarray:
+    """Metrics of a mesh at the vertices of the one made from it: the means of their logarithms."""
+    values, vectors = np.linalg.eigh(tensors)
+    logarithms = np.einsum("nij,nj,nkj->nik", vectors, np.log(values), vectors)
+    mean = np.einsum("nc,ncij->nij", origin.weights, logarithms[source.cells[origin.host]])
+    values, vectors = np.linalg.eigh(mean)
+    return packed(np.einsum("nij,nj,nkj->nik", vectors, np.exp(values), vectors))

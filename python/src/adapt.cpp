@@ -1,0 +1,135 @@
+/// @file
+/// Adaptation: its options and report, and Python's part in its progress.
+#include <chrono>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "bindings.hpp"
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+
+namespace ductile::python {
+
+namespace {
+
+using meshadapt::AdaptedMesh;
+using meshadapt::AdaptOptions;
+using meshadapt::AdaptProgress;
+using meshadapt::AdaptReport;
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using meshadapt::KernelReport;
+
+/// Of anything that is true or false, also numpy's; who says nothing says nothing against it.
+bool is_true(const py::object& answer) {
+  if (answer.is_none()) return true;
+  const int truth = PyObject_IsTrue(answer.ptr());
+  if (truth < 0) throw py::error_already_set();
+  return truth == 1;
+}
+
+/// Called without the interpreter's lock, after each step: asks Python's function, if there is one,
+/// whether to go on, and raises KeyboardInterrupt if the user has pressed Ctrl-C. The lock is taken
+/// for that, and without a function at most 50 times a second.
+class Progress {
+ public:
+  explicit Progress(py::object function) : function_(std::move(function)) {}
+
+  bool operator()(const AdaptProgress& now) {
+    const auto time = std::chrono::steady_clock::now();
+    if (function_.is_none() && time - last_ < std::chrono::milliseconds(20)) return true;
+    last_ = time;
+    const py::gil_scoped_acquire locked;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (function_.is_none()) return true;
+    const py::object answer = function_(now.step, now.iteration, now.changes);
+    return is_true(answer);
+  }
+
+ private:
+  py::object function_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+py::tuple remesh(const AnyMesh& mesh, const std::optional<Given<double>>& metric,
+                 AnyField::Type type, AdaptOptions options,
+                 const runtime::ExecutorOptions& threads, const py::object& progress) {
+  std::optional<AnyField> given;
+  if (metric) given = field_of(*metric, type, mesh.dimension, "metric");
+  Progress asked(progress);
+  options.progress = [&asked](const AdaptProgress& now) { return asked(now); };
+  AdaptedMesh adapted = work(threads, [&](const runtime::Executor& executor) {
+    const AnyField wanted =
+        given ? meshadapt::metric_of(*given, mesh, {options.smallest_size, options.largest_size})
+              : meshadapt::default_metric(executor, mesh);
+    return meshadapt::adapt(executor, mesh, wanted, options);
+  });
+  const Shape shape{signed_size(adapted.mesh.vertex_count()),
+                    signed_size(stride_of(adapted.metric))};
+  return py::make_tuple(std::make_shared<AnyMesh>(std::move(adapted.mesh)),
+                        take(std::move(adapted.metric.values), shape),
+                        std::move(adapted.report));
+}
+
+void bind_options(py::module_& module) {
+  py::class_<AdaptOptions>(module, "Options")
+      .def(py::init<>())
+      .def_readwrite("iterations", &AdaptOptions::iterations)
+      .def_readwrite("smallest_size", &AdaptOptions::smallest_size)
+      .def_readwrite("largest_size", &AdaptOptions::largest_size)
+      .def_readwrite("gradation", &AdaptOptions::gradation)
+      .def_readwrite("required_gradation", &AdaptOptions::required_gradation)
+      .def_readwrite("memory_limit", &AdaptOptions::memory_limit)
+      .def_readwrite("thorough", &AdaptOptions::thorough)
+      .def_readwrite("move", &AdaptOptions::move)
+      .def_readwrite("swap", &AdaptOptions::swap)
+      .def_readwrite("insert", &AdaptOptions::insert)
+      .def_property(
+          "lock_boundary", [](const AdaptOptions& o) { return o.make.lock_boundary; },
+          [](AdaptOptions& o, bool lock) { o.make.lock_boundary = lock; })
+      .def_property(
+          "surface_tolerance", [](const AdaptOptions& o) { return o.make.surface_tolerance; },
+          [](AdaptOptions& o, double tolerance) { o.make.surface_tolerance = tolerance; })
+      .def_property(
+          "ridge_angle", [](const AdaptOptions& o) { return o.make.ridge_angle; },
+          [](AdaptOptions& o, double angle) { o.make.ridge_angle = angle; });
+}
+
+void bind_report(py::module_& module) {
+  py::class_<KernelReport>(module, "KernelReport")
+      .def_readonly("seconds", &KernelReport::seconds)
+      .def_readonly("considered", &KernelReport::considered)
+      .def_readonly("applied", &KernelReport::applied)
+      .def_readonly("rounds", &KernelReport::rounds);
+  py::class_<AdaptReport>(module, "Report")
+      .def_readonly("iterations", &AdaptReport::iterations)
+      .def_readonly("converged", &AdaptReport::converged)
+      .def_readonly("coarsen", &AdaptReport::coarsen)
+      .def_readonly("refine", &AdaptReport::refine)
+      .def_readonly("swap", &AdaptReport::swap)
+      .def_readonly("smooth", &AdaptReport::smooth)
+      .def_readonly("setup_seconds", &AdaptReport::setup_seconds)
+      .def_readonly("renumber_seconds", &AdaptReport::renumber_seconds)
+      .def_readonly("total_seconds", &AdaptReport::total_seconds)
+      .def_readonly("fixed_vertices", &AdaptReport::fixed_vertices)
+      .def_readonly("curved_edges", &AdaptReport::curved_edges)
+      .def_readonly("curved_edges_short", &AdaptReport::curved_edges_short)
+      .def_readonly("held_long_edges", &AdaptReport::held_long_edges)
+      .def_readonly("held_short_edges", &AdaptReport::held_short_edges)
+      .def_readonly("attempts", &AdaptReport::attempts)
+      .def_readonly("warnings", &AdaptReport::warnings)
+      .def_readonly("instructions", &AdaptReport::instructions);
+}
+
+}  // namespace
+
+void bind_adapt(py::module_& module) {
+  bind_options(module);
+  bind_report(module);
+  module.def("remesh", &remesh);
+}
+
+}  // namespace ductile::python

@@ -1,0 +1,84 @@
+/// @file
+/// What the parts of the Python module share: arrays of numpy as views of what C++ holds, vectors of
+/// C++ as arrays of numpy, neither of which copies, and work without the interpreter's lock.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/team.hpp"
+
+namespace ductile::python {
+
+namespace py = pybind11;
+
+using Shape = std::vector<py::ssize_t>;
+/// An array that C++ reads where it is; one of another type or layout is refused, so the package
+/// converts it first.
+template <class T>
+using Given = py::array_t<T, py::array::c_style>;
+
+void bind_mesh(py::module_& module);
+void bind_adapt(py::module_& module);
+void bind_metric(py::module_& module);
+void bind_transfer(py::module_& module);
+
+inline py::ssize_t signed_size(std::size_t size) { return static_cast<py::ssize_t>(size); }
+
+/// What numpy calls a type: indices are unsigned in C++ and signed here, so that none is -1.
+template <class T>
+struct Shown {
+  using Type = T;
+};
+template <>
+struct Shown<std::uint32_t> {
+  using Type = std::int32_t;
+};
+
+/// An array that shows memory of `owner`, which lives at least as long; it cannot be written to.
+template <class T>
+py::array view(const py::object& owner, const T* data, const Shape& shape) {
+  using Type = typename Shown<T>::Type;
+  py::array_t<Type> shown(shape, reinterpret_cast<const Type*>(data), owner);
+  shown.attr("setflags")(py::arg("write") = false);
+  return std::move(shown);
+}
+
+/// An array that owns what was a vector. A shape without entries: one dimension.
+template <class T>
+py::array take(std::vector<T>&& values, Shape shape = {}) {
+  if (shape.empty()) shape = {signed_size(values.size())};
+  using Type = typename Shown<T>::Type;
+  auto* const kept = new std::vector<T>(std::move(values));
+  const py::capsule owner(kept, [](void* old) { delete static_cast<std::vector<T>*>(old); });
+  return py::array_t<Type>(shape, reinterpret_cast<const Type*>(kept->data()), owner);
+}
+
+template <class T>
+std::vector<T> copied(const Given<T>& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
+/// One tensor or size or whatever `type` is at each of `array`'s rows.
+inline meshadapt::AnyField field_of(const Given<double>& array, meshadapt::AnyField::Type type,
+                                    int dimension, const char* name) {
+  return {dimension, static_cast<std::size_t>(array.shape(0)), {type}, copied(array), name};
+}
+
+/// body(executor) without the interpreter's lock, so that other threads of Python go on. Threads of
+/// the executor stay together meanwhile.
+template <class Body>
+auto work(const runtime::ExecutorOptions& options, Body&& body) {
+  const py::gil_scoped_release unlocked;
+  const runtime::Executor executor(options);
+  return runtime::with_team(executor, [&] { return body(executor); });
+}
+
+}  // namespace ductile::python

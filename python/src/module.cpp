@@ -1,0 +1,46 @@
+/// @file
+/// The module ductile._ductile: the C++ library as it is. The package around it checks and converts
+/// arguments, and has the documentation.
+#include <exception>
+
+#include "bindings.hpp"
+
+#include "ductile/meshadapt/error.hpp"
+
+namespace ductile::python {
+
+namespace {
+
+/// ductile.InputError is a ductile.Error and a ValueError.
+void bind_errors(py::module_& module) {
+  const auto& error =
+      py::register_exception<meshadapt::Error>(module, "Error", PyExc_RuntimeError);
+  py::register_exception<meshadapt::InputError>(
+      module, "InputError", py::make_tuple(error, py::handle(PyExc_ValueError)));
+  py::register_exception<meshadapt::Cancelled>(module, "Cancelled", error);
+}
+
+void bind_executor(py::module_& module) {
+  using runtime::ExecutorOptions;
+  py::class_<ExecutorOptions>(module, "Executor")
+      .def(py::init([](int threads, bool deterministic) {
+             return ExecutorOptions{.threads = threads, .deterministic = deterministic};
+           }),
+           py::arg("threads") = 0, py::arg("deterministic") = true)
+      .def_readonly("threads", &ExecutorOptions::threads)
+      .def_readonly("deterministic", &ExecutorOptions::deterministic);
+}
+
+}  // namespace
+}  // namespace ductile::python
+
+PYBIND11_MODULE(_ductile, module) {
+  using namespace ductile::python;  // NOLINT: the macro makes a function of the module's own
+  module.attr("version") = DUCTILE_VERSION;
+  bind_errors(module);
+  bind_executor(module);
+  bind_mesh(module);
+  bind_adapt(module);
+  bind_metric(module);
+  bind_transfer(module);
+}

@@ -1,0 +1,69 @@
+/// @file
+/// From one mesh to another: where vertices, facets and elements come from, and fields.
+#include <string>
+#include <utility>
+
+#include "bindings.hpp"
+
+#include "ductile/meshadapt/origins.hpp"
+#include "ductile/meshadapt/transfer.hpp"
+
+namespace ductile::python {
+
+namespace {
+
+using meshadapt::AnyField;
+using meshadapt::AnyMesh;
+using meshadapt::Carrying;
+using meshadapt::NamedField;
+using runtime::Executor;
+using runtime::ExecutorOptions;
+
+py::tuple origins(const AnyMesh& before, const AnyMesh& after) {
+  auto found = work({}, [&](const Executor& executor) {
+    return meshadapt::origins(executor, before, after);
+  });
+  const Shape shape{signed_size(found.vertex.size()), before.dimension + 1};
+  return py::make_tuple(take(std::move(found.vertex)), take(std::move(found.facet)),
+                        take(std::move(found.element)), take(std::move(found.host)),
+                        take(std::move(found.weight), shape));
+}
+
+/// Each row of `values` belongs to a vertex, or to an element, and has what `type` has components.
+py::tuple transfer(const AnyMesh& before, const AnyMesh& after, const Given<double>& values,
+                   AnyField::Type type, bool on_cells, bool conservative,
+                   const ExecutorOptions& threads) {
+  const auto place = on_cells ? NamedField::Place::elements : NamedField::Place::vertices;
+  const std::vector<NamedField> fields{{"u", type, copied(values), place}};
+  auto carried = work(threads, [&](const Executor& executor) {
+    return meshadapt::transfer_fields(
+        executor, {before, fields}, after,
+        {conservative ? Carrying::conservatively : Carrying::by_value});
+  });
+  return py::make_tuple(take(std::move(carried.fields[0].values)), carried.report);
+}
+
+}  // namespace
+
+void bind_transfer(py::module_& module) {
+  using meshadapt::TransferReport;
+  py::class_<TransferReport>(module, "TransferReport")
+      .def_readonly("vertices_outside", &TransferReport::vertices_outside)
+      .def_readonly("volume_outside", &TransferReport::volume_outside)
+      .def_readonly("volume_left_out", &TransferReport::volume_left_out);
+  module.def("origins", &origins);
+  module.def("transfer", &transfer);
+  module.def("interpolate_at", [](const AnyMesh& mesh, const Given<double>& values,
+                                  const Given<double>& points) {
+    AnyField field = field_of(values, AnyField::Type::scalar, mesh.dimension, "u");
+    field.types.assign(static_cast<std::size_t>(values.shape(1)), AnyField::Type::scalar);
+    const Shape shape{points.shape(0), values.shape(1)};
+    auto found = work({}, [&](const Executor& executor) {
+      return meshadapt::interpolate_at(
+          executor, {mesh, field}, {points.data(), static_cast<std::size_t>(points.size())});
+    });
+    return take(std::move(found.field.values), shape);
+  });
+}
+
+}  // namespace ductile::python
