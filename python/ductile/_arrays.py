@@ -3,7 +3,9 @@ another layout, and refused by array and index if they are wrong."""
 
 from __future__ import annotations
 
-from typing import Any, Sequence
+import re
+from contextlib import contextmanager
+from typing import Any, Iterator, Sequence
 
 import numpy as np
 
@@ -120,6 +122,30 @@ def field_type(components: int, dimension: int) -> FieldType | None:
     return {1: FieldType.scalar, dimension: FieldType.vector,
             dimension * (dimension + 1) // 2: FieldType.symmetric,
             dimension * dimension: FieldType.matrix}.get(components)
+
+
+_CELLS = {2: "triangles", 3: "tetrahedra"}
+_FACETS = {2: "edges", 3: "triangles"}
+_OPTIONS = {"gradation": "hgrad", "required_gradation": "hgradreq", "smallest_size": "hmin",
+            "largest_size": "hmax", "surface_tolerance": "hausd", "ridge_angle": "ar"}
+
+
+@contextmanager
+def named(dimension: int) -> Iterator[None]:
+    """What C++ says is wrong is raised by the names that arrays and options have here."""
+    try:
+        yield
+    except InputError as error:
+        cells, facets = _CELLS[dimension], _FACETS[dimension]
+        names = {f"{cells}.vertices": "cells", f"{cells}.reference": "refs",
+                 f"{facets}.vertices": "facets", f"{facets}.reference": "facet_refs",
+                 "edges.vertices": "edges", "edges.reference": "edge_refs"}
+        text = str(error)
+        for theirs, ours in names.items():
+            text = text.replace(f"mesh: {theirs}[", f"{ours}[").replace(theirs, ours)
+        text = re.sub(r"^(options?[. ])?(\w+)(?=[:,])",
+                      lambda match: _OPTIONS.get(match[2], match[0]), text)
+        raise InputError(text) from None
 
 
 def component_count(shape: Sequence[int]) -> int:

@@ -9,8 +9,8 @@ from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Seque
 import numpy as np
 
 from . import _ductile, _html, _interop
-from ._arrays import (chosen, component_count, field_type, finite, floats, indices, number,
-                      references)
+from ._arrays import (chosen, component_count, field_type, finite, floats, indices, named,
+                      number, references)
 from ._ductile import InputError
 from ._metric import MetricLike, as_rows, as_tensors, full, packed
 from ._size import Size
@@ -316,8 +316,9 @@ class Mesh:
                            memory_limit=int(memory) << 20)
         rows, kind = (None, _ductile.FieldType.scalar) if metric is None \
             else as_rows(self, metric, threads)
-        adapted, at_vertices, report = _ductile.remesh(
-            data, rows, kind, options, _ductile.Executor(threads, deterministic), progress)
+        with named(self.dim):
+            adapted, at_vertices, report = _ductile.remesh(
+                data, rows, kind, options, _ductile.Executor(threads, deterministic), progress)
         out = Mesh._of(adapted)
         out.metric, out.report = at_vertices, report
         out._source, out._tolerance = data, number(hausd, "hausd")
@@ -377,8 +378,9 @@ class Mesh:
         parts = [(rows, kind)] if kind is not None else \
             [(np.ascontiguousarray(rows[:, [i]]), _ductile.FieldType.scalar)
              for i in range(columns)]
-        carried = [_ductile.transfer(before, self._data, part, part_kind, on_cells, conservative,
-                                     executor)[0] for part, part_kind in parts]
+        with named(self.dim):
+            carried = [_ductile.transfer(before, self._data, part, part_kind, on_cells,
+                                         conservative, executor)[0] for part, part_kind in parts]
         result = carried[0] if len(carried) == 1 else np.column_stack(carried)
         result = result.reshape(-1, *values.shape[1:])
         return result.astype(array.dtype) if on_cells and not conservative else result
@@ -398,7 +400,8 @@ class Mesh:
 
     def quality(self, M: Optional[MetricLike] = None) -> np.ndarray:
         """The quality of each cell: its mean ratio, 1 if ideal, 0 if flat. `M` is as in `info`."""
-        return _ductile.quality(self._data, self._tensors(M))
+        with named(self.dim):
+            return _ductile.quality(self._data, self._tensors(M))
 
     def check(self) -> list[str]:
         """What is wrong with the mesh, a line for each kind of fault; empty if nothing is.

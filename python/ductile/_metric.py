@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _ductile
-from ._arrays import component_count, finite, floats, number
+from ._arrays import component_count, finite, floats, named, number
 from ._ductile import FieldType, InputError
 from ._size import Size
 
@@ -157,8 +157,9 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
                                    number(anisotropy, "anisotropy")),
         gradation=number(hgrad, "hgrad"))
     rows = values.reshape(len(values), component_count(values.shape))
-    return _ductile.solution_metric(mesh._data, rows, options,
-                                    _ductile.Executor(threads, deterministic))[0]
+    with named(mesh.dim):
+        return _ductile.solution_metric(mesh._data, rows, options,
+                                        _ductile.Executor(threads, deterministic))[0]
 
 
 def implied(mesh: Mesh) -> np.ndarray:
