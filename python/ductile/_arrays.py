@@ -14,7 +14,8 @@ from ._ductile import FieldType, InputError
 Array = np.ndarray
 
 
-def _converted(values: Any, name: str) -> Array:
+def converted(values: Any, name: str) -> Array:
+    """The values as an array of whatever type."""
     try:
         return np.asarray(values)
     except (ValueError, TypeError) as error:
@@ -23,7 +24,7 @@ def _converted(values: Any, name: str) -> Array:
 
 def floats(values: Any, name: str) -> Array:
     """The values as float64, in C order; the same array if it is that."""
-    array = _converted(values, name)
+    array = converted(values, name)
     if array.dtype.kind not in "fiub":
         raise InputError(f"{name}: expected an array of real numbers, found one of {array.dtype}")
     return np.asarray(array, dtype=np.float64, order="C")
@@ -41,7 +42,7 @@ def finite(array: Array, name: str) -> Array:
 
 def indices(values: Any, name: str, columns: int, count: int) -> Array:
     """Indices of entities, of which there are `count`, in rows; int32 and int64 stay as they are."""
-    array = _converted(values, name)
+    array = converted(values, name)
     if array.size == 0:
         return np.zeros((0, columns), np.int32)
     if array.dtype.kind not in "iu":
@@ -61,7 +62,7 @@ def references(values: Any, name: str, count: int) -> Array:
     """One int32 for each of `count` entities, or none for any if they are not given."""
     if values is None:
         return np.zeros(0, np.int32)
-    array = _converted(values, name)
+    array = converted(values, name)
     if array.shape != (count,):
         raise InputError(f"{name}: expected shape ({count},), found {array.shape}")
     whole = array.astype(np.int32)
@@ -74,7 +75,7 @@ def references(values: Any, name: str, count: int) -> Array:
 
 def chosen(values: Any, name: str, count: int) -> Array:
     """Indices of entities, as int32, that are given as such or by an array of booleans."""
-    array = _converted(values, name)
+    array = converted(values, name)
     if array.dtype == bool:
         if array.shape != (count,):
             raise InputError(f"{name}: expected shape ({count},), found {array.shape}")
@@ -143,6 +144,7 @@ def named(dimension: int) -> Iterator[None]:
         text = str(error)
         for theirs, ours in names.items():
             text = text.replace(f"mesh: {theirs}[", f"{ours}[").replace(theirs, ours)
+        text = re.sub(r"^bounds on sizes:", "hmin and hmax:", text)
         text = re.sub(r"^(options?[. ])?(\w+)(?=[:,])",
                       lambda match: _OPTIONS.get(match[2], match[0]), text)
         raise InputError(text) from None

@@ -9,8 +9,8 @@ from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Seque
 import numpy as np
 
 from . import _ductile, _html, _interop
-from ._arrays import (chosen, component_count, field_type, finite, floats, indices, named,
-                      number, references)
+from ._arrays import (chosen, component_count, converted, field_type, finite, floats, indices,
+                      named, number, references)
 from ._ductile import InputError
 from ._metric import MetricLike, as_rows, as_tensors, full, packed
 from ._size import Size
@@ -522,12 +522,11 @@ def transfer(before: Mesh, u: Any, after: Mesh, **options: Any) -> Any:
 _KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
 
 
-def _flat(points: np.ndarray, cells: Any) -> np.ndarray:
+def _flat(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Points of triangles in a plane of constant z without their z."""
-    columns = np.shape(cells)[1:]
     if points.ndim != 2 or points.shape[1] not in (2, 3):
         raise InputError(f"points: expected shape (n, 2) or (n, 3), found {points.shape}")
-    if points.shape[1] == 3 and columns == (3,):
+    if points.shape[1] == 3 and cells.shape[1:] == (3,):
         if len(points) and np.ptp(points[:, 2]) > 1e-6 * np.ptp(points[:, :2]):
             raise InputError("points: expected a constant z, because cells are triangles: surfaces in "
                              "space are not supported")
@@ -536,9 +535,10 @@ def _flat(points: np.ndarray, cells: Any) -> np.ndarray:
 
 
 def _data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
-    points = finite(_flat(floats(state["points"], "points"), state["cells"]), "points")
+    cells = converted(state["cells"], "cells")
+    points = finite(_flat(floats(state["points"], "points"), cells), "points")
     count, dim = points.shape
-    cells = indices(state["cells"], "cells", dim + 1, count)
+    cells = indices(cells, "cells", dim + 1, count)
     facets = state["facets"]
     facets = indices(() if facets is None else facets, "facets", dim, count)
     data = _ductile.from_arrays(

@@ -39,8 +39,9 @@ def test_arrays_are_the_memory_of_the_library(mesh):
     assert out.points.ctypes.data == out.points.ctypes.data == out._data.address
     for name in ("points", "cells", "facets", "edges", "refs", "facet_refs", "vertex_refs"):
         first, again = getattr(out, name), getattr(out, name)
-        assert first.ctypes.data == again.ctypes.data, name
-        assert not first.flags.writeable and not first.flags.owndata, name
+        assert not first.flags.writeable, name
+        if first.size:
+            assert first.ctypes.data == again.ctypes.data and not first.flags.owndata, name
     assert out.metric.base is not None
     points = out.points
     expected = points.copy()
@@ -87,7 +88,7 @@ WRONG = [
     (lambda: square().remesh(np.full((4, 3), np.nan)), r"metric: .*\[0\]"),
     (lambda: square().remesh(np.tile([[1., 2], [0, 1]], (4, 1, 1))), "metric: .*symmetric"),
     (lambda: square().remesh(.5, hgrad=.5), "hgrad: expected"),
-    (lambda: square().remesh(hmin=2, hmax=1), "hmin|hmax"),
+    (lambda: square().remesh(hmin=2, hmax=1), "^hmin and hmax: expected"),
     (lambda: square().remesh(hmin="x"), "hmin: expected a number, found 'x'"),
     (lambda: square().remesh(.5, iterations=-1), "iterations"),
     (lambda: square().remesh(.5, iterations=1.5), "iterations"),
@@ -127,6 +128,7 @@ def test_what_is_wrong_is_named(number):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.filterwarnings("ignore:.*no place for names")
 @pytest.mark.parametrize("ending", [".mesh", ".meshb", ".msh", ".vtu", ".vtk"])
 def test_files_keep_everything(tmp_path, dim, ending):
     mesh = shuffled(dim, 3)
