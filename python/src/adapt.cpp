@@ -55,8 +55,8 @@ class Progress {
 };
 
 py::tuple remesh(const AnyMesh& mesh, const std::optional<Given<double>>& metric,
-                 AnyField::Type type, AdaptOptions options,
-                 const runtime::ExecutorOptions& threads, const py::object& progress) {
+                 AnyField::Type type, AdaptOptions options, const runtime::ExecutorOptions& threads,
+                 const py::object& progress) {
   std::optional<AnyField> given;
   if (metric) given = field_of(*metric, type, mesh.dimension, "metric");
   Progress asked(progress);
@@ -70,8 +70,7 @@ py::tuple remesh(const AnyMesh& mesh, const std::optional<Given<double>>& metric
   const Shape shape{signed_size(adapted.mesh.vertex_count()),
                     signed_size(stride_of(adapted.metric))};
   return py::make_tuple(std::make_shared<AnyMesh>(std::move(adapted.mesh)),
-                        take(std::move(adapted.metric.values), shape),
-                        std::move(adapted.report));
+                        take(std::move(adapted.metric.values), shape), std::move(adapted.report));
 }
 
 void bind_options(py::module_& module) {

@@ -1,6 +1,6 @@
 /// @file
-/// What the parts of the Python module share: arrays of numpy as views of what C++ holds, vectors of
-/// C++ as arrays of numpy, neither of which copies, and work without the interpreter's lock.
+/// What the parts of the Python module share: arrays of numpy as views of what C++ holds, vectors
+/// of C++ as arrays of numpy, neither of which copies, and work without the interpreter's lock.
 #pragma once
 
 #include <cstdint>

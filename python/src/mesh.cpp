@@ -35,8 +35,7 @@ std::span<const T> span_of(const Given<T>& array) {
 template <class Index>
 Handle from_arrays(const Given<double>& points, const Given<Index>& cells,
                    const Given<std::int32_t>& refs, const Given<Index>& facets,
-                   const Given<std::int32_t>& facet_refs,
-                   const Given<std::int32_t>& vertex_refs) {
+                   const Given<std::int32_t>& facet_refs, const Given<std::int32_t>& vertex_refs) {
   const meshadapt::MeshArrays<Index> arrays{.dimension = static_cast<int>(points.shape(1)),
                                             .coordinates = span_of(points),
                                             .elements = span_of(cells),
@@ -53,8 +52,8 @@ Handle box(const std::vector<double>& extent, const std::vector<int>& cells) {
   if (extent.size() == 2)
     return std::make_shared<AnyMesh>(
         meshadapt::box_mesh<2>({extent[0], extent[1]}, {cells[0], cells[1]}));
-  return std::make_shared<AnyMesh>(meshadapt::box_mesh<3>({extent[0], extent[1], extent[2]},
-                                                          {cells[0], cells[1], cells[2]}));
+  return std::make_shared<AnyMesh>(
+      meshadapt::box_mesh<3>({extent[0], extent[1], extent[2]}, {cells[0], cells[1], cells[2]}));
 }
 
 // ---- Arrays of a mesh ----
@@ -92,8 +91,7 @@ void bind_arrays(py::class_<AnyMesh, Handle>& type) {
     type.def_property_readonly(name, shown(choose));
   };
   at("points", [](const py::object& self, const AnyMesh& mesh) {
-    return view(self, mesh.coordinates.data(),
-                {signed_size(mesh.vertex_count()), mesh.dimension});
+    return view(self, mesh.coordinates.data(), {signed_size(mesh.vertex_count()), mesh.dimension});
   });
   at("cells", [](const py::object& self, const AnyMesh& mesh) {
     return mesh.dimension == 2 ? corners_of(self, mesh.triangles)
@@ -102,12 +100,11 @@ void bind_arrays(py::class_<AnyMesh, Handle>& type) {
   at("facets", [](const py::object& self, const AnyMesh& mesh) {
     return mesh.dimension == 2 ? corners_of(self, mesh.edges) : corners_of(self, mesh.triangles);
   });
-  at("edges", [](const py::object& self, const AnyMesh& mesh) {
-    return corners_of(self, mesh.edges);
-  });
+  at("edges",
+     [](const py::object& self, const AnyMesh& mesh) { return corners_of(self, mesh.edges); });
   at("refs", [](const py::object& self, const AnyMesh& mesh) {
-    return entries(self, mesh.dimension == 2 ? mesh.triangles.reference
-                                             : mesh.tetrahedra.reference);
+    return entries(self,
+                   mesh.dimension == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference);
   });
   at("facet_refs", [](const py::object& self, const AnyMesh& mesh) {
     return entries(self, mesh.dimension == 2 ? mesh.edges.reference : mesh.triangles.reference);
@@ -123,9 +120,9 @@ void bind_arrays(py::class_<AnyMesh, Handle>& type) {
 void set_edges(AnyMesh& mesh, const Given<std::int32_t>& edges, const Given<std::int32_t>& refs) {
   mesh.edges = {};
   for (py::ssize_t i = 0; i < edges.shape(0); ++i)
-    mesh.edges.add({static_cast<std::uint32_t>(edges.at(i, 0)),
-                    static_cast<std::uint32_t>(edges.at(i, 1))},
-                   refs.at(i));
+    mesh.edges.add(
+        {static_cast<std::uint32_t>(edges.at(i, 0)), static_cast<std::uint32_t>(edges.at(i, 1))},
+        refs.at(i));
 }
 
 using Names = std::vector<std::tuple<std::string, int, std::int32_t>>;
@@ -167,8 +164,7 @@ std::tuple<Handle, Fields, Warnings> read(const std::string& path) {
     fields.emplace_back(field.name, field.place == NamedField::Place::elements,
                         rows(std::move(field.values), static_cast<std::size_t>(components)));
   }
-  return {std::make_shared<AnyMesh>(std::move(read.mesh)), std::move(fields),
-          std::move(warnings)};
+  return {std::make_shared<AnyMesh>(std::move(read.mesh)), std::move(fields), std::move(warnings)};
 }
 
 std::tuple<std::vector<py::array>, Warnings> read_field(const std::string& path) {
@@ -176,9 +172,8 @@ std::tuple<std::vector<py::array>, Warnings> read_field(const std::string& path)
   const AnyField field = meshadapt::read_field(path, &warnings);
   std::vector<py::array> arrays;
   for (NamedField& part : meshadapt::named_fields(field, "field"))
-    arrays.push_back(
-        rows(std::move(part.values),
-             static_cast<std::size_t>(component_count(part.type, field.dimension))));
+    arrays.push_back(rows(std::move(part.values),
+                          static_cast<std::size_t>(component_count(part.type, field.dimension))));
   return {std::move(arrays), std::move(warnings)};
 }
 

@@ -1,6 +1,6 @@
 /// @file
-/// Metrics: of solutions, of meshes and of sizes, and what is done to them. In Python they are arrays
-/// with a symmetric tensor in each row, in the order of AnyField.
+/// Metrics: of solutions, of meshes and of sizes, and what is done to them. In Python they are
+/// arrays with a symmetric tensor in each row, in the order of AnyField.
 #include <string>
 #include <utility>
 
@@ -66,14 +66,12 @@ void bind_solution_metric(py::module_& module) {
   module.def("solution_metric", &solution_metric);
   module.def("complexity_of_elements", &meshadapt::complexity_of_elements);
   module.def("implied", [](const AnyMesh& mesh) {
-    return array_of(work({}, [&](const Executor& executor) {
-      return meshadapt::implied_tensors(executor, mesh);
-    }));
+    return array_of(work(
+        {}, [&](const Executor& executor) { return meshadapt::implied_tensors(executor, mesh); }));
   });
   module.def("default_metric", [](const AnyMesh& mesh) {
-    return array_of(work({}, [&](const Executor& executor) {
-      return meshadapt::default_metric(executor, mesh);
-    }));
+    return array_of(work(
+        {}, [&](const Executor& executor) { return meshadapt::default_metric(executor, mesh); }));
   });
 }
 
@@ -131,8 +129,8 @@ void bind_operations(py::module_& module) {
   });
   module.def("as_metric", [](const AnyMesh& mesh, const Given<double>& rows, AnyField::Type type,
                              const SizeBounds& bounds) {
-    return array_of(meshadapt::metric_of(field_of(rows, type, mesh.dimension, "metric"), mesh,
-                                         bounds));
+    return array_of(
+        meshadapt::metric_of(field_of(rows, type, mesh.dimension, "metric"), mesh, bounds));
   });
 }
 
@@ -196,9 +194,8 @@ void bind_sizes(py::module_& module) {
            })
       .def("surface",
            [](Sizes& sizes, const Given<double>& points, const Given<std::int32_t>& triangles,
-              Size size, const SizeGrowth& growth) {
-             sizes.add(surface_of(points, triangles), size, growth);
-           })
+              Size size,
+              const SizeGrowth& growth) { sizes.add(surface_of(points, triangles), size, growth); })
       .def("referenced",
            [](Sizes& sizes, int dimension, std::int32_t reference, Size size,
               const SizeGrowth& growth) {

@@ -13,8 +13,7 @@ namespace {
 
 /// ductile.InputError is a ductile.Error and a ValueError.
 void bind_errors(py::module_& module) {
-  const auto& error =
-      py::register_exception<meshadapt::Error>(module, "Error", PyExc_RuntimeError);
+  const auto& error = py::register_exception<meshadapt::Error>(module, "Error", PyExc_RuntimeError);
   py::register_exception<meshadapt::InputError>(
       module, "InputError", py::make_tuple(error, py::handle(PyExc_ValueError)));
   py::register_exception<meshadapt::Cancelled>(module, "Cancelled", error);

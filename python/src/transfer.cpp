@@ -20,9 +20,8 @@ using runtime::Executor;
 using runtime::ExecutorOptions;
 
 py::tuple origins(const AnyMesh& before, const AnyMesh& after) {
-  auto found = work({}, [&](const Executor& executor) {
-    return meshadapt::origins(executor, before, after);
-  });
+  auto found = work(
+      {}, [&](const Executor& executor) { return meshadapt::origins(executor, before, after); });
   const Shape shape{signed_size(found.vertex.size()), before.dimension + 1};
   return py::make_tuple(take(std::move(found.vertex)), take(std::move(found.facet)),
                         take(std::move(found.element)), take(std::move(found.host)),
@@ -59,8 +58,8 @@ void bind_transfer(py::module_& module) {
     field.types.assign(static_cast<std::size_t>(values.shape(1)), AnyField::Type::scalar);
     const Shape shape{points.shape(0), values.shape(1)};
     auto found = work({}, [&](const Executor& executor) {
-      return meshadapt::interpolate_at(
-          executor, {mesh, field}, {points.data(), static_cast<std::size_t>(points.size())});
+      return meshadapt::interpolate_at(executor, {mesh, field},
+                                       {points.data(), static_cast<std::size_t>(points.size())});
     });
     return take(std::move(found.field.values), shape);
   });

@@ -1,0 +1,190 @@
+"""The C++ library as it is; use the package around it."""
+
+from typing import Any, Callable, Optional, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.int32]
+
+version: str
+of_facets: int
+of_cells: int
+
+class Error(RuntimeError):
+    """Something outside failed: memory, the disk, a result that is not valid."""
+
+class InputError(Error, ValueError):
+    """An array, a file or an option is wrong."""
+
+class Cancelled(Error):
+    """The progress function has returned False."""
+
+class Executor:
+    threads: int
+    deterministic: bool
+    def __init__(self, threads: int = ..., deterministic: bool = ...) -> None: ...
+
+class FieldType:
+    scalar: FieldType
+    vector: FieldType
+    symmetric: FieldType
+    matrix: FieldType
+
+class MeshData:
+    dimension: int
+    dropped_axis: int
+    names: list[tuple[str, int, int]]
+    @property
+    def points(self) -> _Floats: ...
+    @property
+    def cells(self) -> _Ints: ...
+    @property
+    def facets(self) -> _Ints: ...
+    @property
+    def edges(self) -> _Ints: ...
+    @property
+    def refs(self) -> _Ints: ...
+    @property
+    def facet_refs(self) -> _Ints: ...
+    @property
+    def edge_refs(self) -> _Ints: ...
+    @property
+    def vertex_refs(self) -> _Ints: ...
+    @property
+    def address(self) -> int: ...
+    def copy(self) -> MeshData: ...
+    def set_edges(self, edges: _Ints, refs: _Ints) -> None: ...
+    def required(self, kind: str) -> _Ints: ...
+    def require(self, kind: str, indices: _Ints) -> None: ...
+
+class Distribution:
+    count: int
+    min: float
+    low: float
+    median: float
+    mean: float
+    max: float
+    histogram_from: float
+    histogram_to: float
+    histogram: list[int]
+    below: int
+    above: int
+
+class Statistics:
+    in_metric: bool
+    edge_length: Distribution
+    quality: Distribution
+    edges_in_range: int
+    edges_short: int
+    edges_long: int
+    complexity: float
+    share_in_range: float
+
+class KernelReport:
+    seconds: float
+    considered: int
+    applied: int
+    rounds: int
+
+class Report:
+    iterations: int
+    converged: bool
+    coarsen: KernelReport
+    refine: KernelReport
+    swap: KernelReport
+    smooth: KernelReport
+    setup_seconds: float
+    renumber_seconds: float
+    total_seconds: float
+    fixed_vertices: int
+    curved_edges: int
+    curved_edges_short: int
+    held_long_edges: int
+    held_short_edges: int
+    attempts: int
+    warnings: list[str]
+    instructions: str
+
+class Options:
+    iterations: int
+    smallest_size: float
+    largest_size: float
+    gradation: float
+    required_gradation: float
+    memory_limit: int
+    thorough: bool
+    move: bool
+    swap: bool
+    insert: bool
+    lock_boundary: bool
+    surface_tolerance: float
+    ridge_angle: float
+
+class SizeBounds:
+    def __init__(self, smallest: float = ..., largest: float = ...,
+                 anisotropy: float = ...) -> None: ...
+
+class SizeGrowth:
+    def __init__(self, grow: float, largest: float, distance: float) -> None: ...
+
+class MetricFit:
+    complexity: float
+    error: float
+    reached: bool
+
+class TransferReport:
+    vertices_outside: int
+    volume_outside: float
+    volume_left_out: float
+
+class SolutionMetricOptions:
+    def __init__(self, *, norm: float, complexity: float, error: float, bounds: SizeBounds,
+                 gradation: float) -> None: ...
+
+class Sizes:
+    count: int
+    def __init__(self, elsewhere: float, bounds: SizeBounds) -> None: ...
+    def ball(self, centre: Sequence[float], radius: float, size: float,
+             growth: SizeGrowth) -> None: ...
+    def box(self, low: Sequence[float], high: Sequence[float], size: float,
+            growth: SizeGrowth) -> None: ...
+    def curve(self, points: _Floats, size: float, growth: SizeGrowth) -> None: ...
+    def surface(self, points: _Floats, triangles: _Ints, size: float,
+                growth: SizeGrowth) -> None: ...
+    def referenced(self, dimension: int, reference: int, size: float,
+                   growth: SizeGrowth) -> None: ...
+    def named(self, name: str, size: float, growth: SizeGrowth) -> None: ...
+    def at(self, mesh: MeshData, threads: Executor) -> _Floats: ...
+
+def from_arrays(points: _Floats, cells: NDArray[Any], refs: _Ints, facets: NDArray[Any],
+                facet_refs: _Ints, vertex_refs: _Ints) -> MeshData: ...
+def box(extent: Sequence[float], cells: Sequence[int]) -> MeshData: ...
+def read(path: str) -> tuple[MeshData, list[tuple[str, bool, _Floats]], list[str]]: ...
+def read_field(path: str) -> tuple[list[_Floats], list[str]]: ...
+def save(mesh: MeshData, path: str,
+         fields: Sequence[tuple[str, FieldType, bool, _Floats]]) -> list[str]: ...
+def save_field(path: str, values: _Floats, type: FieldType, dimension: int) -> None: ...
+def holds_fields(path: str) -> bool: ...
+def formats() -> list[tuple[str, str, bool, bool]]: ...
+def check(mesh: MeshData) -> list[str]: ...
+def check_adapted(before: MeshData, after: MeshData, tolerance: float) -> list[str]: ...
+def measure(mesh: MeshData, metric: Optional[_Floats]) -> Statistics: ...
+def quality(mesh: MeshData, metric: Optional[_Floats]) -> _Floats: ...
+def remesh(mesh: MeshData, metric: Optional[_Floats], type: FieldType, options: Options,
+           threads: Executor, progress: Optional[Callable[[str, int, int], Optional[bool]]],
+           ) -> tuple[MeshData, _Floats, Report]: ...
+def solution_metric(mesh: MeshData, values: _Floats, options: SolutionMetricOptions,
+                    threads: Executor) -> tuple[_Floats, MetricFit]: ...
+def complexity_of_elements(dimension: int, elements: float) -> float: ...
+def implied(mesh: MeshData) -> _Floats: ...
+def default_metric(mesh: MeshData) -> _Floats: ...
+def as_metric(mesh: MeshData, rows: _Floats, type: FieldType, bounds: SizeBounds) -> _Floats: ...
+def intersect(a: _Floats, b: _Floats) -> _Floats: ...
+def bound(metric: _Floats, bounds: SizeBounds) -> _Floats: ...
+def grade(mesh: MeshData, metric: _Floats, factor: float) -> _Floats: ...
+def origins(before: MeshData, after: MeshData) -> tuple[_Ints, _Ints, _Ints, _Ints, _Floats]: ...
+def transfer(before: MeshData, after: MeshData, values: _Floats, type: FieldType, on_cells: bool,
+             conservative: bool, threads: Executor) -> tuple[_Floats, TransferReport]: ...
+def interpolate_at(mesh: MeshData, values: _Floats, points: _Floats) -> _Floats: ...
