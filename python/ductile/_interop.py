@@ -114,8 +114,10 @@ def to_vtk(mesh: Mesh, fields: Optional[Mapping[str, Any]], boundary: bool) -> A
     connectivity = mesh.cells.ravel() if not boundary else \
         np.concatenate([c.ravel() for _, c in kinds])
     cells = vtkCellArray()
-    cells.SetData(numpy_to_vtk(offsets), numpy_to_vtk(connectivity))
-    grid.SetCells(numpy_to_vtk(types), cells)
+    cells.SetData(numpy_to_vtk(offsets, deep=True), numpy_to_vtk(connectivity))
+    # The cells hold arrays of their own, which share that memory and have to keep it alive.
+    cells.GetConnectivityArray()._numpy_reference = connectivity
+    grid.SetCells(numpy_to_vtk(types, deep=True), cells)
     at_points, on_cells = _apart(mesh, fields)
     rest = len(types) - len(mesh.cells)
     zeros, before = np.zeros(rest, np.int32), np.zeros(len(mesh.cells), np.int32)
@@ -143,15 +145,23 @@ def to_dmplex(mesh: Mesh, comm: Any) -> Any:
             from error
     comm = PETSc.COMM_SELF if comm is None else comm
     integers = PETSc.IntType
-    plex = PETSc.DMPlex().createFromCellList(mesh.dim, mesh.cells.astype(integers), mesh.points,
-                                             interpolate=True, comm=comm)
+    cells = mesh.cells.astype(integers)
+    if mesh.dim == 3:
+        cells = cells[:, [0, 2, 1, 3]]  # PETSc's tetrahedra are turned the other way
+    plex = PETSc.DMPlex().createFromCellList(mesh.dim, cells, mesh.points, interpolate=True,
+                                             comm=comm)
     first_cell, _ = plex.getHeightStratum(0)
-    first_vertex, _ = plex.getDepthStratum(0)
+    first_vertex, last_vertex = plex.getDepthStratum(0)
     plex.createLabel("Cell Sets")
     plex.createLabel("Face Sets")
     for cell, ref in enumerate(mesh.refs.tolist()):
         plex.setLabelValue("Cell Sets", first_cell + cell, ref)
-    facets = (mesh.facets + first_vertex).astype(integers)
-    for corners, ref in zip(facets, mesh.facet_refs.tolist()):
-        plex.setLabelValue("Face Sets", int(plex.getFullJoin(corners)[0]), ref)
+    listed = {tuple(corners): ref for corners, ref in
+              zip(np.sort(mesh.facets, axis=1).tolist(), mesh.facet_refs.tolist())}
+    for facet in range(*plex.getHeightStratum(1)):
+        closure, _ = plex.getTransitiveClosure(facet)
+        corners = closure[(closure >= first_vertex) & (closure < last_vertex)] - first_vertex
+        ref = listed.get(tuple(sorted(corners.tolist())))
+        if ref is not None:
+            plex.setLabelValue("Face Sets", facet, ref)
     return plex
