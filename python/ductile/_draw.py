@@ -177,7 +177,7 @@ def _shaded(colour: str, light: float) -> str:
 
 
 def _xy(place: np.ndarray) -> str:
-    return f"{place[0]:.2f} {place[1]:.2f}"
+    return f"{place[0]:.1f} {place[1]:.1f}"
 
 
 def _path(at: np.ndarray, chains: np.ndarray, *, closed: bool = False, fill: str = "none",

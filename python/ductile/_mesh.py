@@ -12,7 +12,7 @@ from . import _ductile, _html, _interop
 from ._arrays import (chosen, component_count, converted, field_type, finite, floats, indices,
                       named, number, references)
 from ._ductile import InputError
-from ._metric import MetricLike, as_rows, as_tensors, full, packed
+from ._metric import MetricLike, as_rows, as_tensors, full, packed, sizes
 from ._size import Size
 
 ProgressFunction = Callable[[str, int, int], Optional[bool]]
@@ -242,7 +242,8 @@ class Mesh:
         Parameters
         ----------
         metric : float, Size or array_like, optional
-            A size everywhere; a `Size`; a size at each vertex, ``(n,)``; or a metric tensor,
+            A size everywhere; a `Size`, to which the mesh is adapted again, with `hausd` 0, while it
+            asks for more than vertices have seen; a size at each vertex, ``(n,)``; or a metric tensor,
             ``(n, 3)`` in 2D and ``(n, 6)`` in 3D (m11 m12 m22 m13 m23 m33, as in files, not in the
             order of Mmg's own functions), or ``(n, d, d)``. By default the sizes that the mesh has,
             within `hmin` and `hmax`.
@@ -314,15 +315,27 @@ class Mesh:
                            iterations=iterations, thorough=thorough, move=not nomove,
                            swap=not noswap, insert=not noinsert, lock_boundary=nosurf,
                            memory_limit=int(memory) << 20)
-        rows, kind = (None, _ductile.FieldType.scalar) if metric is None \
-            else as_rows(self, metric, threads)
-        with named(self.dim):
-            adapted, at_vertices, report = _ductile.remesh(
-                data, rows, kind, options, _ductile.Executor(threads, deterministic), progress)
+        executor = _ductile.Executor(threads, deterministic)
+        adapted, at_vertices, report = self._adapted(data, metric, options, executor, progress)
         out = Mesh._of(adapted)
         out.metric, out.report = at_vertices, report
-        out._source, out._tolerance = data, number(hausd, "hausd")
+        out._source, out._tolerance = data, options.surface_tolerance
         return out
+
+    @staticmethod
+    def _adapted(data: _ductile.MeshData, metric: Optional[MetricLike], options: _ductile.Options,
+                 executor: _ductile.Executor, progress: Optional[ProgressFunction],
+                 ) -> tuple[_ductile.MeshData, np.ndarray, _ductile.Report]:
+        """Adapts once, or as often as a Size asks for that vertices of a coarse mesh did not see."""
+        for times in range(_MOST_TIMES):
+            given = None if metric is None else as_rows(Mesh._of(data), metric, executor)
+            with named(data.dimension):
+                result = _ductile.remesh(data, given, options, executor, progress)
+            data = result[0]
+            if not isinstance(metric, Size) or options.surface_tolerance > 0 \
+                    or _has_sizes(Mesh._of(data), metric, result[1], options):
+                break
+        return result
 
     @property
     def origin(self) -> Origin:
@@ -379,8 +392,8 @@ class Mesh:
             [(np.ascontiguousarray(rows[:, [i]]), _ductile.FieldType.scalar)
              for i in range(columns)]
         with named(self.dim):
-            carried = [_ductile.transfer(before, self._data, part, part_kind, on_cells,
-                                         conservative, executor)[0] for part, part_kind in parts]
+            carried = [_ductile.transfer(before, self._data, part,
+                                         (part_kind, on_cells, conservative), executor)[0] for part, part_kind in parts]
         result = carried[0] if len(carried) == 1 else np.column_stack(carried)
         result = result.reshape(-1, *values.shape[1:])
         return result.astype(array.dtype) if on_cells and not conservative else result
@@ -519,6 +532,8 @@ def transfer(before: Mesh, u: Any, after: Mesh, **options: Any) -> Any:
 
 # ---- Inside ----
 
+_MOST_TIMES = 5  # that a mesh is adapted to a Size
+
 _KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
 
 
@@ -542,9 +557,9 @@ def _data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
     facets = state["facets"]
     facets = indices(() if facets is None else facets, "facets", dim, count)
     data = _ductile.from_arrays(
-        points, cells, references(state["refs"], "refs", len(cells)), facets,
-        references(state["facet_refs"], "facet_refs", len(facets)),
-        references(state["vertex_refs"], "vertex_refs", count))
+        points, references(state["vertex_refs"], "vertex_refs", count),
+        (cells, references(state["refs"], "refs", len(cells))),
+        (facets, references(state["facet_refs"], "facet_refs", len(facets))))
     if len(state.get("edges", ())):
         edges = indices(state["edges"], "edges", 2, count).astype(np.int32)
         data.set_edges(edges, references(state["edge_refs"], "edge_refs", len(edges)))
@@ -569,6 +584,12 @@ def _with_required(data: _ductile.MeshData, **given: Any) -> _ductile.MeshData:
         more = chosen(entities, f"required_{kind}", counts[kind])
         data.require(kind, np.union1d(data.required(kind), more).astype(np.int32))
     return data
+
+
+def _has_sizes(mesh: Mesh, size: Size, metric: np.ndarray, options: _ductile.Options) -> bool:
+    """Whether a mesh was adapted to about the sizes that are asked for at its vertices, or finer."""
+    asked = np.maximum(size.at(mesh), options.smallest_size)
+    return bool((sizes(metric)[:, 0] < 1.5 * asked).all())
 
 
 def _options(**values: Any) -> _ductile.Options:

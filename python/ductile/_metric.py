@@ -68,11 +68,12 @@ def _dimension_of(rows: np.ndarray, name: str) -> int:
     return 2 if rows.shape[1] == 3 else 3
 
 
-def as_rows(mesh: Mesh, metric: MetricLike, threads: int = 0) -> tuple[np.ndarray, FieldType]:
+def as_rows(mesh: Mesh, metric: MetricLike,
+            executor: _ductile.Executor = _ductile.Executor()) -> tuple[np.ndarray, FieldType]:
     """What the C++ library takes: components of each vertex in a row, and what they are."""
     count, d = len(mesh.points), mesh.dim
     if isinstance(metric, Size):
-        return metric.at(mesh, threads=threads)[:, None], FieldType.scalar
+        return metric.at(mesh, threads=executor.threads)[:, None], FieldType.scalar
     rows = floats(metric, "metric")
     if rows.ndim == 0:
         return np.full((count, 1), float(rows)), FieldType.scalar

@@ -2,7 +2,8 @@
 /// Adaptation: its options and report, and Python's part in its progress.
 #include <chrono>
 #include <memory>
-#include <string>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "bindings.hpp"
@@ -54,11 +55,14 @@ class Progress {
   std::chrono::steady_clock::time_point last_;
 };
 
-py::tuple remesh(const AnyMesh& mesh, const std::optional<Given<double>>& metric,
-                 AnyField::Type type, AdaptOptions options, const runtime::ExecutorOptions& threads,
-                 const py::object& progress) {
+/// Rows of an array, and what they are; without them the mesh keeps its sizes.
+using MaybeMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
+
+py::tuple remesh(const AnyMesh& mesh, const MaybeMetric& metric, AdaptOptions options,
+                 const runtime::ExecutorOptions& threads, const py::object& progress) {
   std::optional<AnyField> given;
-  if (metric) given = field_of(*metric, type, mesh.dimension, "metric");
+  if (metric)
+    given = field_of(std::get<0>(*metric), std::get<1>(*metric), mesh.dimension, "metric");
   Progress asked(progress);
   options.progress = [&asked](const AdaptProgress& now) { return asked(now); };
   AdaptedMesh adapted = work(threads, [&](const runtime::Executor& executor) {

@@ -48,7 +48,7 @@ py::array view(const py::object& owner, const T* data, const Shape& shape) {
   using Type = typename Shown<T>::Type;
   py::array_t<Type> shown(shape, reinterpret_cast<const Type*>(data), owner);
   shown.attr("setflags")(py::arg("write") = false);
-  return std::move(shown);
+  return shown;
 }
 
 /// An array that owns what was a vector. A shape without entries: one dimension.

@@ -1,7 +1,10 @@
 /// @file
 /// Meshes: made of arrays and files, their arrays as views, checks and statistics.
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "bindings.hpp"
@@ -31,17 +34,19 @@ std::span<const T> span_of(const Given<T>& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-/// Facets have the type of elements, and references that are not given no entries.
+/// Their vertices, and their references, which are given for all or for none.
 template <class Index>
-Handle from_arrays(const Given<double>& points, const Given<Index>& cells,
-                   const Given<std::int32_t>& refs, const Given<Index>& facets,
-                   const Given<std::int32_t>& facet_refs, const Given<std::int32_t>& vertex_refs) {
+using GivenCells = std::tuple<Given<Index>, Given<std::int32_t>>;
+
+template <class Index>
+Handle from_arrays(const Given<double>& points, const Given<std::int32_t>& vertex_refs,
+                   const GivenCells<Index>& cells, const GivenCells<Index>& facets) {
   const meshadapt::MeshArrays<Index> arrays{.dimension = static_cast<int>(points.shape(1)),
                                             .coordinates = span_of(points),
-                                            .elements = span_of(cells),
-                                            .element_reference = span_of(refs),
-                                            .facets = span_of(facets),
-                                            .facet_reference = span_of(facet_refs),
+                                            .elements = span_of(std::get<0>(cells)),
+                                            .element_reference = span_of(std::get<1>(cells)),
+                                            .facets = span_of(std::get<0>(facets)),
+                                            .facet_reference = span_of(std::get<1>(facets)),
                                             .vertex_reference = span_of(vertex_refs)};
   return work({}, [&](const runtime::Executor& executor) {
     return std::make_shared<AnyMesh>(meshadapt::mesh_from_arrays(executor, arrays));

@@ -1,6 +1,6 @@
 /// @file
 /// From one mesh to another: where vertices, facets and elements come from, and fields.
-#include <string>
+#include <tuple>
 #include <utility>
 
 #include "bindings.hpp"
@@ -28,16 +28,18 @@ py::tuple origins(const AnyMesh& before, const AnyMesh& after) {
                         take(std::move(found.weight), shape));
 }
 
-/// Each row of `values` belongs to a vertex, or to an element, and has what `type` has components.
+/// What the rows of an array are, whether they belong to cells or to vertices, whether integrals
+/// are kept.
+using How = std::tuple<AnyField::Type, bool, bool>;
+
 py::tuple transfer(const AnyMesh& before, const AnyMesh& after, const Given<double>& values,
-                   AnyField::Type type, bool on_cells, bool conservative,
-                   const ExecutorOptions& threads) {
+                   const How& how, const ExecutorOptions& threads) {
+  const auto [type, on_cells, conservative] = how;
   const auto place = on_cells ? NamedField::Place::elements : NamedField::Place::vertices;
   const std::vector<NamedField> fields{{"u", type, copied(values), place}};
+  const auto carrying = conservative ? Carrying::conservatively : Carrying::by_value;
   auto carried = work(threads, [&](const Executor& executor) {
-    return meshadapt::transfer_fields(
-        executor, {before, fields}, after,
-        {conservative ? Carrying::conservatively : Carrying::by_value});
+    return meshadapt::transfer_fields(executor, {before, fields}, after, {carrying});
   });
   return py::make_tuple(take(std::move(carried.fields[0].values)), carried.report);
 }

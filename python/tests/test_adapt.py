@@ -156,6 +156,20 @@ def test_sizes_without_tensors(mesh):
         assert (at[np.abs(x[:, 2] - 0.5) < 1e-12] == 0.1).all()
 
 
+def test_a_size_is_met_on_a_mesh_that_is_far_too_coarse(dim):
+    mesh = ductile.box((1,) * dim, (1,) * dim)
+    h = 0.02 if dim == 2 else 0.08
+    size = ductile.Size(0.5).near(point=(0.42,) * dim, h=h)
+    out = mesh.remesh(size)
+    assert out.check() == [] and len(out.origin.host) == len(out.points)
+    assert out.origin.host.max() < len(mesh.cells)
+    nearest = np.argmin(np.linalg.norm(out.points - 0.42, axis=1))
+    around = out.cells[(out.cells == nearest).any(axis=1)]
+    lengths = np.linalg.norm(out.points[np.unique(around)] - out.points[nearest], axis=1)
+    assert lengths.max() < 2.5 * h
+    assert ductile.info(out, size).share_in_range > 0.8
+
+
 def test_metrics_are_worked_on(mesh):
     d, count = mesh.dim, len(mesh.points)
     rng = np.random.default_rng(5)

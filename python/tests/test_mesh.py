@@ -182,7 +182,7 @@ def test_pictures_and_notebooks(tmp_path, mesh):
         svg = ductile.draw(out, path, by)
         assert path.read_text() == svg
         assert svg.count("<path") > 1 and "nan" not in svg
-        inside = [float(x) for x in re.findall(r"[ML](\d+\.\d\d) ", svg)]
+        inside = [float(x) for x in re.findall(r"[ML](\d+\.\d) ", svg)]
         assert len(inside) > len(out.facets) / 2 and min(inside) >= 0 and max(inside) <= 800
     page = out._repr_html_()
     assert page.startswith("<div") and "<svg" in page and "quality" in page and "converged" in page
