@@ -12,12 +12,14 @@ solution. What is wrong with arguments raises `InputError`, a `ValueError` that 
 the index.
 """
 
+from ._build import InputWarning
 from ._ductile import Cancelled, Error, InputError, Report
 from ._ductile import version as __version__
 from ._draw import draw
+from ._files import box, read, read_field, save_field, transfer
 from ._info import Info, info
 from ._interop import from_meshio
-from ._mesh import (InputWarning, Mesh, Origin, box, read, read_field, save_field, transfer)
+from ._mesh import Mesh, Origin
 from ._metric import (bound, complexity, full, grade, implied, intersect, metric, packed, sizes)
 from ._size import Size
 

@@ -93,5 +93,5 @@ def _report_text(report: _ductile.Report) -> str:
     return "\n".join(lines + [f"  warning: {line}" for line in report.warnings])
 
 
-_ductile.Report.__str__ = _report_text  # type: ignore[method-assign]
-_ductile.Report.__repr__ = _report_text  # type: ignore[method-assign]
+for _method in ("__str__", "__repr__"):
+    setattr(_ductile.Report, _method, _report_text)

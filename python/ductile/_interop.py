@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional
 
 import numpy as np
 
+from ._build import place_of
 from ._ductile import InputError
 
 if TYPE_CHECKING:
@@ -16,13 +17,12 @@ _REFERENCES = ("gmsh:physical", "medit:ref", "ref", "region", "boundary", "cell_
 
 def _apart(mesh: Mesh, fields: Optional[Mapping[str, Any]]) -> tuple[dict, dict]:
     """Fields at vertices and on cells; by default those of the mesh."""
-    from ._mesh import _place_of
     if fields is None:
         return dict(mesh.fields), dict(mesh.cell_fields)
     at: tuple[dict, dict] = ({}, {})
     for name, values in fields.items():
         array = np.asarray(values)
-        at[_place_of(array, mesh._data, None) == "cells"][name] = array
+        at[place_of(array, mesh._data, None) == "cells"][name] = array
     return at
 
 
@@ -129,9 +129,9 @@ def to_vtk(mesh: Mesh, fields: Optional[Mapping[str, Any]], boundary: bool) -> A
         arrays[name] = np.concatenate([array, np.full((rest, array.shape[1]), np.nan)])
     for data, named in ((grid.GetPointData(), at_points), (grid.GetCellData(), arrays)):
         for name, values in named.items():
-            array = numpy_to_vtk(np.ascontiguousarray(np.reshape(values, (len(values), -1))))
-            array.SetName(name)
-            data.AddArray(array)
+            added = numpy_to_vtk(np.ascontiguousarray(np.reshape(values, (len(values), -1))))
+            added.SetName(name)
+            data.AddArray(added)
     return grid
 
 

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import os
-import warnings
-from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 
 from . import _ductile, _html, _interop
-from ._arrays import (chosen, component_count, converted, field_type, finite, floats, indices,
-                      named, number, references)
+from ._arrays import component_count, field_type, finite, floats, named, number
+from ._build import KINDS, data_of, field, options_of, place_of, warn, with_required
 from ._ductile import InputError
 from ._metric import MetricLike, as_rows, as_tensors, full, packed, sizes
 from ._size import Size
 
 ProgressFunction = Callable[[str, int, int], Optional[bool]]
 Names = Union[Mapping[str, "tuple[int, int]"], Iterable["tuple[str, int, int]"]]
-
-
-class InputWarning(UserWarning):
-    """What a file has and a mesh has no place for, or looks doubtful."""
 
 
 class Origin(NamedTuple):
@@ -36,11 +31,6 @@ class Origin(NamedTuple):
     """(n,) The cell in which each vertex lies, or which is closest."""
     weights: np.ndarray
     """(n, d + 1) Its barycentric weights there."""
-
-
-def _warn(lines: Sequence[str]) -> None:
-    for line in lines:
-        warnings.warn(line, InputWarning, stacklevel=3)
 
 
 class Mesh:
@@ -92,7 +82,7 @@ class Mesh:
                  facet_refs: Any = None, vertex_refs: Any = None, names: Names = ()) -> None:
         state = {"points": points, "cells": cells, "refs": refs, "facets": facets,
                  "facet_refs": facet_refs, "vertex_refs": vertex_refs, "names": names}
-        self._set(_data_of(state))
+        self._set(data_of(state))
 
     # ---- Inside ----
 
@@ -119,7 +109,7 @@ class Mesh:
                                   "vertex_refs", "names")}
         if data.dimension == 3:
             state["edges"], state["edge_refs"] = data.edges, data.edge_refs
-        state["required"] = {kind: data.required(kind) for kind in _KINDS}
+        state["required"] = {kind: data.required(kind) for kind in KINDS}
         return state
 
     def __getstate__(self) -> dict[str, Any]:
@@ -127,7 +117,7 @@ class Mesh:
                 "metric": self.metric}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._set(_data_of(state["mesh"]))
+        self._set(data_of(state["mesh"]))
         self.fields, self.cell_fields = state["fields"], state["cell_fields"]
         self.metric = state["metric"]
 
@@ -144,7 +134,7 @@ class Mesh:
         if M is None:
             return self.metric
         if self._source is None or isinstance(M, Size) or np.ndim(M) == 0 \
-                or len(M) == len(self.points):
+                or np.shape(M)[0] == len(self.points):
             return as_tensors(self, M)
         return _carried(full(as_tensors(Mesh._of(self._source), M)), self._source, self.origin)
 
@@ -306,9 +296,9 @@ class Mesh:
             if metric is not None:
                 raise InputError("remesh: expected one of metric and hsiz, found both")
             metric = number(hsiz, "hsiz")
-        data = _with_required(self._data, vertices=required_vertices, facets=required_facets,
+        data = with_required(self._data, vertices=required_vertices, facets=required_facets,
                               cells=required_cells)
-        options = _options(smallest_size=number(hmin, "hmin"), largest_size=number(hmax, "hmax"),
+        options = options_of(smallest_size=number(hmin, "hmin"), largest_size=number(hmax, "hmax"),
                            gradation=number(hgrad, "hgrad"),
                            required_gradation=number(hgradreq, "hgradreq"),
                            surface_tolerance=number(hausd, "hausd"), ridge_angle=number(ar, "ar"),
@@ -372,15 +362,16 @@ class Mesh:
         >>> new = mesh.remesh(M)
         >>> u = new.transfer(u, conservative=True)
         """
-        how = {"conservative": conservative, "on": on, "source": source, "threads": threads,
-               "deterministic": deterministic}
+        how: dict[str, Any] = {"conservative": conservative, "on": on, "source": source,
+                               "threads": threads,
+                               "deterministic": deterministic}
         if isinstance(u, Mapping):
             return {name: self.transfer(values, **how) for name, values in u.items()}
         before = self._require_source(source)
         array = np.asarray(u)
         if array.dtype.kind == "c":
             return (self.transfer(array.real, **how) + 1j * self.transfer(array.imag, **how))
-        on_cells = _place_of(array, before, on) == "cells"
+        on_cells = place_of(array, before, on) == "cells"
         values = floats(array, "u")
         if conservative:
             finite(values, "u")
@@ -442,15 +433,15 @@ class Mesh:
         name = os.fspath(path)
         given = []
         if fields is not None:
-            given = [_field(key, values, self._data, None) for key, values in fields.items()]
+            given = [field(key, values, self._data, None) for key, values in fields.items()]
         elif _ductile.holds_fields(name):
             own = dict(self.fields)
             if self.metric is not None:
                 own.setdefault("metric", self.metric)
-            given = [_field(key, values, self._data, "vertices") for key, values in own.items()]
-            given += [_field(key, values, self._data, "cells")
+            given = [field(key, values, self._data, "vertices") for key, values in own.items()]
+            given += [field(key, values, self._data, "cells")
                       for key, values in self.cell_fields.items()]
-        _warn(_ductile.save(self._data, name, given))
+        warn(_ductile.save(self._data, name, given))
 
     def to_meshio(self, fields: Optional[Mapping[str, Any]] = None) -> dict[str, Any]:
         """Arguments of ``meshio.Mesh``; references are in "gmsh:physical", names in field_data."""
@@ -478,155 +469,18 @@ class Mesh:
         unknown = set(arrays) - set(state) - {"edges", "edge_refs"}
         if unknown:
             raise InputError(f"replace: expected names of arrays, found {sorted(unknown)[0]!r}")
-        return Mesh._of(_data_of({**state, **arrays}))
-
-
-# ---- Meshes from elsewhere ----
-
-def read(path: Union[str, os.PathLike[str]]) -> Mesh:
-    """Reads a mesh of Gmsh, Medit, Mmg or VTK, whatever its name; see `Mesh.save` for the others.
-
-    Fields in the file are in `fields` and `cell_fields`. What has no place in a `Mesh` is left out with
-    an `InputWarning`. Raises `InputError`, naming file and line, for what is no mesh.
-    """
-    data, fields, lines = _ductile.read(os.fspath(path))
-    _warn(lines)
-    mesh = Mesh._of(data)
-    for name, on_cells, values in fields:
-        (mesh.cell_fields if on_cells else mesh.fields)[name] = values
-    return mesh
-
-
-def read_field(path: Union[str, os.PathLike[str]]) -> Any:
-    """Reads a .sol or .solb: the array at the vertices, or a list of them if there are several."""
-    arrays, lines = _ductile.read_field(os.fspath(path))
-    _warn(lines)
-    return arrays[0] if len(arrays) == 1 else arrays
-
-
-def save_field(path: Union[str, os.PathLike[str]], mesh: Mesh, values: Any) -> None:
-    """Writes values at the vertices of a mesh, such as a metric, as a .sol or .solb."""
-    _, kind, _, rows = _field("values", values, mesh._data, "vertices")
-    _ductile.save_field(os.fspath(path), rows, kind, mesh.dim)
-
-
-def box(extent: Sequence[float], cells: Sequence[int]) -> Mesh:
-    """A rectangle or a box from the origin on, cut into cells and those into triangles or tetrahedra.
-
-    References of facets: 1 and 2 at the ends of x, 3 and 4 at those of y, 5 and 6 at those of z.
-
-    Examples
-    --------
-    >>> mesh = ductile.box((1, 1, 1), (10, 10, 10))
-    """
-    if len(extent) not in (2, 3) or len(cells) != len(extent):
-        raise InputError(f"box: expected 2 or 3 extents and as many numbers of cells, found "
-                         f"{len(extent)} and {len(cells)}")
-    return Mesh._of(_ductile.box([number(x, "extent") for x in extent], [int(n) for n in cells]))
-
-
-def transfer(before: Mesh, u: Any, after: Mesh, **options: Any) -> Any:
-    """Values on one mesh, on another; see `Mesh.transfer`."""
-    return after.transfer(u, source=before, **options)
+        return Mesh._of(data_of({**state, **arrays}))
 
 
 # ---- Inside ----
 
 _MOST_TIMES = 5  # that a mesh is adapted to a Size
 
-_KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
-
-
-def _flat(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Points of triangles in a plane of constant z without their z."""
-    if points.ndim != 2 or points.shape[1] not in (2, 3):
-        raise InputError(f"points: expected shape (n, 2) or (n, 3), found {points.shape}")
-    if points.shape[1] == 3 and cells.shape[1:] == (3,):
-        if len(points) and np.ptp(points[:, 2]) > 1e-6 * np.ptp(points[:, :2]):
-            raise InputError("points: expected a constant z, because cells are triangles: surfaces in "
-                             "space are not supported")
-        return np.ascontiguousarray(points[:, :2])
-    return points
-
-
-def _data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
-    cells = converted(state["cells"], "cells")
-    points = finite(_flat(floats(state["points"], "points"), cells), "points")
-    count, dim = points.shape
-    cells = indices(cells, "cells", dim + 1, count)
-    facets = state["facets"]
-    facets = indices(() if facets is None else facets, "facets", dim, count)
-    data = _ductile.from_arrays(
-        points, references(state["vertex_refs"], "vertex_refs", count),
-        (cells, references(state["refs"], "refs", len(cells))),
-        (facets, references(state["facet_refs"], "facet_refs", len(facets))))
-    if len(state.get("edges", ())):
-        edges = indices(state["edges"], "edges", 2, count).astype(np.int32)
-        data.set_edges(edges, references(state["edge_refs"], "edge_refs", len(edges)))
-    for kind, entities in state.get("required", {}).items():
-        if dim == 3 or kind != "edges":
-            data.require(kind, entities)
-    names = state["names"]
-    if isinstance(names, Mapping):
-        names = [(name, *where) for name, where in names.items()]
-    data.names = list(names)
-    return data
-
-
-def _with_required(data: _ductile.MeshData, **given: Any) -> _ductile.MeshData:
-    """The mesh with more required entities; itself if there are none."""
-    asked = {kind: entities for kind, entities in given.items() if entities is not None}
-    if not asked:
-        return data
-    data = data.copy()
-    counts = {"vertices": len(data.points), "facets": len(data.facets), "cells": len(data.cells)}
-    for kind, entities in asked.items():
-        more = chosen(entities, f"required_{kind}", counts[kind])
-        data.require(kind, np.union1d(data.required(kind), more).astype(np.int32))
-    return data
-
 
 def _has_sizes(mesh: Mesh, size: Size, metric: np.ndarray, options: _ductile.Options) -> bool:
     """Whether a mesh was adapted to about the sizes that are asked for at its vertices, or finer."""
     asked = np.maximum(size.at(mesh), options.smallest_size)
     return bool((sizes(metric)[:, 0] < 1.5 * asked).all())
-
-
-def _options(**values: Any) -> _ductile.Options:
-    options = _ductile.Options()
-    for name, value in values.items():
-        try:
-            setattr(options, name, value)
-        except TypeError:
-            raise InputError(f"remesh: expected a number for {name}, found {value!r}") from None
-    return options
-
-
-def _place_of(array: np.ndarray, data: _ductile.MeshData, on: Optional[str]) -> str:
-    counts = {"vertices": len(data.points), "cells": len(data.cells)}
-    if on is not None and on not in counts:
-        raise InputError(f"on: expected 'vertices' or 'cells', found {on!r}")
-    length = len(array) if array.ndim > 0 else -1
-    places = [place for place, count in counts.items() if count == length and on in (None, place)]
-    if len(places) == 1:
-        return places[0]
-    if places:
-        raise InputError("u: there are as many vertices as cells: say on='vertices' or on='cells'")
-    expected = f"{counts[on]} {on}" if on is not None else \
-        f"{counts['vertices']} vertices or {counts['cells']} cells"
-    raise InputError(f"u: expected a row for each of {expected}, found shape {array.shape}")
-
-
-def _field(name: str, values: Any, data: _ductile.MeshData, on: Optional[str]) -> tuple:
-    """A field as files have it."""
-    array = floats(values, name)
-    place = _place_of(array, data, on)
-    columns = component_count(array.shape)
-    kind = field_type(columns, data.dimension)
-    if kind is None:
-        raise InputError(f"{name}: expected 1 component, a vector, a symmetric tensor or a matrix, "
-                         f"found {columns} components")
-    return name, kind, place == "cells", array.reshape(len(array), columns)
 
 
 def _carried(tensors: np.ndarray, source: _ductile.MeshData, origin: Origin) -> np.ndarray:

@@ -24,7 +24,6 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using meshadapt::NamedField;
 using meshadapt::Warnings;
-using runtime::ExecutorOptions;
 using Handle = std::shared_ptr<AnyMesh>;
 
 // ---- From arrays ----

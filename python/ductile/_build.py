@@ -1,0 +1,111 @@
+"""From arguments to what the C++ library takes: meshes, options, fields."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Mapping, Optional, Sequence
+
+import numpy as np
+
+from . import _ductile
+from ._arrays import (chosen, component_count, converted, field_type, finite, floats, indices,
+                      references)
+from ._ductile import FieldType, InputError
+
+class InputWarning(UserWarning):
+    """What a file has and a mesh has no place for, or looks doubtful."""
+
+
+def warn(lines: Sequence[str]) -> None:
+    for line in lines:
+        warnings.warn(line, InputWarning, stacklevel=3)
+
+
+KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
+
+
+def _flat(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Points of triangles in a plane of constant z without their z."""
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        raise InputError(f"points: expected shape (n, 2) or (n, 3), found {points.shape}")
+    if points.shape[1] == 3 and cells.shape[1:] == (3,):
+        if len(points) and np.ptp(points[:, 2]) > 1e-6 * np.ptp(points[:, :2]):
+            raise InputError("points: expected a constant z, because cells are triangles: surfaces in "
+                             "space are not supported")
+        return np.ascontiguousarray(points[:, :2])
+    return points
+
+
+def data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
+    cells = converted(state["cells"], "cells")
+    points = finite(_flat(floats(state["points"], "points"), cells), "points")
+    count, dim = points.shape
+    cells = indices(cells, "cells", dim + 1, count)
+    facets = state["facets"]
+    facets = indices(() if facets is None else facets, "facets", dim, count)
+    data = _ductile.from_arrays(
+        points, references(state["vertex_refs"], "vertex_refs", count),
+        (cells, references(state["refs"], "refs", len(cells))),
+        (facets, references(state["facet_refs"], "facet_refs", len(facets))))
+    if len(state.get("edges", ())):
+        edges = indices(state["edges"], "edges", 2, count).astype(np.int32)
+        data.set_edges(edges, references(state["edge_refs"], "edge_refs", len(edges)))
+    for kind, entities in state.get("required", {}).items():
+        if dim == 3 or kind != "edges":
+            data.require(kind, entities)
+    names = state["names"]
+    if isinstance(names, Mapping):
+        names = [(name, *where) for name, where in names.items()]
+    data.names = list(names)
+    return data
+
+
+def with_required(data: _ductile.MeshData, **given: Any) -> _ductile.MeshData:
+    """The mesh with more required entities; itself if there are none."""
+    asked = {kind: entities for kind, entities in given.items() if entities is not None}
+    if not asked:
+        return data
+    data = data.copy()
+    counts = {"vertices": len(data.points), "facets": len(data.facets), "cells": len(data.cells)}
+    for kind, entities in asked.items():
+        more = chosen(entities, f"required_{kind}", counts[kind])
+        data.require(kind, np.union1d(data.required(kind), more).astype(np.int32))
+    return data
+
+
+def options_of(**values: Any) -> _ductile.Options:
+    options = _ductile.Options()
+    for name, value in values.items():
+        try:
+            setattr(options, name, value)
+        except TypeError:
+            raise InputError(f"remesh: expected a number for {name}, found {value!r}") from None
+    return options
+
+
+def place_of(array: np.ndarray, data: _ductile.MeshData, on: Optional[str]) -> str:
+    counts = {"vertices": len(data.points), "cells": len(data.cells)}
+    if on is not None and on not in counts:
+        raise InputError(f"on: expected 'vertices' or 'cells', found {on!r}")
+    length = len(array) if array.ndim > 0 else -1
+    places = [place for place, count in counts.items() if count == length and on in (None, place)]
+    if len(places) == 1:
+        return places[0]
+    if places:
+        raise InputError("u: there are as many vertices as cells: say on='vertices' or on='cells'")
+    expected = f"{counts[on]} {on}" if on is not None else \
+        f"{counts['vertices']} vertices or {counts['cells']} cells"
+    raise InputError(f"u: expected a row for each of {expected}, found shape {array.shape}")
+
+
+def field(name: str, values: Any, data: _ductile.MeshData,
+          on: Optional[str]) -> tuple[str, FieldType, bool, np.ndarray]:
+    """A field as files have it."""
+    array = floats(values, name)
+    place = place_of(array, data, on)
+    columns = component_count(array.shape)
+    kind = field_type(columns, data.dimension)
+    if kind is None:
+        raise InputError(f"{name}: expected 1 component, a vector, a symmetric tensor or a matrix, "
+                         f"found {columns} components")
+    return name, kind, place == "cells", array.reshape(len(array), columns)
