@@ -65,7 +65,10 @@ def references(values: Any, name: str, count: int) -> Array:
     array = converted(values, name)
     if array.shape != (count,):
         raise InputError(f"{name}: expected shape ({count},), found {array.shape}")
-    whole = array.astype(np.int32)
+    if array.dtype.kind not in "biuf":
+        raise InputError(f"{name}: expected whole numbers, found {array.dtype}")
+    with np.errstate(invalid="ignore"):
+        whole = array.astype(np.int32)
     wrong = whole != array
     if wrong.any():
         at = int(np.argmax(wrong))

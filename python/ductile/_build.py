@@ -12,16 +12,17 @@ from ._arrays import (chosen, component_count, converted, field_type, finite, fl
                       references)
 from ._ductile import FieldType, InputError
 
+KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
+
+
 class InputWarning(UserWarning):
     """What a file has and a mesh has no place for, or looks doubtful."""
 
 
 def warn(lines: Sequence[str]) -> None:
+    """Warns the caller of the caller, once for each line."""
     for line in lines:
         warnings.warn(line, InputWarning, stacklevel=3)
-
-
-KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
 
 
 def _flat(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -37,6 +38,7 @@ def _flat(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
+    """A mesh of arrays by the names of `Mesh`'s parameters, and what else pickles hold."""
     cells = converted(state["cells"], "cells")
     points = finite(_flat(floats(state["points"], "points"), cells), "points")
     count, dim = points.shape

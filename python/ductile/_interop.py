@@ -144,17 +144,20 @@ def to_dmplex(mesh: Mesh, comm: Any) -> Any:
         raise ImportError("to_dmplex needs petsc4py: install it, or python3-petsc4py on Debian") \
             from error
     comm = PETSc.COMM_SELF if comm is None else comm
+    first = PETSc.Comm(comm).getRank() == 0
     integers = PETSc.IntType
     cells = mesh.cells.astype(integers)
     if mesh.dim == 3:
         cells = cells[:, [0, 2, 1, 3]]  # PETSc's tetrahedra are turned the other way
-    plex = PETSc.DMPlex().createFromCellList(mesh.dim, cells, mesh.points, interpolate=True,
+    count = len(cells) if first else 0
+    points = mesh.points if first else mesh.points[:0]
+    plex = PETSc.DMPlex().createFromCellList(mesh.dim, cells[:count], points, interpolate=True,
                                              comm=comm)
     first_cell, _ = plex.getHeightStratum(0)
     first_vertex, last_vertex = plex.getDepthStratum(0)
     plex.createLabel("Cell Sets")
     plex.createLabel("Face Sets")
-    for cell, ref in enumerate(mesh.refs.tolist()):
+    for cell, ref in enumerate(mesh.refs[:count].tolist()):
         plex.setLabelValue("Cell Sets", first_cell + cell, ref)
     listed = {tuple(corners): ref for corners, ref in
               zip(np.sort(mesh.facets, axis=1).tolist(), mesh.facet_refs.tolist())}

@@ -304,7 +304,7 @@ class Mesh:
                            surface_tolerance=number(hausd, "hausd"), ridge_angle=number(ar, "ar"),
                            iterations=iterations, thorough=thorough, move=not nomove,
                            swap=not noswap, insert=not noinsert, lock_boundary=nosurf,
-                           memory_limit=int(memory) << 20)
+                           memory_limit=int(number(memory, "memory")) << 20)
         executor = _ductile.Executor(threads, deterministic)
         adapted, at_vertices, report = self._adapted(data, metric, options, executor, progress)
         out = Mesh._of(adapted)
@@ -455,7 +455,10 @@ class Mesh:
         return _interop.to_vtk(self, fields, boundary)
 
     def to_dmplex(self, comm: Any = None) -> Any:
-        """A ``petsc4py.PETSc.DMPlex`` with labels "Cell Sets" and "Face Sets". Needs petsc4py."""
+        """A ``petsc4py.PETSc.DMPlex`` with labels "Cell Sets" and "Face Sets". Needs petsc4py.
+
+        With more than one process in `comm`, the first one's mesh counts; ``distribute()`` it then.
+        """
         return _interop.to_dmplex(self, comm)
 
     def replace(self, **arrays: Any) -> Mesh:

@@ -128,6 +128,46 @@ def test_what_is_wrong_is_named(number):
     assert "\n" not in str(caught.value)
 
 
+def test_random_arguments_are_taken_or_refused(dim):
+    """Arrays of any type, shape and value: a valid mesh, or an error that says something."""
+    rng = np.random.default_rng(dim)
+    box = ductile.box((1,) * dim, (2,) * dim)
+
+    def spoilt(array):
+        kind = rng.integers(8)
+        array = array.astype(rng.choice([array.dtype, np.int8, np.int64, np.uint64, np.float32, object]))
+        if kind == 0:
+            return array[: rng.integers(len(array))]
+        if kind == 1:
+            return array.reshape(-1)
+        if kind == 2:
+            array.flat[rng.integers(array.size)] = rng.choice([-1, 0, 100])
+        if kind == 3 and array.dtype.kind in "fO":
+            array.flat[rng.integers(array.size)] = rng.choice([np.nan, np.inf, 1e30])
+        if kind == 4:
+            return np.asfortranarray(array)[..., ::-1]
+        if kind == 5:
+            return [array, None, "x", 1.5, {}][rng.integers(5)]
+        return array
+
+    taken = refused = 0
+    for _ in range(60):
+        points, cells, refs, facets = (spoilt(a) if rng.random() < 0.15 else a for a in
+                                       (box.points, box.cells, box.refs, box.facets))
+        try:
+            mesh = ductile.Mesh(points, cells, refs=refs, facets=facets)
+            metric = ductile.implied(mesh)
+            metric = spoilt(metric) if rng.random() < 0.3 else metric
+            out = mesh.remesh(metric, hmin=0.1, iterations=3)
+        except ductile.Error as error:
+            assert str(error) and "\n" not in str(error)
+            refused += 1
+            continue
+        assert out.check() == []
+        taken += 1
+    assert taken > 15 and refused > 15
+
+
 @pytest.mark.filterwarnings("ignore:.*no place for names")
 @pytest.mark.parametrize("ending", [".mesh", ".meshb", ".msh", ".vtu", ".vtk"])
 def test_files_keep_everything(tmp_path, dim, ending):

@@ -33,9 +33,9 @@ endif()
 
 forbid("#include .*meshadapt" "runtime knows nothing of meshadapt" include/ductile/runtime runtime)
 forbid("#include .*meshadapt" "runtime's tests build without meshadapt" tests/runtime)
-forbid("#include .*cli/" "only the program includes the program" ${below_program} c)
+forbid("#include .*cli/" "only the program includes the program" ${below_program} c python)
 
-set(above_runtime include/ductile/meshadapt meshadapt c docs/examples)
+set(above_runtime include/ductile/meshadapt meshadapt c python docs/examples)
 forbid("#pragma +omp|<omp\\.h>|omp_[a-z]+_" "OpenMP stays inside runtime" ${above_runtime})
 forbid("<(atomic|mutex|shared_mutex|thread|condition_variable|future|semaphore|barrier|latch|stop_token)>"
   "atomics, locks and threads stay inside runtime" ${above_runtime})
