@@ -65,7 +65,7 @@ class Mesh:
     metric : ndarray or None
         Of an adapted mesh, the metric at its vertices.
     report : Report or None
-        Of an adapted mesh, how the adaptation went.
+        Of an adapted mesh, how the adaptation went; with a `Size`, the last one.
 
     Examples
     --------
