@@ -71,7 +71,7 @@ class Mesh:
     --------
     >>> mesh = ductile.Mesh([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1, 2], [0, 2, 3]])
     >>> mesh.remesh(0.1)
-    Mesh(dim=2, points=123, cells=204, facets=40)
+    Mesh(dim=2, points=135, cells=230, facets=38)
 
     Notes
     -----
