@@ -107,7 +107,8 @@ void bind_report(py::module_& module) {
       .def_readonly("considered", &KernelReport::considered)
       .def_readonly("applied", &KernelReport::applied)
       .def_readonly("rounds", &KernelReport::rounds);
-  py::class_<AdaptReport>(module, "Report")
+  py::class_<AdaptReport>(module, "Report",
+                          "How an adaptation went: rounds, seconds, what was done, warnings.")
       .def_readonly("iterations", &AdaptReport::iterations)
       .def_readonly("converged", &AdaptReport::converged)
       .def_readonly("coarsen", &AdaptReport::coarsen)

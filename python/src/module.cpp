@@ -13,10 +13,13 @@ namespace {
 
 /// ductile.InputError is a ductile.Error and a ValueError.
 void bind_errors(py::module_& module) {
-  const auto& error = py::register_exception<meshadapt::Error>(module, "Error", PyExc_RuntimeError);
-  py::register_exception<meshadapt::InputError>(
+  auto& error = py::register_exception<meshadapt::Error>(module, "Error", PyExc_RuntimeError);
+  auto& input = py::register_exception<meshadapt::InputError>(
       module, "InputError", py::make_tuple(error, py::handle(PyExc_ValueError)));
-  py::register_exception<meshadapt::Cancelled>(module, "Cancelled", error);
+  auto& cancelled = py::register_exception<meshadapt::Cancelled>(module, "Cancelled", error);
+  error.doc() = "Something outside failed: memory, the disk, a result that is not valid.";
+  input.doc() = "An array, a file or an option is wrong; the text names it and the index.";
+  cancelled.doc() = "The progress function has returned False; there is no result.";
 }
 
 void bind_executor(py::module_& module) {

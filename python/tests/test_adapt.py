@@ -254,3 +254,18 @@ def test_processes_that_fork_adapt_too(mesh):
     with multiprocessing.get_context("fork").Pool(2) as pool:
         for result in pool.map_async(adapted, [mesh] * 3).get(timeout=60):
             assert same(result, expected)
+
+
+def test_curved_boundaries_are_followed(dim):
+    box = ductile.box((2,) * dim, (8 if dim == 2 else 6,) * dim)
+    x = box.points - 1
+    far = np.maximum(np.abs(x).max(axis=1), 1e-30)
+    ball = ductile.Mesh(x * (far / np.maximum(np.linalg.norm(x, axis=1), 1e-30))[:, None], box.cells)
+    sizes = ductile.Size(0.2).near(point=(0.7,) + (0,) * (dim - 1), h=0.05)
+    for metric, bounds in ((None, {"hmax": 0.12}), (sizes, {}), (0.5, {})):
+        out = ball.remesh(metric, hausd=0.01, hgrad=1.5, **bounds)
+        assert out.check() == [] and not out.report.warnings
+        radius = np.linalg.norm(out.points[np.unique(out.facets)], axis=1)
+        assert radius.min() > 0.93 and radius.max() < 1.02
+    exact = ball.remesh(0.15)  # without hausd the facets stay
+    assert volumes(exact).sum() == pytest.approx(np.abs(volumes(ball)).sum(), rel=1e-9)

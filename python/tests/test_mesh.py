@@ -226,3 +226,28 @@ def test_pictures_and_notebooks(tmp_path, mesh):
         assert len(inside) > len(out.facets) / 2 and min(inside) >= 0 and max(inside) <= 800
     page = out._repr_html_()
     assert page.startswith("<div") and "<svg" in page and "quality" in page and "converged" in page
+
+
+def test_stubs_name_what_the_module_has():
+    import ast
+    import pathlib
+
+    from ductile import _ductile
+    stub = pathlib.Path(ductile.__file__).with_name("_ductile.pyi").read_text(encoding="utf-8")
+    said = {}
+    for node in ast.parse(stub).body:
+        if isinstance(node, ast.ClassDef):
+            said[node.name] = {part.name if isinstance(part, ast.FunctionDef) else part.target.id
+                               for part in node.body
+                               if isinstance(part, (ast.FunctionDef, ast.AnnAssign))}
+        elif isinstance(node, (ast.FunctionDef, ast.AnnAssign)):
+            said[node.name if isinstance(node, ast.FunctionDef) else node.target.id] = None
+    has = {name for name in dir(_ductile) if not name.startswith("__")}
+    assert has == set(said)
+    for name, members in said.items():
+        if members:
+            theirs = {member for member in vars(getattr(_ductile, name))
+                      if not member.startswith("__")} - {"name", "value"}
+            assert theirs == members - {"__init__"}, name
+    assert sorted(ductile.__all__) == ductile.__all__ and all(
+        getattr(ductile, name).__doc__ for name in ductile.__all__)
