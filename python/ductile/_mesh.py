@@ -384,7 +384,8 @@ class Mesh:
              for i in range(columns)]
         with named(self.dim):
             carried = [_ductile.transfer(before, self._data, part,
-                                         (part_kind, on_cells, conservative), executor)[0] for part, part_kind in parts]
+                                         (part_kind, on_cells, conservative), executor)[0]
+                       for part, part_kind in parts]
         result = carried[0] if len(carried) == 1 else np.column_stack(carried)
         result = result.reshape(-1, *values.shape[1:])
         return result.astype(array.dtype) if on_cells and not conservative else result
@@ -421,7 +422,9 @@ class Mesh:
 
     def save(self, path: Union[str, os.PathLike[str]], *,
              fields: Optional[Mapping[str, Any]] = None) -> None:
-        """Writes a file, of the format that its name says: .mesh, .meshb, .msh, .vtu, .vtk, .stl, .su2.
+        """Writes a file of the format that its name says.
+
+        Those are .mesh, .meshb, .msh, .vtu, .vtk, .stl and .su2.
 
         Parameters
         ----------
