@@ -18,13 +18,13 @@ from ._ductile import version as __version__
 from ._draw import draw
 from ._files import box, read, read_field, save_field, transfer
 from ._info import Info, info
-from ._interop import from_meshio
+from ._interop import from_meshio, from_vtk
 from ._mesh import Mesh, Origin
 from ._metric import (bound, complexity, full, grade, implied, intersect, metric, packed, sizes)
 from ._size import Size
 
 __all__ = [
     "Cancelled", "Error", "Info", "InputError", "InputWarning", "Mesh", "Origin", "Report", "Size",
-    "__version__", "bound", "box", "complexity", "draw", "from_meshio", "full", "grade", "implied",
+    "__version__", "bound", "box", "complexity", "draw", "from_meshio", "from_vtk", "full", "grade", "implied",
     "info", "intersect", "metric", "packed", "read", "read_field", "save_field", "sizes", "transfer",
 ]

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from ._mesh import Mesh
 
 _REFERENCES = ("gmsh:physical", "medit:ref", "ref", "region", "boundary", "cell_tags")
+_VERTEX, _LINE, _TRIANGLE, _TETRAHEDRON = 1, 3, 5, 10  # VTK's types of cells
 
 
 def _apart(mesh: Mesh, fields: Optional[Mapping[str, Any]]) -> tuple[dict, dict]:
@@ -104,10 +105,9 @@ def to_vtk(mesh: Mesh, fields: Optional[Mapping[str, Any]], boundary: bool) -> A
         np.column_stack([mesh.points, np.zeros(len(mesh.points))])
     points.SetData(numpy_to_vtk(spatial))
     grid.SetPoints(points)
-    triangle, tetrahedron, line = 5, 10, 3
-    kinds = [(triangle if mesh.dim == 2 else tetrahedron, mesh.cells)]
+    kinds = [(_TRIANGLE if mesh.dim == 2 else _TETRAHEDRON, mesh.cells)]
     if boundary:
-        kinds.append((line if mesh.dim == 2 else triangle, mesh.facets))
+        kinds.append((_LINE if mesh.dim == 2 else _TRIANGLE, mesh.facets))
     types = np.concatenate([np.full(len(c), kind, np.uint8) for kind, c in kinds])
     corners = np.concatenate([np.full(len(c), c.shape[1], np.int32) for _, c in kinds])
     offsets = np.concatenate([[0], np.cumsum(corners)]).astype(np.int32)
@@ -133,6 +133,48 @@ def to_vtk(mesh: Mesh, fields: Optional[Mapping[str, Any]], boundary: bool) -> A
             added.SetName(name)
             data.AddArray(added)
     return grid
+
+
+def from_vtk(data: Any) -> Mesh:
+    """A mesh of a ``vtkUnstructuredGrid`` or ``vtkPolyData``, such as pyvista's.
+
+    Its tetrahedra, or otherwise triangles in a plane of constant z, and what lies on their boundary.
+    References are taken from "region" and "boundary", fields from the point data and, of cells, the cell
+    data. Other cells raise `InputError`.
+    """
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    from ._mesh import Mesh
+    points = vtk_to_numpy(data.GetPoints().GetData()).astype(float)
+    arrays = data.GetPolys() if hasattr(data, "GetPolys") else data.GetCells()
+    offsets = vtk_to_numpy(arrays.GetOffsetsArray())
+    corners = vtk_to_numpy(arrays.GetConnectivityArray())
+    types = np.where(np.diff(offsets) == 3, _TRIANGLE, -1) if hasattr(data, "GetPolys") else \
+        vtk_to_numpy(data.GetCellTypesArray())
+    wrong = ~np.isin(types, (_VERTEX, _LINE, _TRIANGLE, _TETRAHEDRON))
+    if wrong.any():
+        at = int(np.argmax(wrong))
+        raise InputError(f"cell {at}: expected triangles, tetrahedra, lines or vertices, found type "
+                         f"{types[at]}")
+    cell, facet = (_TETRAHEDRON, _TRIANGLE) if (types == _TETRAHEDRON).any() else (_TRIANGLE, _LINE)
+
+    def of(source: Any) -> dict[str, np.ndarray]:
+        named = (source.GetArray(i) for i in range(source.GetNumberOfArrays()))
+        return {array.GetName(): vtk_to_numpy(array) for array in named if array is not None}
+
+    def corners_of(kind: int) -> np.ndarray:
+        count = {_LINE: 2, _TRIANGLE: 3, _TETRAHEDRON: 4}[kind]
+        return corners[offsets[:-1][types == kind][:, None] + np.arange(count)]
+
+    on_cells = {name: values for name, values in of(data.GetCellData()).items()
+                if len(values) == len(types)}
+    refs, facet_refs = on_cells.pop("region", None), on_cells.pop("boundary", None)
+    mesh = Mesh(points, corners_of(cell), facets=corners_of(facet),
+                refs=None if refs is None else refs[types == cell],
+                facet_refs=None if facet_refs is None else facet_refs[types == facet])
+    mesh.fields = {name: values.copy() for name, values in of(data.GetPointData()).items()}
+    mesh.cell_fields = {name: values[types == cell] for name, values in on_cells.items()}
+    return mesh
 
 
 # ---- PETSc ----

@@ -60,6 +60,26 @@ def test_vtk(out):
         regions = vtk_to_numpy(grid.GetCellData().GetArray("region"))
         np.testing.assert_array_equal(regions.ravel()[:count], out.refs)
         assert grid.GetCellType(0) == (5 if out.dim == 2 else 10)
+        again = ductile.from_vtk(grid)
+        for name in ("points", "cells", "refs") + (("facets", "facet_refs") if boundary else ()):
+            np.testing.assert_array_equal(getattr(again, name), getattr(out, name), err_msg=name)
+        np.testing.assert_array_equal(again.fields["u"].ravel(), out.fields["u"])
+        np.testing.assert_array_equal(again.cell_fields["q"].ravel(), out.quality())
+
+
+def test_vtk_of_others():
+    vtk = pytest.importorskip("vtkmodules.vtkFiltersSources")
+    plane = vtk.vtkDiskSource()
+    plane.SetCircumferentialResolution(12)
+    plane.Update()
+    with pytest.raises(ductile.InputError, match="cell 0: expected triangles"):
+        ductile.from_vtk(plane.GetOutput())
+    filters = pytest.importorskip("vtkmodules.vtkFiltersCore")
+    triangles = filters.vtkTriangleFilter()
+    triangles.SetInputConnection(plane.GetOutputPort())
+    triangles.Update()
+    disk = ductile.from_vtk(triangles.GetOutput())
+    assert disk.dim == 2 and disk.remesh(0.1).check() == []
 
 
 def test_vtk_keeps_memory_alive(dim):
