@@ -99,7 +99,7 @@ double figure(const AdaptReport& report, std::string_view name) {
 }  // namespace
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: what follows is not theirs
+using namespace ductile;  // NOLINT: the functions for C are in no namespace
 
 extern "C" {
 

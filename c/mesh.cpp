@@ -137,7 +137,7 @@ void keep_error(const char* text) noexcept {
 
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: what follows is not theirs
+using namespace ductile;  // NOLINT: the functions for C are in no namespace
 
 extern "C" {
 

@@ -76,7 +76,7 @@ std::string all_names() {
 }  // namespace
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: what follows is not theirs
+using namespace ductile;  // NOLINT: the functions for C are in no namespace
 
 extern "C" {
 

@@ -64,7 +64,7 @@ void copy_to(double* values, const std::vector<meshadapt::NamedField>& fields) {
 }  // namespace
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: what follows is not theirs
+using namespace ductile;  // NOLINT: the functions for C are in no namespace
 
 extern "C" {
 
