@@ -191,7 +191,8 @@ struct GrowingSize {
     if (slope == unlimited) return here();
     return slope > 0 ? (other - size) / slope : unlimited;
   }
-  double here() const { return 1e-9 * size; }  // but for rounding
+  /// A distance below this counts as 0; rounding may be the reason for it.
+  double here() const { return 1e-9 * size; }
 
   double size, slope = unlimited, largest = unlimited;
 };

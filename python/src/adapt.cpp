@@ -24,7 +24,8 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using meshadapt::KernelReport;
 
-/// Of anything that is true or false, also numpy's; who says nothing says nothing against it.
+/// Whether a progress function wants to go on: it returns None, or anything that Python or numpy
+/// takes for true.
 bool is_true(const py::object& answer) {
   if (answer.is_none()) return true;
   const int truth = PyObject_IsTrue(answer.ptr());

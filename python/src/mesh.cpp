@@ -247,7 +247,7 @@ void bind_statistics(py::module_& module) {
       .def_property_readonly("share_in_range", &MeshStatistics::share_in_range);
 }
 
-/// A metric that may be left out, as what C++ takes.
+/// A metric as an AnyField for C++, or none if the caller gave none.
 struct MaybeMetric {
   MaybeMetric(const AnyMesh& mesh, const std::optional<Given<double>>& given) {
     if (given) field = field_of(*given, AnyField::Type::symmetric, mesh.dimension, "metric");
