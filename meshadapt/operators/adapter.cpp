@@ -38,6 +38,10 @@ constexpr double many_poor = 5e-3;
 /// Of what the metric asks for, in elements that are much too coarse for how sizes change.
 constexpr double much_of_demand = 0.2;
 
+/// Of elements: where a sweep of collapses makes fewer, what it leaves waits for the next round of all
+/// kernels. Most of that is refused again as long as nothing else has changed.
+constexpr double many_collapses = 0.1;
+
 /// Swapping takes the worst elements first only within windows, which stay in cache while they are
 /// reserved, planned and applied.
 constexpr RoundsOptions by_windows{.most_rounds = 1000, .reserving_window = 32768};
@@ -371,7 +375,7 @@ std::size_t Adapter<Dim>::coarsen() {
     const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
     add(report_.coarsen, rounds);
     changes += rounds.applied;
-    if (share(rounds.applied) < 0.02) break;
+    if (share(rounds.applied) < many_collapses) break;
   }
   tell("coarsen", changes);
   return changes;
