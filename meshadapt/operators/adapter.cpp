@@ -38,8 +38,8 @@ constexpr double many_poor = 5e-3;
 /// Of what the metric asks for, in elements that are much too coarse for how sizes change.
 constexpr double much_of_demand = 0.2;
 
-/// Of elements: where a sweep of collapses makes fewer, what it leaves waits for the next round of all
-/// kernels. Most of that is refused again as long as nothing else has changed.
+/// Of elements: where a sweep of collapses makes fewer, what it leaves waits for the next round of
+/// all kernels. Most of that is refused again as long as nothing else has changed.
 constexpr double many_collapses = 0.1;
 
 /// Swapping takes the worst elements first only within windows, which stay in cache while they are
