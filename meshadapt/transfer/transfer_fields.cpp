@@ -12,6 +12,7 @@
 #include "ductile/meshadapt/transfer.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
+#include "mesh/wording.hpp"
 #include "transfer/element_fields.hpp"
 #include "transfer/places.hpp"
 #include "transfer/projection.hpp"
@@ -35,9 +36,10 @@ std::size_t entity_count(const AnyMesh& mesh, Where place) {
 }
 
 /// How messages call a field.
-std::string called(const NamedField& field, std::size_t index) {
-  const std::string place = "fields[" + std::to_string(index) + "]";
-  return field.name.empty() ? place : place + " \"" + field.name + "\"";
+Wording called(const NamedField& field, std::size_t index) {
+  const std::string name = field.name.empty() ? "" : " \"" + field.name + "\"";
+  return {"fields[" + std::to_string(index) + "]" + name,
+          "field" + (name.empty() ? " " + std::to_string(index + 1) : name)};
 }
 
 void expect_field(const Executor& executor, const NamedFieldsOnMesh& from, std::size_t index,
@@ -45,21 +47,23 @@ void expect_field(const Executor& executor, const NamedFieldsOnMesh& from, std::
   const NamedField& field = from.fields[index];
   const int type = static_cast<int>(field.type);
   if (type < 1 || type > 4)
-    throw InputError(called(field, index) + ": expected a type from 1 to 4, found " +
-                     std::to_string(type));
+    refuse(called(field, index) + ": expected a type from 1 to 4, found " + std::to_string(type));
   const std::size_t each = components(field, from.mesh.dimension);
   const std::size_t count = entity_count(from.mesh, field.place);
+  const bool at_vertices = field.place == Where::vertices;
   if (field.values.size() != each * count)
-    throw InputError(called(field, index) + ": expected " + std::to_string(each) +
-                     " numbers in values for each of the " + std::to_string(count) +
-                     (field.place == Where::vertices ? " vertices" : " elements") + ", found " +
-                     std::to_string(field.values.size()));
+    refuse(called(field, index) + ": expected " + std::to_string(each) +
+           " numbers in values for each of the " + std::to_string(count) +
+           (at_vertices ? " vertices" : " elements") + ", found " +
+           std::to_string(field.values.size()));
   if (carrying == Carrying::by_value) return;
   const std::size_t bad = first_bad(executor, field.values.size(),
                                     [&](std::size_t i) { return !std::isfinite(field.values[i]); });
   if (bad != no_index)
-    throw InputError(called(field, index) + ": expected finite numbers, found " +
-                     std::to_string(field.values[bad]) + " at values[" + std::to_string(bad) + "]");
+    refuse(called(field, index) + ": expected finite numbers, found " +
+           std::to_string(field.values[bad]) + " at " +
+           Wording("values[" + std::to_string(bad) + "]",
+                   (at_vertices ? "vertex " : "element ") + std::to_string(bad / each + 1)));
 }
 
 template <int Dim>
