@@ -302,8 +302,9 @@ void warn_of_fields_left(const Job& job, const meshadapt::MeshWithFields& file,
   for (const meshadapt::NamedField& field : file.fields)
     if (field.name != "metric") names += (names.empty() ? "" : ", ") + field.name;
   if (!names.empty() && job.fields.inputs().empty())
-    warnings.push_back(file.mesh.name + ": its fields are not carried: " + names +
-                       "; --field takes those at the vertices of a file along");
+    warnings.push_back(
+        file.mesh.name + ": its fields are not carried: " + names +
+        "; --field takes those at the vertices of a file along, ductile transfer all");
 }
 
 int work(const Executor& executor, Job job) {

@@ -21,7 +21,8 @@ struct Command {
   int (*run)(const Arguments& arguments);  ///< returns the exit status; throws Error
 };
 
-extern const Command adapt_command, info_command, metric_command, view_command, convert_command;
+extern const Command adapt_command, info_command, metric_command, transfer_command, view_command,
+    convert_command;
 
 /// All commands, in the order of help.
 std::span<const Command* const> commands();

@@ -118,11 +118,10 @@ void convert_field(const meshadapt::AnyField& field, const fs::path& to,
 
 void warn_of_fields(const meshadapt::MeshWithFields& file, const fs::path& to,
                     meshadapt::Warnings& warnings) {
-  std::string names;
-  for (const auto& field : file.fields) names += (names.empty() ? "" : ", ") + field.name;
-  if (!names.empty())
+  if (!file.fields.empty())
     warnings.push_back(to.string() + ": holds no fields, those of " + file.mesh.name +
-                       " are left out: " + names + "; convert to a .sol for those at vertices");
+                       " are left out: " + names_of(file.fields) +
+                       "; convert to a .sol for those at vertices");
 }
 
 void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arguments,

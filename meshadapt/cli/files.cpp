@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <system_error>
+#include <utility>
 
 #include "arguments.hpp"
 #include "ductile/meshadapt/atomic_file.hpp"
@@ -76,28 +77,36 @@ bool holds_fields(const fs::path& path) {
   return format != nullptr && format->holds_fields;
 }
 
+bool is_at_vertices(const meshadapt::NamedField& field) {
+  return field.place == meshadapt::NamedField::Place::vertices;
+}
+
+std::string names_of(const std::vector<meshadapt::NamedField>& fields) {
+  std::string names;
+  for (const auto& field : fields) names += (names.empty() ? "" : ", ") + field.name;
+  return names;
+}
+
 namespace {
 
 meshadapt::AnyField any_field(const meshadapt::NamedField& field, const meshadapt::AnyMesh& mesh) {
   return {mesh.dimension, mesh.vertex_count(), {field.type}, field.values, mesh.name};
 }
 
-bool is_at_vertices(const meshadapt::NamedField& field) {
-  return field.place == meshadapt::NamedField::Place::vertices;
-}
-
 /// All of one file.
 meshadapt::AnyField fields_in(const fs::path& path, meshadapt::Warnings& warnings) {
   if (!holds_fields(path)) return meshadapt::read_field(path, &warnings);
-  const auto file = meshadapt::read_mesh_with_fields(path, &warnings);
-  std::optional<meshadapt::AnyField> all;
-  for (const auto& field : file.fields)
-    if (is_at_vertices(field))
-      all =
-          all ? meshadapt::joined(*all, any_field(field, file.mesh)) : any_field(field, file.mesh);
-  if (!all)
+  auto file = meshadapt::read_mesh_with_fields(path, &warnings);
+  std::erase_if(file.fields, [](const auto& field) { return !is_at_vertices(field); });
+  if (file.fields.empty())
     throw meshadapt::InputError(path.string() + ": expected fields at vertices, found none");
-  return *all;
+  return side_by_side(file.fields, file.mesh);
+}
+
+/// How many entities of a mesh a field has values for.
+std::size_t entity_count(const meshadapt::AnyMesh& mesh, meshadapt::NamedField::Place place) {
+  if (place == meshadapt::NamedField::Place::vertices) return mesh.vertex_count();
+  return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
 meshadapt::AnyField metric_of_file(const fs::path& path, meshadapt::Warnings& warnings) {
@@ -134,6 +143,38 @@ meshadapt::AnyField read_fields(const fs::path& path, const meshadapt::AnyMesh& 
     field.dimension = mesh.dimension;  // which may be 2 in a file of dimension 3 that is flat
   meshadapt::expect_field_of(field, mesh);
   return field;
+}
+
+meshadapt::AnyField side_by_side(const std::vector<meshadapt::NamedField>& fields,
+                                 const meshadapt::AnyMesh& mesh) {
+  meshadapt::AnyField all = any_field(fields.at(0), mesh);
+  for (std::size_t i = 1; i < fields.size(); ++i)
+    all = meshadapt::joined(all, any_field(fields[i], mesh));
+  return all;
+}
+
+std::vector<meshadapt::NamedField> read_named_fields(const fs::path& path,
+                                                     const meshadapt::AnyMesh& mesh,
+                                                     meshadapt::Warnings& warnings) {
+  if (!holds_fields(path))
+    return meshadapt::named_fields(read_fields(path, mesh, warnings),
+                                   as_utf8(path.stem().string()));
+  auto file = meshadapt::read_mesh_with_fields(path, &warnings);
+  if (file.mesh.dimension != mesh.dimension)
+    throw meshadapt::InputError(path.string() + ": expected fields of dimension " +
+                                std::to_string(mesh.dimension) + ", that of " + mesh.name +
+                                ", found " + std::to_string(file.mesh.dimension) +
+                                "; give fields of this mesh");
+  for (const auto& field : file.fields) {
+    const std::size_t expected = entity_count(mesh, field.place),
+                      found = entity_count(file.mesh, field.place);
+    if (found != expected)
+      throw meshadapt::InputError(
+          path.string() + ": expected " + std::to_string(expected) + " values in '" + field.name +
+          "', one for each " + (is_at_vertices(field) ? "vertex" : "element") + " of " + mesh.name +
+          ", found " + std::to_string(found) + "; give fields of this mesh");
+  }
+  return std::move(file.fields);
 }
 
 std::string as_utf8(const std::string& text) {

@@ -62,6 +62,21 @@ meshadapt::AnyField read_metric(const std::filesystem::path& path, const meshada
 meshadapt::AnyField read_fields(const std::filesystem::path& path, const meshadapt::AnyMesh& mesh,
                                 meshadapt::Warnings& warnings);
 
+/// All fields of a file, at vertices and on elements, by name. Those of a .sol are called like the
+/// file, NAME, or NAME_1, NAME_2, ... if there are several. Checks that they are of this mesh.
+std::vector<meshadapt::NamedField> read_named_fields(const std::filesystem::path& path,
+                                                     const meshadapt::AnyMesh& mesh,
+                                                     meshadapt::Warnings& warnings);
+
+/// Fields at the vertices of a mesh, of which there is at least one, side by side.
+meshadapt::AnyField side_by_side(const std::vector<meshadapt::NamedField>& fields,
+                                 const meshadapt::AnyMesh& mesh);
+
+/// Their names, "u, p", for messages.
+std::string names_of(const std::vector<meshadapt::NamedField>& fields);
+
+bool is_at_vertices(const meshadapt::NamedField& field);
+
 /// The text with a '?' for each byte that is not UTF-8, as a file's name may have: for what must
 /// be.
 std::string as_utf8(const std::string& text);

@@ -109,6 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"metric", "metric make s.mesh s.sol --complexity 30 -o o.sol --threads 1"},
         Case{"info", "info s.mesh -sol s.sol --json o.json --threads 1"},
         Case{"convert", "convert s.mesh o.vtu -sol s.sol"},
+        Case{"transfer", "transfer s.mesh s.sol s.mesh -o o.vtu --threads 1"},
         Case{"convert_to_binary", "convert s.mesh o.meshb"},
         Case{"view", "view s.mesh -o o.png --size 60 --threads 1", true},
         Case{"view_as_svg", "view t.mesh -o o.svg --size 60 --threads 1", true},

@@ -19,7 +19,7 @@ TEST(Program, ShowsItsCommandsAndVersion) {
   EXPECT_EQ(folder.run("--version").out.rfind("ductile ", 0), 0U);
   const Outcome help = folder.run("help");
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"adapt", "info", "metric", "view", "convert"}) {
+  for (const char* command : {"adapt", "info", "metric", "transfer", "view", "convert"}) {
     EXPECT_TRUE(contains(help.out, command));
     EXPECT_EQ(folder.run(std::string("help ") + command).status, 0);
     EXPECT_EQ(folder.run(std::string(command) + " --help").status, 0);
