@@ -1,12 +1,17 @@
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "command.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
 #include "picture/draw.hpp"
 #include "run_in_team.hpp"
+#include "shown_field.hpp"
 
 namespace ductile::cli {
 
@@ -17,19 +22,21 @@ namespace fs = std::filesystem;
 constexpr std::array<Option, 6> options{{
     {"-o", "PICTURE", "where the picture goes: a name ending in .png or .svg (default NAME.png)",
      "--output"},
-    {"-sol", "METRIC", "measures quality in this metric (.sol, .solb)"},
-    {"--by", "WHAT", "colours elements by quality (default), size or reference"},
+    {"-sol", "FILE", "the metric that quality is measured in, or to show; the fields of --by"},
+    {"--by", "WHAT",
+     "colours by quality (default), size, reference or a FIELD; metric draws its unit ellipses"},
     {"--cut", "AXIS", "3D: cuts at the middle of x, y or z (default: where it is thinnest)"},
     {"--size", "PX", "pixels along the larger side of each drawing (default 1000)"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
 }};
 
-Tint tint_of(const Arguments& arguments) {
-  const std::string by = arguments.text("--by").value_or("quality");
+/// What is no other word is a field.
+Tint tint_of(const std::string& by) {
   if (by == "quality") return Tint::quality;
   if (by == "size") return Tint::size;
   if (by == "reference") return Tint::reference;
-  throw UsageError("option --by: expected quality, size or reference, found '" + by + "'");
+  if (by == "metric") return Tint::metric;
+  return Tint::field;
 }
 
 int axis_of(const Arguments& arguments) {
@@ -47,31 +54,82 @@ PictureFormat format_of(const fs::path& picture) {
   throw UsageError(picture.string() + ": expected a name ending in .png or .svg");
 }
 
-int run(const Arguments& arguments) {
+struct Job {
+  fs::path input, picture;
+  std::optional<fs::path> sol;
+  std::string by;
+  PictureFormat format = PictureFormat::png;
+  SceneOptions scene;
+  int size = 1000, threads = 0;
+};
+
+Job read_job(const Arguments& arguments) {
   if (arguments.operands().size() != 1)
     throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
-  const fs::path input = input_of(arguments.operands()[0]);
-  fs::path picture = arguments.text("-o").value_or("");
-  if (picture.empty()) picture = fs::path(input).replace_extension(".png");
-  const PictureFormat format = format_of(picture);
-  const SceneOptions options_of_scene{.tint = tint_of(arguments), .cut_axis = axis_of(arguments)};
-  const int size = arguments.integer("--size", 50, 8000).value_or(1000);
-  meshadapt::check_writable(picture);
+  Job job;
+  job.input = input_of(arguments.operands()[0]);
+  job.picture = arguments.text("-o").value_or("");
+  if (job.picture.empty()) job.picture = fs::path(job.input).replace_extension(".png");
+  job.sol = arguments.text("-sol");
+  job.by = arguments.text("--by").value_or("quality");
+  job.format = format_of(job.picture);
+  job.scene = {.tint = tint_of(job.by), .cut_axis = axis_of(arguments)};
+  job.size = arguments.integer("--size", 50, 8000).value_or(1000);
+  job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
+  meshadapt::check_writable(job.picture);
+  return job;
+}
 
-  const int threads = arguments.integer("--threads", 1, 4096).value_or(0);
-  return run_in_team({.threads = threads}, [&](const runtime::Executor& executor) {
-    meshadapt::Warnings warnings;
-    const meshadapt::AnyMesh mesh = meshadapt::read_mesh(input, &warnings);
-    std::optional<meshadapt::AnyField> metric;
-    if (const auto path = arguments.text("-sol")) metric = read_metric(*path, mesh, warnings);
-    const Scene scene = make_scene(executor, mesh, metric ? &*metric : nullptr, options_of_scene);
-    const std::string bytes = draw(scene, format, size);
-    meshadapt::AtomicOutputs outputs;
-    outputs.stage(picture).write(bytes);
-    outputs.commit();
-    print_warnings(warnings);
-    return done;
-  });
+/// Of quality the one that is asked for, of itself also the one in the mesh or beside it.
+std::optional<meshadapt::AnyField> metric_of(const Job& job, const meshadapt::MeshWithFields& file,
+                                             meshadapt::Warnings& warnings) {
+  if (job.scene.tint == Tint::field) return std::nullopt;
+  if (job.sol) return read_metric(*job.sol, file.mesh, warnings);
+  if (job.scene.tint != Tint::metric) return std::nullopt;
+  if (const auto metric = metric_in(file)) return meshadapt::metric_of(*metric, file.mesh);
+  if (const auto beside = metric_beside(job.input))
+    return read_metric(*beside, file.mesh, warnings);
+  throw meshadapt::InputError(file.mesh.name +
+                              ": expected a metric (-sol) or one beside it or in it, found none");
+}
+
+/// Of the file that is given, else of the mesh, else of the one beside it.
+meshadapt::NamedField field_of(const Job& job, meshadapt::MeshWithFields& file,
+                               meshadapt::Warnings& warnings) {
+  fs::path where = job.input;
+  std::vector<meshadapt::NamedField> fields = std::move(file.fields);
+  if (job.sol)
+    where = *job.sol;
+  else if (fields.empty())
+    where = metric_beside(job.input).value_or(where);
+  if (where != job.input) fields = read_named_fields(where, file.mesh, warnings);
+  return shown_field(job.by, fields, file.mesh.dimension, where.string());
+}
+
+int work(const runtime::Executor& executor, const Job& job) {
+  meshadapt::Warnings warnings;
+  meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
+  const std::optional<meshadapt::AnyField> metric = metric_of(job, file, warnings);
+  SceneOptions options_of_scene = job.scene;
+  meshadapt::NamedField field;
+  if (job.scene.tint == Tint::field) {
+    field = field_of(job, file, warnings);
+    options_of_scene.field = &field;
+  }
+  const Scene scene =
+      make_scene(executor, file.mesh, metric ? &*metric : nullptr, options_of_scene);
+  const std::string bytes = draw(scene, job.format, job.size);
+  meshadapt::AtomicOutputs outputs;
+  outputs.stage(job.picture).write(bytes);
+  outputs.commit();
+  print_warnings(warnings);
+  return done;
+}
+
+int run(const Arguments& arguments) {
+  const Job job = read_job(arguments);
+  return run_in_team({.threads = job.threads},
+                     [&](const runtime::Executor& executor) { return work(executor, job); });
 }
 
 }  // namespace
@@ -80,7 +138,12 @@ const Command view_command{
     "view",
     "MESH [-o PICTURE.png|.svg]",
     "draws a mesh",
-    "2D: the triangles. 3D: the surface by reference, and a cut through the middle.",
+    "2D: the triangles. 3D: the surface, and a cut through the middle. A FIELD is one of FILE, "
+    "else\n"
+    "of MESH, else of NAME.sol beside it, by its name or number; of vectors and tensors the norm, "
+    "or\n"
+    "component K of FIELD:K. --by metric draws unit ellipses where there is room; in 3D, those in\n"
+    "which the cut meets the unit ellipsoids.",
     options,
     run};
 

@@ -103,7 +103,6 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adapt a.mesh b.mesh", "expected one mesh, found 2");
   expect("adapt a.mesh -o b.xyz", "ending in .mesh, .meshb");
   expect("view a.mesh -o b.gif", "ending in .png or .svg");
-  expect("view a.mesh --by colour", "quality, size or reference");
   expect("view a.mesh --cut w", "x, y or z");
   expect("convert a.mesh", "expected an input and an output");
   expect("convert a.mesh a.sol", "as the input is a mesh");
@@ -171,12 +170,38 @@ TEST(View, DrawsBothDimensionsInBothFormats) {
     folder.add_example(name);
     const std::string mesh = std::string(name) + ".mesh";
     const std::string svg = mesh + " -sol " + name + ".sol -o p.svg --size 200";
-    for (const char* by : {"quality", "size", "reference"})
-      EXPECT_EQ(folder.run("view " + mesh + " --size 200 --by " + by).status, 0);
+    for (const char* by : {"quality", "size", "reference", "metric", "1", "1:2", name})
+      EXPECT_EQ(folder.run("view " + mesh + " --size 200 --by " + by).status, 0) << by;
     EXPECT_EQ(folder.read(std::string(name) + ".png").substr(1, 3), "PNG");
     EXPECT_EQ(folder.run("view " + svg).status, 0);
     EXPECT_TRUE(contains(folder.read("p.svg"), "<svg"));
   }
+}
+
+TEST(View, FindsFieldsWhereTheyAre) {
+  const Folder folder;
+  folder.add_example("waves2d");
+  EXPECT_EQ(folder.run("convert waves2d.mesh a.vtu -sol waves2d.sol").status, 0);
+  std::filesystem::remove(folder.path() / "waves2d.sol");
+  const auto picture = [&](const std::string& words) {
+    const Outcome outcome = folder.run("view " + words + " --size 200 -o p.svg");
+    EXPECT_EQ(outcome.status, 0) << words << outcome.err;
+    return folder.read("p.svg");
+  };
+  EXPECT_TRUE(picture("a.vtu --by 1") == picture("a.vtu --by waves2d"));
+  EXPECT_FALSE(picture("a.vtu --by 1") == picture("a.vtu --by 1:3"));
+  EXPECT_FALSE(picture("a.vtu --by metric -sol a.vtu") == picture("a.vtu"));
+  const auto refusal = [&](const std::string& words) {
+    const Outcome outcome = folder.run("view " + words);
+    EXPECT_EQ(outcome.status, 2) << words;
+    return outcome.err;
+  };
+  EXPECT_TRUE(contains(refusal("a.vtu --by colour"),
+                       "option --by: expected quality, size, reference, metric or a field, by name "
+                       "or number, found 'colour'; a.vtu has 1 waves2d"));
+  EXPECT_TRUE(contains(refusal("waves2d.mesh --by 1"), "waves2d.mesh has no fields"));
+  EXPECT_TRUE(contains(refusal("waves2d.mesh --by metric"), "expected a metric (-sol)"));
+  EXPECT_TRUE(contains(refusal("waves2d.mesh -sol none.sol --by 1"), "none.sol: "));
 }
 
 TEST(Convert, GoesThereAndBack) {

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <memory>
 
 #include "../files.hpp"
 #include "apart.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "legend.hpp"
+#include "pen.hpp"
 
 namespace ductile::cli {
 
@@ -36,6 +37,11 @@ Bounds bounds_of(const Panel& panel) {
   Bounds bounds;
   for (const Face& face : panel.faces)
     for (int i = 0; i < face.corners; ++i) bounds.include(face.corner[static_cast<std::size_t>(i)]);
+  for (const Ellipse& ellipse : panel.ellipses) {
+    const double x = std::hypot(ellipse.u.x, ellipse.v.x), y = std::hypot(ellipse.u.y, ellipse.v.y);
+    bounds.include({ellipse.centre.x - x, ellipse.centre.y - y});
+    bounds.include({ellipse.centre.x + x, ellipse.centre.y + y});
+  }
   return bounds;
 }
 
@@ -73,17 +79,6 @@ Layout lay_out(const Scene& scene, int size) {
   return layout;
 }
 
-void set_colour(cairo_t* pen, const Colour& colour, double alpha = 1) {
-  cairo_set_source_rgba(pen, colour.red, colour.green, colour.blue, alpha);
-}
-
-void write(cairo_t* pen, double x, double y, const std::string& text, double share_left = 0) {
-  cairo_text_extents_t extents;
-  cairo_text_extents(pen, text.c_str(), &extents);
-  cairo_move_to(pen, x - share_left * extents.x_advance, y);
-  cairo_show_text(pen, text.c_str());
-}
-
 // ---- Panels ----
 
 /// Turns the scene's coordinates into pixels.
@@ -116,8 +111,7 @@ double altitude(const Face& face, double scale) {
 }
 
 /// Lines between elements, as wide as there is room for: none where elements are below a pixel.
-void draw_face_lines(cairo_t* pen, const Face& face, const ToPixels& to_pixels) {
-  constexpr Colour ink{0.08, 0.08, 0.10};
+void draw_face_lines(cairo_t* pen, const Face& face, const ToPixels& to_pixels, const Colour& ink) {
   const double room = altitude(face, to_pixels.scale);
   if (room < 1.2) return;
   trace(pen, face, to_pixels);
@@ -126,7 +120,30 @@ void draw_face_lines(cairo_t* pen, const Face& face, const ToPixels& to_pixels) 
   cairo_stroke(pen);
 }
 
+void draw_ellipse(cairo_t* pen, const Ellipse& ellipse, const ToPixels& to_pixels) {
+  const Point centre = to_pixels(ellipse.centre);
+  const double scale = to_pixels.scale;
+  cairo_save(pen);
+  const cairo_matrix_t unit_circle{scale * ellipse.u.x,
+                                   -scale * ellipse.u.y,
+                                   scale * ellipse.v.x,
+                                   -scale * ellipse.v.y,
+                                   centre.x,
+                                   centre.y};
+  cairo_transform(pen, &unit_circle);
+  constexpr double whole_turn = 6.283185307179586;
+  cairo_new_sub_path(pen);
+  cairo_arc(pen, 0, 0, 1, 0, whole_turn);
+  cairo_restore(pen);  // lines are as wide in all directions
+  set_colour(pen, ellipse.colour);
+  cairo_fill_preserve(pen);
+  cairo_set_line_width(pen, 0.7);
+  set_colour(pen, {0.08, 0.08, 0.10});
+  cairo_stroke(pen);
+}
+
 void draw_panel(cairo_t* pen, const Panel& panel, const ToPixels& to_pixels, PictureFormat format) {
+  const Colour ink = panel.ellipses.empty() ? Colour{0.08, 0.08, 0.10} : Colour{0.72, 0.72, 0.74};
   cairo_set_line_join(pen, CAIRO_LINE_JOIN_ROUND);
   for (const Face& face : panel.faces) {
     // Without antialiasing, neighbours leave no light seam between them; the whole picture is
@@ -142,7 +159,7 @@ void draw_panel(cairo_t* pen, const Panel& panel, const ToPixels& to_pixels, Pic
       cairo_stroke(pen);
     }
     cairo_set_antialias(pen, CAIRO_ANTIALIAS_DEFAULT);
-    draw_face_lines(pen, face, to_pixels);
+    draw_face_lines(pen, face, to_pixels, ink);
   }
   cairo_set_source_rgb(pen, 0, 0, 0);
   cairo_set_line_width(pen, 1.3);
@@ -153,74 +170,7 @@ void draw_panel(cairo_t* pen, const Panel& panel, const ToPixels& to_pixels, Pic
     cairo_line_to(pen, b.x, b.y);
     cairo_stroke(pen);
   }
-}
-
-// ---- Legends ----
-
-/// Where a legend goes: its upper left corner, how wide it may be and how large its letters are.
-struct Place {
-  double x, y, width, text;
-};
-
-Colour scale_colour(const Legend& legend, double t) {
-  return legend.tint == Tint::size ? size_colour(t) : quality_colour(t);
-}
-
-std::string tick_label(const Legend& legend, double t) {
-  const double value = legend.tint == Tint::size
-                           ? legend.from * std::pow(legend.to / legend.from, t)
-                           : legend.from + t * (legend.to - legend.from);
-  char text[32];
-  std::snprintf(text, sizeof text, legend.tint == Tint::size ? "%.3g" : "%.1f", value);
-  return text;
-}
-
-void draw_scale(cairo_t* pen, const Legend& legend, const Place& place) {
-  const auto [x, y, width, text] = place;
-  constexpr int steps = 200;
-  for (int i = 0; i < steps; ++i) {
-    set_colour(pen, scale_colour(legend, (i + 0.5) / steps));
-    cairo_rectangle(pen, x + width * i / steps, y, width / steps + 0.6, text);
-    cairo_fill(pen);
-  }
-  cairo_set_source_rgb(pen, 0, 0, 0);
-  constexpr int ticks = 5;
-  for (int i = 0; i <= ticks; ++i) {
-    const double t = static_cast<double>(i) / ticks;
-    write(pen, x + width * t, y + 2.2 * text, tick_label(legend, t), t);
-  }
-}
-
-void draw_swatches(cairo_t* pen, const Legend& legend, const Place& place) {
-  const auto [left, y, width, text] = place;
-  const double end = left + width;
-  double x = left;
-  for (std::size_t i = 0; i < legend.references.size(); ++i) {
-    const bool more = x > end - 4 * text && i + 1 < legend.references.size();
-    if (!more) {
-      set_colour(pen, reference_colour(legend.references[i]));
-      cairo_rectangle(pen, x, y, text, text);
-      cairo_fill(pen);
-    }
-    cairo_set_source_rgb(pen, 0, 0, 0);
-    const std::string label = more ? "..." : std::to_string(legend.references[i]);
-    cairo_text_extents_t extents;
-    cairo_text_extents(pen, label.c_str(), &extents);
-    write(pen, x + (more ? 0.0 : 1.3 * text), y + 0.85 * text, label);
-    if (more) return;
-    x += 2.2 * text + extents.x_advance;
-  }
-}
-
-void draw_legend(cairo_t* pen, const Legend& legend, Place place) {
-  cairo_set_source_rgb(pen, 0, 0, 0);
-  write(pen, place.x, place.y,
-        legend.title + (legend.tint == Tint::reference ? ", by reference" : ""));
-  place.y += 0.5 * place.text;
-  if (legend.tint == Tint::reference)
-    draw_swatches(pen, legend, place);
-  else
-    draw_scale(pen, legend, place);
+  for (const Ellipse& ellipse : panel.ellipses) draw_ellipse(pen, ellipse, to_pixels);
 }
 
 // ---- The whole ----
@@ -254,8 +204,10 @@ void draw_scene(cairo_t* pen, const Scene& scene, const Layout& layout, PictureF
   for (std::size_t i = 0; i < scene.legends.size(); ++i) {
     const double left =
         layout.margin + static_cast<double>(first + i) * (layout.panel_width + layout.margin);
+    const bool last = i + 1 == scene.legends.size();
     draw_legend(pen, scene.legends[i],
-                {left, below, std::min(layout.panel_width, 36 * layout.text), layout.text});
+                {left, below, std::min(layout.panel_width, 36 * layout.text), layout.text,
+                 last ? layout.width - left - 0.5 * layout.margin : layout.panel_width});
   }
 }
 

@@ -48,10 +48,7 @@ Tinting tint_by_size(const AnyMesh& mesh, std::size_t elements) {
                             .tint = Tint::size,
                             .from = at(0.005),
                             .to = at(0.995)}};
-  if (result.legend.to < 1.02 * result.legend.from) {
-    result.legend.from /= 1.1;
-    result.legend.to *= 1.1;
-  }
+  widen(result.legend);
   const double range = std::log(result.legend.to / result.legend.from);
   for (const double s : size)
     result.colour_of.push_back(
@@ -69,16 +66,40 @@ std::string caption_of(const AnyMesh& mesh) {
   return caption;
 }
 
-void add_solid(Scene& scene, const AnyMesh& mesh, const Tinting& tinting, int axis) {
-  const Camera camera = camera_along(axis);
-  scene.panels.push_back(surface_panel(mesh, camera));
+struct Look {
+  const Tinting& tinting;
+  const AnyField* metric;  ///< to draw ellipses of; null: none
+  int axis;                ///< of the cut
+};
+
+void add_solid(Scene& scene, const AnyMesh& mesh, const Look& look) {
+  const Camera camera = camera_along(look.axis);
+  scene.panels.push_back(surface_panel(mesh, camera, look.tinting.facet_colour));
   const std::vector<std::int32_t> references = distinct(mesh.triangles.reference);
-  if (references.size() > 1)
+  if (references.size() > 1 && !look.tinting.facet_colour)
     scene.legends.push_back(
         {.title = "surface", .tint = Tint::reference, .references = references});
-  if (mesh.tetrahedra.size() == 0) return;
-  scene.panels.push_back(cut_panel(mesh, tinting.colour_of, camera, axis));
-  scene.legends.push_back(tinting.legend);
+  if (mesh.tetrahedra.size() > 0)
+    scene.panels.push_back(cut_panel(mesh, look.tinting.colour_of, camera, look.axis));
+  else if (!look.tinting.facet_colour)
+    return;
+  if (look.metric)
+    add_ellipses_3d(scene, mesh, *look.metric, camera, look.axis);
+  else
+    scene.legends.push_back(look.tinting.legend);
+}
+
+/// Faint, so that ellipses are seen.
+Tinting no_tint(const AnyMesh& mesh) {
+  const std::size_t elements = mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
+  return {.colour_of = std::vector<Colour>(elements, Colour{0.97, 0.97, 0.97})};
+}
+
+Tinting tinting_of(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField* metric,
+                   const SceneOptions& options) {
+  if (options.tint == Tint::metric) return no_tint(mesh);
+  if (options.tint == Tint::field) return tint_by_field(mesh, *options.field);
+  return tint_elements(executor, mesh, metric, options.tint);
 }
 
 }  // namespace
@@ -87,6 +108,12 @@ std::size_t Scene::face_count() const {
   std::size_t count = 0;
   for (const Panel& panel : panels) count += panel.faces.size();
   return count;
+}
+
+void widen(Legend& legend) {
+  if (legend.to >= 1.02 * legend.from) return;
+  legend.from /= 1.1;
+  legend.to *= 1.1;
 }
 
 std::vector<std::int32_t> distinct(std::vector<std::int32_t> references) {
@@ -121,15 +148,24 @@ Scene make_scene(const runtime::Executor& executor, const AnyMesh& mesh, const A
     throw meshadapt::InputError(mesh.name +
                                 ": expected triangles or tetrahedra to draw, found neither; give "
                                 "a mesh with some");
+  const AnyField* const shown = options.tint == Tint::metric ? metric : nullptr;
+  if (shown && mesh.dimension == 3 && mesh.tetrahedra.size() == 0)
+    throw meshadapt::InputError(mesh.name +
+                                ": expected tetrahedra, which a metric is shown in a cut through, "
+                                "found none; give a mesh with some");
   Scene scene;
   scene.caption = caption_of(mesh);
-  const Tinting tinting = tint_elements(executor, mesh, metric, options.tint);
-  if (mesh.dimension == 2) {
-    scene.panels.push_back(panel_2d(mesh, tinting.colour_of));
-    scene.legends.push_back(tinting.legend);
-  } else {
-    add_solid(scene, mesh, tinting, options.cut_axis < 0 ? thinnest_axis(mesh) : options.cut_axis);
+  const Tinting tinting = tinting_of(executor, mesh, metric, options);
+  if (mesh.dimension == 3) {
+    const int axis = options.cut_axis < 0 ? thinnest_axis(mesh) : options.cut_axis;
+    add_solid(scene, mesh, {tinting, shown, axis});
+    return scene;
   }
+  scene.panels.push_back(panel_2d(mesh, tinting.colour_of));
+  if (shown)
+    add_ellipses_2d(scene, mesh, *shown);
+  else
+    scene.legends.push_back(tinting.legend);
   return scene;
 }
 

@@ -4,7 +4,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,18 +30,26 @@ struct Line {
   Point a, b;
 };
 
-/// One drawing: faces from back to front, then lines on top.
+/// The points centre + cos t u + sin t v.
+struct Ellipse {
+  Point centre, u, v;
+  Colour colour;
+};
+
+/// One drawing: faces from back to front, then lines and ellipses on top. Lines between faces are
+/// faint if there are ellipses.
 struct Panel {
   std::string title{};
   std::vector<Face> faces{};
   std::vector<Line> lines{};
+  std::vector<Ellipse> ellipses{};
 };
 
-/// What elements are coloured by.
-enum class Tint { quality, size, reference };
+/// What elements are coloured by; of a metric, its ellipses.
+enum class Tint { quality, size, reference, field, metric };
 
-/// What the colours mean: a scale (quality from 0 to 1, size from `from` to `to`, logarithmic) or,
-/// for references, a list.
+/// What the colours mean: a scale (quality from 0 to 1, size and metric from `from` to `to`,
+/// logarithmic, a field likewise, but even) or, for references, a list.
 struct Legend {
   std::string title{};
   Tint tint = Tint::quality;
@@ -57,34 +68,52 @@ struct Scene {
 struct SceneOptions {
   Tint tint = Tint::quality;
   int cut_axis = -1;  ///< normal of the cut through the middle: 0, 1, 2; -1: chosen by the shape
+  const meshadapt::NamedField* field = nullptr;  ///< for Tint::field: scalars of this mesh
 };
 
-/// `metric` as in measure(): it says what quality means; null for Euclidean.
-/// Throws InputError if there is nothing to draw.
+/// `metric` as in measure(): it says what quality means; null for Euclidean. For Tint::metric it is
+/// what is drawn. Throws InputError if there is nothing to draw.
 Scene make_scene(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
                  const meshadapt::AnyField* metric, const SceneOptions& options);
 
 // ---- For the two kinds of scenes ----
 
+/// The colour of a facet with these corners, seen from outside, that belongs to this element.
+using FacetColour =
+    std::function<Colour(std::span<const std::uint32_t> corners, std::size_t element)>;
+
 /// What each element is painted in, [element], and the legend that explains it.
 struct Tinting {
   std::vector<Colour> colour_of{};
   Legend legend{};
+  FacetColour facet_colour{};  ///< of the surface; none: by reference
 };
+Tinting tint_by_field(const meshadapt::AnyMesh& mesh, const meshadapt::NamedField& field);
 Tinting tint_elements(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
                       const meshadapt::AnyField* metric, Tint tint);
 
 Panel panel_2d(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour_of);
 
-/// The surface in the colours of its references, seen from outside.
-Panel surface_panel(const meshadapt::AnyMesh& mesh, const Camera& camera);
+/// The surface, in the colours of its references if none are given, seen from outside.
+Panel surface_panel(const meshadapt::AnyMesh& mesh, const Camera& camera,
+                    const FacetColour& colour = {});
 
 /// What is left behind a plane through the middle, and the elements that it cuts.
 Panel cut_panel(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour_of,
                 const Camera& camera, int axis);
 
+/// Adds the unit ellipses of a metric at vertices, and the legend for them; of a solid, those in
+/// which the plane through the middle cuts the unit ellipsoids.
+void add_ellipses_2d(Scene& scene, const meshadapt::AnyMesh& mesh,
+                     const meshadapt::AnyField& metric);
+void add_ellipses_3d(Scene& scene, const meshadapt::AnyMesh& mesh,
+                     const meshadapt::AnyField& metric, const Camera& camera, int axis);
+
 /// The axis along which a solid is thinnest; front to back if it is about as thick everywhere.
 int thinnest_axis(const meshadapt::AnyMesh& mesh);
+
+/// Puts the ends of a logarithmic scale apart if they are about the same.
+void widen(Legend& legend);
 
 /// Each value once, in order.
 std::vector<std::int32_t> distinct(std::vector<std::int32_t> references);

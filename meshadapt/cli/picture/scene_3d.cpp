@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ductile/meshadapt/simplex.hpp"
 #include "scene.hpp"
+#include "section.hpp"
 
 namespace ductile::cli {
 
@@ -11,11 +11,6 @@ namespace {
 
 using meshadapt::AnyMesh;
 using Triangle = std::array<std::uint32_t, 3>;
-
-Position position(const AnyMesh& mesh, std::uint32_t vertex) {
-  const double* x = &mesh.coordinates[std::size_t{vertex} * 3];
-  return {{x[0], x[1], x[2]}};
-}
 
 Triangle sorted(Triangle t) {
   std::sort(t.begin(), t.end());
@@ -27,18 +22,18 @@ struct Skin {
   Triangle key;  ///< its corners, sorted
   Triangle corners;
   std::int32_t reference = 0;
+  std::size_t element = 0;  ///< that it belongs to: a tetrahedron, or itself where there are none
 };
 
 /// Facets that belong to one tetrahedron only.
 std::vector<Skin> facets_of_one(const AnyMesh& mesh) {
   std::vector<Skin> facets;
   facets.reserve(4 * mesh.tetrahedra.size());
-  for (const auto& element : mesh.tetrahedra.vertices) {
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
     for (int i = 0; i < 4; ++i) {
-      const Triangle corners = meshadapt::facet_of<3>(element, i);
-      facets.push_back({sorted(corners), corners});
+      const Triangle corners = meshadapt::facet_of<3>(mesh.tetrahedra.vertices[e], i);
+      facets.push_back({sorted(corners), corners, 0, e});
     }
-  }
   std::sort(facets.begin(), facets.end(),
             [](const Skin& a, const Skin& b) { return a.key < b.key; });
   std::vector<Skin> skin;
@@ -58,7 +53,7 @@ std::vector<Skin> make_skin(const AnyMesh& mesh) {
   listed.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle& corners = mesh.triangles.vertices[t];
-    listed.push_back({sorted(corners), corners, mesh.triangles.reference[t]});
+    listed.push_back({sorted(corners), corners, mesh.triangles.reference[t], t});
   }
   if (mesh.tetrahedra.size() == 0) return listed;
   const auto by_key = [](const Skin& a, const Skin& b) { return a.key < b.key; };
@@ -117,52 +112,23 @@ DeepFace project(const std::vector<Position>& polygon, const Colour& colour, con
   return deep;
 }
 
-/// The facets that are seen, each passed through `shape`, which may clip it, in `colour`.
+/// The facets that are seen, each passed through `shape`, which may clip it, in colour(facet,
+/// light).
 std::vector<Face> visible_faces(const AnyMesh& mesh, const Camera& camera, auto&& colour,
                                 auto&& shape) {
   const bool closed = mesh.tetrahedra.size() > 0;
   std::vector<DeepFace> deep;
   for (const Skin& facet : make_skin(mesh)) {
-    const Position a = position(mesh, facet.corners[0]), b = position(mesh, facet.corners[1]),
-                   c = position(mesh, facet.corners[2]);
+    const Position a = meshadapt::position_in<3>(mesh, facet.corners[0]),
+                   b = meshadapt::position_in<3>(mesh, facet.corners[1]),
+                   c = meshadapt::position_in<3>(mesh, facet.corners[2]);
     const Position normal = cross(b - a, c - a);
     if (norm(normal) == 0 || (closed && dot(normal, camera.towards) <= 0)) continue;
     const std::vector<Position> polygon = shape(std::vector<Position>{a, b, c});
     if (polygon.size() >= 3)
-      deep.push_back(project(polygon, lightness(normal, camera) * colour(facet), camera));
+      deep.push_back(project(polygon, colour(facet, lightness(normal, camera)), camera));
   }
   return back_to_front(std::move(deep));
-}
-
-/// Where the plane cuts a tetrahedron: nothing, a triangle or a quadrangle.
-std::vector<Position> section(const std::array<Position, 4>& corner, auto&& side) {
-  std::vector<Position> behind, before;
-  for (const Position& p : corner) (side(p) < 0 ? behind : before).push_back(p);
-  if (behind.empty() || before.empty()) return {};
-  const auto between = [&](const Position& a, const Position& b) {
-    return a + (side(a) / (side(a) - side(b))) * (b - a);
-  };
-  if (behind.size() == 2)
-    return {between(behind[0], before[0]), between(behind[0], before[1]),
-            between(behind[1], before[1]), between(behind[1], before[0])};
-  const Position& apex = behind.size() == 1 ? behind[0] : before[0];
-  std::vector<Position> triangle;
-  for (const Position& p : behind.size() == 1 ? before : behind)
-    triangle.push_back(between(p, apex));
-  return triangle;
-}
-
-struct Range {
-  double from = std::numeric_limits<double>::infinity(), to = -from;
-};
-
-Range range_along(const AnyMesh& mesh, int axis) {
-  Range range;
-  for (std::size_t i = static_cast<std::size_t>(axis); i < mesh.coordinates.size(); i += 3) {
-    range.from = std::min(range.from, mesh.coordinates[i]);
-    range.to = std::max(range.to, mesh.coordinates[i]);
-  }
-  return range;
 }
 
 }  // namespace
@@ -170,42 +136,43 @@ Range range_along(const AnyMesh& mesh, int axis) {
 int thinnest_axis(const AnyMesh& mesh) {
   int thinnest = 1;
   const auto width = [&](int axis) {
-    const Range range = range_along(mesh, axis);
-    return range.to - range.from;
+    const Span span = span_along(mesh, axis);
+    return span.to - span.from;
   };
   for (const int axis : {0, 2})
     if (width(axis) < 0.8 * width(thinnest)) thinnest = axis;
   return thinnest;
 }
 
-Panel surface_panel(const AnyMesh& mesh, const Camera& camera) {
+Panel surface_panel(const AnyMesh& mesh, const Camera& camera, const FacetColour& colour) {
   Panel panel{.title = "surface"};
   panel.faces = visible_faces(
-      mesh, camera, [](const Skin& facet) { return reference_colour(facet.reference); },
+      mesh, camera,
+      [&](const Skin& facet, double light) {
+        if (!colour) return light * reference_colour(facet.reference);
+        const double little = 0.7 + 0.3 * light;  // so that colours are those of the scale
+        return little * colour(facet.corners, facet.element);
+      },
       [](std::vector<Position> polygon) { return polygon; });
   return panel;
 }
 
 Panel cut_panel(const AnyMesh& mesh, const std::vector<Colour>& colour_of, const Camera& camera,
                 int axis) {
-  const Range range = range_along(mesh, axis);
-  const double middle = 0.5 * (range.from + range.to);
-  const double outwards = camera.towards[axis] > 0 ? 1 : -1;
-  const auto side = [&](const Position& p) { return outwards * (p[axis] - middle); };
-
-  Panel panel{.title = std::string("cut at ") + "xyz"[axis] + " = " + std::to_string(middle)};
+  const CutPlane plane = middle_plane(mesh, camera, axis);
+  Panel panel{.title = std::string("cut at ") + "xyz"[axis] + " = " + std::to_string(plane.at)};
   panel.title.erase(panel.title.find_last_not_of('0') + 1);
   if (panel.title.ends_with('.')) panel.title.pop_back();
   panel.faces = visible_faces(
       mesh, camera,
-      [](const Skin&) {
-        return Colour{0.86, 0.86, 0.86};
+      [](const Skin&, double light) {
+        return light * Colour{0.86, 0.86, 0.86};
       },
-      [&](const std::vector<Position>& polygon) { return clip(polygon, side); });
+      [&](const std::vector<Position>& polygon) {
+        return clip(polygon, [&](const Position& p) { return plane.side(p); });
+      });
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
-    std::array<Position, 4> corner;
-    for (std::size_t i = 0; i < 4; ++i) corner[i] = position(mesh, mesh.tetrahedra.vertices[e][i]);
-    const std::vector<Position> polygon = section(corner, side);
+    const std::vector<Position> polygon = section(tetrahedron(mesh, e), plane);
     if (polygon.size() >= 3) panel.faces.push_back(project(polygon, colour_of[e], camera).face);
   }
   return panel;

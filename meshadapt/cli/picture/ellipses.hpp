@@ -1,0 +1,36 @@
+/// @file
+/// Which unit ellipses of a metric to draw: as many as there is room for without one on another, as
+/// large as can be seen, all by one factor as far as that goes.
+#pragma once
+
+#include <vector>
+
+#include "camera.hpp"
+#include "ductile/meshadapt/metric.hpp"
+
+namespace ductile::cli {
+
+/// Where an ellipse may be.
+struct EllipsePlace {
+  Point centre;
+  meshadapt::Metric<2> metric;
+  double area = 0;    ///< of the plane that it stands for
+  bool inner = true;  ///< others are drawn where room is left
+};
+
+/// The points centre + cos t u + sin t v.
+struct UnitEllipse {
+  Point centre, u, v;
+  double size = 0;  ///< that the metric asks for, the geometric mean of both axes; not as drawn
+};
+
+struct UnitEllipses {
+  std::vector<UnitEllipse> drawn;
+  double magnification = 1;
+  bool all_magnified = true;  ///< false: some are so large or small that they are drawn otherwise
+};
+
+/// `extent`: the larger side of what is drawn.
+UnitEllipses choose_ellipses(const std::vector<EllipsePlace>& places, double extent);
+
+}  // namespace ductile::cli

@@ -1,0 +1,123 @@
+#include "legend.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "../files.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "pen.hpp"
+#include "ticks.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+Colour scale_colour(const Legend& legend, double t) {
+  if (legend.tint == Tint::quality) return quality_colour(t);
+  return size_colour(legend.tint == Tint::field && legend.from == legend.to ? 0.5 : t);
+}
+
+/// A fifth of the scale apart, whatever the numbers there are.
+std::vector<Tick> even_ticks(const Legend& legend) {
+  std::vector<Tick> ticks;
+  constexpr int steps = 5;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = static_cast<double>(i) / steps;
+    const bool quality = legend.tint == Tint::quality;
+    const double value = quality ? legend.from + t * (legend.to - legend.from)
+                                 : legend.from * std::pow(legend.to / legend.from, t);
+    char text[32];
+    std::snprintf(text, sizeof text, quality ? "%.1f" : "%.3g", value);
+    ticks.push_back({t, text});
+  }
+  return ticks;
+}
+
+/// As many round ones as can be told apart in this width.
+std::vector<Tick> ticks_of(cairo_t* pen, const Legend& legend, double width) {
+  if (legend.tint != Tint::field) return even_ticks(legend);
+  std::vector<Tick> ticks;
+  for (int most = 6; most > 1; --most) {
+    ticks = round_ticks(legend.from, legend.to, most);
+    double sum = 0;
+    for (const Tick& tick : ticks) sum += text_width(pen, tick.label + "00");
+    if (sum <= width) break;
+  }
+  return ticks;
+}
+
+void draw_scale(cairo_t* pen, const Legend& legend, const LegendPlace& place) {
+  const auto [x, y, width, text, room] = place;
+  constexpr int steps = 200;
+  for (int i = 0; i < steps; ++i) {
+    set_colour(pen, scale_colour(legend, (i + 0.5) / steps));
+    cairo_rectangle(pen, x + width * i / steps, y, width / steps + 0.6, text);
+    cairo_fill(pen);
+  }
+  cairo_set_source_rgb(pen, 0, 0, 0);
+  cairo_set_line_width(pen, 1);
+  const bool round = legend.tint == Tint::field;
+  for (const Tick& tick : ticks_of(pen, legend, width)) {
+    const double at = x + width * tick.at;
+    if (round) {
+      cairo_move_to(pen, at, y + text);
+      cairo_line_to(pen, at, y + 1.3 * text);
+      cairo_stroke(pen);
+    }
+    // In the middle of its mark, unless that is beyond the end of the scale.
+    const double half = text_width(pen, tick.label) / 2;
+    const double left = round ? std::clamp(at - half, x, std::max(x, x + width - 2 * half))
+                              : at - tick.at * 2 * half;
+    write(pen, left, y + 2.2 * text, tick.label);
+  }
+}
+
+void draw_swatches(cairo_t* pen, const Legend& legend, const LegendPlace& place) {
+  const auto [left, y, width, text, room] = place;
+  const double end = left + width;
+  double x = left;
+  for (std::size_t i = 0; i < legend.references.size(); ++i) {
+    const bool more = x > end - 4 * text && i + 1 < legend.references.size();
+    if (!more) {
+      set_colour(pen, reference_colour(legend.references[i]));
+      cairo_rectangle(pen, x, y, text, text);
+      cairo_fill(pen);
+    }
+    cairo_set_source_rgb(pen, 0, 0, 0);
+    const std::string label = more ? "..." : std::to_string(legend.references[i]);
+    write(pen, x + (more ? 0.0 : 1.3 * text), y + 0.85 * text, label);
+    if (more) return;
+    x += 2.2 * text + text_width(pen, label);
+  }
+}
+
+/// One line that fits, of letters that there are.
+std::string fitting(cairo_t* pen, const std::string& title, double width) {
+  std::string text = as_utf8(meshadapt::printable(title));
+  if (text_width(pen, text) <= width) return text;
+  while (!text.empty() && text_width(pen, text + "...") > width) {
+    while ((static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80) text.pop_back();
+    text.pop_back();
+  }
+  return text + "...";
+}
+
+}  // namespace
+
+void draw_legend(cairo_t* pen, const Legend& legend, LegendPlace place) {
+  cairo_set_source_rgb(pen, 0, 0, 0);
+  const bool listed = legend.tint == Tint::reference;
+  write(pen, place.x, place.y,
+        fitting(pen, legend.title + (listed ? ", by reference" : ""), place.room));
+  place.y += 0.5 * place.text;
+  if (listed)
+    draw_swatches(pen, legend, place);
+  else
+    draw_scale(pen, legend, place);
+}
+
+}  // namespace ductile::cli

@@ -1,0 +1,82 @@
+#include "shown_field.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include "arguments.hpp"
+
+namespace ductile::cli {
+
+namespace {
+
+using meshadapt::AnyField;
+using meshadapt::NamedField;
+
+/// From 1; 0: it is no such number.
+std::size_t number_in(std::string_view word) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc() && end == word.data() + word.size() ? number : 0;
+}
+
+const NamedField* find(std::string_view word, const std::vector<NamedField>& fields) {
+  for (const NamedField& field : fields)
+    if (field.name == word) return &field;
+  const std::size_t number = number_in(word);
+  return number >= 1 && number <= fields.size() ? &fields[number - 1] : nullptr;
+}
+
+/// How often component i of a tensor stands in it.
+double weight_of(AnyField::Type type, std::size_t i) {
+  const bool diagonal = i == 0 || i == 2 || i == 5;  // of a symmetric one
+  return type == AnyField::Type::symmetric && !diagonal ? 2 : 1;
+}
+
+[[noreturn]] void refuse(const std::string& by, const std::vector<NamedField>& fields,
+                         const std::string& where) {
+  std::string list;
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    list += (i == 0 ? "" : ", ") + std::to_string(i + 1) + " " + fields[i].name;
+  throw UsageError(
+      "option --by: expected quality, size, reference, metric or a field, by name or "
+      "number, found '" +
+      by + "'; " + where + (list.empty() ? " has no fields, -sol gives others" : " has " + list));
+}
+
+}  // namespace
+
+NamedField shown_field(const std::string& by, const std::vector<NamedField>& fields, int dimension,
+                       const std::string& where) {
+  const NamedField* field = find(by, fields);
+  std::size_t component = 0;
+  const std::size_t colon = by.rfind(':');
+  if (!field && colon != std::string::npos) {
+    field = find(by.substr(0, colon), fields);
+    component = number_in(by.substr(colon + 1));
+    if (component == 0) field = nullptr;
+  }
+  if (!field) refuse(by, fields, where);
+  const auto count = static_cast<std::size_t>(meshadapt::component_count(field->type, dimension));
+  if (component > count)
+    throw UsageError("option --by: expected a component from 1 to " + std::to_string(count) +
+                     " of '" + field->name + "', found " + std::to_string(component));
+  NamedField shown{field->name, AnyField::Type::scalar, {}, field->place};
+  if (component > 0)
+    shown.name += ":" + std::to_string(component);
+  else if (count > 1)
+    shown.name += field->type == AnyField::Type::vector ? " (length)" : " (norm)";
+  for (std::size_t at = 0; at < field->values.size(); at += count) {
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      sum = std::hypot(sum, std::sqrt(weight_of(field->type, i)) * field->values[at + i]);
+    shown.values.push_back(component > 0 ? field->values[at + component - 1]
+                           : count > 1   ? sum
+                                         : field->values[at]);
+  }
+  return shown;
+}
+
+}  // namespace ductile::cli
