@@ -11,6 +11,7 @@
 #include "carried_fields.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/adapt_to_sizes.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/fields.hpp"
@@ -21,6 +22,7 @@
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "run_in_team.hpp"
+#include "size_options.hpp"
 #include "system.hpp"
 
 namespace ductile::cli {
@@ -34,18 +36,22 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 26> own_options{{
+constexpr std::array<Option, 29> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
      "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
+    {"--near", "PLACE:H[:GROW]",
+     "asks for H near a place (ductile help metric), -hsiz elsewhere; may be given again"},
+    {"--on", "BOUNDARY:H[:GROW]", "asks for H on a boundary, by its reference or name; likewise"},
+    {"--inside", "REGION:H[:GROW]", "asks for H in a region, instead of -hsiz; likewise"},
     {"-hmin", "X", "asks for no edge shorter than X"},
     {"-hmax", "X", "asks for no edge longer than X"},
     {"-hgrad", "X", "lets sizes grow by a factor of X at most per unit length (default: no limit)"},
     {"-hgradreq", "X",
      "takes sizes from what is required, to grow and fall by X at most (default: as asked)"},
-    {"-f", "FILE", "bounds on sizes by reference, as Mmg's (default: NAME.mmg2d or NAME.mmg3d)"},
+    {"-f", "FILE", "bounds on sizes by reference, a .mmg2d or .mmg3d (default: NAME's)"},
     {"-nomove", "", "moves no vertex"},
     {"-noswap", "", "swaps no edge or face"},
     {"-noinsert", "", "splits and collapses no edge"},
@@ -59,8 +65,8 @@ constexpr std::array<Option, 26> own_options{{
     {"--iterations", "N", "at most this many rounds of all kernels"},
     {"--thorough", "", "goes on for better shapes and lengths"},
     {"--racing", "", "works in order of arrival: valid too, but runs may differ"},
-    {"--json", "FILE", "writes counts, times, quality and memory there"},
-    {"--vtu", "FILE", "writes the adapted mesh for ParaView, too"},
+    {"--json", "FILE", "writes counts, times, quality and memory there, a .json"},
+    {"--vtu", "FILE", "writes the adapted mesh for ParaView, too, a .vtu"},
     {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},
     {"--no-metric", "", "writes no metric beside the adapted mesh"},
     {"--field", "FIELD", "carries fields to OUT.FIELD.sol, integrals kept; may be given again"},
@@ -82,6 +88,7 @@ struct Job {
   CarriedFields fields;
   std::string unneeded;  // options of Mmg's
   std::optional<double> size;
+  SizeOptions places;
   std::optional<std::size_t> memory;  // bytes
   AdaptOptions adapt;
   int verbosity = 1;
@@ -115,6 +122,28 @@ void set_output(Job& job, const Arguments& arguments) {
   if (job.with_metric && !is_standard_output(job.output)) job.metric_out = field_beside(job.output);
 }
 
+/// Sizes are said in one way, or none: then a metric beside the mesh counts, if there is one.
+void set_sizes(Job& job, const Arguments& arguments) {
+  job.size = arguments.size("-hsiz");
+  job.places = SizeOptions(arguments, "-hsiz");
+  job.metric_in = arguments.text("-sol");
+  job.keep_sizes = arguments.has("-optim");
+  std::vector<std::string> given;
+  const auto add = [&](const char* option) {
+    if (arguments.has(option)) given.emplace_back(option);
+  };
+  add("-optim");
+  if (job.places.any()) add("-f");
+  if (!job.places.any()) add("-hsiz");
+  add("-sol");
+  for (const char* option : {"--near", "--on", "--inside"})
+    if (given.empty() || !given.back().starts_with("--")) add(option);
+  if (given.size() > 1)
+    throw UsageError("options " + given[0] + " and " + given[1] +
+                     ": expected one of them, found both");
+  if (given.empty()) job.metric_in = metric_beside(job.input);
+}
+
 void set_files(Job& job, const Arguments& arguments) {
   job.input = only_mesh(arguments);
   set_output(job, arguments);
@@ -124,15 +153,7 @@ void set_files(Job& job, const Arguments& arguments) {
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
   job.fields = CarriedFields(arguments, job.output);
   job.parameters = arguments.text("-f");
-  job.size = arguments.size("-hsiz");
-  job.metric_in = arguments.text("-sol");
-  if (job.size && job.metric_in)
-    throw UsageError("options -hsiz and -sol: expected one of them, found both");
-  if (arguments.has("-optim") && (job.size || job.metric_in))
-    throw UsageError(std::string("options -optim and ") + (job.size ? "-hsiz" : "-sol") +
-                     ": expected one of them, found both");
-  job.keep_sizes = arguments.has("-optim");
-  if (!job.size && !job.metric_in && !job.keep_sizes) job.metric_in = metric_beside(job.input);
+  set_sizes(job, arguments);
 }
 
 /// A factor; 0 for none, which is 0 or less, as in Mmg.
@@ -181,11 +202,13 @@ void expect_inputs_to_stay(const Job& job) {
   std::vector<fs::path> inputs = {job.input}, fields = job.fields.inputs();
   if (job.metric_in) fields.push_back(*job.metric_in);
   if (job.parameters) fields.push_back(*job.parameters);
+  for (const fs::path& path : job.places.inputs()) fields.push_back(path);
   inputs.insert(inputs.end(), fields.begin(), fields.end());
   for (const auto& path : {job.json, job.vtu})
     if (path) expect_no_input(*path, inputs);
   std::error_code ignored;
   if (fs::equivalent(job.output, job.input, ignored)) return;
+  expect_no_input(job.output, fields);
   if (job.metric_out) expect_no_input(*job.metric_out, fields);
   for (const fs::path& path : job.fields.outputs()) expect_no_input(path, fields);
 }
@@ -205,10 +228,14 @@ Job read_job(const Arguments& arguments) {
   return job;
 }
 
+/// At the vertices of the input.
 AnyField choose_metric(const Executor& executor, const Job& job,
-                       const meshadapt::MeshWithFields& file, meshadapt::Warnings& warnings) {
+                       const meshadapt::MeshWithFields& file, const meshadapt::Sizes& sizes,
+                       meshadapt::Warnings& warnings) {
   const AnyMesh& mesh = file.mesh;
   const meshadapt::SizeBounds bounds{job.adapt.smallest_size, job.adapt.largest_size};
+  if (job.places.any())
+    return meshadapt::metric_of(meshadapt::size_field(executor, mesh, sizes), mesh, bounds);
   if (job.size) return meshadapt::constant_metric(mesh, *job.size);
   if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings, bounds);
   if (const auto metric = metric_in(file); metric && !job.keep_sizes)
@@ -247,7 +274,7 @@ std::size_t memory_left(std::optional<std::size_t> given) {
 }
 
 AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const AnyMesh& mesh,
-                                const AnyField& metric) {
+                                const AnyField& metric, const meshadapt::Sizes& sizes) {
   const ProgressLine line(job.verbosity > 0 && stderr_is_terminal());
   AdaptOptions adapt = job.adapt;
   adapt.memory_limit = memory_left(job.memory);
@@ -255,7 +282,8 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
     line.show(progress);
     return true;
   };
-  AdaptedMesh adapted = meshadapt::adapt(executor, mesh, metric, adapt);
+  AdaptedMesh adapted = !job.places.any() ? meshadapt::adapt(executor, mesh, metric, adapt)
+                                          : meshadapt::adapt_to_sizes(executor, mesh, sizes, adapt);
   if (adapted.report.checked) return adapted;
   const auto faults =
       meshadapt::check_adapted(executor, mesh, adapted.mesh, job.adapt.make.surface_tolerance);
@@ -314,12 +342,14 @@ int work(const Executor& executor, Job job) {
   const meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
   const AnyMesh& mesh = file.mesh;
   warn_of_fields_left(job, file, warnings);
-  AnyField metric = choose_metric(executor, job, file, warnings);
-  bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings), metric,
-                job.adapt);
+  const meshadapt::Sizes sizes = job.places.sizes_for(mesh, warnings);
+  AnyField metric = choose_metric(executor, job, file, sizes, warnings);
+  if (!job.places.any())
+    bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings),
+                  metric, job.adapt);
   const CarriedFields::Values fields = job.fields.read(mesh, warnings);
 
-  AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric);
+  AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric, sizes);
   adapted.mesh.name = job.output.string();
   const auto carried = job.fields.carry(executor, mesh, fields, adapted.mesh);
   const AdaptSummary summary = summarise(
@@ -350,9 +380,11 @@ const Command adapt_command{
     "MESH [-sol METRIC] [-o OUT]",
     "adapts a mesh to a metric",
     "The metric is a size or a tensor at each vertex; edges get a length of about one in it.\n"
-    "Without any, the sizes that the mesh has are kept, stretched as they are. The metric at the\n"
-    "new vertices is written beside the adapted mesh. Old output files stay as they are until the\n"
-    "new ones are complete.",
+    "Without any, the sizes that the mesh has are kept, stretched as they are. Sizes by places "
+    "are\n"
+    "evaluated on the adapted mesh, too, which is adapted again while it lacks some, at most five\n"
+    "times in all. The metric at the new vertices is written beside the adapted mesh. Old output\n"
+    "files stay as they are until the new ones are complete.",
     options,
     run};
 

@@ -36,12 +36,14 @@ constexpr std::array<Option, 16> options{{
     {"--elements", "N", "make, scale: the complexity of about N elements instead"},
     {"--error", "X", "make: the interpolation error to reach instead"},
     {"--norm", "P", "make: the L^P norm that the error is measured in, or inf (default: 2)"},
-    {"--recovery", "HOW", "make: second derivatives by least-squares (default) or projection"},
+    {"--recovery", "least-squares|projection",
+     "make: how to get second derivatives (default: least-squares)"},
     {"--default", "H", "size: where nothing finer is asked for (default: the extent of the mesh)"},
     {"--near", "PLACE:H[:GROW]",
      "size: H in a point, sphere, box, line or file, growing around it; may be given again"},
     {"--on", "BOUNDARY:H[:GROW]", "size: H on a boundary, by its reference or name; likewise"},
-    {"--in", "REGION:H[:GROW]", "size: H in a region, instead of the default; likewise"},
+    {"--in", "REGION:H[:GROW]", "size: H in a region, instead of the default; likewise",
+     "--inside"},
     {"-hmin", "X", "asks for no edge shorter than X"},
     {"-hmax", "X", "asks for no edge longer than X"},
     {"--anisotropy", "X", "lets sizes differ by a factor of X at most between directions"},
@@ -144,8 +146,8 @@ void set_sizes(Job& job, const Arguments& arguments) {
   if (job.operation != "size")
     return refuse(job, arguments, {"--default", "--near", "--on", "--in"});
   refuse(job, arguments, {"--anisotropy"});
-  job.sizes = SizeOptions(arguments);
-  if (job.sizes.empty())
+  job.sizes = SizeOptions(arguments, "--default");
+  if (!job.sizes.any() && !arguments.has("--default"))
     throw UsageError("size: expected some of --default, --near, --on and --in");
   for (const fs::path& input : job.sizes.inputs()) expect_no_input(job.output, {input});
 }
@@ -345,7 +347,7 @@ int run(const Arguments& arguments) {
 
 const Command metric_command{
     "metric",
-    "make|size|implied|intersect|scale|bound|grade MESH [FILE...] -o OUT",
+    "make|size|implied|intersect|scale|bound|grade MESH [FIELD...] -o OUT",
     "makes metrics from fields, and changes them",
     "  make MESH FIELD           the metric in which linear interpolation of all that FIELD has "
     "at\n"

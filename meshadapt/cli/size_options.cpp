@@ -108,9 +108,9 @@ meshadapt::SizePlace place_in(const AnyMesh& file, const AnyMesh& mesh, const st
 
 }  // namespace
 
-SizeOptions::SizeOptions(const Arguments& arguments)
-    : elsewhere_(arguments.size("--default").value_or(0)) {
-  for (const char* option : {"--near", "--on", "--in"})
+SizeOptions::SizeOptions(const Arguments& arguments, std::string_view elsewhere)
+    : elsewhere_(arguments.size(elsewhere).value_or(0)) {
+  for (const char* option : {"--near", "--on", "--in", "--inside"})
     for (const std::string& value : arguments.texts(option)) words_.push_back(read(option, value));
 }
 
@@ -123,7 +123,7 @@ SizeOptions::Words SizeOptions::read(const std::string& option, const std::strin
     words.shape = fields[0];
     named = 2;
   } else {
-    words.shape = option.substr(2);
+    words.shape = option == "--on" ? "on" : "in";
   }
   // A name, or that of a file, may have colons: what numbers there are at the end is the rest.
   std::size_t first = fields.size();

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "arguments.hpp"
@@ -14,15 +15,16 @@
 
 namespace ductile::cli {
 
-/// What --default, --near, --on and --in say. Names and references are looked up when the mesh is
-/// known.
+/// What --near, --on and --in, or --inside, say, and an option for the size elsewhere. Names and
+/// references are looked up when the mesh is known.
 class SizeOptions {
  public:
   SizeOptions() = default;
   /// Throws UsageError.
-  explicit SizeOptions(const Arguments& arguments);
+  SizeOptions(const Arguments& arguments, std::string_view elsewhere);
 
-  bool empty() const { return elsewhere_ == 0 && words_.empty(); }
+  /// Whether there are places.
+  bool any() const { return !words_.empty(); }
 
   /// Files that places are read from.
   std::vector<std::filesystem::path> inputs() const;

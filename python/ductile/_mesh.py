@@ -11,7 +11,7 @@ from . import _ductile, _html, _interop
 from ._arrays import component_count, field_type, finite, floats, named, number
 from ._build import KINDS, data_of, field, options_of, place_of, warn, with_required
 from ._ductile import InputError
-from ._metric import MetricLike, as_rows, as_tensors, full, packed, sizes
+from ._metric import MetricLike, as_rows, as_tensors, full, packed
 from ._size import Size
 
 ProgressFunction = Callable[[str, int, int], Optional[bool]]
@@ -65,7 +65,8 @@ class Mesh:
     metric : ndarray or None
         Of an adapted mesh, the metric at its vertices.
     report : Report or None
-        Of an adapted mesh, how the adaptation went; with a `Size`, the last one.
+        Of an adapted mesh, how the adaptation went; with a `Size`, the last one, with the seconds and
+        warnings of all.
 
     Examples
     --------
@@ -306,26 +307,17 @@ class Mesh:
                            swap=not noswap, insert=not noinsert, lock_boundary=nosurf,
                            memory_limit=int(number(memory, "memory")) << 20)
         executor = _ductile.Executor(threads, deterministic)
-        adapted, at_vertices, report = self._adapted(data, metric, options, executor, progress)
-        out = Mesh._of(adapted)
-        out.metric, out.report = at_vertices, report
+        if isinstance(metric, Size):
+            with named(self.dim):
+                result = _ductile.remesh_to_sizes(data, metric._sizes, options, executor, progress)
+        else:
+            rows = None if metric is None else as_rows(Mesh._of(data), metric, executor)
+            with named(self.dim):
+                result = _ductile.remesh(data, rows, options, executor, progress)
+        out = Mesh._of(result[0])
+        out.metric, out.report = result[1:]
         out._source, out._tolerance = data, options.surface_tolerance
         return out
-
-    @staticmethod
-    def _adapted(data: _ductile.MeshData, metric: Optional[MetricLike], options: _ductile.Options,
-                 executor: _ductile.Executor, progress: Optional[ProgressFunction],
-                 ) -> tuple[_ductile.MeshData, np.ndarray, _ductile.Report]:
-        """Adapts once, or as often as a Size asks for that vertices of a coarse mesh did not see."""
-        for times in range(_MOST_TIMES):
-            given = None if metric is None else as_rows(Mesh._of(data), metric, executor)
-            with named(data.dimension):
-                result = _ductile.remesh(data, given, options, executor, progress)
-            data = result[0]
-            if not isinstance(metric, Size) or options.surface_tolerance > 0 \
-                    or _has_sizes(Mesh._of(data), metric, result[1], options):
-                break
-        return result
 
     @property
     def origin(self) -> Origin:
@@ -479,15 +471,6 @@ class Mesh:
 
 
 # ---- Inside ----
-
-_MOST_TIMES = 5  # that a mesh is adapted to a Size
-
-
-def _has_sizes(mesh: Mesh, size: Size, metric: np.ndarray, options: _ductile.Options) -> bool:
-    """Whether a mesh was adapted to about the sizes that are asked for at its vertices, or finer."""
-    asked = np.maximum(size.at(mesh), options.smallest_size)
-    return bool((sizes(metric)[:, 0] < 1.5 * asked).all())
-
 
 def _carried(tensors: np.ndarray, source: _ductile.MeshData, origin: Origin) -> np.ndarray:
     """Metrics of a mesh at the vertices of the one made from it: the means of their logarithms."""

@@ -9,6 +9,7 @@
 #include "bindings.hpp"
 
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/adapt_to_sizes.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
@@ -59,23 +60,42 @@ class Progress {
 /// Rows of an array, and what they are; without them the mesh keeps its sizes.
 using MaybeMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
 
-py::tuple remesh(const AnyMesh& mesh, const MaybeMetric& metric, AdaptOptions options,
-                 const runtime::ExecutorOptions& threads, const py::object& progress) {
-  std::optional<AnyField> given;
-  if (metric)
-    given = field_of(std::get<0>(*metric), std::get<1>(*metric), mesh.dimension, "metric");
+/// What adapt(executor, options) gives, with Python's function as its progress.
+template <class Adapt>
+py::tuple adapted_by(Adapt&& adapt, AdaptOptions options, const runtime::ExecutorOptions& threads,
+                     const py::object& progress) {
   Progress asked(progress);
   options.progress = [&asked](const AdaptProgress& now) { return asked(now); };
-  AdaptedMesh adapted = work(threads, [&](const runtime::Executor& executor) {
-    const AnyField wanted =
-        given ? meshadapt::metric_of(*given, mesh, {options.smallest_size, options.largest_size})
-              : meshadapt::default_metric(executor, mesh);
-    return meshadapt::adapt(executor, mesh, wanted, options);
-  });
+  AdaptedMesh adapted =
+      work(threads, [&](const runtime::Executor& executor) { return adapt(executor, options); });
   const Shape shape{signed_size(adapted.mesh.vertex_count()),
                     signed_size(stride_of(adapted.metric))};
   return py::make_tuple(std::make_shared<AnyMesh>(std::move(adapted.mesh)),
                         take(std::move(adapted.metric.values), shape), std::move(adapted.report));
+}
+
+py::tuple remesh(const AnyMesh& mesh, const MaybeMetric& metric, const AdaptOptions& given_options,
+                 const runtime::ExecutorOptions& threads, const py::object& progress) {
+  std::optional<AnyField> given;
+  if (metric)
+    given = field_of(std::get<0>(*metric), std::get<1>(*metric), mesh.dimension, "metric");
+  const auto adapt = [&](const runtime::Executor& executor, const AdaptOptions& options) {
+    const AnyField wanted =
+        given ? meshadapt::metric_of(*given, mesh, {options.smallest_size, options.largest_size})
+              : meshadapt::default_metric(executor, mesh);
+    return meshadapt::adapt(executor, mesh, wanted, options);
+  };
+  return adapted_by(adapt, given_options, threads, progress);
+}
+
+py::tuple remesh_to_sizes(const AnyMesh& mesh, const meshadapt::Sizes& given,
+                          const AdaptOptions& given_options,
+                          const runtime::ExecutorOptions& threads, const py::object& progress) {
+  const meshadapt::Sizes sizes = sizes_for(mesh, given);
+  const auto adapt = [&](const runtime::Executor& executor, const AdaptOptions& options) {
+    return meshadapt::adapt_to_sizes(executor, mesh, sizes, options);
+  };
+  return adapted_by(adapt, given_options, threads, progress);
 }
 
 void bind_options(py::module_& module) {
@@ -135,6 +155,7 @@ void bind_adapt(py::module_& module) {
   bind_options(module);
   bind_report(module);
   module.def("remesh", &remesh);
+  module.def("remesh_to_sizes", &remesh_to_sizes);
 }
 
 }  // namespace ductile::python

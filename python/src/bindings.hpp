@@ -12,6 +12,7 @@
 #include <pybind11/stl.h>
 
 #include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/team.hpp"
 
@@ -71,6 +72,9 @@ inline meshadapt::AnyField field_of(const Given<double>& array, meshadapt::AnyFi
                                     int dimension, const char* name) {
   return {dimension, static_cast<std::size_t>(array.shape(0)), {type}, copied(array), name};
 }
+
+/// Sizes on facets and cells, of which Python does not say the dimension, as those of this mesh.
+meshadapt::Sizes sizes_for(const meshadapt::AnyMesh& mesh, meshadapt::Sizes sizes);
 
 /// body(executor) without the interpreter's lock, so that other threads of Python go on. Threads of
 /// the executor stay together meanwhile.

@@ -139,12 +139,8 @@ void bind_operations(py::module_& module) {
 /// Of dimensions that the mesh says: of its facets, of its cells.
 constexpr int of_facets = -1, of_cells = -2;
 
-AnyField sizes_at(const AnyMesh& mesh, Sizes sizes, const ExecutorOptions& threads) {
-  for (meshadapt::SizeSource& source : sizes.sources)
-    if (auto* const referenced = std::get_if<meshadapt::Referenced>(&source.place)) {
-      if (referenced->dimension == of_facets) referenced->dimension = mesh.dimension - 1;
-      if (referenced->dimension == of_cells) referenced->dimension = mesh.dimension;
-    }
+AnyField sizes_at(const AnyMesh& mesh, const Sizes& given, const ExecutorOptions& threads) {
+  const Sizes sizes = sizes_for(mesh, given);
   return work(threads, [&](const Executor& executor) {
     return meshadapt::size_field(executor, mesh, sizes);
   });
@@ -213,6 +209,15 @@ void bind_sizes(py::module_& module) {
 }
 
 }  // namespace
+
+meshadapt::Sizes sizes_for(const meshadapt::AnyMesh& mesh, meshadapt::Sizes sizes) {
+  for (meshadapt::SizeSource& source : sizes.sources)
+    if (auto* const referenced = std::get_if<meshadapt::Referenced>(&source.place)) {
+      if (referenced->dimension == of_facets) referenced->dimension = mesh.dimension - 1;
+      if (referenced->dimension == of_cells) referenced->dimension = mesh.dimension;
+    }
+  return sizes;
+}
 
 void bind_metric(py::module_& module) {
   bind_solution_metric(module);

@@ -117,6 +117,46 @@ TEST(AdaptCommand, AdaptsToOneSizeAndToTheSizesThatThereAre) {
   EXPECT_TRUE(contains(outcome.err, "no metric given")) << outcome.err;
 }
 
+TEST(AdaptCommand, AdaptsToSizesByPlacesThatTheMeshDoesNotShow) {
+  const Folder folder;
+  auto box = meshadapt::box_mesh<2>({1, 1}, {2, 2});
+  box.names = {{1, 1, "wall"}};
+  meshadapt::write_mesh(folder.path() / "a.msh", box);
+  meshadapt::write_mesh(folder.path() / "line.mesh", box);
+  folder.write("a.mmg2d", "Parameters 1\n1 Edge 0.01 0.011 0\n");
+  const auto elements = [&](const std::string& words) {
+    const Outcome outcome = folder.run("adapt a.msh " + words + " -v 0 -o b.meshb");
+    EXPECT_EQ(outcome.status, 0) << words << ": " << outcome.err;
+    return meshadapt::read_mesh(folder.path() / "b.meshb").triangles.size();
+  };
+  // A size of 0.01 that grows by 0.26 per unit of length asks for so many triangles around a point.
+  const std::size_t around = elements("-hsiz .5 --near point:.3,.6:.01");
+  EXPECT_GT(around, 200U);
+  EXPECT_LT(around, 1000U);
+  const std::size_t beside = elements("-hsiz .5 --on wall:.01:1.5"), in = elements("--inside 1:.1");
+  EXPECT_GT(beside, 200U);
+  EXPECT_LT(beside, 1500U);
+  EXPECT_GT(in, 180U);
+  EXPECT_LT(in, 300U);
+  EXPECT_LT(elements("-hsiz .2 --near point:0,0:.2 -hmax .1"), elements("-hsiz .1"))
+      << "of a.mmg2d";
+  struct Line {
+    const char *words, *text;
+  };
+  for (const auto& [words, text] : std::initializer_list<Line>{
+           {"-sol a.sol --near point:0,0:.1", "options -sol and --near: expected one of them"},
+           {"-optim --on wall:.1 --inside 1:.1", "options -optim and --on: expected one of them"},
+           {"-f a.mmg2d --inside 1:.1", "options -f and --inside: expected one of them"},
+           {"--on wal:.1", "option --on wal:.1: expected a name that the mesh has, one of wall"},
+           {"--near ball:0,0:.1", "expected point, sphere, box, line or file"},
+           {"--near file:line.mesh:.1 -o line.mesh", "is read, and would be replaced"}}) {
+    const Outcome outcome = folder.run("adapt a.msh -o c.mesh " + std::string(words));
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_TRUE(contains(outcome.err, text)) << words << ": " << outcome.err;
+  }
+  EXPECT_FALSE(folder.has("c.mesh"));
+}
+
 TEST(AdaptCommand, ReportsAsJsonAndForParaView) {
   const Folder folder;
   folder.add_example("waves2d");

@@ -1,21 +1,25 @@
 /// @file
 /// What a program that calls adapt() may count on: it can be cancelled, prints nothing, works in a
-/// forked child, and says what required entities hold.
+/// forked child, says what required entities hold, and meets sizes that a coarse mesh did not show.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
 
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/adapt_to_sizes.hpp"
 #include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "support/meshes.hpp"
 #include "support/random_case.hpp"
 #include "support/trials.hpp"
 
@@ -168,7 +172,9 @@ TEST(Callers, GetToKnowHowManyLongEdgesRequiredEntitiesHold) {
                                                   : long_edges<3>(adapted, edges));
     held += adapted.report.held_long_edges;
   }
-  if (test::trials(20) >= 20) EXPECT_GT(held, 100U);  // which fewer need not have
+  if (test::trials(20) >= 20) {
+    EXPECT_GT(held, 100U);  // which fewer need not have
+  }
 }
 
 TEST(Callers, GetToKnowHowManyShortEdgesRequiredEntitiesHold) {
@@ -187,6 +193,124 @@ TEST(Callers, GetToKnowHowManyShortEdgesRequiredEntitiesHold) {
       adapt(executor, box, sizes(box, 0.1), {.make = {.lock_boundary = true}}).report;
   EXPECT_EQ(locked.held_long_edges, 288U) << "of 192 triangles";
   EXPECT_EQ(locked.held_short_edges, 0U);
+}
+
+// ---- Sizes by places ----
+
+/// A mesh of few cells and a size near a place that no vertex is near, or one at a vertex.
+struct HiddenSize {
+  AnyMesh mesh;
+  Sizes sizes;
+  Vector<3> at;
+  double size = 0;
+};
+
+HiddenSize random_hidden_size(std::uint64_t seed) {
+  test::Random random(seed);
+  HiddenSize hidden;
+  const std::size_t kind = test::below(random, 5);
+  const int d = seed % 2 == 0 ? 2 : 3;
+  const int n = kind < 3 ? 1 + static_cast<int>(test::below(random, 3)) : d == 2 ? 12 : 4;
+  hidden.mesh = d == 2 ? box_mesh<2>({1, 1}, {n, n}) : box_mesh<3>({1, 1, 1}, {n, n, n});
+  hidden.size = d == 2 ? test::uniform(random, 0.01, 0.04) : test::uniform(random, 0.08, 0.12);
+  hidden.sizes.elsewhere = 0.5;
+  for (int axis = 0; axis < d; ++axis) hidden.at[axis] = test::uniform(random, 0.2, 0.8);
+  SizePlace place = Ball{hidden.at, 0};
+  if (kind == 1) place = AxisBox{hidden.at, hidden.at + Vector<3>{{0.02, 0.01, 0.01}}};
+  if (kind == 2) place = Polyline{{hidden.at, hidden.at + Vector<3>{{0.05, 0.05, 0}}}};
+  if (kind >= 3) {  // a vertex of a mesh that is too fine, which need not stay
+    const std::size_t vertex = test::below(random, hidden.mesh.vertex_count());
+    for (int axis = 0; axis < d; ++axis)
+      hidden.at[axis] =
+          hidden.mesh
+              .coordinates[vertex * static_cast<std::size_t>(d) + static_cast<std::size_t>(axis)];
+    hidden.mesh.vertex_reference[vertex] = 9;
+    hidden.mesh.names = {{0, 9, "spot"}, {d, 1, "spot"}};
+    hidden.size = 0.3;
+    place = Referenced{0, 9};
+    if (kind == 4) place = Named{"spot"};  // all elements, too
+  }
+  hidden.sizes.add(place, hidden.size);
+  return hidden;
+}
+
+/// The longest edge of the elements around the vertex that is nearest to a place.
+template <int Dim>
+double longest_edge_near(const AnyMesh& mesh, const Vector<3>& place) {
+  Vector<Dim> at;
+  for (int axis = 0; axis < Dim; ++axis) at[axis] = place[axis];
+  VertexId nearest = 0;
+  const auto distance = [&](VertexId v) { return norm(position_in<Dim>(mesh, v) - at); };
+  for (VertexId v = 0; v < mesh.vertex_count(); ++v)
+    if (distance(v) < distance(nearest)) nearest = v;
+  double longest = 0;
+  for (const auto& corners : elements_in<Dim>(mesh).vertices)
+    if (std::find(corners.begin(), corners.end(), nearest) != corners.end())
+      for (const VertexId a : corners)
+        for (const VertexId b : corners)
+          longest = std::max(longest, norm(position_in<Dim>(mesh, a) - position_in<Dim>(mesh, b)));
+  return longest;
+}
+
+double longest_edge_near(const AnyMesh& mesh, const Vector<3>& place) {
+  return mesh.dimension == 2 ? longest_edge_near<2>(mesh, place)
+                             : longest_edge_near<3>(mesh, place);
+}
+
+TEST(Callers, MeetSizesThatACoarseMeshDidNotShow) {
+  const Executor one({.threads = 1}), two({.threads = 2});
+  constexpr double near = 3;  // times the size, which grows from the place
+  std::size_t missed = 0;
+  for (std::uint64_t seed = 0; seed < test::trials(16); ++seed) {
+    SCOPED_TRACE(seed);
+    const auto [mesh, sizes, at, size] = random_hidden_size(seed);
+    const AdaptedMesh adapted = adapt_to_sizes(two, mesh, sizes);
+    EXPECT_EQ(check_adapted(two, mesh, adapted.mesh), std::vector<std::string>{});
+    EXPECT_LT(longest_edge_near(adapted.mesh, at), near * size);
+    if (seed < 6) {
+      EXPECT_EQ(adapt_to_sizes(one, mesh, sizes).mesh, adapted.mesh);
+    }
+    const AnyField seen = metric_of(size_field(two, mesh, sizes), mesh);
+    missed += longest_edge_near(adapt(two, mesh, seen).mesh, at) > near * size ? 1 : 0;
+  }
+  if (test::trials(16) >= 24) {
+    EXPECT_GT(missed, 3U) << "that there is something to meet";
+  }
+}
+
+TEST(Callers, GetWarningsOfEachTimeAndMayCancelAnyTime) {
+  AnyMesh mesh = box_mesh<2>({1, 1}, {2, 2});
+  Sizes sizes{.elsewhere = 0.5};
+  sizes.add(Ball{{0.3, 0.6}, 0}, 0.01);
+  std::swap(mesh.triangles.vertices[0][0], mesh.triangles.vertices[0][1]);  // turned, and told of
+  const Executor executor({.threads = 2});
+  int falls = 0, last = 0;
+  AdaptOptions options{.progress = [&](const AdaptProgress& now) {
+    falls += now.iteration < last ? 1 : 0;
+    last = now.iteration;
+    return true;
+  }};
+  const AdaptReport report = adapt_to_sizes(executor, mesh, sizes, options).report;
+  EXPECT_EQ(report.warnings.size(), 1U);
+  EXPECT_GE(falls, 1) << "it is told of more than one time";
+  int steps = 0;
+  options.progress = [&](const AdaptProgress&) { return ++steps < 40; };
+  EXPECT_THROW(adapt_to_sizes(executor, mesh, sizes, options), Cancelled);
+  EXPECT_EQ(steps, 40);
+  sizes.add(Ball{{0.3, 0.6}, -1}, 0.01);
+  EXPECT_THROW(adapt_to_sizes(executor, mesh, sizes), InputError);
+  // Once, if boundaries may move; once, if the sizes are there.
+  options.progress = {};
+  options.make.surface_tolerance = 0.01;
+  sizes.sources.pop_back();
+  const AnyField seen = metric_of(size_field(executor, mesh, sizes), mesh);
+  EXPECT_EQ(adapt_to_sizes(executor, mesh, sizes, options).mesh,
+            adapt(executor, mesh, seen, options).mesh);
+  options.make.surface_tolerance = 0;
+  options.largest_size = 0.1;  // which is finer than what is asked for
+  const Sizes even{.elsewhere = 0.2};
+  EXPECT_EQ(adapt_to_sizes(executor, mesh, even, options).mesh,
+            adapt(executor, mesh, metric_of(size_field(executor, mesh, even), mesh), options).mesh);
 }
 
 }  // namespace

@@ -7,8 +7,7 @@
 ///   Sizes sizes{.elsewhere = 0.1};
 ///   sizes.add(Ball{{0.5, 0.5, 0.5}, 0.2}, 0.01);
 ///   sizes.add(Named{"wall"}, 0.005, {.grow = 1.2});
-///   const AdaptedMesh adapted = adapt(executor, mesh, metric_of(size_field(executor, mesh, sizes),
-///                                                               mesh));
+///   const AdaptedMesh adapted = adapt_to_sizes(executor, mesh, sizes);
 /// @endcode
 #pragma once
 

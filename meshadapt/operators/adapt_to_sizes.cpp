@@ -1,0 +1,108 @@
+#include "ductile/meshadapt/adapt_to_sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
+#include "mesh/first_bad.hpp"
+#include "metric/entities_of.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+
+namespace {
+
+constexpr int most_times = 5;
+constexpr double near_enough = 1.5;  // times the size asked for
+
+/// Whether the mesh was adapted to about the sizes that are asked for at its vertices, or finer.
+template <int Dim>
+bool has_sizes(const Executor& executor, const AdaptedMesh& adapted,
+               const std::vector<double>& size_of, double smallest) {
+  const auto metric_of = tensors_of<Dim>(executor, adapted.metric);
+  return first_bad(executor, metric_of.size(), [&](std::size_t v) {
+           const auto& value = principal_axes(metric_of[v]).value;
+           const double size = 1 / std::sqrt(*std::max_element(value.begin(), value.end()));
+           return !(size < near_enough * std::max(size_of[v], smallest));
+         }) == no_index;
+}
+
+/// The entities of a list as points and segments, which are flat triangles.
+TriangleSurface places_of(const AnyMesh& mesh, const EntityList& list) {
+  TriangleSurface surface;
+  const auto add = [&](std::uint32_t vertex) {
+    Vector<3> point;
+    for (int axis = 0; axis < mesh.dimension; ++axis)
+      point[axis] = mesh.coordinates[static_cast<std::size_t>(mesh.dimension) * vertex +
+                                     static_cast<std::size_t>(axis)];
+    surface.points.push_back(point);
+    return static_cast<std::uint32_t>(surface.points.size() - 1);
+  };
+  for (const auto& corners : list.corners) {
+    const std::uint32_t a = add(corners[0]), b = list.dimension > 0 ? add(corners[1]) : a;
+    surface.triangles.push_back({a, b, b});
+  }
+  return surface;
+}
+
+/// The same sizes near places instead of near vertices, and edges in 3D, that carry a reference:
+/// adaptation may remove those. Facets and regions stay.
+Sizes lasting(const AnyMesh& mesh, const Sizes& sizes) {
+  Sizes result{.elsewhere = sizes.elsewhere, .bounds = sizes.bounds};
+  for (const SizeSource& source : sizes.sources) {
+    std::set<std::pair<int, std::int32_t>> references;
+    if (const auto* entities = std::get_if<Referenced>(&source.place))
+      references = {{entities->dimension, entities->reference}};
+    if (const auto* named = std::get_if<Named>(&source.place))
+      references = references_named(mesh, named->name);
+    if (references.empty()) result.sources.push_back(source);
+    for (const auto& [dimension, reference] : references) {
+      SizeSource part = source;
+      part.place = Referenced{dimension, reference};
+      if (dimension < mesh.dimension - 1)
+        part.place = places_of(mesh, entities_of(mesh, dimension, reference));
+      result.sources.push_back(std::move(part));
+    }
+  }
+  return result;
+}
+
+void add_report_of(const AdaptReport& before, AdaptReport& report) {
+  report.total_seconds += before.total_seconds;
+  std::vector<std::string> warnings = before.warnings;
+  for (std::string& warning : report.warnings)
+    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
+      warnings.push_back(std::move(warning));
+  report.warnings = std::move(warnings);
+}
+
+}  // namespace
+
+AdaptedMesh adapt_to_sizes(const Executor& executor, const AnyMesh& mesh, const Sizes& sizes,
+                           const AdaptOptions& options) {
+  const SizeBounds bounds{options.smallest_size, options.largest_size};
+  const auto adapt_to = [&](const AnyMesh& from, const AnyField& asked) {
+    return adapt(executor, from, metric_of(asked, from, bounds), options);
+  };
+  AdaptedMesh adapted = adapt_to(mesh, size_field(executor, mesh, sizes));
+  if (options.make.surface_tolerance > 0) return adapted;
+  const Sizes same = lasting(mesh, sizes);
+  for (int times = 1; times < most_times; ++times) {
+    const AnyField asked = size_field(executor, adapted.mesh, same);
+    if (mesh.dimension == 2 ? has_sizes<2>(executor, adapted, asked.values, options.smallest_size)
+                            : has_sizes<3>(executor, adapted, asked.values, options.smallest_size))
+      return adapted;
+    AdaptedMesh again = adapt_to(adapted.mesh, asked);
+    add_report_of(adapted.report, again.report);
+    adapted = std::move(again);
+  }
+  return adapted;
+}
+
+}  // namespace ductile::meshadapt
