@@ -36,6 +36,12 @@ if(TARGET ductile)
     ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
   set_target_properties(ductile PROPERTIES INSTALL_RPATH "$ORIGIN/${ductile_libraries_from_program}")
   install(TARGETS ductile RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/meshadapt/cli/help/ductile.bash RENAME ductile
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+  if(NOT CMAKE_CROSSCOMPILING)
+    install(FILES ${PROJECT_BINARY_DIR}/meshadapt/cli/ductile.1
+      DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+  endif()
 endif()
 
 get_target_property(ductile_library_type ductile_runtime TYPE)

@@ -29,7 +29,9 @@ void print_overview(std::FILE* to) {
   for (const Command* command : all_commands)
     std::fprintf(to, "  ductile %-8s %s\n", std::string(command->name).c_str(),
                  std::string(command->summary).c_str());
-  std::fprintf(to, "  ductile help COMMAND  shows its options\n\nMeshes:\n");
+  std::fprintf(to,
+               "  ductile help COMMAND  shows its options\n"
+               "  ductile --version     says which version this is\n\nMeshes:\n");
   for (const meshadapt::MeshFormat& format : meshadapt::mesh_formats())
     std::fprintf(to, "  %-8s %s%s%s\n", std::string(format.ending).c_str(),
                  std::string(format.what).c_str(), format.holds_fields ? ", with fields" : "",
@@ -52,7 +54,7 @@ void print_help(const Command& command) {
     if (!option.value.empty()) left += " " + std::string(option.value);
     std::printf("  %-22s %s\n", left.c_str(), std::string(option.help).c_str());
   }
-  std::printf("  %-22s %s\n", "-h, --help", "shows this");
+  std::printf("  %-22s %s\n", "-h, --help", "shows its options");
 }
 
 [[noreturn]] void refuse_command(const std::string& name) {

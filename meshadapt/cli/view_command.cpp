@@ -23,9 +23,9 @@ constexpr std::array<Option, 6> options{{
     {"-o", "PICTURE", "where the picture goes: a name ending in .png or .svg (default NAME.png)",
      "--output"},
     {"-sol", "FILE", "the metric that quality is measured in, or to show; the fields of --by"},
-    {"--by", "WHAT",
-     "colours by quality (default), size, reference or a FIELD; metric draws its unit ellipses"},
-    {"--cut", "AXIS", "3D: cuts at the middle of x, y or z (default: where it is thinnest)"},
+    {"--by", "quality|size|reference|metric|FIELD",
+     "what elements are coloured by (default: quality); metric draws its unit ellipses"},
+    {"--cut", "x|y|z", "3D: the axis in the middle of which it is cut (default: the thinnest)"},
     {"--size", "PX", "pixels along the larger side of each drawing (default 1000)"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
 }};
