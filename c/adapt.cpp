@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/meshadapt/adapt_to_sizes.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -78,6 +79,14 @@ void expect_signed(const AnyMesh& mesh) {
     throw meshadapt::Error("the adapted mesh has more entities than 31 bits can count");
 }
 
+ductile_mesh* handle_of(meshadapt::AdaptedMesh&& result) {
+  expect_signed(result.mesh);
+  return std::make_unique<ductile_mesh>(ductile_mesh{std::move(result.mesh),
+                                                     std::move(result.metric),
+                                                     std::move(result.report)})
+      .release();
+}
+
 double figure(const AdaptReport& report, std::string_view name) {
   const std::array<std::pair<std::string_view, double>, 7> figures{
       {{"iterations", report.iterations},
@@ -111,13 +120,22 @@ int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric
     const ductile_options defaults;
     const ductile_options& used = options == nullptr ? defaults : *options;
     const meshadapt::AnyField wanted = c::metric_of(mesh->mesh, components, metric, used);
-    auto result =
-        meshadapt::adapt(runtime::Executor(used.executor), mesh->mesh, wanted, used.adapt);
-    c::expect_signed(result.mesh);
-    *adapted = std::make_unique<ductile_mesh>(ductile_mesh{std::move(result.mesh),
-                                                           std::move(result.metric),
-                                                           std::move(result.report)})
-                   .release();
+    *adapted = c::handle_of(
+        meshadapt::adapt(runtime::Executor(used.executor), mesh->mesh, wanted, used.adapt));
+  });
+}
+
+int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
+                           const ductile_options* options, ductile_mesh** adapted) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_given(sizes, "sizes");
+    c::expect_given(adapted, "adapted");
+    c::expect_dimension_of(*sizes, *mesh);
+    const ductile_options defaults;
+    const ductile_options& used = options == nullptr ? defaults : *options;
+    *adapted = c::handle_of(meshadapt::adapt_to_sizes(runtime::Executor(used.executor), mesh->mesh,
+                                                      sizes->sizes, used.adapt));
   });
 }
 

@@ -54,6 +54,26 @@ module ductile
       integer(c_int64_t), value :: count
       integer(c_int32_t), intent(in) :: indices(*)
     end function
+    integer(c_int) function ductile_mesh_set_name(mesh, kind, reference, name) bind(C)
+      import :: c_int, c_int32_t, c_char, c_ptr
+      type(c_ptr), value :: mesh
+      integer(c_int), value :: kind
+      integer(c_int32_t), value :: reference
+      character(kind=c_char), intent(in) :: name(*)  ! ends with c_null_char
+    end function
+    type(c_ptr) function ductile_mesh_name(mesh, kind, reference) bind(C)
+      import :: c_int, c_int32_t, c_ptr
+      type(c_ptr), value :: mesh
+      integer(c_int), value :: kind
+      integer(c_int32_t), value :: reference
+    end function
+    type(c_ptr) function ductile_mesh_name_at(mesh, i, kind, reference) bind(C)
+      import :: c_int, c_int32_t, c_int64_t, c_ptr
+      type(c_ptr), value :: mesh
+      integer(c_int64_t), value :: i
+      integer(c_int), intent(out) :: kind
+      integer(c_int32_t), intent(out) :: reference
+    end function
     integer(c_int) function ductile_mesh_read(path, mesh) bind(C)
       import :: c_int, c_char, c_ptr
       character(kind=c_char), intent(in) :: path(*)  ! ends with c_null_char
@@ -117,6 +137,66 @@ module ductile
       type(c_funptr), value :: progress
     end function
 
+    integer(c_int) function ductile_sizes_create(dimension, sizes) bind(C)
+      import :: c_int, c_ptr
+      integer(c_int), value :: dimension
+      type(c_ptr), intent(out) :: sizes
+    end function
+    subroutine ductile_sizes_destroy(sizes) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: sizes
+    end subroutine
+    integer(c_int) function ductile_sizes_set(sizes, name, value) bind(C)
+      import :: c_int, c_char, c_double, c_ptr
+      type(c_ptr), value :: sizes
+      character(kind=c_char), intent(in) :: name(*)
+      real(c_double), value :: value
+    end function
+    integer(c_int) function ductile_sizes_near_ball(sizes, centre, radius, size) bind(C)
+      import :: c_int, c_double, c_ptr
+      type(c_ptr), value :: sizes
+      real(c_double), intent(in) :: centre(*)
+      real(c_double), value :: radius, size
+    end function
+    integer(c_int) function ductile_sizes_near_box(sizes, low, high, size) bind(C)
+      import :: c_int, c_double, c_ptr
+      type(c_ptr), value :: sizes
+      real(c_double), intent(in) :: low(*), high(*)
+      real(c_double), value :: size
+    end function
+    integer(c_int) function ductile_sizes_near_curve(sizes, count, points, size) bind(C)
+      import :: c_int, c_int64_t, c_double, c_ptr
+      type(c_ptr), value :: sizes
+      integer(c_int64_t), value :: count
+      real(c_double), intent(in) :: points(*)
+      real(c_double), value :: size
+    end function
+    integer(c_int) function ductile_sizes_near_surface(sizes, count, corners, size) bind(C)
+      import :: c_int, c_int64_t, c_double, c_ptr
+      type(c_ptr), value :: sizes
+      integer(c_int64_t), value :: count
+      real(c_double), intent(in) :: corners(*)
+      real(c_double), value :: size
+    end function
+    integer(c_int) function ductile_sizes_on(sizes, kind, reference, size) bind(C)
+      import :: c_int, c_int32_t, c_double, c_ptr
+      type(c_ptr), value :: sizes
+      integer(c_int), value :: kind
+      integer(c_int32_t), value :: reference
+      real(c_double), value :: size
+    end function
+    integer(c_int) function ductile_sizes_on_name(sizes, name, size) bind(C)
+      import :: c_int, c_char, c_double, c_ptr
+      type(c_ptr), value :: sizes
+      character(kind=c_char), intent(in) :: name(*)
+      real(c_double), value :: size
+    end function
+    integer(c_int) function ductile_sizes_at(sizes, mesh, values) bind(C)
+      import :: c_int, c_double, c_ptr
+      type(c_ptr), value :: sizes, mesh
+      real(c_double), intent(out) :: values(*)
+    end function
+
     integer(c_int) function ductile_solution_metric(mesh, components, values, options, metric) &
         bind(C)
       import :: c_int, c_double, c_ptr
@@ -129,6 +209,11 @@ module ductile
       import :: c_int, c_ptr
       type(c_ptr), value :: mesh, metric, options
       integer(c_int), value :: components
+      type(c_ptr), intent(out) :: adapted
+    end function
+    integer(c_int) function ductile_adapt_to_sizes(mesh, sizes, options, adapted) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: mesh, sizes, options
       type(c_ptr), intent(out) :: adapted
     end function
     integer(c_int) function ductile_mesh_report(adapted, name, value) bind(C)

@@ -32,6 +32,7 @@ enum {
 
 typedef struct ductile_mesh ductile_mesh;
 typedef struct ductile_options ductile_options;
+typedef struct ductile_sizes ductile_sizes;
 typedef struct ductile_transfer ductile_transfer;
 
 /** "0.1.0". */
@@ -46,8 +47,8 @@ const char* ductile_last_error(void);
 /** An empty mesh of dimension 2 or 3. */
 int ductile_mesh_create(int dimension, ductile_mesh** mesh);
 
-/** Gives it `count` vertices, in place of all that it had: coordinates[vertex * dimension + axis];
- * reference[vertex], or NULL for 0. Arrays are copied, here and below. */
+/** Gives it `count` vertices, in place of all that it had except names: coordinates[vertex * dimension
+ * + axis]; reference[vertex], or NULL for 0. Arrays are copied, here and below. */
 int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* coordinates,
                               const int32_t* reference);
 
@@ -69,6 +70,17 @@ int ductile_mesh_set_facets_64(ductile_mesh* mesh, int64_t count, const int64_t*
 /** The entities that must not change, by their indices, in place of those required before. `kind`
  * is DUCTILE_VERTICES, DUCTILE_FACETS or DUCTILE_ELEMENTS. */
 int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int32_t* indices);
+
+/** Calls what carries a reference by a name, such as "wall", or by none if that is "" or NULL.
+ * Names stay where arrays are replaced, and in adapted meshes; files of formats that hold names
+ * have them. There are no ridges in 2D. */
+int ductile_mesh_set_name(ductile_mesh* mesh, int kind, int32_t reference, const char* name);
+/** The name of a reference, valid until the mesh is changed or destroyed; NULL if it has none. */
+const char* ductile_mesh_name(const ductile_mesh* mesh, int kind, int32_t reference);
+/** Name i, and what carries it unless that is NULL; NULL beyond the last. Files may name what the
+ * mesh cannot have, as volumes in 2D; of such the kind is -1. */
+const char* ductile_mesh_name_at(const ductile_mesh* mesh, int64_t i, int* kind,
+                                 int32_t* reference);
 
 /** From and to a file of any format that `ductile help` lists, by its content and its ending. The
  * metric of an adapted mesh goes into those that hold fields, .vtu, .vtk and .msh. */
@@ -100,9 +112,9 @@ const double* ductile_mesh_metric(const ductile_mesh* mesh);
 int ductile_options_create(ductile_options** options);
 void ductile_options_destroy(ductile_options* options);
 
-/** Sets one by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hausd", "ar",
- * "iterations", "threads", "memory" in megabytes, "elements", "norm"; "nomove", "noswap",
- * "noinsert", "nosurf", "thorough" and "racing", which are 0 or 1. */
+/** Sets one by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hgradreq",
+ * "hausd", "ar", "iterations", "threads", "memory" in megabytes, "elements", "norm"; "nomove",
+ * "noswap", "noinsert", "nosurf", "thorough" and "racing", which are 0 or 1. */
 int ductile_options_set(ductile_options* options, const char* name, double value);
 
 /** Called after each step of the adaptation, on the thread that called ductile_adapt(): the step's
@@ -110,6 +122,38 @@ int ductile_options_set(ductile_options* options, const char* name, double value
 typedef int (*ductile_progress)(const char* step, int iteration, int64_t changes, void* context);
 int ductile_options_set_progress(ductile_options* options, ductile_progress progress,
                                  void* context);
+
+/* ---- Sizes by places, without tensors. Where several hold, the finest one does ---- */
+
+/** For meshes of dimension 2 or 3. */
+int ductile_sizes_create(int dimension, ductile_sizes** sizes);
+void ductile_sizes_destroy(ductile_sizes* sizes);
+
+/** Sets a number by its name. "default" is the size where nothing finer is asked for, by default
+ * the extent of the mesh; "hmin" and "hmax" are bounds that hold in the end. Others are of the
+ * places that are added from then on: from each the size grows by the factor "grow" per unit of
+ * metric length, 1.3 unless it is set, 0 for not at all; up to "largest", which is then asked for
+ * at most, 0 for without end; or evenly to that over "distance", if it is above 0. */
+int ductile_sizes_set(ductile_sizes* sizes, const char* name, double value);
+
+/** Ask for a size at places, which are counted from 0 in errors: in a ball, with the radius 0 at a
+ * point; in a box between two opposite corners; along segments from each of `count` points to the
+ * next, points[point * dimension + axis]; on `count` triangles, corners[(triangle * 3 + corner) *
+ * dimension + axis]. */
+int ductile_sizes_near_ball(ductile_sizes* sizes, const double* centre, double radius, double size);
+int ductile_sizes_near_box(ductile_sizes* sizes, const double* low, const double* high,
+                           double size);
+int ductile_sizes_near_curve(ductile_sizes* sizes, int64_t count, const double* points,
+                             double size);
+int ductile_sizes_near_surface(ductile_sizes* sizes, int64_t count, const double* corners,
+                               double size);
+/** The same where entities of a kind carry a reference, or any carry one of this name. In elements
+ * the size takes the place of the default, finer or coarser. */
+int ductile_sizes_on(ductile_sizes* sizes, int kind, int32_t reference, double size);
+int ductile_sizes_on_name(ductile_sizes* sizes, const char* name, double size);
+
+/** The size at each vertex of a mesh, for which `values` has room. */
+int ductile_sizes_at(const ductile_sizes* sizes, const ductile_mesh* mesh, double* values);
 
 /* ---- Adaptation ---- */
 
@@ -125,6 +169,11 @@ int ductile_solution_metric(const ductile_mesh* mesh, int components, const doub
  * `metric`: the sizes that the mesh has. NULL for `options`: the defaults. */
 int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric,
                   const ductile_options* options, ductile_mesh** adapted);
+
+/** Adapts a mesh to sizes, and the result again while its vertices show sizes that those before did
+ * not, at most five times in all; once with "hausd". */
+int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
+                           const ductile_options* options, ductile_mesh** adapted);
 
 /** A figure of the adaptation that a mesh came from: "iterations", "converged", "seconds",
  * "fixed_vertices", "held_long_edges", "held_short_edges", "warnings". */

@@ -11,6 +11,7 @@
 #include "ductile.h"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 
 /// A mesh; an adapted one has a metric and a report, too.
 struct ductile_mesh {
@@ -23,6 +24,12 @@ struct ductile_options {
   ductile::meshadapt::AdaptOptions adapt;
   ductile::runtime::ExecutorOptions executor;
   double elements = 0, norm = 2;  // of the metric of a solution
+};
+
+struct ductile_sizes {
+  int dimension = 0;
+  ductile::meshadapt::Sizes sizes;
+  ductile::meshadapt::SizeGrowth growth;  // of the places that are added next
 };
 
 namespace ductile::c {
@@ -62,6 +69,32 @@ inline void expect_array(const void* array, std::int64_t count, const char* name
     throw meshadapt::InputError(std::string(name) + ": expected 0 entries or more, found " +
                                 std::to_string(count));
   if (count > 0) expect_given(array, name);
+}
+
+/// Throws InputError unless it is 2 or 3.
+inline void expect_dimension(int dimension) {
+  if (dimension != 2 && dimension != 3)
+    throw meshadapt::InputError("dimension: expected 2 or 3, found " + std::to_string(dimension));
+}
+
+/// The dimension of entities of a kind in meshes of a dimension. Throws InputError if there are
+/// none.
+inline int dimension_of(int kind, int dimension) {
+  if (kind == DUCTILE_VERTICES) return 0;
+  if (kind == DUCTILE_RIDGES && dimension == 3) return 1;
+  if (kind == DUCTILE_FACETS) return dimension - 1;
+  if (kind == DUCTILE_ELEMENTS) return dimension;
+  throw meshadapt::InputError("kind: expected DUCTILE_VERTICES, " +
+                              std::string(dimension == 3 ? "DUCTILE_RIDGES, " : "") +
+                              "DUCTILE_FACETS or DUCTILE_ELEMENTS, found " + std::to_string(kind));
+}
+
+/// Throws InputError unless sizes are for meshes of this dimension.
+inline void expect_dimension_of(const ductile_sizes& sizes, const ductile_mesh& mesh) {
+  if (sizes.dimension != mesh.mesh.dimension)
+    throw meshadapt::InputError("sizes: expected those for meshes of dimension " +
+                                std::to_string(mesh.mesh.dimension) + ", found dimension " +
+                                std::to_string(sizes.dimension));
 }
 
 }  // namespace ductile::c

@@ -1,5 +1,6 @@
 /// @file
 /// Meshes of ductile.h: from arrays, from files, and their arrays.
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <limits>
@@ -64,11 +65,17 @@ AnyMesh with_cells(const AnyMesh& mesh, const GivenCells<Index>& given, int each
   return meshadapt::mesh_from_arrays(runtime::Executor(), arrays);
 }
 
+/// With other arrays a mesh is no adapted one any more, but keeps its names.
+void replace(ductile_mesh& handle, AnyMesh&& mesh) {
+  mesh.names = std::move(handle.mesh.names);
+  handle = {std::move(mesh), {}, {}};
+}
+
 template <class Index>
 int set_elements(ductile_mesh* handle, const GivenCells<Index>& given) {
   return guarded([&] {
     expect_given(handle, "mesh");
-    *handle = {with_cells(handle->mesh, given, handle->mesh.dimension + 1), {}, {}};
+    replace(*handle, with_cells(handle->mesh, given, handle->mesh.dimension + 1));
   });
 }
 
@@ -120,6 +127,22 @@ bool visit_cells(const AnyMesh& mesh, int kind, auto&& use) {
   return false;
 }
 
+/// The kind of entities of a dimension in meshes of a dimension; -1: there are none.
+int kind_of(int dimension, int mesh_dimension) {
+  for (const int kind : {DUCTILE_VERTICES, DUCTILE_RIDGES, DUCTILE_FACETS, DUCTILE_ELEMENTS})
+    if ((kind != DUCTILE_RIDGES || mesh_dimension == 3) &&
+        dimension_of(kind, mesh_dimension) == dimension)
+      return kind;
+  return -1;
+}
+
+auto find_name(std::vector<meshadapt::ReferenceName>& names, int dimension,
+               std::int32_t reference) {
+  return std::find_if(names.begin(), names.end(), [&](const meshadapt::ReferenceName& one) {
+    return one.dimension == dimension && one.reference == reference;
+  });
+}
+
 template <class T>
 const T* data_of(const std::vector<T>& values) {
   return values.empty() ? nullptr : values.data();
@@ -148,8 +171,7 @@ const char* ductile_last_error() { return c::last_error.c_str(); }
 int ductile_mesh_create(int dimension, ductile_mesh** mesh) {
   return c::guarded([&] {
     c::expect_given(mesh, "mesh");
-    if (dimension != 2 && dimension != 3)
-      throw meshadapt::InputError("dimension: expected 2 or 3, found " + std::to_string(dimension));
+    c::expect_dimension(dimension);
     auto made = std::make_unique<ductile_mesh>();
     made->mesh.dimension = dimension;
     *mesh = made.release();
@@ -167,7 +189,7 @@ int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* c
         .coordinates = c::span_of(coordinates, count, mesh->mesh.dimension),
         .elements = {},
         .vertex_reference = c::span_of(reference, count, 1)};
-    *mesh = {meshadapt::mesh_from_arrays(runtime::Executor(), arrays), {}, {}};
+    c::replace(*mesh, meshadapt::mesh_from_arrays(runtime::Executor(), arrays));
   });
 }
 
@@ -204,6 +226,41 @@ int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int3
             std::to_string(entities) + ", found " + std::to_string(indices[i]));
     required.assign(indices, indices + count);
   });
+}
+
+int ductile_mesh_set_name(ductile_mesh* mesh, int kind, int32_t reference, const char* name) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    const int dimension = c::dimension_of(kind, mesh->mesh.dimension);
+    auto names = mesh->mesh.names;
+    const auto found = c::find_name(names, dimension, reference);
+    if (name == nullptr || *name == '\0') {
+      if (found != names.end()) names.erase(found);
+    } else if (found != names.end()) {
+      found->name = name;
+    } else {
+      names.push_back({dimension, reference, name});
+    }
+    mesh->mesh.names = std::move(names);
+  });
+}
+
+const char* ductile_mesh_name(const ductile_mesh* mesh, int kind, int32_t reference) {
+  const auto& names = mesh->mesh.names;
+  for (const auto& one : names)
+    if (one.reference == reference && c::kind_of(one.dimension, mesh->mesh.dimension) == kind)
+      return one.name.c_str();
+  return nullptr;
+}
+
+const char* ductile_mesh_name_at(const ductile_mesh* mesh, int64_t i, int* kind,
+                                 int32_t* reference) {
+  const auto& names = mesh->mesh.names;
+  if (i < 0 || static_cast<std::size_t>(i) >= names.size()) return nullptr;
+  const auto& one = names[static_cast<std::size_t>(i)];
+  if (kind != nullptr) *kind = c::kind_of(one.dimension, mesh->mesh.dimension);
+  if (reference != nullptr) *reference = one.reference;
+  return one.name.c_str();
 }
 
 int ductile_mesh_read(const char* path, ductile_mesh** mesh) {

@@ -1,4 +1,4 @@
-! A mesh from arrays, adapted to sizes: Fortran with the module that comes with libductile.
+! A mesh from arrays, adapted to sizes at its vertices and to sizes by places: Fortran with the module that comes with libductile.
 program adapt
   use ductile
   implicit none
@@ -6,7 +6,7 @@ program adapt
   integer(c_int32_t) :: triangles(3, 2) = reshape([0, 1, 2, 0, 2, 3], [3, 2])
   real(c_double), target :: sizes(4) = [.02d0, .1d0, .1d0, .02d0]
   real(c_double), pointer :: x(:, :)
-  type(c_ptr) :: mesh, adapted, options
+  type(c_ptr) :: mesh, adapted, options, places
   integer(c_int64_t) :: vertices
 
   call check(ductile_mesh_create(2, mesh))
@@ -23,6 +23,17 @@ program adapt
   if (ductile_options_set(options, "hgard"//c_null_char, 1.3d0) /= DUCTILE_WRONG_INPUT) error stop 1
   print '(a)', "as expected: "//ductile_text(ductile_last_error())
 
+  ! ---- Sizes by places: on the boundary, all of which has reference 0, and around a disc ----
+  call ductile_mesh_destroy(adapted)
+  call check(ductile_mesh_set_name(mesh, DUCTILE_FACETS, 0_c_int32_t, "wall"//c_null_char))
+  call check(ductile_sizes_create(2, places))
+  call check(ductile_sizes_set(places, "default"//c_null_char, .2d0))
+  call check(ductile_sizes_near_ball(places, [.5d0, .5d0], .1d0, .02d0))
+  call check(ductile_sizes_on_name(places, "wall"//c_null_char, .1d0))
+  call check(ductile_adapt_to_sizes(mesh, places, options, adapted))
+  print '(i0, a)', ductile_mesh_count(adapted, DUCTILE_VERTICES), " vertices, most of them in the disc"
+
+  call ductile_sizes_destroy(places)
   call ductile_options_destroy(options)
   call ductile_mesh_destroy(adapted)
   call ductile_mesh_destroy(mesh)

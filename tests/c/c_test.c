@@ -1,5 +1,5 @@
 /* What the C library promises, in C: codes and texts of errors, that results stay as they were
- * where a call fails, cancelling, both widths of indices, origins and transfer. */
+ * where a call fails, cancelling, both widths of indices, origins and transfer, names and sizes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -213,6 +213,115 @@ static void test_solution_metric(void) {
   ductile_mesh_destroy(mesh);
 }
 
+static void test_names(void) {
+  ductile_mesh *mesh = make_square(), *adapted = NULL, *read = NULL;
+  int kind = 0;
+  int32_t reference = 0;
+  EXPECT(ductile_mesh_name_at(mesh, 0, &kind, &reference) == NULL);
+  EXPECT(ductile_mesh_set_name(mesh, DUCTILE_FACETS, 7, "inlet") == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_name(mesh, DUCTILE_ELEMENTS, 5, "steel") == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_name(mesh, DUCTILE_VERTICES, 1, "gone") == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_name(mesh, DUCTILE_FACETS, 7, "inflow") == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_name(mesh, DUCTILE_VERTICES, 1, "") == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_name(mesh, DUCTILE_VERTICES, 2, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_name(mesh, DUCTILE_RIDGES, 1, "edge") == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("kind: expected DUCTILE_VERTICES, DUCTILE_FACETS or DUCTILE_ELEMENTS, found 1");
+  const int32_t steel[] = {5, 5}, inflow[] = {3, 0}, seven[] = {7}; /* names stay */
+  EXPECT(ductile_mesh_set_elements(mesh, 2, halves, steel) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_facets(mesh, 1, inflow, seven) == DUCTILE_OK);
+  EXPECT(ductile_adapt(mesh, 1, NULL, NULL, &adapted) == DUCTILE_OK);
+  EXPECT(ductile_mesh_write(adapted, "c_test.msh") == DUCTILE_OK);
+  EXPECT(ductile_mesh_read("c_test.msh", &read) == DUCTILE_OK);
+  remove("c_test.msh");
+  ductile_mesh* const all[] = {mesh, adapted, read};
+  for (int i = 0; i < 3; ++i) {
+    int facets = 0, elements = 0;
+    for (int n = 0; n < 2; ++n) {
+      const char* name = ductile_mesh_name_at(all[i], n, &kind, &reference);
+      EXPECT(name != NULL);
+      if (name == NULL) continue;
+      facets += kind == DUCTILE_FACETS && reference == 7 && strcmp(name, "inflow") == 0;
+      elements += kind == DUCTILE_ELEMENTS && reference == 5 && strcmp(name, "steel") == 0;
+    }
+    EXPECT(facets == 1 && elements == 1);
+    EXPECT(ductile_mesh_name_at(all[i], 2, NULL, NULL) == NULL);
+    EXPECT(strcmp(ductile_mesh_name(all[i], DUCTILE_FACETS, 7), "inflow") == 0);
+    EXPECT(ductile_mesh_name(all[i], DUCTILE_VERTICES, 7) == NULL);
+    ductile_mesh_destroy(all[i]);
+  }
+}
+
+/* The size at the point (x, 0) where 0.01 grows from `place` on, at most 0.5. */
+static double grown(double x, double place, double slope) {
+  const double size = .01 + slope * (x > place ? x - place : 0);
+  return size < .5 ? size : .5;
+}
+
+static void test_sizes(void) {
+  ductile_mesh *mesh = make_square(), *adapted = NULL, *line = NULL;
+  ductile_sizes* sizes = NULL;
+  double values[4];
+  EXPECT(ductile_sizes_create(4, &sizes) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_sizes_create(2, &sizes) == DUCTILE_OK);
+  EXPECT(ductile_sizes_at(sizes, mesh, values) == DUCTILE_OK);
+  EXPECT(fabs(values[0] - sqrt(2)) < 1e-12); /* the extent */
+  EXPECT(ductile_sizes_set(sizes, "hmxa", 1) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("sizes: expected one of default, hmin, hmax, grow, largest, distance, found hmxa");
+  EXPECT(ductile_sizes_set(sizes, "default", -1) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_sizes_set(sizes, "default", .5) == DUCTILE_OK);
+  /* Places at the left, each of them with the same size, which grows as was set before. */
+  const double corner[] = {0, 0, 0, 1}, low[] = {-1, 2}, high[] = {0, -1};
+  const double wedge[] = {0, -1, 0, 3, -2, 0};
+  for (int kind = 0; kind < 6; ++kind) {
+    ductile_sizes* one = NULL;
+    EXPECT(ductile_sizes_create(2, &one) == DUCTILE_OK);
+    EXPECT(ductile_sizes_set(one, "default", .5) == DUCTILE_OK);
+    EXPECT(ductile_sizes_set(one, "grow", kind % 2 == 0 ? 1.3 : 1.1) == DUCTILE_OK);
+    const double slope = log(kind % 2 == 0 ? 1.3 : 1.1);
+    if (kind == 0) EXPECT(ductile_sizes_near_ball(one, corner, .25, .01) == DUCTILE_OK);
+    if (kind == 1) EXPECT(ductile_sizes_near_box(one, low, high, .01) == DUCTILE_OK);
+    if (kind == 2) EXPECT(ductile_sizes_near_curve(one, 2, corner, .01) == DUCTILE_OK);
+    if (kind == 3) EXPECT(ductile_sizes_near_surface(one, 1, wedge, .01) == DUCTILE_OK);
+    if (kind == 4) EXPECT(ductile_sizes_on(one, DUCTILE_FACETS, 7, .01) == DUCTILE_OK);
+    if (kind == 5) {
+      EXPECT(ductile_mesh_set_name(mesh, DUCTILE_FACETS, 7, "inflow") == DUCTILE_OK);
+      EXPECT(ductile_sizes_on_name(one, "inflow", .01) == DUCTILE_OK);
+    }
+    EXPECT(ductile_sizes_at(one, mesh, values) == DUCTILE_OK);
+    for (int v = 0; v < 2; ++v)
+      EXPECT(fabs(values[v] - grown(square[2 * v], kind == 0 ? .25 : 0, slope)) < 1e-9);
+    ductile_sizes_destroy(one);
+  }
+  /* Far from a mesh of two triangles, seen only by what they become. */
+  const double point[] = {.3, .6};
+  EXPECT(ductile_sizes_set(sizes, "grow", 0) == DUCTILE_OK);
+  EXPECT(ductile_sizes_set(sizes, "largest", .4) == DUCTILE_OK);
+  EXPECT(ductile_sizes_set(sizes, "distance", .5) == DUCTILE_OK);
+  EXPECT(ductile_sizes_near_ball(sizes, point, 0, .01) == DUCTILE_OK);
+  EXPECT(ductile_adapt_to_sizes(mesh, sizes, NULL, &adapted) == DUCTILE_OK);
+  const double* x = ductile_mesh_coordinates(adapted);
+  int64_t near = 0;
+  for (int64_t v = 0; v < ductile_mesh_count(adapted, DUCTILE_VERTICES); ++v)
+    near += hypot(x[2 * v] - point[0], x[2 * v + 1] - point[1]) < .05;
+  EXPECT(near > 5 && near < 40);
+  /* What makes no sense is told of by place. */
+  EXPECT(ductile_sizes_near_ball(sizes, point, 0, -1) == DUCTILE_OK);
+  EXPECT(ductile_sizes_at(sizes, mesh, values) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("places[1]: expected a size from 1e-75 to 1e75, found -1");
+  EXPECT(ductile_sizes_near_box(sizes, low, NULL, 1) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_sizes_near_curve(sizes, -1, low, 1) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_sizes_on_name(sizes, NULL, 1) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_sizes_on(sizes, DUCTILE_CONSERVATIVE, 1, 1) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_mesh_create(3, &line) == DUCTILE_OK);
+  EXPECT(ductile_sizes_at(sizes, line, values) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("sizes: expected those for meshes of dimension 3, found dimension 2");
+  ductile_sizes_destroy(sizes);
+  ductile_sizes_destroy(NULL);
+  ductile_mesh_destroy(line);
+  ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(mesh);
+}
+
 int main(void) {
   EXPECT(strcmp(ductile_last_error(), "") == 0 && strlen(ductile_version()) >= 5);
   test_meshes();
@@ -220,6 +329,8 @@ int main(void) {
   test_options();
   test_adaptation();
   test_solution_metric();
+  test_names();
+  test_sizes();
   printf("%d failures\n", failures);
   return failures != 0;
 }
