@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "command.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -23,7 +24,7 @@ using runtime::Executor;
 
 constexpr std::array<Option, 3> options{{
     {"-sol", "METRIC", "measures lengths and quality in this metric (.sol, .solb)"},
-    {"--json", "FILE", "writes the statistics there too"},
+    {"--json", "FILE", "writes them there, too, a .json"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
 }};
 
@@ -99,6 +100,23 @@ void print_counts(const AnyMesh& mesh) {
     std::printf("  %-12s %12s\n", "ridges", with_commas(mesh.ridges.size()).c_str());
 }
 
+/// The names of references, each with how many entities carry it.
+std::string names_json(const AnyMesh& mesh) {
+  const std::array references{&mesh.vertex_reference, &mesh.edges.reference,
+                              &mesh.triangles.reference, &mesh.tetrahedra.reference};
+  std::map<std::pair<int, std::int32_t>, std::size_t> count_of;  // [dimension, reference]
+  for (int dimension = 0; dimension <= 3 && !mesh.names.empty(); ++dimension)
+    for (const std::int32_t reference : *references[static_cast<std::size_t>(dimension)])
+      ++count_of[{dimension, reference}];
+  std::string text;
+  for (const auto& [dimension, reference, name] : mesh.names)
+    text += std::string(text.empty() ? "" : ", ") + "{\"name\": " + json_string(name) +
+            ", \"dimension\": " + std::to_string(dimension) +
+            ", \"reference\": " + std::to_string(reference) +
+            ", \"count\": " + std::to_string(count_of[{dimension, reference}]) + "}";
+  return "[" + text + "]";
+}
+
 void write_json(const std::string& path, const AnyMesh& mesh, const Validity& validity,
                 const std::string& statistics) {
   meshadapt::AtomicOutputs outputs;
@@ -109,7 +127,8 @@ void write_json(const std::string& path, const AnyMesh& mesh, const Validity& va
                             ", \"edges\": " + std::to_string(mesh.edges.size()) +
                             ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
                             ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
-                            ", \"statistics\": " + statistics + "}\n");
+                            ", \"names\": " + names_json(mesh) + ", \"statistics\": " + statistics +
+                            "}\n");
   outputs.commit();
 }
 

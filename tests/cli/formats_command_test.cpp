@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "program.hpp"
 
@@ -32,6 +33,15 @@ class FormatsCommand : public testing::Test {
     for (const char* part : {"3 (corner): 1", "5 (wall): ", "10 (steel): ", "20 (soft rubber): ",
                              "dimension 2", "valid: it can be adapted"})
       EXPECT_TRUE(contains(info, part)) << mesh << "\n" << info;
+    const std::string json = folder_.run("info --json /dev/stdout " + mesh).out;
+    const std::size_t at = info.find("(wall): ") + 8;
+    const std::string walls = info.substr(at, info.find_first_of(",\n", at) - at);
+    for (const std::string& part : std::vector<std::string>{
+             R"({"name": "corner", "dimension": 0, "reference": 3, "count": 1})",
+             R"({"name": "wall", "dimension": 1, "reference": 5, "count": )" + walls + "}",
+             R"({"name": "steel", "dimension": 2, "reference": 10, "count": )",
+             R"({"name": "soft rubber", "dimension": 2, "reference": 20, "count": )"})
+      EXPECT_TRUE(contains(json, part)) << part << mesh << "\n" << json;
   }
 
   Folder folder_;
