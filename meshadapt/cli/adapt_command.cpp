@@ -136,7 +136,7 @@ void set_sizes(Job& job, const Arguments& arguments) {
   if (job.places.any()) add("-f");
   if (!job.places.any()) add("-hsiz");
   add("-sol");
-  for (const char* option : {"--near", "--on", "--inside"})
+  for (const char* option : {"--near", "--on", "--inside"})  // which are one way together
     if (given.empty() || !given.back().starts_with("--")) add(option);
   if (given.size() > 1)
     throw UsageError("options " + given[0] + " and " + given[1] +
