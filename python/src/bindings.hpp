@@ -73,7 +73,8 @@ inline meshadapt::AnyField field_of(const Given<double>& array, meshadapt::AnyFi
   return {dimension, static_cast<std::size_t>(array.shape(0)), {type}, copied(array), name};
 }
 
-/// Sizes on facets and cells, of which Python does not say the dimension, as those of this mesh.
+/// The same sizes for this mesh: Python says "facets" and "cells", whose dimensions follow from the
+/// mesh.
 meshadapt::Sizes sizes_for(const meshadapt::AnyMesh& mesh, meshadapt::Sizes sizes);
 
 /// body(executor) without the interpreter's lock, so that other threads of Python go on. Threads of

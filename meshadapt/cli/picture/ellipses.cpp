@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "ductile/runtime/hash.hpp"
+
 namespace ductile::cli {
 
 namespace {
@@ -68,17 +70,11 @@ double round_factor(double factor) {
   return best;
 }
 
-/// The same for everyone who draws the same, but in no order that the eye sees.
-std::uint64_t shuffled(std::uint64_t i) {
-  i = (i + 0x9e3779b97f4a7c15U) * 0xbf58476d1ce4e5b9U;
-  i = (i ^ i >> 27U) * 0x94d049bb133111ebU;
-  return i ^ i >> 31U;
-}
-
+/// Those inside first; otherwise an order that shows no rows or columns, the same in each run.
 std::vector<std::size_t> order_of(const std::vector<EllipsePlace>& places) {
   std::vector<std::pair<std::uint64_t, std::size_t>> keys(places.size());
   for (std::size_t i = 0; i < keys.size(); ++i)
-    keys[i] = {shuffled(i) >> 1U | (places[i].inner ? 0 : std::uint64_t{1} << 63U), i};
+    keys[i] = {runtime::mix64(i) >> 1U | (places[i].inner ? 0 : std::uint64_t{1} << 63U), i};
   std::sort(keys.begin(), keys.end());
   std::vector<std::size_t> order(places.size());
   std::transform(keys.begin(), keys.end(), order.begin(),
