@@ -1,19 +1,14 @@
 /// @file
-/// The core number of each vertex: the greatest k such that it has k neighbours in what is left
-/// when vertices with fewer than k neighbours are taken away again and again. Peels shell after
-/// shell. This loop has no conflicts to find, so it uses the parts that run_rounds is made of: the
-/// losses of a shell's neighbours are deferred, and who falls to k joins the worklist.
+/// The core numbers of core_numbers.hpp, compared with Boost.Graph's and between thread counts.
 
+#include <algorithm>
 #include <cstdio>
-#include <span>
 #include <vector>
 
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/core_numbers.hpp>
 
-#include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/deferred_update.hpp"
-#include "ductile/runtime/worklist.hpp"
+#include "core_numbers.hpp"
 #include "example.hpp"
 #include "graphs.hpp"
 
@@ -21,71 +16,6 @@ namespace {
 
 using example::Vertex;
 namespace runtime = ductile::runtime;
-
-class Peeling {
- public:
-  Peeling(const runtime::Executor& executor, runtime::CsrGraph<> graph)
-      : core_of(graph.vertex_count()),
-        executor_(executor),
-        graph_(graph),
-        degree_of_(graph.vertex_count()),
-        losses_(executor),
-        fallen_(executor, {.order = runtime::WorkOrder::arrival}) {
-    runtime::parallel_for(executor, degree_of_.size(), [&](std::size_t v) {
-      degree_of_[v] = graph.offset[v + 1] - graph.offset[v];
-    });
-  }
-
-  /// Peels the k-shell for k = 0, 1, ... until nothing is left.
-  runtime::RoundsReport run() {
-    runtime::RoundsReport report;
-    for (std::uint32_t k = 0; report.applied < core_of.size(); ++k) {
-      for (runtime::UnsetVector<Vertex> shell = vertices_of_degree(k); !shell.empty();) {
-        ++report.rounds;
-        report.planned += shell.size();
-        report.applied += shell.size();
-        peel(shell, k);
-        fallen_.collect();
-        shell = fallen_.take();
-      }
-    }
-    return report;
-  }
-
-  std::vector<std::uint32_t> core_of;  // [vertex]
-
- private:
-  struct Loss {};
-
-  /// None that was peeled: those have kept the degree at which they were, less than k.
-  runtime::UnsetVector<Vertex> vertices_of_degree(std::uint32_t k) const {
-    return runtime::parallel_collect<Vertex>(executor_, degree_of_.size(),
-                                             [&](std::size_t v, auto&& append) {
-                                               if (degree_of_[v] == k)
-                                                 append(static_cast<Vertex>(v));
-                                             });
-  }
-
-  /// Takes vertices of degree k away. Degrees are read while they are taken, and change only when
-  /// losses are committed; they stop at k, so a vertex falls to it once.
-  void peel(std::span<const Vertex> shell, std::uint32_t k) {
-    runtime::parallel_for(executor_, shell.size(), [&](std::size_t i) {
-      core_of[shell[i]] = k;
-      graph_.for_each_neighbour(shell[i], [&](Vertex other) {
-        if (degree_of_[other] > k) losses_.defer(other, shell[i], {});
-      });
-    });
-    losses_.commit([&](Vertex vertex, Loss) {
-      if (degree_of_[vertex] > k && --degree_of_[vertex] == k) fallen_.append(vertex);
-    });
-  }
-
-  const runtime::Executor& executor_;
-  runtime::CsrGraph<> graph_;
-  std::vector<std::uint32_t> degree_of_;  // [vertex], among those not peeled
-  runtime::DeferredUpdate<Loss> losses_;
-  runtime::Worklist<Vertex> fallen_;
-};
 
 /// Core numbers by Boost.Graph.
 std::vector<std::uint32_t> boost_core_numbers(runtime::CsrGraph<> graph) {
@@ -112,9 +42,7 @@ void compare(const example::Arguments& arguments) {
               graph.neighbour.size() / 2);
   const auto core_of = example::solve_at_each_thread_count(
       arguments, [&](const runtime::Executor& executor, runtime::RoundsReport& report) {
-        Peeling peeling(executor, graph);
-        report = peeling.run();
-        return peeling.core_of;
+        return example::core_numbers_in_parallel(executor, graph, &report);
       });
   std::printf("greatest core number: %u\n", *std::max_element(core_of.begin(), core_of.end()));
   example::require(core_of == boost_core_numbers(graph), "Boost.Graph finds other core numbers");

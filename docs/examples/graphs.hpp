@@ -20,6 +20,13 @@
 namespace example {
 
 using Vertex = std::uint32_t;
+using Weight = std::uint32_t;
+
+/// The weight of an edge, from 1 on: a hash of its two ends.
+inline Weight weight_of(Vertex a, Vertex b) {
+  const std::uint64_t ends = std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+  return static_cast<Weight>(ductile::runtime::mix64(ends) >> 32U) | 1U;
+}
 
 /// A random graph with almost `edge_count` edges: repetitions and loops are dropped.
 inline ductile::runtime::CsrRows random_graph(const ductile::runtime::Executor& executor,

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
+#include <type_traits>
 #include <vector>
 
 #include <boost/graph/adjacency_list.hpp>
@@ -19,8 +19,9 @@ namespace example {
 /// The weights of the tree's edges, ascending; weight_of(a, b) is that of an edge. Prints how long
 /// it took.
 template <class WeightOf>
-std::vector<std::uint64_t> kruskal(ductile::runtime::CsrGraph<> graph, WeightOf&& weight_of) {
-  using Weighted = boost::property<boost::edge_weight_t, std::uint64_t>;
+auto kruskal(ductile::runtime::CsrGraph<> graph, WeightOf&& weight_of) {
+  using Length = std::invoke_result_t<WeightOf, Vertex, Vertex>;
+  using Weighted = boost::property<boost::edge_weight_t, Length>;
   boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property, Weighted>
       copy(graph.vertex_count());
   for (Vertex a = 0; a < graph.vertex_count(); ++a)
@@ -31,7 +32,7 @@ std::vector<std::uint64_t> kruskal(ductile::runtime::CsrGraph<> graph, WeightOf&
   const double seconds =
       seconds_of([&] { boost::kruskal_minimum_spanning_tree(copy, std::back_inserter(tree)); });
   print_yardstick("Boost.Graph, Kruskal, one thread", seconds);
-  std::vector<std::uint64_t> weights(tree.size());
+  std::vector<Length> weights(tree.size());
   std::transform(tree.begin(), tree.end(), weights.begin(),
                  [&](const auto& edge) { return get(boost::edge_weight, copy, edge); });
   std::sort(weights.begin(), weights.end());

@@ -1,0 +1,98 @@
+/// @file
+/// The core number of each vertex: the greatest k such that it has k neighbours in what is left
+/// when vertices with fewer than k neighbours are taken away again and again. Peels shell after
+/// shell. This loop has no conflicts to find, so it uses the parts that run_rounds is made of: the
+/// losses of a shell's neighbours are deferred, and who falls to k joins the worklist.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/worklist.hpp"
+#include "graphs.hpp"
+
+namespace example {
+
+namespace runtime = ductile::runtime;
+
+class Peeling {
+ public:
+  Peeling(const runtime::Executor& executor, runtime::CsrGraph<> graph)
+      : core_of(graph.vertex_count()),
+        executor_(executor),
+        graph_(graph),
+        degree_of_(graph.vertex_count()),
+        losses_(executor),
+        fallen_(executor, {.order = runtime::WorkOrder::arrival}) {
+    runtime::parallel_for(executor, degree_of_.size(), [&](std::size_t v) {
+      degree_of_[v] = graph.offset[v + 1] - graph.offset[v];
+    });
+  }
+
+  /// Peels the k-shell for k = 0, 1, ... until nothing is left.
+  runtime::RoundsReport run() {
+    runtime::RoundsReport report;
+    for (std::uint32_t k = 0; report.applied < core_of.size(); ++k) {
+      for (runtime::UnsetVector<Vertex> shell = vertices_of_degree(k); !shell.empty();) {
+        ++report.rounds;
+        report.planned += shell.size();
+        report.applied += shell.size();
+        peel(shell, k);
+        fallen_.collect();
+        shell = fallen_.take();
+      }
+    }
+    return report;
+  }
+
+  std::vector<std::uint32_t> core_of;  // [vertex]
+
+ private:
+  struct Loss {};
+
+  /// None that was peeled: those have kept the degree at which they were, less than k.
+  runtime::UnsetVector<Vertex> vertices_of_degree(std::uint32_t k) const {
+    return runtime::parallel_collect<Vertex>(executor_, degree_of_.size(),
+                                             [&](std::size_t v, auto&& append) {
+                                               if (degree_of_[v] == k)
+                                                 append(static_cast<Vertex>(v));
+                                             });
+  }
+
+  /// Takes vertices of degree k away. Degrees are read while they are taken, and change only when
+  /// losses are committed; they stop at k, so a vertex falls to it once.
+  void peel(std::span<const Vertex> shell, std::uint32_t k) {
+    runtime::parallel_for(executor_, shell.size(), [&](std::size_t i) {
+      core_of[shell[i]] = k;
+      graph_.for_each_neighbour(shell[i], [&](Vertex other) {
+        if (degree_of_[other] > k) losses_.defer(other, shell[i], {});
+      });
+    });
+    losses_.commit([&](Vertex vertex, Loss) {
+      if (degree_of_[vertex] > k && --degree_of_[vertex] == k) fallen_.append(vertex);
+    });
+  }
+
+  const runtime::Executor& executor_;
+  runtime::CsrGraph<> graph_;
+  std::vector<std::uint32_t> degree_of_;  // [vertex], among those not peeled
+  runtime::DeferredUpdate<Loss> losses_;
+  runtime::Worklist<Vertex> fallen_;
+};
+
+/// [vertex]; fills in a report if there is one.
+inline std::vector<std::uint32_t> core_numbers_in_parallel(
+    const runtime::Executor& executor, runtime::CsrGraph<> graph,
+    runtime::RoundsReport* report = nullptr) {
+  Peeling peeling(executor, graph);
+  const runtime::RoundsReport rounds = peeling.run();
+  if (report) *report = rounds;
+  return peeling.core_of;
+}
+
+}  // namespace example
