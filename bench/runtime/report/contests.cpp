@@ -111,7 +111,10 @@ std::optional<Contest> contest_of(const Measured& measured, int threads) {
   const Figure best = contest.best();
   for (Figure& figure : contest.figures) {
     figure.over_best = figure.median_ns / best.median_ns;
-    if (contest.floor) figure.over_floor = figure.median_ns / contest.floor->median_ns;
+    if (contest.floor) {
+      figure.over_floor = figure.median_ns / contest.floor->median_ns;
+      figure.below_floor = figure.high_ns < contest.floor->low_ns;
+    }
     figure.on_par = figure.low_ns <= best.high_ns || figure.over_best <= 1.03;
   }
   return contest;
@@ -141,7 +144,7 @@ std::string words_for(Distance distance) {
   return "";
 }
 
-bool Contest::clear() const { return figures.size() == 1 || !figures[1].on_par; }
+bool Contest::clear() const { return decided() && (figures.size() == 1 || !figures[1].on_par); }
 
 Contests hold_contests(const std::vector<Sample>& samples) {
   Contests held;

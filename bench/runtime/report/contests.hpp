@@ -23,6 +23,9 @@ enum class Distance {
 Distance distance_of(const Sample& sample);
 std::string words_for(Distance distance);
 
+/// Fewer samples have no quartiles that say how far they are spread.
+constexpr std::size_t enough_samples = 3;
+
 /// One candidate in one contest.
 struct Figure {
   std::string candidate;
@@ -36,6 +39,11 @@ struct Figure {
   std::optional<double> over_floor;        ///< nothing if there is no floor
   /// With the best: at most 3 % slower, or the lower quartile is not above the best's upper one.
   bool on_par = false;
+  /// Its upper quartile is under the floor's lower one: either of them is wrong.
+  bool below_floor = false;
+
+  /// Whether its samples are enough to win.
+  bool sound() const { return samples >= enough_samples && !mixed; }
 };
 
 struct Contest {
@@ -45,7 +53,9 @@ struct Contest {
   std::optional<Figure> floor;  ///< the fastest on at most this number of threads
 
   const Figure& best() const { return figures.front(); }
-  /// Whether nobody else is on a par with the best.
+  /// Whether the best has enough samples; if not, nothing is said of who is fastest.
+  bool decided() const { return best().sound(); }
+  /// Whether it is decided and nobody else is on a par with the best.
   bool clear() const;
 };
 

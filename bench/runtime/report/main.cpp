@@ -1,6 +1,7 @@
 /// @file
 /// runtime_report FOLDER: reads the JSON files of a folder and writes report.html and its plots
-/// beside them. It knows a naming convention (samples.hpp) and no single benchmark.
+/// beside them, each whole or not at all. A file that cannot be read is named and left out. It
+/// knows a naming convention (samples.hpp) and no single benchmark.
 
 #include <algorithm>
 #include <exception>
@@ -29,14 +30,20 @@ std::vector<path> json_files(const path& folder) {
   return files;
 }
 
+/// Under another name until it is whole.
 void write(const path& file, const std::string& text) {
-  std::ofstream out(file);
+  const path part = file.string() + ".part";
+  std::ofstream out(part);
   out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+  out.close();
+  if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+  std::filesystem::rename(part, file);
 }
 
 void report(const path& folder) {
   const Samples samples = read_samples(json_files(folder));
+  for (const Failure& file : samples.unread)
+    std::cerr << "runtime_report: " << file.name << " is left out: " << file.message << '\n';
   const Contests contests = hold_contests(samples.samples);
   for (const Section& section : sections(contests))
     write(folder / plot_file(section), plot(section, contests.contests));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 #include <sstream>
 
@@ -19,6 +20,8 @@ th, td { padding: 2px 7px; border: 1px solid #ccc; text-align: right }
 th:first-child, td:first-child { text-align: left }
 .won { font-weight: bold } .won::after { content: " \2605" }
 .par::after { content: " \2606" }
+.few::after { content: " ?" }
+.wrong { color: #b00; font-weight: bold }
 .wide { overflow-x: auto } .wide th { vertical-align: bottom }
 summary { cursor: pointer } img { max-width: 100% }
 </style></head><body>
@@ -29,10 +32,17 @@ std::string title(const Section& section) {
   return section.front().subject + ", threads: " + std::to_string(section.front().threads);
 }
 
-/// Winner, on a par, or neither.
+/// Winner, on a par, one of these for all that too few samples say, or none of it.
 const char* mark_of(const Contest& contest, const Figure& figure) {
   if (&figure == &contest.best() && contest.clear()) return "won";
-  return figure.on_par ? "par" : "";
+  if (!figure.on_par) return "";
+  return contest.decided() ? "par" : "few";
+}
+
+/// The ratio to the floor, in red where that cannot be.
+std::string over_floor_cell(const Figure& figure) {
+  return std::string(figure.below_floor ? "<td class=\"wrong\">" : "<td>") +
+         (figure.over_floor ? ratio_words(*figure.over_floor) : "") + "</td>";
 }
 
 /// From green at 1 to red at 5 and above.
@@ -70,26 +80,19 @@ void write_overview(std::ostream& to, const Section& section) {
            << ratio_words(figure->over_best) << "</td>";
       }
     }
-    const auto over_floor = contest.best().over_floor;
-    to << "<td>" << (over_floor ? ratio_words(*over_floor) : "") << "</td></tr>\n";
+    to << over_floor_cell(contest.best()) << "</tr>\n";
   }
   to << "</table></div>\n";
 }
 
 void write_libraries(std::ostream& to, const Section& section) {
-  to << "<table><tr><th>best of a library</th><th>won alone</th><th>on a par</th><th>cases</th>"
-        "<th>over the best</th></tr>\n";
+  to << "<table><tr><th>best of a library</th><th>won alone</th><th>on a par</th>"
+        "<th>too few samples to say</th><th>cases</th><th>over the best</th></tr>\n";
   for (const Standing& standing : standings(section, By::library))
     to << "<tr><td>" << escaped(standing.who) << "</td><td>" << standing.won.size() << "</td><td>"
-       << standing.on_par.size() << "</td><td>" << standing.cases << "</td><td>"
-       << ratio_words(standing.over_best) << "</td></tr>\n";
+       << standing.on_par.size() << "</td><td>" << standing.undecided.size() << "</td><td>"
+       << standing.cases << "</td><td>" << ratio_words(standing.over_best) << "</td></tr>\n";
   to << "</table>\n";
-}
-
-std::string samples_words(const Figure& figure) {
-  std::string text = std::to_string(figure.samples);
-  if (figure.left_out > 0) text += " of " + std::to_string(figure.samples + figure.left_out);
-  return text + (figure.mixed ? ", distances mixed" : "");
 }
 
 struct Columns {
@@ -102,8 +105,8 @@ void write_figure(std::ostream& to, const Figure& figure, const Columns& columns
   const bool other = figure.threads != columns.contest->threads;
   to << "<tr><td class=\"" << mark << "\">" << escaped(figure.candidate)
      << (other ? " (1 thread)" : "") << "</td><td>" << time_words(figure.median_ns) << "</td><td>"
-     << time_words(figure.low_ns) << " to " << time_words(figure.high_ns) << "</td><td>"
-     << (figure.over_floor ? ratio_words(*figure.over_floor) : "") << "</td><td>"
+     << time_words(figure.low_ns) << " to " << time_words(figure.high_ns) << "</td>"
+     << over_floor_cell(figure) << "<td>"
      << (figure.candidate == floor_name ? "" : ratio_words(figure.over_best)) << "</td><td>"
      << samples_words(figure) << "</td>";
   for (const std::string& counter : columns.counters) {
@@ -152,25 +155,53 @@ void write_words(std::ostream& to, const std::vector<Section>& all) {
 void write_reading_aid(std::ostream& to, const Contests& contests) {
   to << "<h2>How to read it</h2><p>A time is the median of the samples of a run, each a mean over "
         "many repetitions. A filled star marks who was fastest alone, open stars those on a par: "
-        "at most 3 % slower, or with a lower quartile not above the upper one of the fastest. The "
+        "at most 3 % slower, or with a lower quartile not above the upper one of the fastest. A "
+        "question mark stands there instead where the fastest has too few samples that count. The "
         "floor is what nobody can be faster than, or nearly; what it is stands in "
-        "docs/benchmarks.md. Candidates that use one thread only take part at every number of "
-        "threads.</p>\n<p>Of samples on several threads those count that were taken while the "
+        "docs/benchmarks.md. What is below it by more than the spread is red: the floor is wrong "
+        "there, or the measurement. Candidates that use one thread only take part at every number "
+        "of threads.</p>\n<p>Of samples on several threads those count that were taken while the "
         "threads were "
      << words_for(contests.usual)
      << ", by a cache line going back and forth before and after each.</p>\n";
 }
 
-/// Quartiles of two samples say nothing.
-void write_doubts(std::ostream& to, const std::vector<Contest>& contests) {
-  const auto doubtful = std::count_if(contests.begin(), contests.end(), [](const Contest& contest) {
-    return std::any_of(contest.figures.begin(), contest.figures.end(),
-                       [](const Figure& f) { return f.samples < 3 || f.mixed; });
-  });
-  if (doubtful > 0)
-    to << "<p><b>In " << doubtful << " of " << contests.size()
-       << " comparisons somebody has fewer than three samples, or samples at mixed distances: "
-          "what is said of these is a guess.</b></p>\n";
+void write_doubt(std::ostream& to, const std::string& doubt) {
+  to << "<p><b>" << escaped(doubt) << "</b></p>\n";
+}
+
+/// "In 2 of 10 comparisons" it is so; nothing if in none.
+template <class Rule>
+std::string in_how_many(const std::vector<Contest>& contests, Rule is_so) {
+  const auto count = std::count_if(contests.begin(), contests.end(), is_so);
+  if (count == 0) return "";
+  return "In " + std::to_string(count) + " of " + std::to_string(contests.size()) + " comparisons ";
+}
+
+bool has_unsound(const Contest& contest) {
+  return (contest.floor && !contest.floor->sound()) ||
+         std::any_of(contest.figures.begin(), contest.figures.end(),
+                     [](const Figure& figure) { return !figure.sound(); });
+}
+
+bool has_below_floor(const Contest& contest) {
+  return std::any_of(contest.figures.begin(), contest.figures.end(),
+                     [](const Figure& figure) { return figure.below_floor; });
+}
+
+/// What a reader should know before any result.
+void write_doubts(std::ostream& to, const Samples& samples, const std::vector<Contest>& contests) {
+  for (const Failure& file : samples.unread)
+    write_doubt(to, std::filesystem::path(file.name).filename().string() +
+                        " is left out: " + file.message + '.');
+  if (const auto where = in_how_many(contests, has_unsound); !where.empty())
+    write_doubt(to, where +
+                        "somebody has fewer than three samples, or samples at mixed distances: "
+                        "what is said of these is a guess.");
+  if (const auto where = in_how_many(contests, has_below_floor); !where.empty())
+    write_doubt(to, where +
+                        "somebody is below the floor by more than the spread: either the floor or "
+                        "the measurement is wrong.");
 }
 
 void write_end(std::ostream& to, const Samples& samples) {
@@ -209,7 +240,7 @@ std::string page(const Samples& samples, const Contests& contests) {
   std::ostringstream html;
   html << head;
   const std::vector<Section> all = sections(contests);
-  write_doubts(html, contests.contests);
+  write_doubts(html, samples, contests.contests);
   write_words(html, all);
   write_reading_aid(html, contests);
   for (const Section& section : all) write_section(html, section);

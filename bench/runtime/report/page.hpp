@@ -1,7 +1,7 @@
 /// @file
-/// page: the report as HTML: who won where, in words; for each subject and number of threads a
-/// plot, a table of all candidates in all cases, and below that a table for each case; then the
-/// machine and what was not measured.
+/// page: the report as HTML: what is doubtful of it; who won where, in words; for each subject and
+/// number of threads a plot, a table of all candidates in all cases, and below that a table for
+/// each case; then the machine and what was not measured.
 #pragma once
 
 #include <span>

@@ -1,7 +1,8 @@
 /// @file
 /// plot: the contests of one subject and number of threads as an SVG picture: a row for each case,
 /// a mark for each candidate at the ratio of its median to the floor (to the best, where there is
-/// no floor). A library has a colour, its candidates have shapes.
+/// no floor). A library has a colour, a candidate a mark (marks.hpp). What the axis has no room for
+/// (axis.hpp) stands at its edge, with its ratio in words.
 #pragma once
 
 #include <span>

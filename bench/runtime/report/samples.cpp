@@ -1,10 +1,13 @@
 #include "samples.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <boost/property_tree/json_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
@@ -68,6 +71,10 @@ void add_benchmark(const Tree& benchmark, Samples& to) {
     Sample sample;
     sample.name = *name;
     sample.ns = benchmark.get<double>("real_time") * ns_of(benchmark.get<std::string>("time_unit"));
+    if (!std::isfinite(sample.ns) || sample.ns <= 0) {
+      to.failures.push_back({full_name, "its time is not above zero"});
+      return;
+    }
     add_counters(benchmark, sample);
     to.samples.push_back(std::move(sample));
   }
@@ -92,13 +99,33 @@ void add_machine(const Tree& context, std::map<std::string, std::string>& to) {
     }
 }
 
-void read_file(const std::filesystem::path& file, Samples& to) {
+Samples read_file(const std::filesystem::path& file) {
   std::ifstream in(file);
-  if (!in) throw std::runtime_error("cannot be read");
+  if (!in) throw std::runtime_error("it cannot be read");
   Tree tree;
   read_json(in, tree);
-  for (const auto& [unused, benchmark] : tree.get_child("benchmarks")) add_benchmark(benchmark, to);
-  add_machine(tree.get_child("context"), to.machine);
+  Samples samples;
+  for (const auto& [unused, benchmark] : tree.get_child("benchmarks"))
+    add_benchmark(benchmark, samples);
+  add_machine(tree.get_child("context"), samples.machine);
+  return samples;
+}
+
+/// Why a file is left out.
+std::string reason(const std::exception& error) {
+  const std::string expected = "expected Google Benchmark's JSON, ";
+  if (const auto* wrong = dynamic_cast<const boost::property_tree::json_parser_error*>(&error))
+    return expected + "but line " + std::to_string(wrong->line()) +
+           " is wrong or the file breaks off there (" + wrong->message() + ')';
+  if (dynamic_cast<const boost::property_tree::ptree_error*>(&error) != nullptr)
+    return expected + "but: " + error.what();
+  return error.what();
+}
+
+void append(Samples& to, Samples more) {
+  std::move(more.samples.begin(), more.samples.end(), std::back_inserter(to.samples));
+  std::move(more.failures.begin(), more.failures.end(), std::back_inserter(to.failures));
+  to.machine.merge(more.machine);
 }
 
 }  // namespace
@@ -124,11 +151,13 @@ std::string library_of(const std::string& candidate) {
 Samples read_samples(const std::vector<std::filesystem::path>& files) {
   Samples samples;
   for (const std::filesystem::path& file : files) try {
-      read_file(file, samples);
+      append(samples, read_file(file));
     } catch (const std::exception& error) {
-      throw std::runtime_error(file.string() +
-                               ": expected Google Benchmark's JSON: " + error.what());
+      samples.unread.push_back({file.string(), reason(error)});
     }
+  if (!files.empty() && samples.unread.size() == files.size())
+    throw std::runtime_error("no file can be read; " + samples.unread.front().name + ": " +
+                             samples.unread.front().message);
   return samples;
 }
 

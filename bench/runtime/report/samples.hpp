@@ -44,10 +44,12 @@ struct Failure {
 struct Samples {
   std::vector<Sample> samples;
   std::vector<Failure> failures;               ///< benchmarks that gave no figure, and why
+  std::vector<Failure> unread;                 ///< files that are left out, and why
   std::map<std::string, std::string> machine;  ///< from the first file
 };
 
-/// Throws std::runtime_error, naming the file, for one that is not Google Benchmark's JSON.
+/// A file that is not Google Benchmark's JSON, or breaks off, is left out as a whole and listed.
+/// Throws std::runtime_error, naming it, if there is no other.
 Samples read_samples(const std::vector<std::filesystem::path>& files);
 
 }  // namespace ductile::bench::report

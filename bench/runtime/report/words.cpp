@@ -10,11 +10,12 @@
 namespace ductile::bench::report {
 namespace {
 
-/// Not in powers of ten, however large.
+/// Not in powers of ten, however large or small; two digits, where less than one.
 std::string three_digits(double value) {
   std::array<char, 64> text{};
-  const int before = value >= 1 ? static_cast<int>(std::log10(value)) + 1 : 1;
-  std::snprintf(text.data(), text.size(), "%.*f", std::max(0, 3 - before), value);
+  const int power = value > 0 ? static_cast<int>(std::floor(std::log10(value))) : 0;
+  const int decimals = power < -1 ? 1 - power : 2 - std::max(0, power);
+  std::snprintf(text.data(), text.size(), "%.*f", std::max(0, decimals), value);
   return text.data();
 }
 
@@ -58,11 +59,45 @@ std::string winners_sentence(const std::vector<Standing>& all) {
 std::string par_sentence(std::span<const Contest> contests) {
   std::string text;
   for (const Contest& contest : contests) {
-    if (contest.clear()) continue;
+    if (contest.clear() || !contest.decided()) continue;
     std::vector<std::string> names;
     for (const Figure& figure : contest.figures)
       if (figure.on_par) names.push_back(figure.candidate);
     text += (text.empty() ? "On a par: " : "; ") + contest.case_name + ": " + joined(names);
+  }
+  return text.empty() ? text : text + '.';
+}
+
+std::string undecided_sentence(std::span<const Contest> contests) {
+  std::vector<std::string> cases;
+  for (const Contest& contest : contests) {
+    if (contest.decided()) continue;
+    const Figure& best = contest.best();
+    cases.push_back(contest.case_name + " (" + best.candidate + ", " +
+                    (best.mixed
+                         ? "none of " + std::to_string(best.samples) + " at the usual distance"
+                         : samples_words(best)) +
+                    ')');
+  }
+  if (cases.empty()) return "";
+  return "Not decided, because fewer than " + std::to_string(enough_samples) +
+         " samples of the one that seems fastest count: " + joined(cases) + '.';
+}
+
+/// Nobody can be faster than the floor, so that somebody made a mistake.
+std::string below_floor_sentence(std::span<const Contest> contests) {
+  std::string text;
+  for (const Contest& contest : contests) {
+    std::vector<std::string> names;
+    for (const Figure& figure : contest.figures)
+      if (figure.below_floor)
+        names.push_back(figure.candidate + ' ' + time_words(figure.median_ns));
+    if (names.empty()) continue;
+    text += (text.empty() ? "Below the floor by more than the spread, so that either the floor or "
+                            "the measurement is wrong: "
+                          : "; ") +
+            contest.case_name + " (floor " + time_words(contest.floor->median_ns) +
+            "): " + joined(names);
   }
   return text.empty() ? text : text + '.';
 }
@@ -94,7 +129,18 @@ std::string floor_sentence(std::span<const Contest> contests) {
 
 }  // namespace
 
-std::string ratio_words(double ratio) { return three_digits(ratio); }
+std::string ratio_words(double ratio) {
+  const std::pair<double, const char*> units[] = {{1e9, " billion"}, {1e6, " million"}};
+  for (const auto& [unit, name] : units)
+    if (ratio >= unit) return three_digits(ratio / unit) + name;
+  return three_digits(ratio);
+}
+
+std::string samples_words(const Figure& figure) {
+  std::string text = std::to_string(figure.samples);
+  if (figure.left_out > 0) text += " of " + std::to_string(figure.samples + figure.left_out);
+  return text + (figure.mixed ? ", distances mixed" : "");
+}
 
 std::string time_words(double ns) {
   const std::pair<double, const char*> units[] = {{1e9, " s"}, {1e6, " ms"}, {1e3, " us"}};
@@ -115,8 +161,11 @@ std::vector<Standing> standings(std::span<const Contest> contests, By by) {
       standing.who = who;
       ++standing.cases;
       ratios_of[who].push_back(figure->over_best);
-      if (figure->on_par)
-        (equals == 1 ? standing.won : standing.on_par).push_back(contest.case_name);
+      if (!figure->on_par) continue;
+      (!contest.decided() ? standing.undecided
+       : equals == 1      ? standing.won
+                          : standing.on_par)
+          .push_back(contest.case_name);
     }
   }
   std::vector<Standing> all;
@@ -132,8 +181,10 @@ std::vector<Standing> standings(std::span<const Contest> contests, By by) {
 
 std::vector<std::string> sentences(std::span<const Contest> contests) {
   const std::vector<Standing> all = standings(contests, By::candidate);
-  std::vector<std::string> said = {winners_sentence(all), par_sentence(contests),
-                                   mean_sentence(all, contests.size()), floor_sentence(contests)};
+  std::vector<std::string> said = {
+      winners_sentence(all),        par_sentence(contests),
+      undecided_sentence(contests), mean_sentence(all, contests.size()),
+      floor_sentence(contests),     below_floor_sentence(contests)};
   std::erase(said, "");
   return said;
 }

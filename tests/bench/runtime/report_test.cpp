@@ -1,35 +1,17 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
+#include <algorithm>
+#include <random>
 #include <stdexcept>
+#include <tuple>
 
 #include "contests.hpp"
 #include "page.hpp"
-#include "plot.hpp"
-#include "samples.hpp"
+#include "report_samples.hpp"
 #include "words.hpp"
 
 namespace ductile::bench::report {
 namespace {
-
-/// A file in a folder of the test's own, gone with it.
-class File {
- public:
-  explicit File(const std::string& text)
-      : path_(std::filesystem::temp_directory_path() /
-              ("report_test_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
-               "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".json")) {
-    std::ofstream(path_) << text;
-  }
-  ~File() { std::filesystem::remove(path_); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// What Google Benchmark 1.7 writes, shortened.
 constexpr const char* json = R"({
@@ -57,26 +39,6 @@ constexpr const char* json = R"({
   ]
 })";
 
-/// On two threads near each other, or on one.
-Sample sample(const std::string& candidate, int threads, double ns) {
-  Sample made;
-  made.name = {"subject", "case", candidate, threads};
-  made.ns = ns;
-  if (threads > 1) made.ping_before_ns = made.ping_after_ns = 110;
-  return made;
-}
-
-/// Five samples of each candidate, 1 % apart.
-std::vector<Sample> samples(const std::vector<Sample>& medians) {
-  std::vector<Sample> all;
-  for (const Sample& median : medians)
-    for (const double factor : {0.98, 0.99, 1.0, 1.01, 1.02}) {
-      all.push_back(median);
-      all.back().ns *= factor;
-    }
-  return all;
-}
-
 TEST(Report, NamesFollowTheConvention) {
   const auto name = parse_name("loops/rising_1e5x200ns/gomp.dynamic/threads:12/real_time");
   ASSERT_TRUE(name);
@@ -92,8 +54,8 @@ TEST(Report, NamesFollowTheConvention) {
 }
 
 TEST(Report, ReadsWhatGoogleBenchmarkWrites) {
-  const File file(json);
-  const Samples read = read_samples({file.path()});
+  const Folder folder;
+  const Samples read = read_samples({folder.write("all.json", json)});
   ASSERT_EQ(read.samples.size(), 1U);
   const Sample& only = read.samples.front();
   EXPECT_EQ(only.name.candidate, "gomp.static");
@@ -107,13 +69,53 @@ TEST(Report, ReadsWhatGoogleBenchmarkWrites) {
   EXPECT_EQ(read.machine.count("host_name"), 0U);
 }
 
-TEST(Report, NamesTheFileThatIsNoJson) {
-  const File file("[1, 2");
-  try {
-    read_samples({file.path()});
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find(file.path().string()), std::string::npos);
+/// Files that break off, at every seventh byte, and others that may be in a folder.
+TEST(Report, LeavesOutFilesThatAreNotWhole) {
+  const std::string whole = json, unit = R"("time_unit": "us")";
+  std::vector<std::string> wrong = {"[1, 2", "[]", "{}", "7",
+                                    R"({"benchmarks": [], "contexts": 1})"};
+  for (std::size_t size = 0; size < whole.size(); size += 7) wrong.push_back(whole.substr(0, size));
+  wrong.push_back(whole);
+  wrong.back().replace(whole.find(unit), unit.size(), R"("time_unit": "years")");
+  const Folder folder;
+  const auto good = folder.write("good.json", json);
+  for (const std::string& text : wrong) {
+    const auto bad = folder.write("bad.json", text);
+    const Samples all = read_samples({bad, good});
+    EXPECT_EQ(all.samples.size(), 1U) << text;
+    EXPECT_EQ(all.failures.size(), 2U) << text;
+    ASSERT_EQ(all.unread.size(), 1U) << text;
+    EXPECT_EQ(all.unread[0].name, bad.string());
+    EXPECT_FALSE(all.unread[0].message.empty());
+    EXPECT_EQ(all.unread[0].message.find('\n'), std::string::npos);
+    EXPECT_NE(page(all, hold_contests(all.samples)).find("<b>bad.json is left out"),
+              std::string::npos);
+  }
+}
+
+TEST(Report, NamesAFileIfNoneCanBeRead) {
+  const Folder folder;
+  const auto file = folder.write("all.json", "[1, 2");
+  for (const auto& wrong : {file, std::filesystem::path("not_there.json")}) {
+    try {
+      read_samples({wrong});
+      ADD_FAILURE() << wrong;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find(wrong.string()), std::string::npos);
+    }
+  }
+}
+
+TEST(Report, ListsTimesThatCannotBe) {
+  for (const char* const time : {"0", "-3"}) {
+    std::string text = json;
+    const std::string measured = "1.5e+02";
+    text.replace(text.find(measured), measured.size(), time);
+    const Folder folder;
+    const auto good = folder.write("good.json", json);
+    const Samples all = read_samples({good, folder.write("odd.json", text)});
+    EXPECT_EQ(all.samples.size(), 1U) << time;
+    EXPECT_EQ(all.failures.size(), 5U) << time;
   }
 }
 
@@ -165,7 +167,8 @@ TEST(Report, UsesSamplesAtOtherDistancesIfThereAreNoOthers) {
   std::vector<Sample> all = samples({sample("a.x", 2, 100), sample("b.y", 2, 200)});
   for (std::size_t i = 0; i < 4; ++i) all[i].ping_after_ns = 400;
   all[4].ping_before_ns = all[4].ping_after_ns = 400;
-  const Figure& x = hold_contests(all).contests.front().figures.front();
+  const Contests held = hold_contests(all);
+  const Figure& x = held.contests.front().figures.front();
   EXPECT_TRUE(x.mixed);
   EXPECT_EQ(x.samples, 5U);
 }
@@ -177,6 +180,106 @@ TEST(Report, WarnsOfFewSamples) {
   EXPECT_EQ(page(all, hold_contests(all.samples)).find(warning), std::string::npos);
   all.samples = {sample("a.x", 2, 100), sample("b.y", 2, 200)};
   EXPECT_NE(page(all, hold_contests(all.samples)).find(warning), std::string::npos);
+}
+
+/// Candidates a.x, the fastest, and b.y of three samples each, of which so many count.
+std::vector<Sample> three_each(int of_x, int of_y) {
+  std::vector<Sample> all;
+  for (const auto& [who, ns, count] : {std::tuple("a.x", 100.0, of_x), {"b.y", 200.0, of_y}})
+    for (int i = 0; i < 3; ++i) {
+      all.push_back(sample(who, 2, ns));
+      if (i >= count) all.back().ping_after_ns = 400;  // moved
+    }
+  for (const double ns : {50.0, 50.0, 50.0}) all.push_back(sample("floor", 2, ns));
+  return all;
+}
+
+TEST(Report, TooFewSamplesWinNothing) {
+  for (int left = 0; left <= 3; ++left)
+    for (int other = 0; other <= 3; ++other) {
+      Samples all;
+      all.samples = three_each(left, other);
+      const Contests held = hold_contests(all.samples);
+      const bool wins = left == 3;
+      EXPECT_EQ(held.contests.front().clear(), wins) << left;
+      for (const By by : {By::candidate, By::library}) {
+        const auto standing = standings(held.contests, by).front();
+        EXPECT_EQ(standing.won.size(), wins ? 1U : 0U) << left;
+        EXPECT_EQ(standing.undecided.size(), wins ? 0U : 1U) << left;
+      }
+      const std::string html = page(all, held);
+      EXPECT_EQ(html.find("class=\"won\"") != std::string::npos, wins) << left;
+      EXPECT_EQ(html.find("class=\"few\"") != std::string::npos, !wins) << left;
+      EXPECT_EQ(html.find("Not decided") != std::string::npos, !wins) << left;
+    }
+  const auto said = sentences(hold_contests(three_each(1, 3)).contests);
+  EXPECT_EQ(said[0], "Nobody was fastest beyond the spread of the samples.");
+  EXPECT_EQ(said[1],
+            "Not decided, because fewer than 3 samples of the one that seems fastest count: "
+            "case (a.x, 1 of 3).");
+  EXPECT_NE(sentences(hold_contests(three_each(0, 3)).contests)[1].find(
+                "case (a.x, none of 3 at the usual distance)."),
+            std::string::npos);
+}
+
+/// Whatever moves: who wins alone has three samples, and nobody else is on a par with it.
+TEST(Report, WinnersHaveSamplesEnough) {
+  std::mt19937 random(38);
+  std::uniform_int_distribution<int> percent(0, 99), samples_each(1, 6);
+  int decided = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<Sample> all;
+    for (const char* const who : {"a.x", "a.y", "b.x", "c"})
+      for (int i = samples_each(random); i > 0; --i) {
+        all.push_back(sample(who, 2, 50 + percent(random)));
+        if (percent(random) < 30) all.back().ping_after_ns = 400;
+      }
+    const Contests held = hold_contests(all);
+    const Contest& contest = held.contests.front();
+    std::size_t won = 0;
+    for (const Standing& standing : standings(held.contests, By::candidate)) {
+      won += standing.won.size();
+      if (!standing.won.empty()) {
+        EXPECT_EQ(standing.who, contest.best().candidate);
+      }
+    }
+    const auto on_par = std::count_if(contest.figures.begin(), contest.figures.end(),
+                                      [](const Figure& figure) { return figure.on_par; });
+    EXPECT_EQ(won, contest.best().samples >= 3 && !contest.best().mixed && on_par == 1 ? 1U : 0U);
+    decided += static_cast<int>(won);
+  }
+  EXPECT_GT(decided, 20);
+}
+
+TEST(Report, SaysWhatIsBelowItsFloor) {
+  struct Try {
+    double ns, apart;
+    bool wrong;
+  };
+  for (const auto& [ns, apart, wrong] : {Try{80, 0.01, true},
+                                         {80, 0.3, false},
+                                         {97, 0.01, true},
+                                         {99, 0.01, false},
+                                         {100, 0, false},
+                                         {99.9, 0, true},
+                                         {120, 0.01, false},
+                                         {0.001, 0.01, true}}) {
+    // b.y is never below, and a.x not always the fastest.
+    Samples all;
+    all.samples =
+        samples({sample("a.x", 2, ns), sample("b.y", 2, 105), sample("floor", 2, 100)}, apart);
+    const Contests held = hold_contests(all.samples);
+    const std::string last = sentences(held.contests).back(), html = page(all, held);
+    EXPECT_EQ(last.find("so that either the floor or the measurement is wrong: "
+                        "case (floor 100 ns): a.x " +
+                        time_words(ns) + '.') != std::string::npos,
+              wrong)
+        << ns << ": " << last;
+    EXPECT_EQ(html.find("In 1 of 1 comparisons somebody is below the floor") != std::string::npos,
+              wrong)
+        << ns;
+    EXPECT_EQ(html.find("<td class=\"wrong\">") != std::string::npos, wrong) << ns;
+  }
 }
 
 TEST(Report, CallsThreePercentAPar) {
@@ -222,6 +325,10 @@ TEST(Report, WritesTimesWithThreeDigits) {
   EXPECT_EQ(time_words(1234567), "1.23 ms");
   EXPECT_EQ(time_words(2e9), "2.00 s");
   EXPECT_EQ(ratio_words(12345), "12345");
+  EXPECT_EQ(ratio_words(2.5e6), "2.50 million");
+  EXPECT_EQ(ratio_words(3e12), "3000 billion");
+  EXPECT_EQ(ratio_words(0.87), "0.87");
+  EXPECT_EQ(ratio_words(0.000123), "0.00012");
 }
 
 TEST(Report, PageShowsEveryCandidateAndEscapesNames) {
@@ -235,24 +342,6 @@ TEST(Report, PageShowsEveryCandidateAndEscapesNames) {
         "src=\"subject_threads_2.svg\"", "near each other", "items &amp; more were lost"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
   EXPECT_EQ(html.find("x<y"), std::string::npos);
-}
-
-/// Of a mark's title, the horizontal place of the mark.
-double place_of_mark(const std::string& svg, const std::string& title) {
-  const std::size_t end = svg.find("<title>" + title);
-  const std::string key = "translate(";
-  const std::size_t begin = svg.rfind(key, end) + key.size();
-  return end == std::string::npos ? -1 : std::stod(svg.substr(begin));
-}
-
-TEST(Report, PlotPutsRatiosOnALogarithmicAxis) {
-  const Contests held = hold_contests(samples({sample("a.x", 2, 100), sample("b.y", 2, 200),
-                                               sample("c.z", 2, 400), sample("floor", 2, 50)}));
-  const std::string svg = plot(held.contests, held.contests);
-  const double x = place_of_mark(svg, "a.x 100 ns"), y = place_of_mark(svg, "b.y 200 ns");
-  EXPECT_GT(x, 0);
-  EXPECT_GT(y, x);
-  EXPECT_NEAR(place_of_mark(svg, "c.z 400 ns") - y, y - x, 0.1);
 }
 
 }  // namespace
