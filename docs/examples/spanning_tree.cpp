@@ -9,7 +9,7 @@
 
 #include "example.hpp"
 #include "graphs.hpp"
-#include "kruskal.hpp"
+#include "lean/kruskal.hpp"
 #include "spanning_tree.hpp"
 
 namespace {
@@ -37,8 +37,17 @@ void compare(const example::Arguments& arguments) {
   std::erase(tree, example::Weight{0});
   std::sort(tree.begin(), tree.end());
   std::printf("edges in the tree: %zu\n", tree.size());
-  example::require(tree == example::kruskal(graph, example::weight_of),
-                   "not the minimum spanning tree");
+
+  const std::vector<example::Edge> edges = example::edges_of(graph);
+  const std::vector<example::Weight> weights = example::weights_of(edges);
+  std::vector<std::uint32_t> lightest;
+  const double kruskal_seconds =
+      example::seconds_of([&] { lightest = lean::kruskal(graph.vertex_count(), edges, weights); });
+  example::print_yardstick("serial: Kruskal's algorithm", kruskal_seconds);
+  const bool is_lightest =
+      std::equal(tree.begin(), tree.end(), lightest.begin(), lightest.end(),
+                 [&](example::Weight weight, std::uint32_t e) { return weight == weights[e]; });
+  example::require(is_lightest, "not the minimum spanning tree");
 }
 
 }  // namespace

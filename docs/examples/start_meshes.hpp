@@ -1,5 +1,5 @@
 /// @file
-/// Triangulations to start from: random points in a square, sorted into rows, with the stripe
+/// What to start from: random points in a square, alone or sorted into rows, with the stripe
 /// between two rows triangulated from left to right, which is far from Delaunay; and a plate with
 /// holes.
 #pragma once
@@ -18,6 +18,17 @@
 namespace example {
 
 constexpr std::int32_t square_side = 1 << 24;
+
+/// The corners of a square, anticlockwise, and n random points inside.
+inline std::vector<Point> random_points(std::size_t n) {
+  std::vector<Point> points{{0, 0}, {square_side, 0}, {square_side, square_side}, {0, square_side}};
+  points.reserve(n + 4);
+  const auto random = [](std::uint64_t seed) {
+    return static_cast<std::int32_t>(1 + ductile::runtime::mix64(seed) % (square_side - 1));
+  };
+  for (std::size_t i = 0; i < n; ++i) points.push_back({random(2 * i + 1), random(2 * i + 2)});
+  return points;
+}
 
 /// Triangulates between two rows of points, each ascending in x, the second above the first. Goes
 /// through both from left to right; those that are not joined to the right yet wait on a stack

@@ -1,0 +1,85 @@
+/// @file
+/// Ruppert's refinement, serially: a stack of bad triangles, and a cavity whose memory is reused.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "cavity.hpp"
+
+namespace lean {
+
+/// Puts points into a Delaunay triangulation until no triangle's circle has a radius over `size`,
+/// or over sqrt(2) times the triangle's shortest edge.
+class DelaunayRefinement {
+ public:
+  DelaunayRefinement(Triangulation& mesh, double size) : mesh_(mesh), size_squared_(size * size) {}
+
+  void run() {
+    for (TriangleId t = 0; t < mesh_.corners_of.size(); ++t) wake(t);
+    while (!waiting_.empty()) {
+      const auto [triangle, last] = waiting_.back();
+      waiting_.pop_back();
+      if (mesh_.corners_of[triangle][2] != last || !is_bad(triangle)) continue;
+      insert(triangle);
+      for (const TriangleId t : cavity_.triangles)
+        if (is_bad(t)) wake(t);
+      // Where an edge in its way was halved, the triangle may still be there.
+      if (mesh_.corners_of[triangle][2] == last) waiting_.push_back({triangle, last});
+    }
+  }
+
+  bool is_bad(TriangleId t) const {
+    const Point a = mesh_.corner(t, 0), b = mesh_.corner(t, 1), c = mesh_.corner(t, 2);
+    const double shortest =
+        std::min({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
+    return circle_radius_squared(a, b, c) > std::min(2 * shortest, size_squared_);
+  }
+
+ private:
+  /// A triangle, for as long as it has the last corner that it has now.
+  struct Bad {
+    TriangleId triangle;
+    VertexId last;
+  };
+
+  void wake(TriangleId t) { waiting_.push_back({t, mesh_.corners_of[t][2]}); }
+
+  /// The centre of a triangle's circle, or the middle of a boundary edge in its way.
+  void insert(TriangleId t) {
+    Point point = circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
+    VertexId begin = 0, end = 0;
+    TriangleId inside = t;
+    const auto is_in_the_way = [&](VertexId from, VertexId to, TriangleId beside) {
+      const Point a = mesh_.points[from], b = mesh_.points[to];
+      const std::int64_t across = std::int64_t{a.x - point.x} * (b.x - point.x) +
+                                  std::int64_t{a.y - point.y} * (b.y - point.y);
+      if (across >= 0 && turn(a, b, point) > 0) return false;
+      begin = from;
+      end = to;
+      inside = beside;
+      return true;
+    };
+    if (!cavity_.dig(mesh_, point, t, 3, is_in_the_way)) {
+      const Point a = mesh_.points[begin], b = mesh_.points[end];
+      point = {(a.x + b.x) / 2, (a.y + b.y) / 2};
+      const auto place = static_cast<std::uint32_t>(place_of(begin, mesh_.corners_of[inside]) + 2);
+      cavity_.dig(mesh_, point, inside, place % 3, [](auto...) { return false; });
+    }
+    const auto vertex = static_cast<VertexId>(mesh_.points.size());
+    mesh_.points.push_back(point);
+    cavity_.fill(mesh_, vertex);
+  }
+
+  Triangulation& mesh_;
+  double size_squared_;
+  Cavity cavity_;
+  std::vector<Bad> waiting_;
+};
+
+inline void delaunay_refinement(Triangulation& mesh, double size) {
+  DelaunayRefinement(mesh, size).run();
+}
+
+}  // namespace lean
