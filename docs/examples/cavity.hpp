@@ -7,9 +7,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
+#include "ductile/runtime/cautious_operator.hpp"
 #include "plane.hpp"
 
 namespace example {
@@ -21,7 +22,7 @@ struct Side {
 };
 
 struct Cavity {
-  Point point;
+  Point point{};
   std::vector<TriangleId> triangles{};
   std::vector<Side> sides{};
 };
@@ -33,14 +34,22 @@ inline bool is_in_the_way(Point begin, Point end, Point point) {
   return across < 0 || turn(begin, end, point) <= 0;
 }
 
-/// Fills in the triangles and sides of the cavity around its point, from triangle `start` on.
-/// Stops at a boundary edge that is in the way and returns it, with the triangle on this side.
-/// If the point is the middle of a boundary edge itself, `halved` is where that edge begins: it is
-/// no side then, and nothing is in the way.
-inline std::optional<Side> dig(const Triangulation& mesh, Cavity& cavity, TriangleId start,
-                               VertexId halved = outside) {
+enum class Dug {
+  closed,      ///< the cavity is complete
+  in_the_way,  ///< a boundary edge is in the way
+  denied       ///< reach() said no
+};
+
+/// Fills in the triangles and sides of the cavity around its point, from triangle `start` on, which
+/// has been reached; reaches for all others that it looks at. Stops at a boundary edge that is in
+/// the way and tells it by `edge`, with the triangle on this side. If the point is the middle of a
+/// boundary edge itself, `halved` is where that edge begins: it is no side then, and nothing is in
+/// the way.
+inline Dug dig(const Triangulation& mesh, Cavity& cavity, TriangleId start, auto& reach, Side& edge,
+               VertexId halved = outside) {
   std::vector<TriangleId>& found = cavity.triangles;
-  found.push_back(start);
+  found.assign(1, start);
+  cavity.sides.clear();
   for (std::size_t k = 0; k < found.size(); ++k) {
     const TriangleId t = found[k];
     for (std::size_t i = 0; i < 3; ++i) {
@@ -49,17 +58,53 @@ inline std::optional<Side> dig(const Triangulation& mesh, Cavity& cavity, Triang
       const VertexId begin = mesh.corners_of[t][(i + 1) % 3], end = mesh.corners_of[t][(i + 2) % 3];
       if (other == outside) {
         if (begin == halved) continue;
+        edge = {begin, end, t};
         if (halved == outside && is_in_the_way(mesh.points[begin], mesh.points[end], cavity.point))
-          return Side{begin, end, t};
-      } else if (in_circle(mesh.corner(other, 0), mesh.corner(other, 1), mesh.corner(other, 2),
-                           cavity.point)) {
-        found.push_back(other);
-        continue;
+          return Dug::in_the_way;
+      } else {
+        if (!reach(other)) return Dug::denied;
+        if (in_circle(mesh.corner(other, 0), mesh.corner(other, 1), mesh.corner(other, 2),
+                      cavity.point)) {
+          found.push_back(other);
+          continue;
+        }
       }
       cavity.sides.push_back({begin, end, other});
     }
   }
-  return {};
+  return Dug::closed;
+}
+
+/// Triangles take other numbers, below `count`.
+inline void renumber_triangles(Triangulation& mesh,
+                               std::span<const ductile::runtime::Renumbered> moved,
+                               std::size_t count) {
+  for (const auto [from, to] : moved) {
+    mesh.corners_of[to] = mesh.corners_of[from];
+    mesh.neighbours_of[to] = mesh.neighbours_of[from];
+    for (const TriangleId other : mesh.neighbours_of[to])
+      if (other != outside)
+        mesh.neighbours_of[other][place_of(from, mesh.neighbours_of[other])] = to;
+  }
+  mesh.corners_of.resize(count);
+  mesh.neighbours_of.resize(count);
+}
+
+/// Vertices take other numbers, below `count`.
+inline void renumber_vertices(Triangulation& mesh,
+                              std::span<const ductile::runtime::Renumbered> moved,
+                              std::size_t count) {
+  if (!moved.empty()) {
+    std::vector<VertexId> now_of(mesh.points.size() - count, outside);  // [vertex - count]
+    for (const auto [from, to] : moved) {
+      mesh.points[to] = mesh.points[from];
+      now_of[from - count] = to;
+    }
+    for (auto& corners : mesh.corners_of)
+      for (VertexId& vertex : corners)
+        if (vertex >= count) vertex = now_of[vertex - count];
+  }
+  mesh.points.resize(count);
 }
 
 }  // namespace example

@@ -1,6 +1,6 @@
 /// @file
 /// The Delaunay triangulation of random points by the flips of delaunay_flips.hpp, compared with
-/// the same flips one by one and between thread counts.
+/// flips one by one and between thread counts.
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 
 #include "delaunay_flips.hpp"
 #include "example.hpp"
+#include "lean/delaunay_flips.hpp"
 #include "plane.hpp"
 #include "start_meshes.hpp"
 
@@ -28,9 +29,7 @@ Corners sorted(Corners corners_of) {
 
 void compare(const Arguments& arguments) {
   const Triangulation start = rows_of_points(arguments.size);
-  const std::vector<FlipEdges::Item> edges = inner_edges(start);
-  std::printf("The Delaunay triangulation of %zu points by flips of %zu edges\n",
-              start.points.size(), edges.size());
+  std::printf("The Delaunay triangulation of %zu points by flips of edges\n", start.points.size());
   const Triangulation mesh = solve_at_each_thread_count(
       arguments, [&](const runtime::Executor& executor, runtime::RoundsReport& report) {
         Triangulation flipped = start;
@@ -38,8 +37,7 @@ void compare(const Arguments& arguments) {
         return flipped;
       });
   Triangulation serial = start;
-  FlipEdges flip(serial);
-  const double seconds = seconds_of([&] { OneByOne<FlipEdges>(flip, edges); });
+  const double seconds = seconds_of([&] { lean::delaunay_flips(serial); });
   print_yardstick("serial: one flip after the other", seconds);
   require(delaunay_area(mesh) == 2 * std::int64_t{square_side} * square_side, "not Delaunay");
   require(sorted(mesh.corners_of) == sorted(serial.corners_of), "the serial triangles are others");

@@ -1,14 +1,12 @@
 /// @file
 /// The Delaunay triangulation of points by edge flips: from any triangulation, an edge is replaced
 /// by the other diagonal of its two triangles if the circle through one holds the far corner of the
-/// other (Lawson, 1977). Many edges flip at once; a flip reserves its two triangles and the two
-/// whose neighbours change.
+/// other (Lawson, 1977). A flip changes its two triangles, and two whose neighbours change.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "ductile/runtime/run_rounds.hpp"
@@ -20,51 +18,52 @@ namespace runtime = ductile::runtime;
 
 class FlipEdges {
  public:
-  // ---- What it works on: 3 t + i is the edge of triangle t opposite to its corner i ----
+  // ---- Items: 3 t + i is the edge of triangle t opposite to its corner i ----
   using Item = std::uint32_t;
   struct Plan {
-    TriangleId one, two;    // beside the edge
-    std::size_t far, near;  // the corners opposite to it: their places in one and in two
-  };
-  struct Update {
-    TriangleId before, now;
+    TriangleId one, two;                  // beside the edge
+    std::size_t far, near;                // the corners opposite to it: their places in one and two
+    TriangleId left_of_one, left_of_two;  // neighbours that pass to the other triangle, or outside
   };
 
   explicit FlipEdges(Triangulation& mesh) : mesh_(mesh) {}
 
-  // ---- Plan: flip if the far corner is inside the circle. Reads only. ----
-  std::optional<Plan> plan(Item edge) const {
-    const TriangleId one = edge / 3, two = mesh_.neighbours_of[one][edge % 3];
-    if (two == outside) return {};
-    const std::size_t near = place_of(one, mesh_.neighbours_of[two]);
-    if (!in_circle(mesh_.corner(one, 0), mesh_.corner(one, 1), mesh_.corner(one, 2),
-                   mesh_.corner(two, near)))
-      return {};
-    return Plan{one, two, edge % 3, near};
-  }
-  // ---- Conflict rule: both triangles change, and what two of their neighbours know of them ----
-  void footprint(Item edge, auto&& visit) const {
-    const std::optional<Plan> flip = plan(edge);
-    if (!flip) return;
-    visit(flip->one);
-    visit(flip->two);
-    for (const TriangleId other : {left_of_two(*flip), left_of_one(*flip)})
-      if (other != outside) visit(other);
-  }
+  // ---- Resources: triangles. What is reached together lies together ----
   std::size_t resource_count() const { return mesh_.corners_of.size(); }
+  std::array<double, 2> place_of(TriangleId t) const {
+    const Point point = mesh_.corner(t, 0);
+    return {static_cast<double>(point.x), static_cast<double>(point.y)};
+  }
+
+  // ---- Plan: flip if the far corner is inside the circle. Reads only, what it has reached ----
+  bool plan(Item edge, Plan& flip, auto& reach) const {
+    flip.one = edge / 3;
+    flip.far = edge % 3;
+    if (!reach(flip.one)) return false;
+    flip.two = mesh_.neighbours_of[flip.one][flip.far];
+    if (flip.two == outside || !reach(flip.two)) return false;
+    flip.near = example::place_of(flip.one, mesh_.neighbours_of[flip.two]);
+    if (!in_circle(mesh_.corner(flip.one, 0), mesh_.corner(flip.one, 1), mesh_.corner(flip.one, 2),
+                   mesh_.corner(flip.two, flip.near)))
+      return false;
+    flip.left_of_two = mesh_.neighbours_of[flip.two][(flip.near + 1) % 3];
+    flip.left_of_one = mesh_.neighbours_of[flip.one][(flip.far + 1) % 3];
+    return (flip.left_of_two == outside || reach(flip.left_of_two)) &&
+           (flip.left_of_one == outside || reach(flip.left_of_one));
+  }
   // ---- Apply: turn the diagonal; tell two neighbours; look at the four edges around again ----
-  void apply(const Plan& flip, auto& commit) {
+  void apply(Item, Plan& flip, auto& commit) {
     auto& corners_one = mesh_.corners_of[flip.one];
     auto& corners_two = mesh_.corners_of[flip.two];
     auto& beside_one = mesh_.neighbours_of[flip.one];
     auto& beside_two = mesh_.neighbours_of[flip.two];
     const std::size_t f = flip.far, n = flip.near;
-    if (left_of_two(flip) != outside) commit.defer(left_of_two(flip), {flip.two, flip.one});
-    if (left_of_one(flip) != outside) commit.defer(left_of_one(flip), {flip.one, flip.two});
+    set_neighbour(flip.left_of_two, flip.two, flip.one);
+    set_neighbour(flip.left_of_one, flip.one, flip.two);
     corners_one[(f + 2) % 3] = corners_two[n];
     corners_two[(n + 2) % 3] = corners_one[f];
-    beside_one[f] = beside_two[(n + 1) % 3];
-    beside_two[n] = beside_one[(f + 1) % 3];
+    beside_one[f] = flip.left_of_two;
+    beside_two[n] = flip.left_of_one;
     beside_one[(f + 1) % 3] = flip.two;
     beside_two[(n + 1) % 3] = flip.one;
     for (const std::size_t place : {f, (f + 2) % 3})
@@ -72,19 +71,12 @@ class FlipEdges {
     for (const std::size_t place : {n, (n + 2) % 3})
       commit.wake(3 * flip.two + static_cast<Item>(place));
   }
-  // ---- Commit: a triangle has another neighbour ----
-  void commit(TriangleId owner, const Update& update) {
-    auto& neighbours = mesh_.neighbours_of[owner];
-    neighbours[place_of(update.before, neighbours)] = update.now;
-  }
 
  private:
-  /// The neighbours that pass from triangle two to one, and from one to two.
-  TriangleId left_of_two(const Plan& flip) const {
-    return mesh_.neighbours_of[flip.two][(flip.near + 1) % 3];
-  }
-  TriangleId left_of_one(const Plan& flip) const {
-    return mesh_.neighbours_of[flip.one][(flip.far + 1) % 3];
+  void set_neighbour(TriangleId t, TriangleId before, TriangleId now) {
+    if (t == outside) return;
+    auto& neighbours = mesh_.neighbours_of[t];
+    neighbours[example::place_of(before, neighbours)] = now;
   }
 
   Triangulation& mesh_;

@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <cstdio>
-#include <vector>
 
 #include "delaunay_refinement.hpp"
 #include "example.hpp"
+#include "lean/delaunay_refinement.hpp"
 #include "plane.hpp"
 #include "start_meshes.hpp"
 
@@ -26,8 +26,7 @@ void compare(const Arguments& arguments) {
   const Triangulation start = plate();
   // About as many triangles as asked for: that was measured.
   const double size = plate_cells * cell_side / std::sqrt(static_cast<double>(arguments.size));
-  const std::vector<RefineTriangles::Item> triangles = all_triangles(start);
-  std::printf("Delaunay refinement of %zu triangles\n", triangles.size());
+  std::printf("Delaunay refinement of %zu triangles\n", start.corners_of.size());
   Triangulation mesh = solve_at_each_thread_count(
       arguments, [&](const runtime::Executor& executor, runtime::RoundsReport& report) {
         Triangulation refined = start;
@@ -35,11 +34,11 @@ void compare(const Arguments& arguments) {
         return refined;
       });
   Triangulation serial = start;
-  RefineTriangles refine(serial, size);
   print_yardstick("serial: one insertion after the other",
-                  seconds_of([&] { OneByOne<RefineTriangles>(refine, triangles); }));
+                  seconds_of([&] { lean::delaunay_refinement(serial, size); }));
   std::printf("triangles: %zu, serial %zu\n", mesh.corners_of.size(), serial.corners_of.size());
-  require(is_refined(serial, refine), "the serial mesh is not as it should be");
+  require(is_refined(serial, RefineTriangles(serial, size)),
+          "the serial mesh is not as it should be");
   require(is_refined(mesh, RefineTriangles(mesh, size)), "the mesh is not as it should be");
 }
 

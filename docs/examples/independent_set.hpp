@@ -1,15 +1,15 @@
 /// @file
 /// A maximal independent set: vertices of a graph of which no two are neighbours, and to which none
-/// can be added. The smallest operator there is: run_rounds colours the graph, and class by class
-/// each vertex joins unless a neighbour has. Nothing is deferred, nobody is woken.
+/// can be added. The smallest operator there is: a vertex joins unless a neighbour has. Vertices
+/// are taken in the order of their numbers, so the set is the one that a plain loop finds.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
-#include <optional>
+#include <utility>
 #include <vector>
 
+#include "ductile/runtime/all_numbers.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "graphs.hpp"
 
@@ -19,29 +19,27 @@ namespace runtime = ductile::runtime;
 
 class IndependentSet {
  public:
-  // ---- What it works on ----
   using Item = Vertex;
-  using Plan = Vertex;
-  struct Update {};
-  static constexpr bool keeps_conflicts = true;   // the graph stays as it is
-  static constexpr bool plans_on_its_own = true;  // a plan reads what neighbours write, no more
+  struct Plan {};
 
   explicit IndependentSet(runtime::CsrGraph<> graph)
       : member(graph.vertex_count()), graph_(graph) {}
 
-  // ---- Plan: join, unless it or a neighbour has. Reads only. ----
-  std::optional<Plan> plan(Vertex vertex) const {
-    bool free = member[vertex] == 0;
-    graph_.for_each_neighbour(vertex, [&](Vertex other) { free = free && member[other] == 0; });
-    return free ? std::optional(vertex) : std::nullopt;
-  }
-  // ---- Conflict rule: of two neighbours, the second must see what the first did ----
+  // ---- Resources: the vertices' entries. Each item writes its own ----
+  std::size_t resource_count() const { return member.size(); }
   void conflicts(Vertex vertex, auto&& visit) const { graph_.for_each_neighbour(vertex, visit); }
-  std::size_t item_count() const { return member.size(); }
-  // ---- Apply: a vertex owns its own entry ----
-  void apply(Plan vertex, auto& /*commit*/) { member[vertex] = 1; }
-  // ---- Commit: nothing was deferred ----
-  void commit(std::uint32_t, const Update&) {}
+
+  // ---- Plan: join, unless it or a neighbour has. Reads only, and only what it has reached ----
+  bool plan(Vertex vertex, Plan&, auto& reach) const {
+    if (!reach(vertex) || member[vertex] != 0) return false;
+    for (std::uint32_t i = graph_.offset[vertex]; i < graph_.offset[vertex + 1]; ++i) {
+      const Vertex other = graph_.neighbour[i];
+      if (!reach(other) || member[other] != 0) return false;
+    }
+    return true;
+  }
+  // ---- Apply ----
+  void apply(Vertex vertex, Plan&, auto& /*commit*/) { member[vertex] = 1; }
 
   std::vector<std::uint8_t> member;  // [vertex]
 
@@ -64,12 +62,11 @@ inline bool is_maximal_independent(runtime::CsrGraph<> graph,
 inline std::vector<std::uint8_t> independent_set_in_parallel(
     const runtime::Executor& executor, runtime::CsrGraph<> graph,
     runtime::RoundsReport* report = nullptr) {
-  std::vector<Vertex> vertices(graph.vertex_count());
-  std::iota(vertices.begin(), vertices.end(), Vertex{0});
   IndependentSet set(graph);
-  const runtime::RoundsReport rounds = runtime::run_rounds(executor, set, vertices);
+  const runtime::RoundsReport rounds =
+      runtime::run_rounds(executor, set, runtime::AllNumbers(graph.vertex_count()));
   if (report) *report = rounds;
-  return set.member;
+  return std::move(set.member);
 }
 
 }  // namespace example

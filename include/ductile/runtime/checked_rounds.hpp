@@ -8,6 +8,8 @@
 ///   Plan has ==            compares plans, not only whether there is one
 ///   Op has == and copies   applies each batch in two orders and compares
 ///   to_string(Item)        messages name the item, not only its place (numbers name themselves)
+/// Of a cautious operator it sees where items that have reached for nothing in common change each
+/// other's plans, and whether plan() gives up where it should; most_rounds is not heeded.
 /// An operator that on purpose does not wake all who could plan again has a member `forgoes_wakes`.
 #pragma once
 
@@ -15,7 +17,10 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/contract.hpp"
+#include "ductile/runtime/detail/cautious_check.hpp"
+#include "ductile/runtime/detail/cautious_rounds.hpp"
 #include "ductile/runtime/detail/expect_operator.hpp"
 #include "ductile/runtime/detail/operator_check.hpp"
 #include "ductile/runtime/detail/rounds.hpp"
@@ -31,7 +36,11 @@ namespace ductile::runtime {
 template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds_checked(const Executor& executor, Op& op, Work work,
                                 const RoundsOptions& options = {}) {
-  if constexpr (detail::expect_operator<Op, Work>()) {
+  if constexpr (CautiousOperator<Op>) {
+    const bool in_order = detail::strategy_of<Op>(executor, options) == Strategy::in_order;
+    return detail::CautiousCheck<Op>(op, in_order)
+        .run(detail::to_vector<typename Op::Item>(std::move(work)));
+  } else if constexpr (detail::expect_operator<Op, Work>()) {
     static_assert(std::copyable<typename Op::Item>, "items of checked rounds can be copied");
     const Executor alone({.threads = 1, .deterministic = executor.deterministic()});
     return detail::run_all_rounds<Op, detail::OperatorCheck<Op>>(alone, op, std::move(work),

@@ -21,6 +21,8 @@ enum class ContractRule : std::uint8_t {
   waiting_plan_kept,       ///< who waits in the round plans as before, or is woken or reconsidered
   waiting_conflicts_kept,  ///< who waits in the round gets no new conflict with another that waits
   woken_if_plannable,      ///< who had its turn and can plan again is woken
+  gives_up_if_denied,      ///< plan() returns false once reach() has
+  nobody_woken,            ///< in strategy in_order
 };
 
 class ContractBroken : public std::logic_error {

@@ -4,6 +4,7 @@
 /// result does not depend on the order in which threads come.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -39,6 +40,12 @@ class DisjointSets {
     }
   }
 
+  /// Makes one set of the two whose lowest numbers are these. Thread safety: any thread, while no
+  /// other unites either.
+  void unite_roots(std::uint32_t a, std::uint32_t b) {
+    word(std::max(a, b)).store(std::min(a, b), std::memory_order_relaxed);
+  }
+
   /// The lowest number of the set that has this one. Thread safety: any thread, after the loop that
   /// called unite().
   std::uint32_t lowest(std::uint32_t a) { return root(a); }
@@ -51,10 +58,11 @@ class DisjointSets {
   /// Halves the way there for those who come next.
   std::uint32_t root(std::uint32_t i) {
     while (true) {
-      std::uint32_t parent = word(i).load(std::memory_order_relaxed);
+      const std::uint32_t parent = word(i).load(std::memory_order_relaxed);
       if (parent == i) return i;
       const std::uint32_t next = word(parent).load(std::memory_order_relaxed);
-      if (next != parent) word(i).compare_exchange_weak(parent, next, std::memory_order_relaxed);
+      // Whatever others store meanwhile is a lower number of the same set as well.
+      if (next != parent) word(i).store(next, std::memory_order_relaxed);
       i = next;
     }
   }

@@ -5,13 +5,17 @@
 #include <cstddef>
 #include <limits>
 
+#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/deferred_update.hpp"
 
 namespace ductile::runtime {
 
+/// Of a CautiousOperator `strategy` and `most_rounds` count.
 struct RoundsOptions {
+  Strategy strategy = Strategy::automatic;
   /// Stop there even if work is left, and report how much. By default a run goes on until nothing
-  /// is left, which is never if the operator wakes items for ever.
+  /// is left, which is never if the operator wakes items for ever. Within one round of the
+  /// strategies regions and locks whoever is woken has its turn in the same round, too.
   int most_rounds = std::numeric_limits<int>::max();
   CommitOrder order = CommitOrder::any;  ///< by_source if an owner's updates do not commute
   /// Colouring: a round goes over its work in windows of at most so many items, one after the
@@ -28,7 +32,9 @@ struct RoundsOptions {
 };
 
 /// What a run did. Seconds are wall-clock; a phase's are those of all its loops and what is
-/// between. In tiles, planning and applying are one phase, and count as planning.
+/// between. In tiles, planning and applying are one phase, and count as planning; in regions and
+/// with locks they count as applying, and in order no seconds are told. Of cautious operators
+/// `lost` counts how often an item had to wait or to plan again.
 struct RoundsReport {
   std::size_t rounds = 0;
   std::size_t batches = 0;    ///< sets of items that ran together: classes, a window's winners,

@@ -1,33 +1,61 @@
 /// @file
-/// run_rounds: applies an operator to a set of items until none is left. In each round it finds
-/// items that may run together, lets each of them plan, then apply its plan, then commits what was
-/// deferred; phases never overlap, but in tiles (TiledOperator). Two strategies find items that may
-/// run together: colouring of their conflict graph, class by class (for when most items act), and
-/// reservation of what they touch by priority (for when few do). Which one an operator uses follows
-/// from its members.
+/// run_rounds: applies an operator to a set of items, and to those that it wakes, until none is
+/// left. A CautiousOperator reaches for what it reads and writes, and is run by one of several
+/// strategies (cautious_operator.hpp).
+/// The older contract of operator.hpp: in each round items are found that may run together, each of
+/// them plans, then applies its plan, then what was deferred is committed; phases never overlap,
+/// but in tiles (TiledOperator). Items that may run together are found by colouring of their
+/// conflict graph, class by class, or by reservation of what they touch by priority. Which one
+/// follows from the operator's members.
 #pragma once
 
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/cautious_rounds.hpp"
 #include "ductile/runtime/detail/expect_operator.hpp"
 #include "ductile/runtime/detail/rounds.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 
-/// Applies `op`, a ColouredOperator or a ReservingOperator, to `work`, a vector of items, and to
-/// whatever it wakes, until nothing is left, or for most_rounds. A coloured operator's work has
-/// each item once. With a deterministic executor the result does not depend on threads or timing,
-/// provided that the operator keeps its contract. Throws what the operator throws; the operator's
-/// data are then not to be used. Thread safety: one caller; runs on the executor, in a team.
+/// Applies `op`, a CautiousOperator, ColouredOperator or ReservingOperator, to `work`, and to
+/// whatever it wakes, until nothing is left, or for most_rounds. The work is a vector of items, or
+/// of a cautious operator whatever has size() and items by [i], see AllNumbers; where there are
+/// conflicts() it has each item once. With a deterministic executor the result does not depend on
+/// threads or timing, provided that the operator keeps its contract. Throws what the operator
+/// throws, and std::invalid_argument if the operator lacks what options.strategy needs; the
+/// operator's data are then not to be used. Thread safety: one caller; runs on the executor, in a
+/// team.
 template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds(const Executor& executor, Op& op, Work work,
                         const RoundsOptions& options = {}) {
-  if constexpr (detail::expect_operator<Op, Work>())
+  if constexpr (CautiousOperator<Op>) {
+    return detail::run_cautious_rounds(executor, op, std::move(work), options);
+  } else if constexpr (detail::expect_operator<Op, Work>()) {
     return detail::run_all_rounds(executor, op, std::move(work), options);
+  }
+}
+
+/// Runs a cautious operator by Strategy::in_order and returns the items that were applied, in the
+/// order of the work, see run_rounds(). Fills in a report if there is one. Throws and
+/// thread safety as of run_rounds().
+template <CautiousOperator Op, class Work>
+std::vector<typename Op::Item> applied_in_order(const Executor& executor, Op& op, const Work& work,
+                                                RoundsReport* report = nullptr) {
+  using Item = typename Op::Item;
+  std::vector<Item> applied;
+  applied.reserve(std::size(work));
+  const auto note = [&](const Item& item) { applied.push_back(item); };
+  detail::strategy_of<Op>(executor, {.strategy = Strategy::in_order});
+  const RoundsReport run =
+      with_team(executor, [&] { return detail::run_in_order(executor, op, work, note); });
+  if (report != nullptr) *report = run;
+  return applied;
 }
 
 }  // namespace ductile::runtime

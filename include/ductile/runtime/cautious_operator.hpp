@@ -1,0 +1,132 @@
+/// @file
+/// CautiousOperator: what an algorithm tells run_rounds about its items, and nothing about threads.
+/// It is cautious: it reaches for whatever it reads before it writes anything, and gives up where
+/// it is told to. So every strategy can run it: only what reach() says differs.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "ductile/runtime/worklist.hpp"
+
+namespace ductile::runtime {
+
+/// How a CautiousOperator is run. All but `locks` give the same result at any number of threads.
+enum class Strategy : std::uint8_t {
+  automatic,     ///< locks if the executor need not be deterministic; otherwise regions if the
+                 ///< operator has place_of(), in_order if it has conflicts(), or reservations
+  regions,       ///< resources are cut into regions along a space-filling curve, and each region
+                 ///< runs its items on one thread, the last woken first; what reaches into another
+                 ///< region waits for the next phase, whose cuts lie elsewhere
+  in_order,      ///< in the order of the work, with the result of a plain loop over it. Nobody is
+                 ///< woken and nothing is made. What an item reaches depends on items before it
+                 ///< alone, and one without a plan never gets one later
+  reservations,  ///< items reserve what they reach, in windows of a random order of the work
+  locks,         ///< whoever comes first: the result depends on timing. Not if the executor is to
+                 ///< be deterministic
+};
+
+/// A thing that is given another number.
+struct Renumbered {
+  std::uint32_t from, to;
+};
+
+namespace detail {
+
+/// What plan() and apply() are handed, for the concepts.
+struct AnyReach {
+  bool operator()(std::uint32_t resource);
+};
+template <class Item>
+struct AnyCommit {
+  void wake(const Item& item);
+  std::uint32_t fresh(std::size_t kind = 0);
+};
+
+}  // namespace detail
+
+/// What any operator provides:
+///
+///   Item                     what the work consists of; copied, so small
+///   Plan                     a decision, complete enough to be carried out. One plan is filled in
+///                            again and again, so that its vectors keep their memory
+///   resource_count()         resources have numbers below it
+///   plan(item, plan, reach)  fills in the plan and returns true, or returns false if there is
+///                            nothing to do, now and later, unless the item is woken. Const: it
+///                            only reads. It calls reach(resource) before it reads what an item
+///                            may write, and for what it will write itself; where that returns
+///                            false, it returns false at once. It has reached for something before
+///                            it returns true, and for the same thing first each time
+///   apply(item, plan, commit)  carries the plan out: writes what was reached, and what is its own
+///                            by commit.fresh(kind). commit.wake(item) adds an item to the work
+///
+/// `reach` and `commit` are of types that depend on the strategy: take them by `auto&`. All members
+/// are called by many threads.
+template <class Op>
+concept CautiousOperator = requires(const Op& reader, Op& op, const typename Op::Item& item,
+                                    typename Op::Plan& plan, detail::AnyReach& reach,
+                                    detail::AnyCommit<typename Op::Item>& commit) {
+  requires WorkItem<typename Op::Item>;
+  requires std::copyable<typename Op::Item>;
+  requires std::default_initializable<typename Op::Plan>;
+  { reader.plan(item, plan, reach) } -> std::same_as<bool>;
+  op.apply(item, plan, commit);
+  { reader.resource_count() } -> std::convertible_to<std::size_t>;
+};
+
+/// Items are numbers, each that of the one resource that it writes and reaches for first;
+/// conflicts(item, visit) visits all others that it may reach, of which each may reach it, too.
+/// Then an item need wait for none but those of its neighbours that come before it.
+template <class Op>
+concept ConflictingOperator = CautiousOperator<Op> &&
+    std::same_as<typename Op::Item, std::uint32_t> && requires(const Op& op, std::uint32_t item) {
+  op.conflicts(item, [](std::uint32_t) {});
+};
+
+/// place_of(resource) is where a resource lies, in a plane or in space: what is reached together
+/// lies together. It is asked for between phases, of the resources that are there.
+template <class Op>
+concept PlacedOperator = CautiousOperator<Op> &&(
+    requires(const Op& op, std::uint32_t resource) {
+      { op.place_of(resource) } -> std::same_as<std::array<double, 2>>;
+    } ||
+    requires(const Op& op, std::uint32_t resource) {
+      { op.place_of(resource) } -> std::same_as<std::array<double, 3>>;
+    });
+
+/// An operator that makes numbered things of one or more kinds, of which the first are resources:
+///
+///   demand(plan)   how many of each kind apply() will take by commit.fresh(kind), at most
+///   counts()       how many there are of each kind; numbers are below that
+///   grow(room)     makes room, while nobody plans or applies: numbers below room[kind] may be
+///                  taken. Never fewer than there are
+///   renumber(kind, moved, count)  after the run, also if nothing has moved: each thing `from`
+///                  becomes `to`, and numbers are below `count` again. Wherever a number is written
+///                  down it must be changed
+template <class Op>
+concept GrowingCautiousOperator = CautiousOperator<Op> &&
+    requires(const Op& reader, Op& op, const typename Op::Plan& plan, std::size_t count,
+             std::span<const Renumbered> moved) {
+  reader.demand(plan)[0] + 0U;
+  { reader.counts()[0] } -> std::convertible_to<std::size_t>;
+  op.grow(reader.counts());
+  op.renumber(count, moved, count);
+};
+
+namespace detail {
+
+/// How many kinds of things an operator makes.
+template <class Op>
+inline constexpr std::size_t kinds_made = 0;
+template <GrowingCautiousOperator Op>
+inline constexpr std::size_t kinds_made<Op> =
+    std::tuple_size_v<decltype(std::declval<const Op&>().counts())>;
+
+}  // namespace detail
+
+}  // namespace ductile::runtime

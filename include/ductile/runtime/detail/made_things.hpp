@@ -1,0 +1,114 @@
+/// @file
+/// MadeThings: the numbers of all things that an operator makes, dealt out to the parts of a run
+/// and joined again after it. For operators that make nothing it is empty.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/numbers.hpp"
+
+namespace ductile::runtime::detail {
+
+/// Thread safety: one caller.
+template <class Op>
+class MadeThings {
+ public:
+  static constexpr std::size_t kinds = kinds_made<Op>;
+  using Pools = std::array<NumberPool, kinds>;
+
+  explicit MadeThings(Op& op) : op_(op) {
+    if constexpr (kinds > 0) {
+      const auto counts = op.counts();
+      for (std::size_t k = 0; k < kinds; ++k) numbers_[k] = Numbers(room_[k] = counts[k]);
+    } else {
+      resources_ = Numbers(op.resource_count());
+    }
+  }
+
+  const Numbers& resources() const {
+    if constexpr (kinds > 0) {
+      return numbers_[0];
+    } else {
+      return resources_;
+    }
+  }
+
+  /// Adds to each part's pools so many numbers of each kind, and makes room for them.
+  void deal(std::size_t parts, auto&& pools_of, auto&& wanted_by) {
+    if constexpr (kinds > 0) {
+      std::vector<NumberPool> pools(parts);
+      for (std::size_t k = 0; k < kinds; ++k) {
+        for (std::size_t p = 0; p < parts; ++p) pools[p] = std::move(pools_of(p)[k]);
+        numbers_[k].deal(pools, wanted_by);
+        for (std::size_t p = 0; p < parts; ++p) pools_of(p)[k] = std::move(pools[p]);
+      }
+      make_room();
+    }
+  }
+
+  /// The first of so many new numbers of each kind, which are taken at once.
+  std::array<std::size_t, kinds> take(const std::array<std::size_t, kinds>& more) {
+    std::array<std::size_t, kinds> first{};
+    bool has_room = true;
+    for (std::size_t k = 0; k < kinds; ++k) {
+      first[k] = numbers_[k].top();
+      numbers_[k] = Numbers(first[k] + more[k]);
+      has_room = has_room && numbers_[k].top() <= room_[k];
+    }
+    if (!has_room) {
+      for (std::size_t k = 0; k < kinds; ++k)
+        room_[k] = std::max(room_[k], numbers_[k].top() + numbers_[k].top() / 2);
+      op_.grow(room_);
+    }
+    return first;
+  }
+
+  void take_back(std::size_t parts, auto&& pools_of) {
+    if constexpr (kinds > 0) {
+      std::vector<NumberPool> pools(parts);
+      for (std::size_t k = 0; k < kinds; ++k) {
+        for (std::size_t p = 0; p < parts; ++p) pools[p] = std::move(pools_of(p)[k]);
+        numbers_[k].take_back(pools);
+      }
+    }
+  }
+
+  /// Numbers without holes, for the operator's owner.
+  void close_holes() {
+    if constexpr (kinds > 0)
+      for (std::size_t k = 0; k < kinds; ++k) {
+        const std::vector<Renumbered> moved = numbers_[k].close_holes();
+        op_.renumber(k, std::span<const Renumbered>(moved), numbers_[k].top());
+      }
+  }
+
+ private:
+  void make_room() {
+    for (std::size_t k = 0; k < kinds; ++k) room_[k] = std::max(room_[k], numbers_[k].top());
+    op_.grow(room_);
+  }
+
+  Op& op_;
+  std::array<Numbers, kinds> numbers_;
+  std::array<std::size_t, kinds> room_{};
+  Numbers resources_;  // if none are made
+};
+
+/// Whether there are enough numbers in the pools for a plan.
+template <class Op>
+bool has_room(const Op& op, const auto& pools, const typename Op::Plan& plan) {
+  if constexpr (kinds_made < Op >> 0) {
+    const auto wanted = op.demand(plan);
+    for (std::size_t k = 0; k < pools.size(); ++k)
+      if (pools[k].left() < wanted[k]) return false;
+  }
+  return true;
+}
+
+}  // namespace ductile::runtime::detail

@@ -1,0 +1,144 @@
+/// @file
+/// Numbers of the things of one kind that an operator makes. Those in use lie below `top`, except
+/// for unused ranges, which were dealt out to parts of a run and not needed there.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/cautious_operator.hpp"
+
+namespace ductile::runtime::detail {
+
+struct NumberRange {
+  std::uint32_t begin, end;
+};
+
+/// Numbers that one part of a run may take.
+class NumberPool {
+ public:
+  std::size_t left() const { return left_; }
+  /// The lowest; `left() > 0`.
+  std::uint32_t take() {
+    NumberRange& range = ranges_.back();
+    const std::uint32_t number = range.begin++;
+    if (range.begin == range.end) ranges_.pop_back();
+    --left_;
+    return number;
+  }
+  /// Ranges are added in falling order.
+  void add(NumberRange range) {
+    ranges_.push_back(range);
+    left_ += range.end - range.begin;
+  }
+  std::span<const NumberRange> ranges() const { return ranges_; }
+
+ private:
+  std::vector<NumberRange> ranges_;  // falling
+  std::size_t left_ = 0;
+};
+
+/// Thread safety: one caller.
+class Numbers {
+ public:
+  explicit Numbers(std::size_t count = 0) : top_(count) {}
+
+  std::size_t top() const { return top_; }
+  std::size_t used() const { return top_ - unused_count_; }
+
+  /// Calls visit(begin, end) for each range in use, in rising order.
+  void for_each_used(auto&& visit) const {
+    std::uint32_t at = 0;
+    for (const NumberRange hole : unused_) {
+      if (at < hole.begin) visit(at, hole.begin);
+      at = hole.end;
+    }
+    if (at < top_) visit(at, static_cast<std::uint32_t>(top_));
+  }
+
+  /// So many numbers for each pool: unused ones first, in rising order, and then new ones.
+  void deal(std::span<NumberPool> pools, auto&& wanted_by) {
+    std::size_t next = 0;
+    for (std::size_t p = 0; p < pools.size(); ++p) {
+      std::vector<NumberRange> ranges;
+      std::size_t wanted = wanted_by(p);
+      while (wanted > 0 && next < unused_.size()) {
+        NumberRange& hole = unused_[next];
+        const auto n =
+            static_cast<std::uint32_t>(std::min<std::size_t>(wanted, hole.end - hole.begin));
+        ranges.push_back({hole.begin, hole.begin + n});
+        hole.begin += n;
+        unused_count_ -= n;
+        wanted -= n;
+        if (hole.begin == hole.end) ++next;
+      }
+      if (wanted > 0) {
+        const std::size_t end = top_ + wanted;
+        ranges.push_back({static_cast<std::uint32_t>(top_), static_cast<std::uint32_t>(end)});
+        top_ = end;
+      }
+      for (std::size_t i = ranges.size(); i-- > 0;) pools[p].add(ranges[i]);
+    }
+    unused_.erase(unused_.begin(), unused_.begin() + static_cast<std::ptrdiff_t>(next));
+  }
+
+  /// What is left of them is unused again.
+  void take_back(std::span<const NumberPool> pools) {
+    for (const NumberPool& pool : pools) {
+      unused_.insert(unused_.end(), pool.ranges().begin(), pool.ranges().end());
+      unused_count_ += pool.left();
+    }
+    join_unused();
+  }
+
+  /// The last ones take the numbers that are unused, until none is below another that is used.
+  std::vector<Renumbered> close_holes() {
+    std::vector<Renumbered> moved;
+    const std::size_t count = used();
+    std::size_t hole = 0, to = 0;
+    const auto next_unused = [&] {
+      for (; hole < unused_.size(); ++hole, to = 0) {
+        to = std::max<std::size_t>(to, unused_[hole].begin);
+        if (to < unused_[hole].end) return static_cast<std::uint32_t>(to++);
+      }
+      return static_cast<std::uint32_t>(top_);
+    };
+    for_each_used([&](std::uint32_t begin, std::uint32_t end) {
+      for (std::size_t from = std::max<std::size_t>(begin, count); from < end; ++from)
+        moved.push_back({static_cast<std::uint32_t>(from), next_unused()});
+    });
+    top_ = count;
+    unused_.clear();
+    unused_count_ = 0;
+    return moved;
+  }
+
+ private:
+  void join_unused() {
+    std::sort(unused_.begin(), unused_.end(),
+              [](NumberRange a, NumberRange b) { return a.begin < b.begin; });
+    std::size_t n = 0;
+    for (const NumberRange range : unused_) {
+      if (n > 0 && unused_[n - 1].end == range.begin) {
+        unused_[n - 1].end = range.end;
+      } else {
+        unused_[n++] = range;
+      }
+    }
+    unused_.resize(n);
+    if (n > 0 && unused_.back().end == top_) {
+      top_ = unused_.back().begin;
+      unused_count_ -= unused_.back().end - unused_.back().begin;
+      unused_.pop_back();
+    }
+  }
+
+  std::size_t top_, unused_count_ = 0;
+  std::vector<NumberRange> unused_;  // rising, neither empty nor adjoining
+};
+
+}  // namespace ductile::runtime::detail

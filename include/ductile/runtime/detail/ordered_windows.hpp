@@ -1,0 +1,172 @@
+/// @file
+/// OrderedWindows: the strategy `in_order` where items tell no conflicts. A window of the work is
+/// planned at once; an item with a plan reserves what it has reached by its place, the first wins,
+/// and those that hold all they have reached are applied. All others of the window are then planned
+/// and applied one by one.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/reach.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace ductile::runtime::detail {
+
+/// One run. Work has size() and items by [i]. An item that has no plan leaves at once: those
+/// before it in its window would have to wake it to give it one, and in this strategy nobody is
+/// woken.
+template <CautiousOperator Op, class Work>
+class OrderedWindows {
+ public:
+  using Item = typename Op::Item;
+  using Plan = typename Op::Plan;
+
+  OrderedWindows(const Executor& executor, Op& op, const Work& work)
+      : executor_(executor),
+        op_(op),
+        work_(work),
+        blocks_(window / block_size),
+        holder_of_(op.resource_count(), nobody) {}
+
+  /// apply(item, plan) carries a plan out; applied(item) is told of it, in the order of the work.
+  /// Now and then a window is run by a plain loop, and from then on the faster way is taken: the
+  /// result is the same.
+  RoundsReport run(auto&& apply, auto&& applied) {
+    constexpr std::size_t tried_every = 32;  // windows
+    RoundsReport report{.rounds = 1, .planned = work_.size()};
+    double seconds_at_once = 0, seconds_plainly = 0;
+    std::size_t number = 0;
+    for (std::size_t begin = 0; begin < work_.size(); begin += window, ++number) {
+      const std::size_t end = std::min<std::size_t>(begin + window, work_.size());
+      const std::size_t turn = number % tried_every;
+      const bool plainly = turn == 0 || (turn > 1 && seconds_plainly < seconds_at_once);
+      const auto start = std::chrono::steady_clock::now();
+      if (plainly) {
+        report.applied += run_plainly(begin, end, apply, applied);
+      } else {
+        run_at_once(begin, end, apply, applied, report);
+      }
+      (plainly ? seconds_plainly : seconds_at_once) =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+    return report;
+  }
+
+ private:
+  static constexpr std::size_t window = 8192, block_size = 256;
+  static constexpr std::uint32_t nobody = 0xffffffffU;
+
+  struct Candidate {
+    Plan plan{};
+    std::uint32_t place = 0;        // in the work
+    std::uint32_t reached_end = 0;  // in the block's list, where the one before ends as well
+    bool won = false;
+  };
+  /// Of a window. The first `count` candidates have plans; the others keep their memory.
+  struct alignas(128) Block {
+    std::vector<Candidate> candidates;
+    std::vector<std::uint32_t> reached;
+    std::size_t count = 0;
+  };
+
+  std::size_t run_plainly(std::size_t begin, std::size_t end, auto&& apply, auto&& applied) {
+    std::size_t count = 0;
+    for (std::size_t place = begin; place < end; ++place)
+      if (run_alone(work_[place], apply)) {
+        applied(work_[place]);
+        ++count;
+      }
+    return count;
+  }
+  bool run_alone(const Item& item, auto&& apply) {
+    ReachAll reach;
+    if (!op_.plan(item, plan_, reach)) return false;
+    apply(item, plan_);
+    return true;
+  }
+
+  void run_at_once(std::size_t begin, std::size_t end, auto&& apply, auto&& applied,
+                   RoundsReport& report) {
+    ++report.batches;
+    begin_window();
+    parallel_for_blocks(executor_, end - begin, block_size,
+                        [&](std::size_t block, std::size_t first, std::size_t last) {
+                          plan_block(blocks_[block], begin, begin + first, begin + last);
+                        });
+    const std::size_t count = (end - begin + block_size - 1) / block_size;
+    parallel_for(executor_, count,
+                 [&](std::size_t block) { apply_winners(blocks_[block], begin, apply); },
+                 {.grain = 1});
+    for (std::size_t block = 0; block < count; ++block)
+      for (std::size_t c = 0; c < blocks_[block].count; ++c) {
+        const Candidate& candidate = blocks_[block].candidates[c];
+        const Item item = work_[candidate.place];
+        report.lost += !candidate.won;
+        if (!candidate.won && !run_alone(item, apply)) continue;
+        applied(item);
+        ++report.applied;
+      }
+  }
+
+  /// Keys fall from window to window, so that what was reserved in earlier ones counts no more.
+  void begin_window() {
+    if (first_key_ < window) {
+      std::fill(holder_of_.begin(), holder_of_.end(), nobody);
+      first_key_ = nobody;
+    }
+    first_key_ -= static_cast<std::uint32_t>(window);
+  }
+
+  void plan_block(Block& block, std::size_t window_begin, std::size_t begin, std::size_t end) {
+    block.reached.clear();
+    block.count = 0;
+    ReachToNote reach{block.reached};
+    for (std::size_t place = begin; place < end; ++place) {
+      if (block.count == block.candidates.size()) block.candidates.emplace_back();
+      Candidate& candidate = block.candidates[block.count];
+      const std::size_t first = block.reached.size();
+      if (!op_.plan(work_[place], candidate.plan, reach)) {
+        block.reached.resize(first);
+        continue;
+      }
+      candidate.place = static_cast<std::uint32_t>(place);
+      candidate.reached_end = static_cast<std::uint32_t>(block.reached.size());
+      const std::uint32_t key = key_of(place - window_begin);
+      for (std::size_t i = first; i < block.reached.size(); ++i)
+        atomic_min(holder_of_[block.reached[i]], key);
+      ++block.count;
+    }
+  }
+
+  void apply_winners(Block& block, std::size_t window_begin, auto&& apply) {
+    std::size_t first = 0;
+    for (std::size_t c = 0; c < block.count; ++c) {
+      Candidate& candidate = block.candidates[c];
+      const std::uint32_t key = key_of(candidate.place - window_begin);
+      candidate.won = true;
+      for (; first < candidate.reached_end; ++first)
+        candidate.won = candidate.won && holder_of_[block.reached[first]] == key;
+      if (candidate.won) apply(work_[candidate.place], candidate.plan);
+    }
+  }
+
+  std::uint32_t key_of(std::size_t i) const { return first_key_ + static_cast<std::uint32_t>(i); }
+
+  const Executor& executor_;
+  Op& op_;
+  const Work& work_;
+  std::vector<Block> blocks_;             // [block of the window]
+  std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first that has reached it
+  std::uint32_t first_key_ = nobody;
+  Plan plan_{};
+};
+
+}  // namespace ductile::runtime::detail

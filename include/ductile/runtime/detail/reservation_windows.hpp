@@ -1,0 +1,217 @@
+/// @file
+/// ReservationWindows: the strategy `reservations`. A window of the work is planned at once; an
+/// item with a plan reserves what it has reached by its place in the window, the first wins, and
+/// those that hold all they have reached are applied. How many items a window has follows from how
+/// many of those before have lost.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/made_things.hpp"
+#include "ductile/runtime/detail/reach.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace ductile::runtime::detail {
+
+template <CautiousOperator Op>
+class ReservationWindows {
+ public:
+  using Item = typename Op::Item;
+  using Plan = typename Op::Plan;
+
+  ReservationWindows(const Executor& executor, Op& op) : executor_(executor), op_(op), made_(op) {}
+
+  /// Each pass takes items that are far apart in the work, which seldom meet; those that have lost
+  /// and those that were woken are the next pass's work.
+  RoundsReport run_spread(std::vector<Item> work, std::size_t most_passes) {
+    while (!work.empty() && report_.rounds < most_passes) {
+      ++report_.rounds;
+      const Strides strides(work.size(), window_);
+      for (std::size_t at = 0; at < work.size();) {
+        const std::size_t count = std::min(window_, work.size() - at);
+        run_window(count, [&](std::size_t i) -> const Item& { return work[strides(at + i)]; });
+        at += count;
+      }
+      work.swap(lost_);
+      lost_.clear();
+      work.insert(work.end(), woken_.begin(), woken_.end());
+      woken_.clear();
+    }
+    return finish(work.size());
+  }
+
+ private:
+  /// The order 0, k, 2 k, ..., 1, 1 + k, ... of n places, for k of about n over the window.
+  class Strides {
+   public:
+    Strides(std::size_t n, std::size_t window)
+        : step_((n + window - 1) / window), each_(n / step_), longer_(n % step_) {}
+    std::size_t operator()(std::size_t i) const {
+      const std::size_t in_longer = longer_ * (each_ + 1);
+      if (i < in_longer) return i % (each_ + 1) * step_ + i / (each_ + 1);
+      return (i - in_longer) % each_ * step_ + longer_ + (i - in_longer) / each_;
+    }
+
+   private:
+    std::size_t step_, each_, longer_;
+  };
+
+  enum class Outcome : std::uint8_t { nothing, lost, won };
+  struct Slot {
+    Item item{};
+    Plan plan{};
+    std::vector<std::uint32_t> reached;
+    std::vector<Item> woken;
+    std::array<std::uint32_t, MadeThings<Op>::kinds> next{};
+    Outcome outcome = Outcome::nothing;
+  };
+
+  struct SlotCommit {
+    Slot& slot;
+    void wake(const Item& item) { slot.woken.push_back(item); }
+    std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
+      return slot.next[kind]++;
+    }
+  };
+
+  void run_window(std::size_t count, auto&& item_at) {
+    ++report_.batches;
+    begin_window(count);
+    {
+      const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
+      parallel_for(
+          executor_, count, [&](std::size_t i) { plan(slots_[i], item_at(i), i); }, grain);
+    }
+    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    if constexpr (MadeThings<Op>::kinds > 0) {
+      parallel_for(
+          executor_, count, [&](std::size_t i) { settle(slots_[i], i); }, grain);
+      number(count);
+      parallel_for(
+          executor_, count, [&](std::size_t i) { apply(slots_[i]); }, grain);
+    } else {
+      parallel_for(
+          executor_, count,
+          [&](std::size_t i) {
+            settle(slots_[i], i);
+            apply(slots_[i]);
+          },
+          grain);
+    }
+    end_window(count);
+  }
+
+  /// Keys fall from window to window, so that what earlier ones have reserved counts no more.
+  void begin_window(std::size_t count) {
+    if (slots_.size() < count) slots_.resize(count);
+    if (first_key_ < count) {
+      std::fill(holder_of_.begin(), holder_of_.end(), nobody);
+      first_key_ = nobody;
+    }
+    first_key_ -= static_cast<std::uint32_t>(count);
+    if (holder_of_.size() < op_.resource_count())
+      holder_of_.resize(
+          op_.resource_count() + op_.resource_count() / 2 * (MadeThings<Op>::kinds > 0), nobody);
+  }
+
+  std::uint32_t key_of(std::size_t i) const { return first_key_ + static_cast<std::uint32_t>(i); }
+
+  void plan(Slot& slot, const Item& item, std::size_t i) {
+    slot.item = item;
+    slot.reached.clear();
+    slot.woken.clear();
+    ReachToNote reach{slot.reached};
+    slot.outcome = op_.plan(slot.item, slot.plan, reach) ? Outcome::lost : Outcome::nothing;
+    if (slot.outcome == Outcome::lost)
+      for (const std::uint32_t resource : slot.reached) reserve(holder_of_[resource], key_of(i));
+  }
+  void reserve(std::uint32_t& holder, std::uint32_t key) const {
+    if (executor_.threads() > 1) {
+      atomic_min(holder, key);
+    } else {
+      holder = std::min(holder, key);
+    }
+  }
+
+  void settle(Slot& slot, std::size_t i) {
+    if (slot.outcome == Outcome::nothing) return;
+    const std::uint32_t key = key_of(i);
+    if (std::all_of(slot.reached.begin(), slot.reached.end(),
+                    [&](std::uint32_t resource) { return holder_of_[resource] == key; }))
+      slot.outcome = Outcome::won;
+  }
+
+  void apply(Slot& slot) {
+    SlotCommit commit{slot};
+    if (slot.outcome == Outcome::won) op_.apply(slot.item, slot.plan, commit);
+  }
+
+  /// The winners' new numbers, in the order of the window.
+  void number(std::size_t count) {
+    std::array<std::size_t, MadeThings<Op>::kinds> more{};
+    for (std::size_t i = 0; i < count; ++i) {
+      Slot& slot = slots_[i];
+      if (slot.outcome != Outcome::won) continue;
+      const auto wanted = op_.demand(slot.plan);
+      for (std::size_t k = 0; k < more.size(); ++k) {
+        slot.next[k] = static_cast<std::uint32_t>(more[k]);
+        more[k] += wanted[k];
+      }
+    }
+    const auto first = made_.take(more);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < more.size(); ++k)
+        slots_[i].next[k] += static_cast<std::uint32_t>(first[k]);
+  }
+
+  void end_window(std::size_t count) {
+    std::size_t won = 0, lost = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      Slot& slot = slots_[i];
+      if (slot.outcome == Outcome::lost) {
+        ++lost;
+        lost_.push_back(slot.item);
+      } else if (slot.outcome == Outcome::won) {
+        ++won;
+        woken_.insert(woken_.end(), slot.woken.begin(), slot.woken.end());
+      }
+    }
+    report_.planned += count;
+    report_.applied += won;
+    report_.lost += lost;
+    if (4 * lost > won) window_ = std::max(least_window, window_ / 2);
+    if (16 * lost < won) window_ = std::min(most_window, window_ * 2);
+  }
+
+  RoundsReport finish(std::size_t left) {
+    report_.left = left;
+    made_.close_holes();
+    return report_;
+  }
+
+  static constexpr std::size_t least_window = 64, first_window = 2048, most_window = 8192;
+  static constexpr LoopOptions grain{.grain = 32};
+  static constexpr std::uint32_t nobody = 0xffffffffU;
+
+  const Executor& executor_;
+  Op& op_;
+  MadeThings<Op> made_;
+  std::vector<Slot> slots_;               // [place in the window]
+  std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first that has reached it
+  std::uint32_t first_key_ = nobody;
+  std::size_t window_ = first_window;
+  std::vector<Item> lost_, woken_;
+  RoundsReport report_;
+};
+
+}  // namespace ductile::runtime::detail

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "ductile/runtime/checked_rounds.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+#include "rounds_support.hpp"
+#include "split_intervals.hpp"
+
+namespace ductile::runtime::test {
+namespace {
+
+/// Expects that the operator is caught breaking the rule.
+template <class Op>
+void expect_caught(ContractRule rule, Op op, std::vector<typename Op::Item> work,
+                   Strategy strategy = Strategy::automatic) {
+  try {
+    run_rounds_checked(Executor({.threads = 2}), op, std::move(work), {.strategy = strategy});
+    ADD_FAILURE() << "nothing was caught, rule " << static_cast<int>(rule);
+  } catch (const ContractBroken& broken) {
+    EXPECT_EQ(static_cast<int>(broken.rule()), static_cast<int>(rule)) << broken.what();
+  }
+}
+
+TEST(CautiousCheck, FindsEachFaultOfAnOperatorThatMakesThings) {
+  struct Case {
+    IntervalFaults faults;
+    ContractRule rule;
+  };
+  for (const Case& each : {
+           Case{{.writes_unreached = true}, ContractRule::touches_announced},
+           Case{{.reads_unreached = true}, ContractRule::touches_announced},
+           Case{{.goes_on = true}, ContractRule::gives_up_if_denied},
+           Case{{.takes_too_many = true}, ContractRule::fresh_demanded},
+           Case{{.out_of_range = true}, ContractRule::numbers_in_range},
+           Case{{.reuses_plan = true}, ContractRule::plan_only_reads},
+           Case{{.reaches_nothing = true}, ContractRule::touches_announced},
+       }) {
+    const SplitIntervals<2> op(40, 4e-3, each.faults);
+    expect_caught(each.rule, op, op.all_items());
+  }
+}
+
+TEST(CautiousCheck, LetsASoundOperatorPass) {
+  for (const std::size_t count : {1, 5, 300}) {
+    SplitIntervals<3> op(count, 7e-4);
+    const RoundsReport report = run_rounds_checked(Executor({.threads = 2}), op, op.all_items());
+    EXPECT_TRUE(op.is_whole());
+    EXPECT_EQ(report.applied, op.intervals.size() - count);
+  }
+}
+
+struct SumFaults {
+  bool hides_next = false, is_one_sided = false, wakes = false, counts_again = false;
+};
+/// On a line of vertices: the sum of one and its two neighbours, once.
+class Sums {
+ public:
+  using Item = Vertex;
+  struct Plan {
+    std::uint32_t sum;
+    friend bool operator==(const Plan&, const Plan&) = default;
+  };
+  explicit Sums(SumFaults faults = {}) : value(100, 1), done_(100), faults_(faults) {}
+
+  std::size_t resource_count() const { return value.size(); }
+  void conflicts(Vertex v, auto&& visit) const {
+    if (v > 0) visit(v - 1);
+    if (v + 1 < value.size() && !faults_.hides_next && !(faults_.is_one_sided && v == 50))
+      visit(v + 1);
+  }
+  bool plan(Vertex v, Plan& plan, auto& reach) const {
+    if (!reach(v) || (done_[v] != 0 && !faults_.counts_again)) return false;
+    plan.sum = 0;
+    for (const Vertex other : {v - 1, v, v + 1}) {
+      if (other >= value.size()) continue;
+      if (faults_.is_one_sided && v == 50 && other == 51) continue;
+      if (!reach(other)) return false;
+      plan.sum += value[other];
+    }
+    return true;
+  }
+  void apply(Vertex v, Plan& plan, auto& commit) {
+    value[v] = plan.sum;
+    done_[v] = 1;
+    if (faults_.wakes) commit.wake(v);
+  }
+
+  std::vector<std::uint32_t> value;
+
+ private:
+  std::vector<std::uint8_t> done_;
+  SumFaults faults_;
+};
+
+TEST(CautiousCheck, FindsEachFaultOfAnOperatorInOrder) {
+  const auto work = all_items(100);
+  expect_caught(ContractRule::touches_announced, Sums({.hides_next = true}), work);
+  expect_caught(ContractRule::conflicts_symmetric, Sums({.is_one_sided = true}), work);
+  expect_caught(ContractRule::nobody_woken, Sums({.wakes = true}), work);
+  expect_caught(ContractRule::woken_if_plannable, Sums({.counts_again = true}), work);
+  Sums checked, run;
+  run_rounds_checked(Executor({.threads = 2}), checked, work);
+  run_rounds(Executor({.threads = 1}), run, work);
+  EXPECT_EQ(checked.value, run.value) << "in the order of the work";
+}
+
+}  // namespace
+}  // namespace ductile::runtime::test
