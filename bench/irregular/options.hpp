@@ -1,0 +1,32 @@
+/// @file
+/// What a run of the suite measures, from the words of a command line.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ductile::bench::irregular {
+
+struct Options {
+  std::vector<std::string> only;  ///< names of algorithms; all if empty
+  std::vector<std::size_t> sizes{100000, 1000000};
+  std::vector<int> threads{1, 2};
+  int repetitions = 5;
+  std::filesystem::path json;  ///< none if empty
+  bool help = false;
+};
+
+/// A word that is not understood.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws UsageError, with the word and what was expected.
+Options options_from(const std::vector<std::string>& words);
+
+extern const char* const help_text;
+
+}  // namespace ductile::bench::irregular
