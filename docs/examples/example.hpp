@@ -1,6 +1,6 @@
 /// @file
-/// What the examples of the runtime share, and no part of Ductile: arguments, a table of runs at
-/// several thread counts whose results must be identical, and a driver without any parallelism.
+/// What the examples of the runtime share, and no part of Ductile: arguments, and a table of runs
+/// at several thread counts whose results must be identical.
 ///   PROGRAM [SIZE [THREADS...]]
 #pragma once
 
@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 
 namespace example {
@@ -67,37 +66,6 @@ auto solve_at_each_thread_count(const Arguments& arguments, Solve&& solve) {
   }
   return *std::move(first);
 }
-
-/// Runs an operator one item at a time, the last woken first, and writes at once what it defers:
-/// the serial algorithm, to compare with.
-template <class Op>
-class OneByOne {
- public:
-  using Item = typename Op::Item;
-
-  OneByOne(Op& op, std::vector<Item> work) : op_(op), work_(std::move(work)) {
-    while (!work_.empty()) {
-      const Item item = work_.back();
-      work_.pop_back();
-      const std::optional<typename Op::Plan> plan = op_.plan(item);
-      if (!plan) continue;
-      if constexpr (runtime::GrowingOperator<Op>) {
-        for (const std::uint32_t first : op_.grow(op_.demand(*plan))) next_.push_back(first);
-      }
-      op_.apply(*plan, *this);
-      next_.clear();
-    }
-  }
-
-  void defer(std::uint32_t owner, const typename Op::Update& update) { op_.commit(owner, update); }
-  void wake(Item item) { work_.push_back(item); }
-  std::uint32_t fresh(std::size_t kind = 0) { return next_[kind]++; }
-
- private:
-  Op& op_;
-  std::vector<Item> work_;
-  std::vector<std::uint32_t> next_;  // [kind], the next new number
-};
 
 /// Calls body(arguments); returns what main() should: 1 and a message if it throws.
 template <class Body>

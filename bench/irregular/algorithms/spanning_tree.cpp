@@ -1,6 +1,5 @@
 /// @file
-/// The minimum spanning forest; its weights are compared.
-#include <algorithm>
+/// The minimum spanning forest.
 #include <cstdint>
 #include <vector>
 
@@ -10,44 +9,23 @@
 
 namespace ductile::bench::irregular {
 
-namespace {
-
-/// Serially the numbers of the edges, by Ductile their weights in any order, and zeros.
-struct Forest {
-  std::vector<std::uint32_t> edges;
-  std::vector<example::Weight> weights;
-
-  friend bool operator==(const Forest&, const Forest&) = default;
-
-  std::vector<example::Weight> ascending(const GraphInput& input) const {
-    std::vector<example::Weight> result = weights;
-    for (const std::uint32_t e : edges) result.push_back(input.edge_weights[e]);
-    std::erase(result, example::Weight{0});
-    std::sort(result.begin(), result.end());
-    return result;
-  }
-};
-
-}  // namespace
-
 Algorithm spanning_tree() {
-  return algorithm(Row<GraphInput, Forest>{
+  return algorithm(Row<GraphInput, std::vector<std::uint32_t>>{
       .name = "spanning_tree",
       .inputs = {"grid", "geometric", "rmat"},
       .make_input = graph_input,
       .serial =
-          [](const GraphInput& input, Forest& forest) {
-            forest.edges =
-                lean::kruskal(input.view().vertex_count(), input.edges, input.edge_weights);
+          [](const GraphInput& input, auto& forest) {
+            forest = lean::kruskal(input.view().vertex_count(), input.edges, input.edge_weights);
           },
       .ductile =
-          [](const runtime::Executor& executor, const GraphInput& input, Forest& forest) {
-            forest.weights = example::spanning_tree_in_parallel(executor, input.view());
+          [](const runtime::Executor& executor, const GraphInput& input, auto& forest) {
+            forest = example::spanning_tree_in_parallel(executor, input.view().vertex_count(),
+                                                        input.edges, input.edge_weights);
           },
       .fault =
-          [](const GraphInput& input, const Forest& forest, const Forest& serial) {
-            return unless(forest.ascending(input) == serial.ascending(input),
-                          "gives no minimum spanning forest");
+          [](const GraphInput& /*input*/, const auto& forest, const auto& serial) {
+            return unless(forest == serial, "gives another forest than serial code");
           }});
 }
 
