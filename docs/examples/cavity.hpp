@@ -1,13 +1,15 @@
 /// @file
 /// Cavities: to put a point into a Delaunay triangulation, the triangles whose circles hold it go,
 /// and triangles from the point to the sides of the hole they leave take their places (Bowyer and
-/// Watson, 1981).
+/// Watson, 1981). Those that go are a tree, because there is no vertex inside. A search that goes
+/// around that tree finds each once, without looking for it among those found before, and the sides
+/// of the cavity in their order, anticlockwise.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/cautious_operator.hpp"
@@ -15,16 +17,81 @@
 
 namespace example {
 
-/// An edge of a cavity, which lies to its left, and the triangle to its right.
-struct Side {
+/// An edge of a cavity, which lies to its left; `place` is that of the edge in triangle `beyond`.
+struct CavitySide {
   VertexId begin, end;
   TriangleId beyond;
+  std::uint32_t place;
+};
+
+enum class Dug {
+  closed,   ///< the cavity is complete
+  stopped,  ///< at a boundary edge
+  denied    ///< reach() said no
 };
 
 struct Cavity {
   Point point{};
-  std::vector<TriangleId> triangles{};
-  std::vector<Side> sides{};
+  std::vector<TriangleId> triangles{};  ///< those that go; after fill() those that came
+  std::vector<CavitySide> sides{};
+
+  /// Finds the cavity of `point` from triangle `start` on, which has been reached; reaches for all
+  /// other triangles that it looks at. If `open` is less than 3, the point is on that edge of
+  /// `start`, a boundary edge, which is no side then. Calls stops(begin, end, triangle) at every
+  /// other boundary edge, and stops as soon as that is true.
+  Dug dig(const Triangulation& mesh, TriangleId start, std::uint32_t open, auto& reach,
+          auto&& stops) {
+    triangles.assign(1, start);
+    sides.clear();
+    ahead_.clear();
+    const std::uint32_t first = open < 3 ? (open + 1) % 3 : 0;
+    if (open == 3) ahead_.emplace_back(start, 2);
+    ahead_.emplace_back(start, (first + 1) % 3);
+    ahead_.emplace_back(start, first);
+    while (!ahead_.empty()) {
+      const auto [t, i] = ahead_.back();
+      ahead_.pop_back();
+      const TriangleId other = mesh.neighbours_of[t][i];
+      const auto& corners = mesh.corners_of[t];
+      const VertexId begin = corners[(i + 1) % 3], end = corners[(i + 2) % 3];
+      if (other == outside) {
+        if (stops(begin, end, t)) return Dug::stopped;
+        sides.push_back({begin, end, outside, 0});
+        continue;
+      }
+      if (!reach(other)) return Dug::denied;
+      const auto j = static_cast<std::uint32_t>(place_of(t, mesh.neighbours_of[other]));
+      if (in_circle(mesh.corner(other, 0), mesh.corner(other, 1), mesh.corner(other, 2), point)) {
+        triangles.push_back(other);
+        ahead_.emplace_back(other, (j + 2) % 3);
+        ahead_.emplace_back(other, (j + 1) % 3);
+      } else {
+        sides.push_back({begin, end, other, j});
+      }
+    }
+    return Dug::closed;
+  }
+
+  /// Puts triangles from the sides to a vertex in place of the cavity: first those that were there,
+  /// then new ones.
+  void fill(Triangulation& mesh, VertexId vertex, auto&& new_triangle) {
+    mesh.points[vertex] = point;
+    while (triangles.size() < sides.size()) triangles.push_back(new_triangle());
+    const bool closed = sides.front().begin == sides.back().end;
+    TriangleId before = closed ? triangles.back() : outside;
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const auto [begin, end, beyond, place] = sides[k];
+      const bool is_last = k + 1 == sides.size();
+      const TriangleId after = !is_last ? triangles[k + 1] : closed ? triangles[0] : outside;
+      mesh.corners_of[triangles[k]] = {begin, end, vertex};
+      mesh.neighbours_of[triangles[k]] = {after, before, beyond};
+      if (beyond != outside) mesh.neighbours_of[beyond][place] = triangles[k];
+      before = triangles[k];
+    }
+  }
+
+ private:
+  std::vector<std::pair<TriangleId, std::uint32_t>> ahead_;  // edges to look at
 };
 
 /// Whether a point is on the wrong side of a boundary edge, or inside the circle on it.
@@ -32,47 +99,6 @@ inline bool is_in_the_way(Point begin, Point end, Point point) {
   const std::int64_t across = std::int64_t{begin.x - point.x} * (end.x - point.x) +
                               std::int64_t{begin.y - point.y} * (end.y - point.y);
   return across < 0 || turn(begin, end, point) <= 0;
-}
-
-enum class Dug {
-  closed,      ///< the cavity is complete
-  in_the_way,  ///< a boundary edge is in the way
-  denied       ///< reach() said no
-};
-
-/// Fills in the triangles and sides of the cavity around its point, from triangle `start` on, which
-/// has been reached; reaches for all others that it looks at. Stops at a boundary edge that is in
-/// the way and tells it by `edge`, with the triangle on this side. If the point is the middle of a
-/// boundary edge itself, `halved` is where that edge begins: it is no side then, and nothing is in
-/// the way.
-inline Dug dig(const Triangulation& mesh, Cavity& cavity, TriangleId start, auto& reach, Side& edge,
-               VertexId halved = outside) {
-  std::vector<TriangleId>& found = cavity.triangles;
-  found.assign(1, start);
-  cavity.sides.clear();
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const TriangleId t = found[k];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const TriangleId other = mesh.neighbours_of[t][i];
-      if (std::find(found.begin(), found.end(), other) != found.end()) continue;
-      const VertexId begin = mesh.corners_of[t][(i + 1) % 3], end = mesh.corners_of[t][(i + 2) % 3];
-      if (other == outside) {
-        if (begin == halved) continue;
-        edge = {begin, end, t};
-        if (halved == outside && is_in_the_way(mesh.points[begin], mesh.points[end], cavity.point))
-          return Dug::in_the_way;
-      } else {
-        if (!reach(other)) return Dug::denied;
-        if (in_circle(mesh.corner(other, 0), mesh.corner(other, 1), mesh.corner(other, 2),
-                      cavity.point)) {
-          found.push_back(other);
-          continue;
-        }
-      }
-      cavity.sides.push_back({begin, end, other});
-    }
-  }
-  return Dug::closed;
 }
 
 /// Triangles take other numbers, below `count`.

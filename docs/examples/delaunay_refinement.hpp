@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "cavity.hpp"
@@ -46,43 +47,34 @@ class RefineTriangles {
     return {static_cast<double>(point.x), static_cast<double>(point.y)};
   }
 
-  // ---- Plan: the cavity of the circle's centre, or of the middle of an edge that is in its way
-  // ----
+  // ---- Plan: the cavity of the circle's centre, or of the middle of an edge in its way ----
   bool plan(const Item& item, Cavity& cavity, auto& reach) const {
     const TriangleId t = item.triangle;
     if (!reach(t) || mesh_.corners_of[t][2] != item.last || !is_bad(t)) return false;
     cavity.point = circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
-    Side edge;
-    Dug dug = dig(mesh_, cavity, t, reach, edge);
-    if (dug == Dug::in_the_way) {
-      const Point a = mesh_.points[edge.begin], b = mesh_.points[edge.end];
+    VertexId begin = 0, end = 0;
+    TriangleId inside = t;
+    Dug dug = cavity.dig(mesh_, t, 3, reach, [&](VertexId from, VertexId to, TriangleId beside) {
+      std::tie(begin, end, inside) = {from, to, beside};
+      return is_in_the_way(mesh_.points[from], mesh_.points[to], cavity.point);
+    });
+    if (dug == Dug::stopped) {
+      const Point a = mesh_.points[begin], b = mesh_.points[end];
       cavity.point = {(a.x + b.x) / 2, (a.y + b.y) / 2};
-      dug = dig(mesh_, cavity, edge.beyond, reach, edge, edge.begin);
+      const std::size_t edge = (example::place_of(begin, mesh_.corners_of[inside]) + 2) % 3;
+      dug = cavity.dig(mesh_, inside, static_cast<std::uint32_t>(edge), reach,
+                       [](auto...) { return false; });
     }
     return dug == Dug::closed;
   }
   // ---- Apply: a triangle on each side of the cavity; wake those that are bad ----
   void apply(const Item& item, Cavity& cavity, auto& commit) {
     const VertexId vertex = commit.fresh(1);
-    mesh_.points[vertex] = cavity.point;
-    const std::vector<Side>& sides = cavity.sides;
-    std::vector<TriangleId>& triangles = cavity.triangles;
-    while (triangles.size() < sides.size()) triangles.push_back(commit.fresh(0));
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      const Side& side = sides[i];
-      mesh_.corners_of[triangles[i]] = {side.begin, side.end, vertex};
-      mesh_.neighbours_of[triangles[i]] = {outside, outside, side.beyond};
-      if (side.beyond != outside)
-        mesh_.neighbours_of[side.beyond]
-                           [(example::place_of(side.end, mesh_.corners_of[side.beyond]) + 2) % 3] =
-            triangles[i];
-      for (std::size_t j = 0; j < sides.size(); ++j) {
-        if (sides[j].begin == side.end) mesh_.neighbours_of[triangles[i]][0] = triangles[j];
-        if (sides[j].end == side.begin) mesh_.neighbours_of[triangles[i]][1] = triangles[j];
-      }
-      if (is_bad(triangles[i])) commit.wake({triangles[i], vertex});
-    }
-    commit.wake(item);
+    cavity.fill(mesh_, vertex, [&] { return commit.fresh(0); });
+    for (const TriangleId t : cavity.triangles)
+      if (is_bad(t)) commit.wake({t, vertex});
+    // Where an edge in its way was halved, the triangle may still be there.
+    if (mesh_.corners_of[item.triangle][2] == item.last) commit.wake(item);
   }
 
   // ---- Made things: triangles, which are the resources, and vertices ----

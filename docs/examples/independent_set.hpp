@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ductile/runtime/all_numbers.hpp"
+#include "ductile/runtime/atomic_mark.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "graphs.hpp"
 
@@ -23,28 +24,31 @@ class IndependentSet {
   struct Plan {};
 
   explicit IndependentSet(runtime::CsrGraph<> graph)
-      : member(graph.vertex_count()), graph_(graph) {}
+      : member(graph.vertex_count()), graph_(graph), is_decided_(graph.vertex_count()) {}
 
-  // ---- Resources: the vertices' entries. Each item writes its own ----
+  // ---- Resources: vertices. What an item reaches besides its own it only marks ----
   std::size_t resource_count() const { return member.size(); }
   void conflicts(Vertex vertex, auto&& visit) const { graph_.for_each_neighbour(vertex, visit); }
 
-  // ---- Plan: join, unless it or a neighbour has. Reads only, and only what it has reached ----
+  // ---- Plan: join, unless a neighbour has. Reads only, and only what it has reached ----
   bool plan(Vertex vertex, Plan&, auto& reach) const {
-    if (!reach(vertex) || member[vertex] != 0) return false;
-    for (std::uint32_t i = graph_.offset[vertex]; i < graph_.offset[vertex + 1]; ++i) {
-      const Vertex other = graph_.neighbour[i];
-      if (!reach(other) || member[other] != 0) return false;
-    }
-    return true;
+    if (!reach(vertex)) return false;
+    for (std::uint32_t i = graph_.offset[vertex]; i < graph_.offset[vertex + 1]; ++i)
+      if (!reach(graph_.neighbour[i])) return false;
+    return is_decided_[vertex] == 0;
   }
   // ---- Apply ----
-  void apply(Vertex vertex, Plan&, auto& /*commit*/) { member[vertex] = 1; }
+  void apply(Vertex vertex, Plan&, auto& /*commit*/) {
+    member[vertex] = is_decided_[vertex] = 1;
+    graph_.for_each_neighbour(vertex,
+                              [&](Vertex other) { runtime::atomic_set(is_decided_[other]); });
+  }
 
   std::vector<std::uint8_t> member;  // [vertex]
 
  private:
   runtime::CsrGraph<> graph_;
+  std::vector<std::uint8_t> is_decided_;  // [vertex], is in the set or beside it
 };
 
 /// Members have no member beside them, and all others have one.

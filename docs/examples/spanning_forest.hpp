@@ -34,10 +34,12 @@ class SpanningForest {
   std::size_t resource_count() const { return trees_.size(); }
   // ---- Plan: join two trees, which each have their lowest vertex as root ----
   bool plan(Item edge, Plan& plan, auto& reach) const {
-    plan.root = trees_.lowest(edges_[edge].a);
-    plan.other_root = trees_.lowest(edges_[edge].b);
-    return plan.root != plan.other_root && reach_root(plan.root, reach) &&
-           reach_root(plan.other_root, reach) && plan.root != plan.other_root;
+    const auto [a, b] = edges_[edge];
+    if (trees_.are_together(a, b)) return false;
+    plan.root = trees_.lowest(a);
+    plan.other_root = trees_.lowest(b);
+    return reach_root(plan.root, reach) && reach_root(plan.other_root, reach) &&
+           plan.root != plan.other_root;
   }
   // ---- Apply ----
   void apply(Item, Plan& plan, auto& /*commit*/) { trees_.unite_roots(plan.root, plan.other_root); }

@@ -11,34 +11,10 @@
 #include <utility>
 
 #include "ductile/meshadapt/vector.hpp"
+#include "ductile/runtime/hilbert.hpp"
 #include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
-
-/// Position along the Hilbert curve of a cell given by `bits` bits an axis (Skilling, AIP Conf.
-/// Proc. 707, 2004): coordinates are transposed in place, then interleaved.
-template <std::size_t Dim>
-constexpr std::uint64_t hilbert_key(std::array<std::uint32_t, Dim> x, int bits) {
-  const std::uint32_t top = 1U << (bits - 1);
-  for (std::uint32_t q = top; q > 1; q >>= 1U)
-    for (std::size_t i = 0; i < Dim; ++i) {
-      if (x[i] & q) {
-        x[0] ^= q - 1;
-      } else {
-        const std::uint32_t t = (x[0] ^ x[i]) & (q - 1);
-        x[0] ^= t;
-        x[i] ^= t;
-      }
-    }
-  for (std::size_t i = 1; i < Dim; ++i) x[i] ^= x[i - 1];
-  std::uint32_t t = 0;
-  for (std::uint32_t q = top; q > 1; q >>= 1U)
-    if (x[Dim - 1] & q) t ^= q - 1;
-  std::uint64_t key = 0;
-  for (int bit = bits - 1; bit >= 0; --bit)
-    for (std::size_t i = 0; i < Dim; ++i) key = key << 1U | (((x[i] ^ t) >> bit) & 1U);
-  return key;
-}
 
 /// How the curve runs in a square or a cube: in which cells of a grid it arrives in which order,
 /// and how it runs in each of them.
@@ -136,7 +112,7 @@ inline constexpr unsigned hilbert_bits = Dim == 2 ? 48 : 60;
 static_assert(hilbert_bits<2> / 2 % HilbertTable<2>::step == 0);
 static_assert(hilbert_bits<3> / 3 % HilbertTable<3>::step == 0);
 
-/// The same of a point in the box.
+/// hilbert_key() of a point in the box.
 template <int Dim>
 std::uint64_t hilbert_key(const Vector<Dim>& point, const Box<Dim>& box) {
   constexpr int bits = hilbert_bits<Dim> / Dim;

@@ -24,7 +24,7 @@ TYPED_TEST(Hilbert, TheTableKnowsTheCurve) {
     for (int i = 0; i < 2000; ++i) {
       std::array<std::uint32_t, Dim> cell;
       for (auto& x : cell) x = static_cast<std::uint32_t>(random()) >> (32 - bits);
-      EXPECT_EQ(hilbert_key_by_table<Dim>(cell, bits), hilbert_key<Dim>(cell, bits));
+      EXPECT_EQ(hilbert_key_by_table<Dim>(cell, bits), runtime::hilbert_key<Dim>(cell, bits));
     }
 }
 

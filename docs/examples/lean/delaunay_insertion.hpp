@@ -12,9 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "cavity.hpp"
+#include "../cavity.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "radix_sort.hpp"
+#include "triangles.hpp"
 
 namespace lean {
 
@@ -74,7 +75,7 @@ inline Triangulation delaunay_insertion(std::vector<Point> points) {
   mesh.neighbours_of.reserve(2 * mesh.points.size());
   mesh.corners_of = {{0, 1, 2}, {0, 2, 3}};
   mesh.neighbours_of = {{outside, 1, outside}, {outside, outside, 0}};
-  Cavity cavity;
+  example::Cavity cavity;
   TriangleId last = 0;
   for (const VertexId vertex : insertion_order(mesh.points, 4)) {
     const Point point = mesh.points[vertex];
@@ -82,8 +83,9 @@ inline Triangulation delaunay_insertion(std::vector<Point> points) {
     if (mesh.corner(last, 0) == point || mesh.corner(last, 1) == point ||
         mesh.corner(last, 2) == point)
       continue;
-    cavity.dig(mesh, point, last, 3, [](auto...) { return false; });
-    cavity.fill(mesh, vertex);
+    cavity.point = point;
+    cavity.dig(mesh, last, 3, anywhere, [](auto...) { return false; });
+    cavity.fill(mesh, vertex, [&] { return add_triangle(mesh); });
     last = cavity.triangles.back();
   }
   return mesh;

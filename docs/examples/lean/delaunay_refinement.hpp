@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
-#include "cavity.hpp"
+#include "../cavity.hpp"
+#include "triangles.hpp"
 
 namespace lean {
 
@@ -48,33 +50,27 @@ class DelaunayRefinement {
 
   /// The centre of a triangle's circle, or the middle of a boundary edge in its way.
   void insert(TriangleId t) {
-    Point point = circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
+    cavity_.point = circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
     VertexId begin = 0, end = 0;
     TriangleId inside = t;
-    const auto is_in_the_way = [&](VertexId from, VertexId to, TriangleId beside) {
-      const Point a = mesh_.points[from], b = mesh_.points[to];
-      const std::int64_t across = std::int64_t{a.x - point.x} * (b.x - point.x) +
-                                  std::int64_t{a.y - point.y} * (b.y - point.y);
-      if (across >= 0 && turn(a, b, point) > 0) return false;
-      begin = from;
-      end = to;
-      inside = beside;
-      return true;
+    const auto is_stopped_by = [&](VertexId from, VertexId to, TriangleId beside) {
+      std::tie(begin, end, inside) = {from, to, beside};
+      return is_in_the_way(mesh_.points[from], mesh_.points[to], cavity_.point);
     };
-    if (!cavity_.dig(mesh_, point, t, 3, is_in_the_way)) {
+    if (cavity_.dig(mesh_, t, 3, anywhere, is_stopped_by) == example::Dug::stopped) {
       const Point a = mesh_.points[begin], b = mesh_.points[end];
-      point = {(a.x + b.x) / 2, (a.y + b.y) / 2};
-      const auto place = static_cast<std::uint32_t>(place_of(begin, mesh_.corners_of[inside]) + 2);
-      cavity_.dig(mesh_, point, inside, place % 3, [](auto...) { return false; });
+      cavity_.point = {(a.x + b.x) / 2, (a.y + b.y) / 2};
+      const auto edge = static_cast<std::uint32_t>(place_of(begin, mesh_.corners_of[inside]) + 2);
+      cavity_.dig(mesh_, inside, edge % 3, anywhere, [](auto...) { return false; });
     }
     const auto vertex = static_cast<VertexId>(mesh_.points.size());
-    mesh_.points.push_back(point);
-    cavity_.fill(mesh_, vertex);
+    mesh_.points.emplace_back();
+    cavity_.fill(mesh_, vertex, [&] { return add_triangle(mesh_); });
   }
 
   Triangulation& mesh_;
   double size_squared_;
-  Cavity cavity_;
+  example::Cavity cavity_;
   std::vector<Bad> waiting_;
 };
 

@@ -12,8 +12,6 @@
 #include <tuple>
 #include <utility>
 
-#include "ductile/runtime/worklist.hpp"
-
 namespace ductile::runtime {
 
 /// How a CautiousOperator is run. All but `locks` give the same result at any number of threads.
@@ -52,7 +50,7 @@ struct AnyCommit {
 
 /// What any operator provides:
 ///
-///   Item                     what the work consists of; copied, so small
+///   Item                     what the work consists of; copied, so small; default-constructible
 ///   Plan                     a decision, complete enough to be carried out. One plan is filled in
 ///                            again and again, so that its vectors keep their memory
 ///   resource_count()         resources have numbers below it
@@ -71,17 +69,17 @@ template <class Op>
 concept CautiousOperator = requires(const Op& reader, Op& op, const typename Op::Item& item,
                                     typename Op::Plan& plan, detail::AnyReach& reach,
                                     detail::AnyCommit<typename Op::Item>& commit) {
-  requires WorkItem<typename Op::Item>;
-  requires std::copyable<typename Op::Item>;
+  requires std::copyable<typename Op::Item> && std::default_initializable<typename Op::Item>;
   requires std::default_initializable<typename Op::Plan>;
   { reader.plan(item, plan, reach) } -> std::same_as<bool>;
   op.apply(item, plan, commit);
   { reader.resource_count() } -> std::convertible_to<std::size_t>;
 };
 
-/// Items are numbers, each that of the one resource that it writes and reaches for first;
-/// conflicts(item, visit) visits all others that it may reach, of which each may reach it, too.
-/// Then an item need wait for none but those of its neighbours that come before it.
+/// Items are numbers, each that of the resource that it reaches for first; conflicts(item, visit)
+/// visits all others that it may reach, of which each may reach it, too. Besides its own an item
+/// only marks what it has reached (atomic_mark.hpp), which is the same in any order. Then it need
+/// wait for none but those of its neighbours that come before it.
 template <class Op>
 concept ConflictingOperator = CautiousOperator<Op> &&
     std::same_as<typename Op::Item, std::uint32_t> && requires(const Op& op, std::uint32_t item) {

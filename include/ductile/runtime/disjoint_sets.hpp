@@ -40,6 +40,25 @@ class DisjointSets {
     }
   }
 
+  /// Whether two numbers are in one set. Thread safety: any thread; what others unite meanwhile it
+  /// may see or not. Goes up from the higher parent until both are the same, or it is a root (Rem;
+  /// Patwary, Blair & Manne, SEA 2010).
+  bool are_together(std::uint32_t a, std::uint32_t b) {
+    while (true) {
+      std::uint32_t above_a = parent_of(a), above_b = parent_of(b);
+      if (above_a == above_b) return true;
+      if (above_a < above_b) {
+        std::swap(a, b);
+        std::swap(above_a, above_b);
+      }
+      if (above_a == a) return false;
+      // As in root().
+      const std::uint32_t next = parent_of(above_a);
+      if (next != above_a) word(a).store(next, std::memory_order_relaxed);
+      a = next;
+    }
+  }
+
   /// Makes one set of the two whose lowest numbers are these. Thread safety: any thread, while no
   /// other unites either.
   void unite_roots(std::uint32_t a, std::uint32_t b) {
@@ -55,12 +74,14 @@ class DisjointSets {
   // the barrier at the end of the loop comes before whoever asks for what came out.
   std::atomic_ref<std::uint32_t> word(std::uint32_t i) { return std::atomic_ref(parent_[i]); }
 
+  std::uint32_t parent_of(std::uint32_t i) { return word(i).load(std::memory_order_relaxed); }
+
   /// Halves the way there for those who come next.
   std::uint32_t root(std::uint32_t i) {
     while (true) {
-      const std::uint32_t parent = word(i).load(std::memory_order_relaxed);
+      const std::uint32_t parent = parent_of(i);
       if (parent == i) return i;
-      const std::uint32_t next = word(parent).load(std::memory_order_relaxed);
+      const std::uint32_t next = parent_of(parent);
       // Whatever others store meanwhile is a lower number of the same set as well.
       if (next != parent) word(i).store(next, std::memory_order_relaxed);
       i = next;

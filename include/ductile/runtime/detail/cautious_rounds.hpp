@@ -5,11 +5,12 @@
 // The headers of the strategies:
 //
 //   region_rounds          regions; region_map says whose a resource is
-//   ordered_stream         in_order, of operators that tell conflicts
-//   ordered_windows        in_order, of all other operators
+//   ordered_run            in_order: a plain loop, or
+//     ordered_stream       operators that tell conflicts
+//     ordered_windows      all others
 //   reservation_windows    reservations
 //   lock_rounds            locks
-//     made_things          the numbers of what operators make, by numbers
+// made_things has the numbers of what operators make.
 
 #include <cstddef>
 #include <stdexcept>
@@ -18,9 +19,7 @@
 
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/lock_rounds.hpp"
-#include "ductile/runtime/detail/ordered_stream.hpp"
-#include "ductile/runtime/detail/ordered_windows.hpp"
-#include "ductile/runtime/detail/reach.hpp"
+#include "ductile/runtime/detail/ordered_run.hpp"
 #include "ductile/runtime/detail/region_rounds.hpp"
 #include "ductile/runtime/detail/reservation_windows.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -73,45 +72,6 @@ Strategy strategy_of(const Executor& executor, const RoundsOptions& options) {
       return ConflictingOperator<Op> ? Strategy::in_order : Strategy::reservations;
   }
   return options.strategy;
-}
-
-/// For the strategy in_order: nobody may be woken.
-template <class Item>
-struct OrderedCommit {
-  void wake(const Item&) const {
-    throw std::logic_error(
-        "strategy in_order: an item was woken, but only the work itself has an order");
-  }
-};
-
-/// Work has size() and items by [i]. applied(item) is told of each that was applied, in the
-/// order of the work.
-template <CautiousOperator Op, class Work>
-RoundsReport run_in_order(const Executor& executor, Op& op, const Work& work, auto&& applied) {
-  constexpr std::size_t few_items = 2048;
-  OrderedCommit<typename Op::Item> commit;
-  const auto apply = [&](const typename Op::Item& item, typename Op::Plan& plan) {
-    op.apply(item, plan, commit);
-  };
-  if (executor.threads() > 1 && work.size() >= few_items) {
-    if constexpr (ConflictingOperator<Op>) {
-      OrderedStream<Op, Work> stream(executor, op, work);
-      if (!stream.is_chain()) return stream.run(apply, applied);
-    } else {
-      return OrderedWindows<Op, Work>(executor, op, work).run(apply, applied);
-    }
-  }
-  RoundsReport report{.rounds = 1, .planned = work.size()};
-  typename Op::Plan plan{};
-  ReachAll reach;
-  for (std::size_t i = 0; i < work.size(); ++i) {
-    const typename Op::Item item = work[i];
-    if (!op.plan(item, plan, reach)) continue;
-    apply(item, plan);
-    applied(item);
-    ++report.applied;
-  }
-  return report;
 }
 
 template <class Item>

@@ -33,36 +33,17 @@ class OrderedStream {
  public:
   using Item = std::uint32_t;
   using Plan = typename Op::Plan;
-  using Place = std::uint32_t;  // in the work
+  using Place = std::uint32_t;  // in the part of the work that runs
 
   OrderedStream(const Executor& executor, Op& op, const Work& work)
-      : executor_(executor),
-        op_(op),
-        work_(work),
-        count_(static_cast<Place>(work.size())),
-        block_done_((work.size() + block_size - 1) / block_size),
-        applied_in_(block_done_.size()),
-        done_(ring_size) {}
-
-  /// Whether most items wait for one just before them, so that a plain loop does as well.
-  bool is_chain() {
-    constexpr std::size_t samples = 512;
-    const std::size_t step = std::max<std::size_t>(1, count_ / samples);
+      : executor_(executor), op_(op), work_(work), done_(ring_size) {
     number_places();
-    std::size_t looked_at = 0, chained = 0;
-    for (std::size_t place = 0; place < count_; place += step, ++looked_at) {
-      bool waits = false;
-      op_.conflicts(work_[place], [&](Item other) {
-        const Place before = place_of(other);
-        waits = waits || (before < place && place - before < block_size);
-      });
-      chained += waits;
-    }
-    return 4 * chained > looked_at;
   }
 
-  /// apply(item, plan) carries a plan out; applied(item) is told of it, in the order of the work.
-  RoundsReport run(auto&& apply, auto&& applied) {
+  /// Runs a part of the work, all before which is done. apply(item, plan) carries a plan out;
+  /// applied(item) is told of it, in the order of the work.
+  void run(std::size_t begin, std::size_t end, auto&& apply, auto&& applied, RoundsReport& report) {
+    start(begin, end);
     const auto threads = static_cast<std::size_t>(executor_.threads());
     parallel_for(executor_, threads,
                  [&](std::size_t) {
@@ -80,43 +61,54 @@ class OrderedStream {
       for (std::size_t block = 0; block < applied_in_.size(); ++block)
         for (std::size_t word = 0; word < applied_in_[block].size(); ++word)
           for (std::uint64_t bits = applied_in_[block][word]; bits != 0; bits &= bits - 1)
-            applied(work_[(block << block_bits) + 64 * word +
+            applied(work_[begin_ + (block << block_bits) + 64 * word +
                           static_cast<std::size_t>(std::countr_zero(bits))]);
-    return {.rounds = 1,
-            .planned = planned_.load(),
-            .applied = applied_.load(),
-            .lost = planned_.load() - work_.size()};
+    report.planned += planned_.load();
+    report.lost += planned_.load() - count_;
+    report.applied += applied_.load();
   }
 
  private:
   static constexpr unsigned block_bits = 8, ring_bits = 15;
   static constexpr Place block_size = 1U << block_bits, ring_size = 1U << ring_bits,
                          blocks_ahead = (ring_size >> block_bits) - 1;
-  static constexpr Place absent = std::numeric_limits<Place>::max();
+  static constexpr Place absent = 0x80000000U;
+
+  void start(std::size_t begin, std::size_t end) {
+    begin_ = static_cast<Place>(begin);
+    count_ = static_cast<Place>(end - begin);
+    const std::size_t blocks = (count_ + block_size - 1) / block_size;
+    block_done_.assign(blocks, 0);
+    applied_in_.assign(blocks, {});
+    std::fill(done_.begin(), done_.end(), std::uint8_t{0});
+    next_ = first_open_ = 0;
+    planned_ = applied_ = 0;
+  }
 
   void number_places() {
     const bool in_place = parallel_reduce(
-        executor_, count_, true, [&](std::size_t i) { return work_[i] == i; },
+        executor_, work_.size(), true, [&](std::size_t i) { return work_[i] == i; },
         std::logical_and<>());
     if (in_place) return;
     place_of_.resize(op_.resource_count());
     parallel_for(executor_, place_of_.size(), [&](std::size_t r) { place_of_[r] = absent; });
-    parallel_for(executor_, count_, [&](std::size_t i) {
+    parallel_for(executor_, work_.size(), [&](std::size_t i) {
       if (work_[i] >= place_of_.size())
         throw std::out_of_range("item " + std::to_string(work_[i]) +
                                 " is in the work, but there are " +
                                 std::to_string(place_of_.size()) + " resources");
       std::atomic_ref(place_of_[work_[i]]).store(static_cast<Place>(i), std::memory_order_relaxed);
     });
-    parallel_for(executor_, count_, [&](std::size_t i) {
+    parallel_for(executor_, work_.size(), [&](std::size_t i) {
       if (place_of_[work_[i]] != i)
         throw std::invalid_argument(
             "item " + std::to_string(work_[i]) +
             " is in the work twice, which strategy in_order does not allow");
     });
   }
-  /// Whoever is not in the work is past its end.
-  Place place_of(Item item) const { return place_of_.empty() ? item : place_of_[item]; }
+  /// In the part that runs. Whoever is not in the work, and whoever is before this part, is past
+  /// its end.
+  Place place_of(Item item) const { return (place_of_.empty() ? item : place_of_[item]) - begin_; }
 
   /// Bytes differ from one turn of the ring to the next.
   static std::uint8_t mark_of(Place place) {
@@ -201,7 +193,7 @@ class OrderedStream {
     bool try_item(Place place, auto&& apply) {
       const Place first = first_open_ << block_bits, range = place - first;
       bool denied = false;
-      const Item item = all_.work_[place];
+      const Item item = all_.work_[all_.begin_ + place];
       auto reach = [&](Item other) {
         const Place at = all_.place_of(other);
         if (at - first >= range || all_.is_done(at)) return true;
@@ -260,7 +252,7 @@ class OrderedStream {
   const Executor& executor_;
   Op& op_;
   const Work& work_;
-  Place count_;
+  Place begin_ = 0, count_ = 0;  // of the part that runs
   UnsetVector<Place> place_of_;  // [item], empty if each is at its own number
   std::vector<std::uint8_t> block_done_;
   std::vector<std::array<std::uint64_t, block_size / 64>> applied_in_;  // [block], bits

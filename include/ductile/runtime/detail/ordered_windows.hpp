@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -30,34 +29,14 @@ class OrderedWindows {
   using Plan = typename Op::Plan;
 
   OrderedWindows(const Executor& executor, Op& op, const Work& work)
-      : executor_(executor),
-        op_(op),
-        work_(work),
-        blocks_(window / block_size),
-        holder_of_(op.resource_count(), nobody) {}
+      : executor_(executor), op_(op), work_(work), blocks_(window / block_size) {}
 
-  /// apply(item, plan) carries a plan out; applied(item) is told of it, in the order of the work.
-  /// Now and then a window is run by a plain loop, and from then on the faster way is taken: the
-  /// result is the same.
-  RoundsReport run(auto&& apply, auto&& applied) {
-    constexpr std::size_t tried_every = 32;  // windows
-    RoundsReport report{.rounds = 1, .planned = work_.size()};
-    double seconds_at_once = 0, seconds_plainly = 0;
-    std::size_t number = 0;
-    for (std::size_t begin = 0; begin < work_.size(); begin += window, ++number) {
-      const std::size_t end = std::min<std::size_t>(begin + window, work_.size());
-      const std::size_t turn = number % tried_every;
-      const bool plainly = turn == 0 || (turn > 1 && seconds_plainly < seconds_at_once);
-      const auto start = std::chrono::steady_clock::now();
-      if (plainly) {
-        report.applied += run_plainly(begin, end, apply, applied);
-      } else {
-        run_at_once(begin, end, apply, applied, report);
-      }
-      (plainly ? seconds_plainly : seconds_at_once) =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-    return report;
+  /// Runs a part of the work, all before which is done. apply(item, plan) carries a plan out;
+  /// applied(item) is told of it, in the order of the work.
+  void run(std::size_t begin, std::size_t end, auto&& apply, auto&& applied, RoundsReport& report) {
+    holder_of_.resize(op_.resource_count(), nobody);
+    for (; begin < end; begin += window)
+      run_window(begin, std::min<std::size_t>(begin + window, end), apply, applied, report);
   }
 
  private:
@@ -77,15 +56,6 @@ class OrderedWindows {
     std::size_t count = 0;
   };
 
-  std::size_t run_plainly(std::size_t begin, std::size_t end, auto&& apply, auto&& applied) {
-    std::size_t count = 0;
-    for (std::size_t place = begin; place < end; ++place)
-      if (run_alone(work_[place], apply)) {
-        applied(work_[place]);
-        ++count;
-      }
-    return count;
-  }
   bool run_alone(const Item& item, auto&& apply) {
     ReachAll reach;
     if (!op_.plan(item, plan_, reach)) return false;
@@ -93,9 +63,10 @@ class OrderedWindows {
     return true;
   }
 
-  void run_at_once(std::size_t begin, std::size_t end, auto&& apply, auto&& applied,
-                   RoundsReport& report) {
+  void run_window(std::size_t begin, std::size_t end, auto&& apply, auto&& applied,
+                  RoundsReport& report) {
     ++report.batches;
+    report.planned += end - begin;
     begin_window();
     parallel_for_blocks(executor_, end - begin, block_size,
                         [&](std::size_t block, std::size_t first, std::size_t last) {

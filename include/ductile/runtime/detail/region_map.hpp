@@ -24,6 +24,14 @@
 
 namespace ductile::runtime::detail {
 
+struct RegionCut {
+  std::size_t count;   ///< of regions
+  std::uint64_t turn;  ///< says how the grid is shifted
+  std::size_t
+      changed;        ///< items applied since the last cut: resources lie elsewhere, or are others
+  bool anew = false;  ///< all resources get their cells anew
+};
+
 /// Dim is that of the places.
 template <std::size_t Dim>
 class RegionMap {
@@ -31,15 +39,14 @@ class RegionMap {
   using Region = std::uint16_t;
   using Place = std::array<double, Dim>;
 
-  /// Cuts all resources into `count` regions; `turn` says how the grid is shifted. `changed` is how
-  /// many items have been applied in all: resources lie elsewhere then, or are others.
-  /// Between two cuts owners may be set by set_owner().
-  void cut(const Executor& executor, const Numbers& resources, auto&& place_of, std::size_t count,
-           std::uint64_t turn, std::size_t changed) {
+  /// Cuts all resources into regions. Between two cuts owners may be set by set_owner().
+  void cut(const Executor& executor, const Numbers& resources, auto&& place_of,
+           const RegionCut& cut) {
     make_room(resources.top());
     find_blocks(resources);
-    label(executor, resources.used(), place_of, changed);
-    cut_curve(executor, count, turn);
+    changed_ += cut.changed;
+    label(executor, resources.used(), place_of, cut.anew);
+    cut_curve(executor, cut.count, cut.turn);
     for_each_in_use(executor, [&](std::size_t r) { owner_of_[r] = region_of_cell_[cell_of_[r]]; });
   }
 
@@ -79,9 +86,9 @@ class RegionMap {
 
   /// A new thing takes its cell from its own place: cells that are handed down to what takes the
   /// place of a thing become ragged. All get theirs anew where many have changed.
-  void label(const Executor& executor, std::size_t used, auto&& place_of, std::size_t changed) {
+  void label(const Executor& executor, std::size_t used, auto&& place_of, bool anew) {
     const bool first = labelled_ == 0 || used > 4 * labelled_;
-    const bool all = first || changed - changed_ > used / 16;
+    const bool all = first || anew || changed_ > used / 16;
     if (first) {
       labelled_ = used;
       constexpr int dim = static_cast<int>(Dim);
@@ -89,7 +96,7 @@ class RegionMap {
           std::clamp(static_cast<int>(std::bit_width(used / resources_a_cell)) / dim, 2, most_bits);
       find_extent(executor, place_of);
     }
-    if (all) changed_ = changed;
+    if (all) changed_ = 0;
     for_each_in_use(executor, [&](std::size_t r) {
       if (all || cell_of_[r] == unlabelled)
         cell_of_[r] = cell_at(place_of(static_cast<std::uint32_t>(r)));
@@ -179,7 +186,7 @@ class RegionMap {
 
   std::vector<NumberRange> blocks_;  // of resources in use
   std::size_t labelled_ = 0;         // so many resources when the grid was laid
-  std::size_t changed_ = 0;          // so many items applied when all were labelled
+  std::size_t changed_ = 0;          // so many items applied since all were labelled
   int bits_ = 2;
   Place low_{};
   double scale_ = 1;                    // cells a unit of length

@@ -39,9 +39,10 @@ class RegionRounds {
   RoundsReport run(std::vector<Item> work, std::size_t most_phases) {
     while (!work.empty() && report_.rounds < most_phases) {
       ++report_.rounds;
-      const std::size_t count = region_count(work.size());
+      const std::size_t items = work.size(), count = region_count(items);
       work = count == 1 ? run_one_by_one(std::move(work)) : run_phase(work, count);
       report_.lost += work.size();
+      is_stuck_ = 2 * work.size() > items;
     }
     report_.left = work.size();
     const PhaseTimer timer(report_.wake_seconds, executor_, Phase::wake);
@@ -106,7 +107,9 @@ class RegionRounds {
   };
 
   std::size_t region_count(std::size_t items) const {
-    if (items < few_items) return 1;
+    // To cut all resources takes longer than to run few items one by one.
+    if (items < std::max(few_items, made_.resources().used() / 512)) return 1;
+    if (is_stuck_ && items < 16 * few_items) return 1;
     const std::size_t most = report_.rounds > 2 ? late_regions : most_regions;
     const std::size_t count =
         std::min({most, made_.resources().used() / least_resources, items / least_items});
@@ -154,9 +157,9 @@ class RegionRounds {
     std::vector<Region> regions(count);
     {
       const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
-      map_.cut(
-          executor_, made_.resources(), [&](std::uint32_t r) { return op_.place_of(r); }, count,
-          report_.rounds, report_.applied);
+      map_.cut(executor_, made_.resources(), [&](std::uint32_t r) { return op_.place_of(r); },
+               {count, report_.rounds, report_.applied - applied_before_cut_, is_stuck_});
+      applied_before_cut_ = report_.applied;
       share_out(work, regions);
       // Whoever gets too few goes on in the next phase.
       const std::size_t an_item = report_.rounds == 1 ? 3 : 8;
@@ -257,6 +260,8 @@ class RegionRounds {
   Op& op_;
   MadeThings<Op> made_;
   Map map_;
+  std::size_t applied_before_cut_ = 0;
+  bool is_stuck_ = false;  // most items of the last phase are left
   RoundsReport report_;
 };
 

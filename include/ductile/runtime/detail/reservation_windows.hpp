@@ -119,9 +119,7 @@ class ReservationWindows {
       first_key_ = nobody;
     }
     first_key_ -= static_cast<std::uint32_t>(count);
-    if (holder_of_.size() < op_.resource_count())
-      holder_of_.resize(
-          op_.resource_count() + op_.resource_count() / 2 * (MadeThings<Op>::kinds > 0), nobody);
+    holder_of_.resize(std::max(holder_of_.size(), op_.resource_count()), nobody);
   }
 
   std::uint32_t key_of(std::size_t i) const { return first_key_ + static_cast<std::uint32_t>(i); }
