@@ -101,6 +101,21 @@ inline bool is_in_the_way(Point begin, Point end, Point point) {
   return across < 0 || turn(begin, end, point) <= 0;
 }
 
+/// Goes from triangle to triangle towards a point, to the one that holds it; false if one is
+/// denied. The point is inside the whole.
+inline bool walk(const Triangulation& mesh, TriangleId& t, Point point, auto& reach) {
+  for (TriangleId from = outside;;) {
+    if (!reach(t)) return false;
+    std::size_t i = 0;
+    for (; i < 3; ++i) {
+      const TriangleId other = mesh.neighbours_of[t][i];
+      if (other != from && turn(mesh.corner(t, i + 1), mesh.corner(t, i + 2), point) < 0) break;
+    }
+    if (i == 3) return true;
+    from = std::exchange(t, mesh.neighbours_of[t][i]);
+  }
+}
+
 /// Triangles take other numbers, below `count`.
 inline void renumber_triangles(Triangulation& mesh,
                                std::span<const ductile::runtime::Renumbered> moved,

@@ -2,10 +2,7 @@
 /// The Delaunay triangulation of random points by the flips of delaunay_flips.hpp, compared with
 /// flips one by one and between thread counts.
 
-#include <algorithm>
-#include <array>
 #include <cstdio>
-#include <vector>
 
 #include "delaunay_flips.hpp"
 #include "example.hpp"
@@ -16,16 +13,6 @@
 namespace {
 
 using namespace example;
-
-using Corners = std::vector<std::array<VertexId, 3>>;
-
-/// The triangles in an order that does not depend on how they were made.
-Corners sorted(Corners corners_of) {
-  for (auto& corners : corners_of)
-    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-  std::sort(corners_of.begin(), corners_of.end());
-  return corners_of;
-}
 
 void compare(const Arguments& arguments) {
   const Triangulation start = rows_of_points(arguments.size);
@@ -40,7 +27,7 @@ void compare(const Arguments& arguments) {
   const double seconds = seconds_of([&] { lean::delaunay_flips(serial); });
   print_yardstick("serial: one flip after the other", seconds);
   require(delaunay_area(mesh) == 2 * std::int64_t{square_side} * square_side, "not Delaunay");
-  require(sorted(mesh.corners_of) == sorted(serial.corners_of), "the serial triangles are others");
+  require(sorted_corners(mesh) == sorted_corners(serial), "the serial triangles are others");
 }
 
 }  // namespace

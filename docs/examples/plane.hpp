@@ -113,6 +113,15 @@ inline void find_neighbours(Triangulation& mesh) {
   }
 }
 
+/// The corners of all triangles, in an order that does not depend on how they were made.
+inline std::vector<std::array<VertexId, 3>> sorted_corners(const Triangulation& mesh) {
+  std::vector<std::array<VertexId, 3>> corners_of = mesh.corners_of;
+  for (auto& corners : corners_of)
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  std::sort(corners_of.begin(), corners_of.end());
+  return corners_of;
+}
+
 /// Twice the area that the triangles cover; -1 if one is not positive, if neighbours do not agree
 /// or if a corner lies in the circle of a triangle beside it: 0 or more means Delaunay.
 inline std::int64_t delaunay_area(const Triangulation& mesh) {

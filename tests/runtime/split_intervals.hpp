@@ -19,6 +19,7 @@ namespace ductile::runtime::test {
 /// What is wrong with the operator.
 struct IntervalFaults {
   bool writes_unreached = false, reads_unreached = false, goes_on = false;
+  std::uint32_t demanded = 1;  // of points for each interval; no fault
   bool takes_too_many = false, out_of_range = false, reuses_plan = false, reaches_nothing = false;
 };
 
@@ -98,7 +99,7 @@ class SplitIntervals {
   }
 
   std::array<std::size_t, 2> counts() const { return {intervals.size(), points.size()}; }
-  std::array<std::size_t, 2> demand(const Plan&) const { return {1, 1}; }
+  std::array<std::size_t, 2> demand(const Plan&) const { return {1, faults_.demanded}; }
   void grow(const std::array<std::size_t, 2>& room) {
     intervals.resize(room[0]);
     points.resize(room[1]);

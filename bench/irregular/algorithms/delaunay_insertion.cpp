@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "algorithms.hpp"
+#include "delaunay_insertion.hpp"
 #include "lean/delaunay_insertion.hpp"
 #include "start_meshes.hpp"
 
@@ -38,6 +39,10 @@ Algorithm delaunay_insertion() {
                        std::size_t size) { return example::random_points(size); },
       .serial = [](const Points& points,
                    Triangulation& mesh) { mesh = lean::delaunay_insertion(points); },
+      .ductile =
+          [](const runtime::Executor& executor, const Points& points, Triangulation& mesh) {
+            mesh = example::delaunay_insertion_in_parallel(executor, points);
+          },
       .fault = fault});
 }
 

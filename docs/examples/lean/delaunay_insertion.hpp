@@ -54,19 +54,6 @@ inline std::vector<VertexId> insertion_order(std::span<const Point> points, Vert
   return order;
 }
 
-/// The triangle that holds a point, by a walk from another one. The point is inside the whole.
-inline TriangleId locate(const Triangulation& mesh, Point point, TriangleId t) {
-  for (TriangleId from = outside;;) {
-    std::size_t i = 0;
-    for (; i < 3; ++i) {
-      const TriangleId other = mesh.neighbours_of[t][i];
-      if (other != from && turn(mesh.corner(t, i + 1), mesh.corner(t, i + 2), point) < 0) break;
-    }
-    if (i == 3) return t;
-    from = std::exchange(t, mesh.neighbours_of[t][i]);
-  }
-}
-
 /// The first four points are the corners of a rectangle, anticlockwise, and all others are inside.
 /// A point that is there twice is a vertex once; its repetition has no triangle.
 inline Triangulation delaunay_insertion(std::vector<Point> points) {
@@ -79,7 +66,7 @@ inline Triangulation delaunay_insertion(std::vector<Point> points) {
   TriangleId last = 0;
   for (const VertexId vertex : insertion_order(mesh.points, 4)) {
     const Point point = mesh.points[vertex];
-    last = locate(mesh, point, last);
+    walk(mesh, last, point, anywhere);
     if (mesh.corner(last, 0) == point || mesh.corner(last, 1) == point ||
         mesh.corner(last, 2) == point)
       continue;

@@ -55,7 +55,7 @@ Strategy strategy_of(const Executor& executor, const RoundsOptions& options) {
             "std::array<double, 2> or std::array<double, 3>");
       break;
     case Strategy::in_order:
-      if (kinds_made < Op >> 0)
+      if (kinds_made<Op> != 0)
         throw std::invalid_argument(
             "strategy in_order: the operator makes things, whose numbers follow another order");
       break;

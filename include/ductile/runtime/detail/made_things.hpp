@@ -103,7 +103,7 @@ class MadeThings {
 /// Whether there are enough numbers in the pools for a plan.
 template <class Op>
 bool has_room(const Op& op, const auto& pools, const typename Op::Plan& plan) {
-  if constexpr (kinds_made < Op >> 0) {
+  if constexpr (kinds_made<Op> != 0) {
     const auto wanted = op.demand(plan);
     for (std::size_t k = 0; k < pools.size(); ++k)
       if (pools[k].left() < wanted[k]) return false;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -60,7 +61,8 @@ class Numbers {
     if (at < top_) visit(at, static_cast<std::uint32_t>(top_));
   }
 
-  /// So many numbers for each pool: unused ones first, in rising order, and then new ones.
+  /// So many numbers for each pool: unused ones first, in rising order, and then new ones. Throws
+  /// std::length_error if there are no more below 2^32 - 1.
   void deal(std::span<NumberPool> pools, auto&& wanted_by) {
     std::size_t next = 0;
     for (std::size_t p = 0; p < pools.size(); ++p) {
@@ -78,6 +80,7 @@ class Numbers {
       }
       if (wanted > 0) {
         const std::size_t end = top_ + wanted;
+        if (end >= 0xffffffffU) throw std::length_error("things have numbers of 32 bits");
         ranges.push_back({static_cast<std::uint32_t>(top_), static_cast<std::uint32_t>(end)});
         top_ = end;
       }

@@ -39,10 +39,12 @@ class RegionRounds {
   RoundsReport run(std::vector<Item> work, std::size_t most_phases) {
     while (!work.empty() && report_.rounds < most_phases) {
       ++report_.rounds;
-      const std::size_t items = work.size(), count = region_count(items);
+      const std::size_t items = work.size(), before = report_.applied;
+      const std::size_t count = region_count(items);
       work = count == 1 ? run_one_by_one(std::move(work)) : run_phase(work, count);
       report_.lost += work.size();
       is_stuck_ = 2 * work.size() > items;
+      is_hopeless_ = 16 * (report_.applied - before) < items;
     }
     report_.left = work.size();
     const PhaseTimer timer(report_.wake_seconds, executor_, Phase::wake);
@@ -62,7 +64,7 @@ class RegionRounds {
   struct alignas(128) Region {
     std::vector<Item> stack, later;
     Pools pools;
-    std::size_t items = 0, planned = 0, applied = 0;
+    std::size_t planned = 0, applied = 0;
   };
 
   /// Says no to what belongs to other regions.
@@ -109,7 +111,7 @@ class RegionRounds {
   std::size_t region_count(std::size_t items) const {
     // To cut all resources takes longer than to run few items one by one.
     if (items < std::max(few_items, made_.resources().used() / 512)) return 1;
-    if (is_stuck_ && items < 16 * few_items) return 1;
+    if (is_stuck_ && (is_hopeless_ || items < 16 * few_items)) return 1;
     const std::size_t most = report_.rounds > 2 ? late_regions : most_regions;
     const std::size_t count =
         std::min({most, made_.resources().used() / least_resources, items / least_items});
@@ -261,7 +263,8 @@ class RegionRounds {
   MadeThings<Op> made_;
   Map map_;
   std::size_t applied_before_cut_ = 0;
-  bool is_stuck_ = false;  // most items of the last phase are left
+  bool is_stuck_ = false;     // most items of the last phase are left
+  bool is_hopeless_ = false;  // and few were applied: plans want more numbers than they get
   RoundsReport report_;
 };
 
