@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ductile/runtime/checked_rounds.hpp"
+#include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 #include "split_intervals.hpp"
@@ -52,7 +53,7 @@ TEST(CautiousCheck, LetsASoundOperatorPass) {
 }
 
 struct SumFaults {
-  bool hides_next = false, is_one_sided = false, wakes = false, counts_again = false;
+  bool hides_next = false, is_one_sided = false, wakes = false;
 };
 /// On a line of vertices: the sum of one and its two neighbours, once.
 class Sums {
@@ -62,7 +63,7 @@ class Sums {
     std::uint32_t sum;
     friend bool operator==(const Plan&, const Plan&) = default;
   };
-  explicit Sums(SumFaults faults = {}) : value(100, 1), done_(100), faults_(faults) {}
+  explicit Sums(SumFaults faults = {}) : value(100, 1), faults_(faults) {}
 
   std::size_t resource_count() const { return value.size(); }
   void conflicts(Vertex v, auto&& visit) const {
@@ -71,7 +72,7 @@ class Sums {
       visit(v + 1);
   }
   bool plan(Vertex v, Plan& plan, auto& reach) const {
-    if (!reach(v) || (done_[v] != 0 && !faults_.counts_again)) return false;
+    if (!reach(v)) return false;
     plan.sum = 0;
     for (const Vertex other : {v - 1, v, v + 1}) {
       if (other >= value.size()) continue;
@@ -83,14 +84,12 @@ class Sums {
   }
   void apply(Vertex v, Plan& plan, auto& commit) {
     value[v] = plan.sum;
-    done_[v] = 1;
     if (faults_.wakes) commit.wake(v);
   }
 
   std::vector<std::uint32_t> value;
 
  private:
-  std::vector<std::uint8_t> done_;
   SumFaults faults_;
 };
 
@@ -99,11 +98,85 @@ TEST(CautiousCheck, FindsEachFaultOfAnOperatorInOrder) {
   expect_caught(ContractRule::touches_announced, Sums({.hides_next = true}), work);
   expect_caught(ContractRule::conflicts_symmetric, Sums({.is_one_sided = true}), work);
   expect_caught(ContractRule::nobody_woken, Sums({.wakes = true}), work);
-  expect_caught(ContractRule::woken_if_plannable, Sums({.counts_again = true}), work);
   Sums checked, run;
   run_rounds_checked(Executor({.threads = 2}), checked, work);
   run_rounds(Executor({.threads = 1}), run, work);
   EXPECT_EQ(checked.value, run.value) << "in the order of the work";
+}
+
+/// Each item takes the first free place from a random one on. If it reaches for places one after
+/// the other, which ones depends on who was there before; otherwise it reaches for all it may take.
+class Probing {
+ public:
+  using Item = Vertex;
+  using Plan = Vertex;
+  explicit Probing(bool reaches_ahead) : taken_by(200, 0), reaches_ahead_(reaches_ahead) {}
+
+  std::size_t resource_count() const { return taken_by.size(); }
+  bool plan(Vertex item, Vertex& place, auto& reach) const {
+    const auto first = static_cast<Vertex>(mix64(item) % (taken_by.size() - most));
+    for (Vertex p = first; reaches_ahead_ && p < first + most; ++p)
+      if (!reach(p)) return false;
+    for (place = first; place < first + most; ++place) {
+      if (!reaches_ahead_ && !reach(place)) return false;
+      if (taken_by[place] == 0) return true;
+    }
+    return false;
+  }
+  void apply(Vertex item, Vertex place, auto&) { taken_by[place] = item + 1; }
+
+  std::vector<Vertex> taken_by;  // [place], 0 if it is free
+
+ private:
+  static constexpr Vertex most = 6;
+  bool reaches_ahead_;
+};
+
+TEST(CautiousCheck, FindsWhatDependsOnMoreThanEarlierItems) {
+  expect_caught(ContractRule::order_kept, Probing(false), all_items(150), Strategy::in_order);
+  Probing checked(true), run(true);
+  run_rounds_checked(Executor({.threads = 2}), checked, all_items(150),
+                     {.strategy = Strategy::in_order});
+  run_rounds(Executor({.threads = 1}), run, all_items(150), {.strategy = Strategy::in_order});
+  EXPECT_EQ(checked.taken_by, run.taken_by);
+}
+
+/// Has a plan as long as it is not done, and forgets to wake itself.
+class Countdown {
+ public:
+  using Item = Vertex;
+  struct Plan {};
+  std::vector<int> left{3, 1, 2};
+  bool wakes = false;
+
+  std::size_t resource_count() const { return left.size(); }
+  bool plan(Vertex v, Plan&, auto& reach) const { return reach(v) && left[v] > 0; }
+  void apply(Vertex v, Plan&, auto& commit) {
+    if (--left[v] > 0 && wakes) commit.wake(v);
+  }
+};
+
+TEST(CautiousCheck, FindsWhoWasNotWoken) {
+  Countdown op;
+  expect_caught(ContractRule::woken_if_plannable, op, all_items(3));
+  // In order nobody is woken, so that it counts down once.
+  run_rounds_checked(Executor(), op, all_items(3), {.strategy = Strategy::in_order});
+  EXPECT_EQ(op.left, (std::vector{2, 0, 1}));
+  op.wakes = true;
+  run_rounds_checked(Executor(), op, all_items(3));
+  EXPECT_EQ(op.left, (std::vector{0, 0, 0}));
+}
+
+/// An item that is none, and leads out of its array.
+TEST(CautiousCheck, NamesTheItemThatReachesForWhatIsNot) {
+  Countdown op;
+  try {
+    run_rounds_checked(Executor(), op, {0, 4000000000U});
+    ADD_FAILURE() << "nothing was caught";
+  } catch (const ContractBroken& broken) {
+    EXPECT_EQ(broken.item(), "4000000000");
+    EXPECT_EQ(broken.rule(), ContractRule::numbers_in_range);
+  }
 }
 
 }  // namespace

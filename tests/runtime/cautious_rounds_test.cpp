@@ -51,6 +51,24 @@ TYPED_TEST(CautiousRounds, RaceByLocks) {
   }
 }
 
+/// Plans demand three points and take one.
+TEST(CautiousRounds, LeaveNoHoles) {
+  for (const Strategy strategy : {Strategy::regions, Strategy::reservations, Strategy::locks})
+    for (const std::size_t count : {10, 40000}) {
+      SplitIntervals<2> op(count, 2e-5, {.demanded = 3});
+      run_rounds(Executor({.threads = 3, .deterministic = strategy != Strategy::locks}), op,
+                 op.all_items(), {.strategy = strategy});
+      EXPECT_TRUE(op.is_whole()) << static_cast<int>(strategy) << ", " << count;
+    }
+}
+
+TEST(CautiousRounds, SayWhereMoreNumbersAreTakenThanDemanded) {
+  SplitIntervals<2> op(4000, 2e-5, {.takes_too_many = true});
+  EXPECT_THROW(run_rounds(Executor({.threads = 3}), op, op.all_items(),
+                          {.strategy = Strategy::reservations}),
+               std::logic_error);
+}
+
 TEST(CautiousRounds, StopWhereRoundsAreLimited) {
   for (const Strategy strategy : {Strategy::regions, Strategy::reservations}) {
     SplitIntervals<2> op(100000, 4e-6);

@@ -36,7 +36,7 @@ namespace ductile::runtime {
 template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds_checked(const Executor& executor, Op& op, Work work,
                                 const RoundsOptions& options = {}) {
-  if constexpr (CautiousOperator<Op>) {
+  if constexpr (detail::expect_cautious<Op>()) {
     const bool in_order = detail::strategy_of<Op>(executor, options) == Strategy::in_order;
     return detail::CautiousCheck<Op>(op, in_order)
         .run(detail::to_vector<typename Op::Item>(std::move(work)));

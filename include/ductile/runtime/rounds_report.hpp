@@ -10,7 +10,7 @@
 
 namespace ductile::runtime {
 
-/// Of a CautiousOperator `strategy` and `most_rounds` count.
+/// Of a CautiousOperator `strategy` counts, and `most_rounds`, but not in order.
 struct RoundsOptions {
   Strategy strategy = Strategy::automatic;
   /// Stop there even if work is left, and report how much. By default a run goes on until nothing
@@ -34,7 +34,7 @@ struct RoundsOptions {
 /// What a run did. Seconds are wall-clock; a phase's are those of all its loops and what is
 /// between. In tiles, planning and applying are one phase, and count as planning; in regions and
 /// with locks they count as applying, and in order no seconds are told. Of cautious operators
-/// `lost` counts how often an item had to wait or to plan again.
+/// `lost` counts how often an item had to wait or to plan again, and `woken` is not counted.
 struct RoundsReport {
   std::size_t rounds = 0;
   std::size_t batches = 0;    ///< sets of items that ran together: classes, a window's winners,

@@ -34,7 +34,7 @@ namespace ductile::runtime {
 template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds(const Executor& executor, Op& op, Work work,
                         const RoundsOptions& options = {}) {
-  if constexpr (CautiousOperator<Op>) {
+  if constexpr (detail::expect_cautious<Op>()) {
     return detail::run_cautious_rounds(executor, op, std::move(work), options);
   } else if constexpr (detail::expect_operator<Op, Work>()) {
     return detail::run_all_rounds(executor, op, std::move(work), options);
@@ -47,6 +47,8 @@ RoundsReport run_rounds(const Executor& executor, Op& op, Work work,
 template <CautiousOperator Op, class Work>
 std::vector<typename Op::Item> applied_in_order(const Executor& executor, Op& op, const Work& work,
                                                 RoundsReport* report = nullptr) {
+  static_assert(detail::kinds_made<Op> == 0,
+                "strategy in_order: the operator makes things, whose numbers follow another order");
   using Item = typename Op::Item;
   std::vector<Item> applied;
   applied.reserve(std::size(work));

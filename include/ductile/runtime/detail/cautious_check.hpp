@@ -16,6 +16,7 @@
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/contract.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
+#include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/detail/opposite_order.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/rounds_report.hpp"
@@ -32,35 +33,42 @@ class CautiousCheck {
   CautiousCheck(Op& op, bool in_order) : op_(op), in_order_(in_order) {
     if constexpr (kinds > 0) {
       const auto counts = op.counts();
-      std::copy(counts.begin(), counts.end(), next_.begin());
-      room_ = next_;
-      if (next_[0] != op.resource_count())
+      std::copy(counts.begin(), counts.end(), top_.begin());
+      room_ = top_;
+      if (top_[0] != op.resource_count())
         throw ContractBroken(ContractRule::numbers_in_range, "none", 1,
-                             "counts()[0] is " + std::to_string(next_[0]) +
+                             "counts()[0] is " + std::to_string(top_[0]) +
                                  ", but resource_count() is " +
                                  std::to_string(op.resource_count()));
     }
   }
 
-  RoundsReport run(std::vector<Item> work) {
+  RoundsReport run(const std::vector<Item>& work) {
     RoundsReport report{.rounds = 1};
-    if (in_order_) std::reverse(work.begin(), work.end());
-    waiting_ = std::move(work);
+    for (const Item& item : work) add(item);
+    if (in_order_) std::reverse(waiting_.begin(), waiting_.end());
     while (!waiting_.empty()) {
-      const Item item = waiting_.back();
+      const Numbered item = waiting_.back();
       waiting_.pop_back();
       ++report.planned;
-      report.applied += run_item(item, report.planned - 1);
-      considered_.push_back(item);
+      const bool is_applied = run_item(item);
+      report.applied += is_applied;
+      // In order nobody is woken, so whoever has had its turn may have a plan again.
+      if (!in_order_ || !is_applied) considered_.push_back(item);
     }
     expect_nothing_left();
-    if constexpr (kinds > 0)
-      for (std::size_t k = 0; k < kinds; ++k) op_.renumber(k, {}, next_[k]);
+    renumber();
     return report;
   }
 
  private:
   static constexpr std::size_t kinds = kinds_made<Op>, watched = 32;
+
+  /// With its place among all that were in the work or were woken.
+  struct Numbered {
+    Item item{};
+    std::size_t number = 0;
+  };
 
   /// What plan() made of an item.
   struct Decision {
@@ -69,35 +77,44 @@ class CautiousCheck {
     bool found = false;
   };
 
-  /// Says no once, after a number of calls.
+  /// Says no once, after a number of calls, and where there is no such resource.
   struct ReachUpTo {
     std::vector<std::uint32_t>& reached;
-    std::size_t calls;
+    std::size_t calls, resource_count;
     bool operator()(std::uint32_t resource) {
       reached.push_back(resource);
-      return reached.size() != calls + 1;
+      return reached.size() != calls + 1 && resource < resource_count;
     }
   };
   struct CheckedCommit {
     CautiousCheck& check;
-    std::vector<Item> woken;
-    std::array<std::size_t, kinds> taken{};
-    void wake(const Item& item) { woken.push_back(item); }
+    const Numbered& item;
+    std::array<std::size_t, kinds> next{}, end{};
+    bool has_woken = false;
+    void wake(const Item& woken) {
+      has_woken = true;
+      check.add(woken);
+    }
     std::uint32_t fresh(std::size_t kind = 0) requires(kinds > 0) {
-      ++taken[kind];
-      return static_cast<std::uint32_t>(check.next_[kind]++);
+      if (next[kind] == end[kind])
+        refuse(ContractRule::fresh_demanded, item,
+               "apply() takes more fresh numbers of kind " + std::to_string(kind) +
+                   " than demand() asked for");
+      return static_cast<std::uint32_t>(next[kind]++);
     }
   };
 
-  [[noreturn]] static void refuse(ContractRule rule, const Item& item, std::size_t place,
-                                  const std::string& how) {
-    throw ContractBroken(rule, item_name(item, place), 1, how);
+  void add(const Item& item) { waiting_.push_back({item, added_++}); }
+
+  static std::string name_of(const Numbered& item) { return item_name(item.item, item.number); }
+  [[noreturn]] static void refuse(ContractRule rule, const Numbered& item, const std::string& how) {
+    throw ContractBroken(rule, name_of(item), 1, how);
   }
 
   static constexpr std::size_t all_calls = ~std::size_t{0};
   Decision decide(const Item& item, Plan plan = {}, std::size_t calls = all_calls) const {
     Decision decision{std::move(plan), {}, false};
-    ReachUpTo reach{decision.reached, calls};
+    ReachUpTo reach{decision.reached, calls, resource_count()};
     decision.found = std::as_const(op_).plan(item, decision.plan, reach);
     return decision;
   }
@@ -108,142 +125,178 @@ class CautiousCheck {
     return true;
   }
 
-  bool run_item(const Item& item, std::size_t place) {
-    Decision decision = decide(item);
+  bool run_item(const Numbered& item) {
+    Decision decision = decide(item.item);
     // A plan is filled in again and again: what another item left in it must not show.
-    Decision again = decide(item, std::exchange(used_plan_, {}));
+    Decision again = decide(item.item, std::exchange(used_plan_, {}));
     if (!is_same(decision, again))
-      refuse(ContractRule::plan_only_reads, item, place,
+      refuse(ContractRule::plan_only_reads, item,
              "plan() called again, with a plan that was used before, decides something else");
-    expect_in_range(item, place, decision);
-    expect_gives_up(item, place, decision);
+    expect_in_range(item, decision);
+    expect_gives_up(item, decision);
     if constexpr (ConflictingOperator<Op>) expect_conflicts_told(item, decision);
     if (decision.found) {
       if (decision.reached.empty())
-        refuse(ContractRule::touches_announced, item, place,
+        refuse(ContractRule::touches_announced, item,
                "it has a plan, but plan() has not reached for anything");
-      apply(item, place, decision);
+      apply(item, decision);
     }
     used_plan_ = std::move(again.plan);
     return decision.found;
   }
 
-  void expect_in_range(const Item& item, std::size_t place, const Decision& decision) const {
+  void expect_in_range(const Numbered& item, const Decision& decision) const {
     const std::size_t count = resource_count();
     for (const std::uint32_t resource : decision.reached)
       if (resource >= count)
-        refuse(ContractRule::numbers_in_range, item, place,
+        refuse(ContractRule::numbers_in_range, item,
                "plan() reaches for " + std::to_string(resource) + ", but there are " +
                    std::to_string(count) + " resources");
   }
   std::size_t resource_count() const {
     if constexpr (kinds > 0) {
-      return next_[0];
+      return top_[0];
     } else {
       return op_.resource_count();
     }
   }
 
-  void expect_gives_up(const Item& item, std::size_t place, const Decision& decision) const {
-    constexpr std::size_t most = 16;
+  void expect_gives_up(const Numbered& item, const Decision& decision) const {
+    constexpr std::size_t most = 64;
     for (std::size_t calls = 0; calls < std::min(most, decision.reached.size()); ++calls) {
-      const Decision denied = decide(item, {}, calls);
+      const Decision denied = decide(item.item, {}, calls);
       if (denied.found || denied.reached.size() > calls + 1)
-        refuse(ContractRule::gives_up_if_denied, item, place,
+        refuse(ContractRule::gives_up_if_denied, item,
                "plan() goes on though reach(" + std::to_string(decision.reached[calls]) +
                    ") returned false");
       if (!std::equal(denied.reached.begin(), denied.reached.end(), decision.reached.begin()))
-        refuse(ContractRule::plan_only_reads, item, place,
-               "plan() called again reaches for other things");
+        refuse(ContractRule::plan_only_reads, item, "plan() called again reaches for other things");
     }
   }
 
-  void expect_conflicts_told(std::uint32_t item, const Decision& decision) const {
+  void expect_conflicts_told(const Numbered& item, const Decision& decision) const {
     const auto tells = [&](std::uint32_t who, std::uint32_t whom) {
       bool found = false;
       op_.conflicts(who, [&](std::uint32_t other) { found = found || other == whom; });
       return found;
     };
     for (const std::uint32_t other : decision.reached) {
-      if (other == item) continue;
-      if (!tells(item, other))
-        refuse(ContractRule::touches_announced, item, item,
+      if (other == item.item) continue;
+      if (!tells(item.item, other))
+        refuse(ContractRule::touches_announced, item,
                "plan() reaches for " + std::to_string(other) + ", which conflicts() do not visit");
-      if (!tells(other, item))
-        refuse(ContractRule::conflicts_symmetric, item, item,
+      if (!tells(other, item.item))
+        refuse(ContractRule::conflicts_symmetric, item,
                "conflicts() visits item " + std::to_string(other) +
                    ", but that item's conflicts() do not visit it");
     }
   }
 
-  void apply(const Item& item, std::size_t place, Decision& decision) {
-    std::vector<std::pair<Item, Decision>> others = watch_others(decision);
-    CheckedCommit commit{*this, {}};
+  void apply(const Numbered& item, Decision& decision) {
+    const std::vector<Watched> others = watch_others();
+    CheckedCommit commit{*this, item};
     if constexpr (kinds > 0) {
-      const auto wanted = op_.demand(decision.plan);
-      make_room(wanted);
-      op_.apply(item, decision.plan, commit);
+      take_numbers(op_.demand(decision.plan), commit);
+      op_.apply(item.item, decision.plan, commit);
       for (std::size_t k = 0; k < kinds; ++k)
-        if (commit.taken[k] > wanted[k])
-          refuse(ContractRule::fresh_demanded, item, place,
-                 "apply() took " + std::to_string(commit.taken[k]) + " fresh numbers of kind " +
-                     std::to_string(k) + ", demand() asked for " + std::to_string(wanted[k]));
+        holes_[k].add(
+            {static_cast<std::uint32_t>(commit.next[k]), static_cast<std::uint32_t>(top_[k])});
     } else {
-      op_.apply(item, decision.plan, commit);
+      op_.apply(item.item, decision.plan, commit);
     }
-    for (const auto& [other, before] : others)
-      if (!is_same(decide(other), before))
-        refuse(ContractRule::touches_announced, other, 0,
-               "its plan changed when item " + item_name(item, place) +
-                   " was applied, though the two have reached for nothing in common: one reads " +
-                   "or writes what it has not reached for");
-    if (in_order_ && !commit.woken.empty())
-      refuse(ContractRule::nobody_woken, item, place,
+    std::sort(decision.reached.begin(), decision.reached.end());
+    for (const Watched& other : others) expect_unchanged(other, item, decision.reached);
+    if (in_order_ && commit.has_woken)
+      refuse(ContractRule::nobody_woken, item,
              "it wakes an item, but in strategy in_order only the work itself has an order");
-    waiting_.insert(waiting_.end(), commit.woken.begin(), commit.woken.end());
   }
 
-  /// Some that wait, the next and random ones, which have nothing in common with what is applied.
-  std::vector<std::pair<Item, Decision>> watch_others(const Decision& applied) const {
-    std::vector<std::uint32_t> own = applied.reached;
-    std::sort(own.begin(), own.end());
-    std::vector<std::pair<Item, Decision>> others;
+  /// An item that waits.
+  struct Watched {
+    Numbered item;
+    Decision before;
+  };
+
+  /// Some that wait: the next and random ones.
+  std::vector<Watched> watch_others() const {
+    std::vector<Watched> others;
     for (std::size_t i = 0; i < std::min(watched, waiting_.size()); ++i) {
-      const std::size_t random = mix64(considered_.size() * watched + i) % waiting_.size();
-      const Item& other = waiting_[i < watched / 2 ? waiting_.size() - 1 - i : random];
-      Decision decision = decide(other);
-      const bool apart = std::none_of(
-          decision.reached.begin(), decision.reached.end(),
-          [&](std::uint32_t r) { return std::binary_search(own.begin(), own.end(), r); });
-      if (apart) others.emplace_back(other, std::move(decision));
+      const std::size_t random = mix64(added_ + considered_.size() * watched + i) % waiting_.size();
+      const Numbered& other = waiting_[i < watched / 2 ? waiting_.size() - 1 - i : random];
+      Decision decision = decide(other.item);
+      if (!is_same(decide(other.item), decision))
+        refuse(ContractRule::plan_only_reads, other, "plan() called again decides something else");
+      others.push_back({other, std::move(decision)});
     }
     return others;
   }
 
-  void make_room(const auto& wanted) {
+  /// `reached` is ascending: what the item that was applied had reached.
+  void expect_unchanged(const Watched& other, const Numbered& applied,
+                        const std::vector<std::uint32_t>& reached) const {
+    const auto had_reached = [&](std::uint32_t r) {
+      return std::binary_search(reached.begin(), reached.end(), r);
+    };
+    const std::vector<std::uint32_t>& before = other.before.reached;
+    const Decision after = decide(other.item.item);
+    if (std::none_of(before.begin(), before.end(), had_reached)) {
+      if (!is_same(after, other.before))
+        refuse(ContractRule::touches_announced, other.item,
+               "its plan changed when item " + name_of(applied) +
+                   " was applied, though the two have reached for nothing in common: one reads " +
+                   "or writes what it has not reached for");
+    } else if (in_order_ && !ConflictingOperator<Op>) {
+      const bool is_known =
+          std::all_of(after.reached.begin(), after.reached.end(), [&](std::uint32_t r) {
+            return had_reached(r) || std::find(before.begin(), before.end(), r) != before.end();
+          });
+      if (!is_known || (after.found && !other.before.found))
+        refuse(ContractRule::order_kept, other.item,
+               "when item " + name_of(applied) + " was applied it got a plan, or reaches for " +
+                   "what neither of them had reached: in strategy in_order the result would " +
+                   "depend on the number of threads");
+    }
+  }
+
+  /// One more of each kind than is wanted, so that there are holes to be closed in the end.
+  void take_numbers(const auto& wanted, CheckedCommit& commit) {
     bool has_room = true;
     for (std::size_t k = 0; k < kinds; ++k) {
-      const std::size_t needed = next_[k] + wanted[k];
-      has_room = has_room && needed <= room_[k];
-      if (needed > room_[k]) room_[k] = needed + needed / 2;
+      commit.next[k] = top_[k];
+      commit.end[k] = top_[k] + wanted[k];
+      top_[k] = commit.end[k] + 1;
+      has_room = has_room && top_[k] <= room_[k];
+      if (top_[k] > room_[k]) room_[k] = top_[k] + top_[k] / 2;
     }
     if (!has_room) op_.grow(room_);
   }
 
   void expect_nothing_left() const {
     if constexpr (requires { Op::forgoes_wakes; }) return;
-    for (std::size_t i = 0; i < considered_.size(); ++i)
-      if (decide(considered_[i]).found)
-        refuse(ContractRule::woken_if_plannable, considered_[i], i,
-               "it had its turn and has a plan again in the end, but nobody woke it");
+    for (const Numbered& item : considered_)
+      if (decide(item.item).found)
+        refuse(ContractRule::woken_if_plannable, item,
+               in_order_ ? "it had no plan at its turn and has one in the end"
+                         : "it had its turn and has a plan again in the end, but nobody woke it");
+  }
+
+  void renumber() {
+    for (std::size_t k = 0; k < kinds; ++k) {
+      Numbers numbers(top_[k]);
+      numbers.take_back({&holes_[k], 1});
+      const std::vector<Renumbered> moved = numbers.close_holes();
+      if constexpr (kinds > 0) op_.renumber(k, std::span<const Renumbered>(moved), numbers.top());
+    }
   }
 
   Op& op_;
   bool in_order_;
-  std::vector<Item> waiting_;     // the next last
-  std::vector<Item> considered_;  // had their turn
+  std::vector<Numbered> waiting_;     // the next last
+  std::vector<Numbered> considered_;  // had their turn
+  std::size_t added_ = 0;
   Plan used_plan_{};
-  std::array<std::size_t, kinds> next_{}, room_{};  // [kind]
+  std::array<std::size_t, kinds> top_{}, room_{};  // [kind]
+  std::array<NumberPool, kinds> holes_;            // [kind]
 };
 
 }  // namespace ductile::runtime::detail

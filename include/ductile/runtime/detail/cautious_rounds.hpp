@@ -28,9 +28,23 @@
 
 namespace ductile::runtime::detail {
 
-/// Says at compile time where an optional member is there but cannot be used.
-template <CautiousOperator Op>
-constexpr void expect_whole_members() {
+/// Operators of the older contract have a type Update.
+template <class Op>
+concept LooksCautious = requires {
+  typename Op::Item;
+  typename Op::Plan;
+  &Op::resource_count;
+}
+&&!requires { typename Op::Update; };
+
+/// Whether it is a cautious operator. Says at compile time what one lacks, or which optional member
+/// is there but cannot be used.
+template <class Op>
+constexpr bool expect_cautious() {
+  static_assert(CautiousOperator<Op> || !LooksCautious<Op>,
+                "a cautious operator has bool plan(const Item&, Plan&, auto& reach) const, "
+                "apply(const Item&, Plan&, auto& commit) and resource_count() const");
+  if constexpr (!CautiousOperator<Op>) return false;
   constexpr bool makes_things = requires { &Op::demand; }
   || requires { &Op::counts; }
   || requires { &Op::grow; };
@@ -41,6 +55,7 @@ constexpr void expect_whole_members() {
   constexpr bool has_places = requires { &Op::place_of; };
   static_assert(!has_places || PlacedOperator<Op>,
                 "place_of(std::uint32_t) const returns std::array<double, 2> or of 3");
+  return CautiousOperator<Op>;
 }
 
 /// The strategy that options and operator ask for. Throws std::invalid_argument if the operator
@@ -91,7 +106,6 @@ template <CautiousOperator Op, class Work>
 RoundsReport run_cautious_rounds(const Executor& executor, Op& op, Work work,
                                  const RoundsOptions& options) {
   using Item = typename Op::Item;
-  expect_whole_members<Op>();
   const Strategy strategy = strategy_of<Op>(executor, options);
   const auto most_rounds = static_cast<std::size_t>(options.most_rounds);
   return with_team(executor, [&] {

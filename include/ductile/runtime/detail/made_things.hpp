@@ -57,8 +57,7 @@ class MadeThings {
     std::array<std::size_t, kinds> first{};
     bool has_room = true;
     for (std::size_t k = 0; k < kinds; ++k) {
-      first[k] = numbers_[k].top();
-      numbers_[k] = Numbers(first[k] + more[k]);
+      first[k] = numbers_[k].extend(more[k]);
       has_room = has_room && numbers_[k].top() <= room_[k];
     }
     if (!has_room) {

@@ -23,16 +23,19 @@ struct NumberRange {
 class NumberPool {
  public:
   std::size_t left() const { return left_; }
-  /// The lowest; `left() > 0`.
+  /// The lowest. Throws std::logic_error if there is none.
   std::uint32_t take() {
+    if (left_ == 0) [[unlikely]]
+      throw std::logic_error("apply() takes more fresh numbers than demand() asked for");
     NumberRange& range = ranges_.back();
     const std::uint32_t number = range.begin++;
     if (range.begin == range.end) ranges_.pop_back();
     --left_;
     return number;
   }
-  /// Ranges are added in falling order.
+  /// Ranges are added in falling order, if numbers are to be taken.
   void add(NumberRange range) {
+    if (range.begin == range.end) return;
     ranges_.push_back(range);
     left_ += range.end - range.begin;
   }
@@ -80,13 +83,19 @@ class Numbers {
       }
       if (wanted > 0) {
         const std::size_t end = top_ + wanted;
-        if (end >= 0xffffffffU) throw std::length_error("things have numbers of 32 bits");
+        expect_numbers(end);
         ranges.push_back({static_cast<std::uint32_t>(top_), static_cast<std::uint32_t>(end)});
         top_ = end;
       }
       for (std::size_t i = ranges.size(); i-- > 0;) pools[p].add(ranges[i]);
     }
     unused_.erase(unused_.begin(), unused_.begin() + static_cast<std::ptrdiff_t>(next));
+  }
+
+  /// The first of so many new numbers, which are used from now on. Throws std::length_error.
+  std::size_t extend(std::size_t more) {
+    expect_numbers(top_ + more);
+    return std::exchange(top_, top_ + more);
   }
 
   /// What is left of them is unused again.
@@ -121,6 +130,10 @@ class Numbers {
   }
 
  private:
+  static void expect_numbers(std::size_t end) {
+    if (end >= 0xffffffffU) throw std::length_error("things have numbers of 32 bits");
+  }
+
   void join_unused() {
     std::sort(unused_.begin(), unused_.end(),
               [](NumberRange a, NumberRange b) { return a.begin < b.begin; });

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -72,7 +73,7 @@ class ReservationWindows {
     Plan plan{};
     std::vector<std::uint32_t> reached;
     std::vector<Item> woken;
-    std::array<std::uint32_t, MadeThings<Op>::kinds> next{};
+    std::array<std::uint32_t, MadeThings<Op>::kinds> next{}, end{};  // new numbers
     Outcome outcome = Outcome::nothing;
   };
 
@@ -80,6 +81,8 @@ class ReservationWindows {
     Slot& slot;
     void wake(const Item& item) { slot.woken.push_back(item); }
     std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
+      if (slot.next[kind] == slot.end[kind]) [[unlikely]]
+        throw std::logic_error("apply() takes more fresh numbers than demand() asked for");
       return slot.next[kind]++;
     }
   };
@@ -164,12 +167,15 @@ class ReservationWindows {
       for (std::size_t k = 0; k < more.size(); ++k) {
         slot.next[k] = static_cast<std::uint32_t>(more[k]);
         more[k] += wanted[k];
+        slot.end[k] = static_cast<std::uint32_t>(more[k]);
       }
     }
     const auto first = made_.take(more);
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < more.size(); ++k)
+      for (std::size_t k = 0; k < more.size(); ++k) {
         slots_[i].next[k] += static_cast<std::uint32_t>(first[k]);
+        slots_[i].end[k] += static_cast<std::uint32_t>(first[k]);
+      }
   }
 
   void end_window(std::size_t count) {
@@ -182,6 +188,8 @@ class ReservationWindows {
       } else if (slot.outcome == Outcome::won) {
         ++won;
         woken_.insert(woken_.end(), slot.woken.begin(), slot.woken.end());
+        for (std::size_t k = 0; k < slot.next.size(); ++k)
+          not_taken_[k].add({slot.next[k], slot.end[k]});
       }
     }
     report_.planned += count;
@@ -193,6 +201,8 @@ class ReservationWindows {
 
   RoundsReport finish(std::size_t left) {
     report_.left = left;
+    made_.take_back(
+        1, [&](std::size_t) -> auto& { return not_taken_; });
     made_.close_holes();
     return report_;
   }
@@ -209,6 +219,7 @@ class ReservationWindows {
   std::uint32_t first_key_ = nobody;
   std::size_t window_ = first_window;
   std::vector<Item> lost_, woken_;
+  typename MadeThings<Op>::Pools not_taken_;  // numbers that were demanded
   RoundsReport report_;
 };
 
