@@ -37,14 +37,9 @@ concept LooksCautious = requires {
 }
 &&!requires { typename Op::Update; };
 
-/// Whether it is a cautious operator. Says at compile time what one lacks, or which optional member
-/// is there but cannot be used.
-template <class Op>
-constexpr bool expect_cautious() {
-  static_assert(CautiousOperator<Op> || !LooksCautious<Op>,
-                "a cautious operator has bool plan(const Item&, Plan&, auto& reach) const, "
-                "apply(const Item&, Plan&, auto& commit) and resource_count() const");
-  if constexpr (!CautiousOperator<Op>) return false;
+/// Says at compile time where an optional member is there but cannot be used.
+template <CautiousOperator Op>
+constexpr void expect_whole_members() {
   constexpr bool makes_things = requires { &Op::demand; }
   || requires { &Op::counts; }
   || requires { &Op::grow; };
@@ -55,6 +50,15 @@ constexpr bool expect_cautious() {
   constexpr bool has_places = requires { &Op::place_of; };
   static_assert(!has_places || PlacedOperator<Op>,
                 "place_of(std::uint32_t) const returns std::array<double, 2> or of 3");
+}
+
+/// Whether it is a cautious operator. Says at compile time what one lacks.
+template <class Op>
+constexpr bool expect_cautious() {
+  static_assert(CautiousOperator<Op> || !LooksCautious<Op>,
+                "a cautious operator has bool plan(const Item&, Plan&, auto& reach) const, "
+                "apply(const Item&, Plan&, auto& commit) and resource_count() const");
+  if constexpr (CautiousOperator<Op>) expect_whole_members<Op>();
   return CautiousOperator<Op>;
 }
 
