@@ -53,7 +53,7 @@ struct Contest {
   std::optional<Figure> floor;  ///< the fastest on at most this number of threads
 
   const Figure& best() const { return figures.front(); }
-  /// Whether the best has enough samples; if not, nothing is said of who is fastest.
+  /// Whether the best has enough samples; if not, no candidate is called the fastest.
   bool decided() const { return best().sound(); }
   /// Whether it is decided and nobody else is on a par with the best.
   bool clear() const;

@@ -22,7 +22,7 @@ struct Standing {
   std::string who;
   std::vector<std::string> won;        ///< cases in which it was fastest, alone
   std::vector<std::string> on_par;     ///< cases in which it was fastest or on a par, and not alone
-  std::vector<std::string> undecided;  ///< one of these, but for want of samples it is not known
+  std::vector<std::string> undecided;  ///< the fastest is one of these; too few samples say which
   std::size_t cases = 0;               ///< in which it took part
   double over_best = 1;                ///< geometric mean of its ratio to the best, over those
 };
