@@ -222,7 +222,7 @@ TEST(Report, TooFewSamplesWinNothing) {
             std::string::npos);
 }
 
-/// Whatever moves: who wins alone has three samples, and nobody else is on a par with it.
+/// However samples are left out: a candidate that wins alone has three, and no other is on a par.
 TEST(Report, WinnersHaveSamplesEnough) {
   std::mt19937 random(38);
   std::uniform_int_distribution<int> percent(0, 99), samples_each(1, 6);

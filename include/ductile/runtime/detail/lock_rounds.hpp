@@ -32,7 +32,9 @@ class LockRounds {
   RoundsReport run(std::vector<Item> work, std::size_t most_rounds) {
     while (!work.empty() && report_.rounds < most_rounds) {
       ++report_.rounds;
+      const std::size_t before = report_.applied;
       work = run_round(work);
+      if (report_.applied == before) spare_ *= 2;  // plans may want more numbers than they get
       report_.lost += work.size();
     }
     report_.left = work.size();
@@ -90,7 +92,7 @@ class LockRounds {
 
   /// Of the work as it lies; fewer where little is left, or all would meet again.
   std::vector<Item> run_round(const std::vector<Item>& work) {
-    constexpr std::size_t least_items = 256, parts_a_thread = 8, spare = 4096;
+    constexpr std::size_t least_items = 256, parts_a_thread = 8;
     const auto threads = static_cast<std::size_t>(executor_.threads());
     const std::size_t count =
         std::clamp<std::size_t>(work.size() / least_items, 1, parts_a_thread * threads);
@@ -101,7 +103,7 @@ class LockRounds {
       parts[p].work = std::span(work).subspan(begin, std::min(size, work.size() - begin));
     }
     const auto pools_of = [&](std::size_t p) -> Pools& { return parts[p].pools; };
-    made_.deal(count, pools_of, [&](std::size_t) { return 8 * size + spare; });
+    made_.deal(count, pools_of, [&](std::size_t) { return 8 * size + spare_; });
     owner_of_.resize(std::max(made_.resources().top(), op_.resource_count()), nobody);
     const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
     parallel_for(executor_, count, [&](std::size_t p) { run_part(parts[p]); }, {.grain = 1});
@@ -142,6 +144,7 @@ class LockRounds {
   Op& op_;
   MadeThings<Op> made_;
   std::vector<Owner> owner_of_;  // [resource]: the thread that holds it, counted from 1
+  std::size_t spare_ = 4096;     // numbers for each part, besides some for each item
   RoundsReport report_;
 };
 

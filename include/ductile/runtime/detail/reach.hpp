@@ -1,5 +1,5 @@
 /// @file
-/// What strategies share: what plan() is handed where nobody is denied, and who is told.
+/// What strategies share: what plan() is handed where nobody is denied, and how nobody is told.
 #pragma once
 
 #include <cstdint>

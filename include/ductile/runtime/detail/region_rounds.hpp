@@ -1,9 +1,9 @@
 /// @file
 /// RegionRounds: the strategy `regions`. In each phase resources are cut into regions; a region
-/// runs its items on one thread, the last woken first, and writes directly, as what its items reach
-/// is its own; whoever reaches for what is another region's waits for the next phase, whose cuts
-/// lie elsewhere. How many regions there are depends on how much there is, never on threads, so
-/// the result does not depend on those.
+/// runs its items on one thread, the last woken first, and writes directly, because what its items
+/// reach is its own; whoever reaches for what is another region's waits for the next phase, whose
+/// cuts lie elsewhere. How many regions there are depends on how much there is, never on threads,
+/// so the result does not depend on those.
 #pragma once
 
 #include <algorithm>
