@@ -70,13 +70,10 @@ void get_pages(void* memory, std::size_t bytes) {
 }
 
 void touch_pages(const Executor& executor, void* memory, std::size_t bytes) {
-  if (are_few_pages(bytes)) return;
-  const bool fresh = is_fresh(memory, bytes);
-  // What loops there are must not depend on what malloc gives if they are recorded.
-  if (!fresh && executor.recording() == nullptr) return;
+  if (!is_fresh(memory, bytes)) return;
   auto* const first = static_cast<std::byte*>(memory);
   const auto get = [=](std::size_t, std::size_t begin, std::size_t end) {
-    if (fresh) get_pages(first + begin, end - begin);
+    get_pages(first + begin, end - begin);
   };
   parallel_for_blocks(executor, bytes, most_at_once * page_size(), get);
 }

@@ -20,7 +20,6 @@ namespace ductile::meshadapt {
 using runtime::few_nanoseconds;
 using runtime::FilledArray;
 using runtime::parallel_for;
-using runtime::Phase;
 using runtime::PhaseTimer;
 
 namespace {
@@ -75,15 +74,15 @@ runtime::RoundsReport Refine<Dim>::run(runtime::UnsetVector<LongEdge> edges) {
   report_.planned = edges_.size();
   if (edges_.empty()) return report_;
   {
-    const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
+    const PhaseTimer timer(report_.plan_seconds);
     plan();
   }
   {
-    const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
+    const PhaseTimer timer(report_.conflict_seconds);
     refuse();
   }
   {
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     number();
   }
   grow();

@@ -16,7 +16,6 @@ namespace ductile::meshadapt {
 using runtime::few_nanoseconds;
 using runtime::FilledArray;
 using runtime::parallel_for;
-using runtime::Phase;
 using runtime::PhaseTimer;
 
 /// With more edges to split than this share of the number of elements, lists are left stale.
@@ -65,7 +64,7 @@ void Refine<Dim>::grow() {
     if (!lists_are_stale_ || change.curve != 0) deferred.defer(owner, 0, change);
   };
   {
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     const std::size_t end_of_vertices = first_vertex_ + report_.applied;
     mesh_.grow(executor_, end_of_vertices, first_element_);
     const auto write = [&](std::size_t i) {
@@ -79,7 +78,7 @@ void Refine<Dim>::grow() {
     mesh_.grow(executor_, end_of_vertices, end_of_elements_);
     parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });
   }
-  const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
+  const PhaseTimer timer(report_.commit_seconds);
   report_.committed = deferred.commit(
       [&](VertexId owner, const ListChange& change) { change_list(mesh_, owner, change); });
 }

@@ -13,7 +13,6 @@
 
 #include "ductile/runtime/checked_rounds.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 
@@ -198,17 +197,6 @@ TEST(SurveyedTiles, AreForOperatorsThatKeepTheContract) {
   Contract contract(side);
   EXPECT_GT(run_rounds_checked(Executor({.threads = 1}), contract, all_items(side * side)).applied,
             side);
-}
-
-TEST(SurveyedTiles, ArePartsOfARecordedLoop) {
-  constexpr Vertex side = 150;
-  const auto work = all_items(side * side);
-  Contract expected(side), recorded(side);
-  run_rounds(Executor({.threads = 1}), expected, work);
-  Recording recording;
-  run_rounds(Executor({.threads = 8, .recording = &recording}), recorded, work);
-  EXPECT_EQ(recorded.neighbours, expected.neighbours);
-  EXPECT_FALSE(recording.waits().empty());
 }
 
 TEST(SurveyedTiles, PassOnWhatAnItemThrows) {

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 
@@ -143,44 +142,6 @@ TEST(Tiles, LeaveFewItemsOfManyToTilesOfTheirOwn) {
   EXPECT_EQ(Mean::neighbours_fetched, 0U);
   EXPECT_EQ(first.report.applied, work.size());
   EXPECT_EQ(run(side, 8, work).mean.value, first.mean.value);
-}
-
-TEST(Tiles, ArePartsOfARecordedLoop) {
-  constexpr Vertex side = 150;
-  const auto work = all_items(side * side);
-  const Outcome expected = run(side, 1, work);
-  Recording recording;
-  Mean mean(side);
-  const Executor executor({.threads = 8, .recording = &recording});
-  run_rounds(executor, mean, work, {.most_rounds = 1});
-  EXPECT_EQ(mean.value, expected.mean.value);
-  ASSERT_FALSE(recording.waits().empty());
-  const auto loop = std::find_if(recording.stretches().begin(), recording.stretches().end(),
-                                 [](const auto& stretch) { return stretch.waits != 0; });
-  std::size_t waits = 0;  // of this loop and of those of what is left
-  for (const auto& stretch : recording.stretches()) waits += stretch.waits;
-  EXPECT_EQ(waits, recording.waits().size());
-  const detail::BlockLayout layout = detail::tiles_of(work.size());
-  EXPECT_EQ(loop->count, (work.size() >> layout.block_bits) + 1);
-}
-
-TEST(Tiles, LeaveARecordingAloneWhereTheirLoopIsNotShared) {
-  constexpr Vertex side = 150;
-  Recording alone, outer;
-  Mean first(side), second(side);
-  const Executor one({.threads = 1, .recording = &alone});
-  run_rounds(one, first, all_items(side * side), {.most_rounds = 1});
-  EXPECT_TRUE(alone.waits().empty());
-  const Executor executor({.threads = 4, .recording = &outer});
-  const auto in_one = [&](std::size_t i) {
-    if (i != 1) return;
-    const auto work = all_items(side * side);
-    second.wakes = false;
-    detail::Tiles<Mean>(executor, second, work).run([] { return Commit<Mean>(); }, [](Vertex) {});
-  };
-  parallel_for(executor, 3, in_one, {.grain = 1});
-  EXPECT_TRUE(outer.waits().empty());
-  EXPECT_EQ(outer.stretches().back().count, 3U);
 }
 
 TEST(Tiles, PassOnWhatAnItemThrows) {

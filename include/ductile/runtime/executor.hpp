@@ -9,8 +9,6 @@
 
 namespace ductile::runtime {
 
-class Recording;
-
 namespace detail {
 class Places;
 }
@@ -42,8 +40,6 @@ struct ExecutorOptions {
   Placement placement = Placement::none;
   Schedule schedule = Schedule::automatic;
   bool deterministic = true;  ///< results do not depend on thread count or timing
-  /// Where to record what loops cost; they run on the caller alone then. Outlives the loops.
-  Recording* recording = nullptr;
 };
 
 /// Cheap to copy. Thread safety: any thread; several threads may run loops on one Executor at once.
@@ -58,7 +54,6 @@ class Executor {
   Placement placement() const { return options_.placement; }
   Schedule schedule() const { return options_.schedule; }
   bool deterministic() const { return options_.deterministic; }
-  Recording* recording() const { return options_.recording; }
 
   /// For the runtime's own use; null if threads are not bound.
   const detail::Places* places() const { return places_.get(); }

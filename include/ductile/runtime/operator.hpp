@@ -145,17 +145,6 @@ concept SteadyTiledOperator = TiledOperator<Op> && requires(const Op& op, std::u
   op.prefetch_neighbour(item);
 };
 
-/// An operator that tells a Recording what an item costs, in nanoseconds, instead of having it
-/// timed: plan_cost(item), apply_cost(plan), or both. Not asked for what runs in tiles, or is
-/// applied as soon as it is planned.
-template <class Op>
-concept CostedOperator = requires(const Op& op, const typename Op::Item item) {
-  { op.plan_cost(item) } -> std::convertible_to<double>;
-}
-|| requires(const Op& op, const typename Op::Plan plan) {
-  { op.apply_cost(plan) } -> std::convertible_to<double>;
-};
-
 namespace detail {
 
 template <class Op>

@@ -29,8 +29,8 @@ void run_with_team(const Executor& executor, TeamBody body, void* context);
 /// placement they are bound, the calling one too, until body() is done. Meanwhile the thread is
 /// within a parallel region of OpenMP's: loops of other executors, and parallel regions that body()
 /// begins itself, run on it alone. What body() returns is returned, and what it throws reaches the
-/// caller. Inside a loop or another team, for one thread, or while loops are recorded, body() is
-/// called and that is all. Thread safety: any thread; each that calls it has a team of its own.
+/// caller. Inside a loop or another team, or for one thread, body() is called and that is all.
+/// Thread safety: any thread; each that calls it has a team of its own.
 template <class Body>
 auto with_team(const Executor& executor, Body&& body) {
   using Plain = std::remove_reference_t<Body>;

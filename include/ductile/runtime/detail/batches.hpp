@@ -20,7 +20,6 @@
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/phase_timer.hpp"
-#include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/worklist.hpp"
 
@@ -89,10 +88,10 @@ class Batches {
     } else {
       plan_all(batch, is_here, planning);
       if constexpr (Check::on) return apply_checked(batch, is_here, new_commit, grown);
-      const PhaseTimer timer(report.apply_seconds, executor, Phase::apply);
+      const PhaseTimer timer(report.apply_seconds);
       apply_plans(new_commit, grown);
     }
-    const PhaseTimer timer(report.commit_seconds, executor, Phase::commit);
+    const PhaseTimer timer(report.commit_seconds);
     report.committed += deferred_.commit(
         [&](std::uint32_t owner, Update& update) { op.commit(owner, std::move(update)); });
   }
@@ -109,7 +108,7 @@ class Batches {
 
   /// The items woken since the last call, each once, in order.
   UnsetVector<Item> take_woken() {
-    const PhaseTimer timer(report.wake_seconds, executor, Phase::wake);
+    const PhaseTimer timer(report.wake_seconds);
     woken_.collect();
     report.woken += woken_.size();
     if constexpr (Check::on) {
@@ -141,7 +140,7 @@ class Batches {
     const auto threads = static_cast<std::size_t>(executor.threads());
     const std::size_t shared = std::clamp<std::size_t>(batch.size() / (16 * threads), 2, 256);
     cut_into_blocks(batch.size(), threads == 1 ? batch.size() : shared);
-    const PhaseTimer timer(report.plan_seconds, executor, Phase::plan);
+    const PhaseTimer timer(report.plan_seconds);
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
       const std::span<const Item> block_and_before = batch.first(end);
       prefetch_first_items(op, block_and_before, begin, is_here);
@@ -157,8 +156,6 @@ class Batches {
             op.apply(*plan, commit);
           }
         }
-        if (executor.recording() != nullptr) [[unlikely]]
-          executor.recording()->end_item();
       }
     });
     count_planned();
@@ -178,7 +175,7 @@ class Batches {
     cut_into_blocks(batch.size(), block_of(batch.size()));
     plans_.provide(executor, size_);
     first_of_.assign(planned_of_.size(), {});
-    const PhaseTimer timer(report.plan_seconds, executor, Phase::plan);
+    const PhaseTimer timer(report.plan_seconds);
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         prefetch_items_after(op, batch, i, is_here);
@@ -203,8 +200,6 @@ class Batches {
     } else {
       plan.reset();
     }
-    if (executor.recording() != nullptr) [[unlikely]]
-      record_plan(item);
   }
 
   void apply_plans(auto&& new_commit, auto&& grown) {
@@ -218,8 +213,6 @@ class Batches {
           op.apply(*plans_[i], commit);
           ++applied_of_[b];
         }
-        if (executor.recording() != nullptr) [[unlikely]]
-          record_apply(plans_[i]);
       }
     });
     count_applied();
@@ -266,22 +259,6 @@ class Batches {
     const std::array<std::uint32_t, kinds> base = op.grow(total);
     for (auto& first : first_of)
       for (std::size_t k = 0; k < kinds; ++k) first[k] += base[k];
-  }
-
-  void record_plan(const Item& item) {
-    if constexpr (requires { op.plan_cost(item); }) {
-      executor.recording()->end_item(op.plan_cost(item));
-    } else {
-      executor.recording()->end_item();
-    }
-  }
-
-  void record_apply(const std::optional<Plan>& plan) {
-    if constexpr (requires { op.apply_cost(*plan); }) {
-      executor.recording()->end_item(plan ? op.apply_cost(*plan) : 0.0);
-    } else {
-      executor.recording()->end_item();
-    }
   }
 
   DeferredUpdate<Update> deferred_;

@@ -129,7 +129,7 @@ class ColouredRounds {
   /// Sorts the work. Returns the items that are left.
   UnsetVector<Item> run_tiles(std::span<Item> work) {
     RoundsReport& report = batches_.report;
-    const PhaseTimer timer(report.plan_seconds, executor_, Phase::plan);
+    const PhaseTimer timer(report.plan_seconds);
     ++window_;
     parallel_sort(executor_, work);  // which mostly is in order
     Tiles<Op> tiles(executor_, op_, work);
@@ -155,10 +155,10 @@ class ColouredRounds {
     ++window_;
     std::optional<SurveyedTiles<Op>> tiles;
     {
-      const PhaseTimer timer(report.conflict_seconds, executor_, Phase::conflict);
+      const PhaseTimer timer(report.conflict_seconds);
       tiles.emplace(executor_, op_, work, turn_of_.data());
     }
-    const PhaseTimer timer(report.plan_seconds, executor_, Phase::plan);
+    const PhaseTimer timer(report.plan_seconds);
     tiles->run([&] { return new_commit(); }, [&](Item item) { return is_here(item); },
                [&](Item item) { note_planned(item); },
                [](Item item, Commit<Op>& commit) {
@@ -187,7 +187,7 @@ class ColouredRounds {
     ++window_;
     std::vector<std::size_t> class_begin;
     {
-      const PhaseTimer timer(batches_.report.conflict_seconds, executor_, Phase::conflict);
+      const PhaseTimer timer(batches_.report.conflict_seconds);
       class_begin = sort_by_class(work);
     }
     const std::size_t classes = class_begin.size() - 1;

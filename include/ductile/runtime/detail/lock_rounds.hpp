@@ -105,7 +105,7 @@ class LockRounds {
     const auto pools_of = [&](std::size_t p) -> Pools& { return parts[p].pools; };
     made_.deal(count, pools_of, [&](std::size_t) { return 8 * size + spare_; });
     owner_of_.resize(std::max(made_.resources().top(), op_.resource_count()), nobody);
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     parallel_for(executor_, count, [&](std::size_t p) { run_part(parts[p]); }, {.grain = 1});
     made_.take_back(count, pools_of);
     std::vector<Item> left;

@@ -91,11 +91,11 @@ class ReservationWindows {
     ++report_.batches;
     begin_window(count);
     {
-      const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
+      const PhaseTimer timer(report_.plan_seconds);
       parallel_for(
           executor_, count, [&](std::size_t i) { plan(slots_[i], item_at(i), i); }, grain);
     }
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     if constexpr (MadeThings<Op>::kinds > 0) {
       parallel_for(
           executor_, count, [&](std::size_t i) { settle(slots_[i], i); }, grain);

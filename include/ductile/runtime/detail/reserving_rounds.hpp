@@ -75,7 +75,7 @@ class ReservingRounds {
   /// Runs the items of a window that win, and appends those that have to wait to `rest`.
   void reserve_and_run(std::span<Item> work, UnsetVector<Item>& rest) {
     {
-      const PhaseTimer timer(batches_.report.conflict_seconds, executor_, Phase::conflict);
+      const PhaseTimer timer(batches_.report.conflict_seconds);
       ++window_;
       take_keys(work.size());
       reserve_all(work);

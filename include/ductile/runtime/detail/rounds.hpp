@@ -36,7 +36,6 @@
 #include "ductile/runtime/detail/reserving_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
-#include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/team.hpp"
 #include "ductile/runtime/unset_vector.hpp"
@@ -57,7 +56,6 @@ RoundsReport run_all_rounds(const Executor& executor, Op& op, auto first_work,
                                       ReservingRounds<Op, Check>>;
   Batches<Op, Check> batches(executor, op, options);
   Strategy strategy(batches);
-  Recording* const recording = executor.recording();
   RoundsReport& report = batches.report;
   report.left = first_work.size();
   const auto goes_on = [&] {
@@ -65,7 +63,6 @@ RoundsReport run_all_rounds(const Executor& executor, Op& op, auto first_work,
   };
   const auto run_round = [&](auto work) {
     ++report.rounds;
-    if (recording != nullptr) recording->begin_round();
     if constexpr (Check::on)
       batches.check.begin_round(op, static_cast<std::uint32_t>(report.rounds), work);
     UnsetVector<Item> next = strategy.run(std::move(work));
@@ -77,7 +74,6 @@ RoundsReport run_all_rounds(const Executor& executor, Op& op, auto first_work,
     while (goes_on()) work = run_round(std::move(work));
   };
   if (goes_on()) with_team(executor, run_while_it_goes_on);
-  if (recording != nullptr) recording->end_rounds();
   return report;
 }
 

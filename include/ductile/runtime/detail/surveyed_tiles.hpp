@@ -79,10 +79,7 @@ class SurveyedTiles {
       if (before == none) run_items(begun, is_here, planning, leaving_out);
       return before;
     };
-    const auto visit_met = [&](std::size_t tile, auto&& visit) {
-      for (const std::uint32_t other : waits_of(tile)) visit(other);
-    };
-    tiles_.run([&](std::size_t tile) { return Begun{tile, new_commit()}; }, advance, visit_met);
+    tiles_.run([&](std::size_t tile) { return Begun{tile, new_commit()}; }, advance);
   }
 
   struct Counts {

@@ -56,11 +56,7 @@ class Tiles {
   /// planning(item) before.
   void run(auto&& new_commit, auto&& planning) {
     tiles_.run([&](std::size_t tile) { return begin(tile, new_commit()); },
-               [&](Begun& begun) { return advance(begun, planning); },
-               [&](std::size_t tile, auto&& visit) {
-                 for (const Item item : items_of(tile))
-                   op_.conflicts(item, [&](Item other) { visit(tile_of(other)); });
-               });
+               [&](Begun& begun) { return advance(begun, planning); });
   }
 
   std::size_t applied() const {
