@@ -13,10 +13,10 @@
 #include <thread>
 #include <vector>
 
-#include "ductile/runtime/balance.hpp"
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/balance.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
+#include "ductile/runtime/colouring/ordering.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/ordering.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "team.hpp"

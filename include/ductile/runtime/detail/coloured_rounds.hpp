@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/detail/batches.hpp"
 #include "ductile/runtime/detail/surveyed_tiles.hpp"
 #include "ductile/runtime/detail/tiles.hpp"

@@ -14,16 +14,6 @@
 //       batches              who holds all it has reserved: planned, applied and committed together
 //   operator_check           what run_rounds_checked adds, with opposite_order
 //
-// Colourings (../colouring.hpp chooses) share first_fit and, but for by_priority, take vertices in
-// the order of their numbers:
-//
-//   Serial (in_order)        few vertices, of a round's conflicts or any graph
-//   blocked_colouring        the conflicts of a round; graphs that are not large; parts of graphs
-//   marked_colouring         large graphs; both are deterministic and cut by blocks.hpp
-//   priority_colouring       scattered vertices that are coloured anew, and to compare with
-//   speculative_colouring    on request: published schemes, which depend on timing; threads share
-//                            vertices out by fronts
-//
 // Updates that are deferred lie in buckets and are put in order by source_order; items that are
 // woken lie in a batch for each thread (batch.hpp), then in segments.
 

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/detail/blocks.hpp"
+#include "ductile/runtime/colouring/detail/blocks.hpp"
 #include "ductile/runtime/detail/ranked_blocks.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/detail/blocked_colouring.hpp"
+#include "ductile/runtime/colouring/detail/blocked_colouring.hpp"
 #include "ductile/runtime/detail/ranked_blocks.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/filled_array.hpp"

@@ -1,4 +1,4 @@
-#include "ductile/runtime/any_graph.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "ductile/runtime/colouring.hpp"
-#include "ductile/runtime/ordering.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
+#include "ductile/runtime/colouring/ordering.hpp"
 #include "graphs.hpp"
 
 namespace ductile::runtime::any_graph_test {
@@ -35,7 +35,7 @@ TEST(AnyGraph, ShowsTheNeighboursInTheirOrder) {
 }
 
 TEST(AnyGraph, HandsOnWhatTheGraphAndTheVisitorThrow) {
-  const auto bad = callback_graph(3, [](std::uint32_t v, auto&& visit) {
+  const auto bad = CallbackGraph(3, [](std::uint32_t v, auto&& visit) {
     visit(v);
     if (v == 1) throw std::runtime_error("no row");
   });
@@ -48,7 +48,7 @@ TEST(AnyGraph, HandsOnWhatTheGraphAndTheVisitorThrow) {
 
 /// A clique of 300 needs more colours than a byte holds.
 TEST(AnyGraph, HasTheColoursOfTheGraphItShows) {
-  const auto clique = callback_graph(300, [](std::uint32_t v, auto&& visit) {
+  const auto clique = CallbackGraph(300, [](std::uint32_t v, auto&& visit) {
     for (std::uint32_t u = 0; u < 300; ++u)
       if (u != v) visit(u);
   });
@@ -70,7 +70,7 @@ TEST(AnyGraph, HasTheColoursOfTheGraphItShows) {
 }
 
 TEST(AnyGraph, SpeculativeMethodsColourWhatNeedsLongWords) {
-  const auto clique = callback_graph(300, [](std::uint32_t v, auto&& visit) {
+  const auto clique = CallbackGraph(300, [](std::uint32_t v, auto&& visit) {
     for (std::uint32_t u = 0; u < 300; ++u)
       if (u != v) visit(u);
   });

@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "ductile/runtime/atomic_count.hpp"
-#include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"

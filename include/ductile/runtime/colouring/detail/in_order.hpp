@@ -13,10 +13,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "ductile/runtime/detail/first_fit.hpp"
-#include "ductile/runtime/detail/fronts.hpp"
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/detail/fronts.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -14,11 +14,11 @@
 #include <type_traits>
 #include <vector>
 
-#include "ductile/runtime/detail/first_fit.hpp"
-#include "ductile/runtime/detail/fronts.hpp"
-#include "ductile/runtime/detail/in_order.hpp"
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/detail/fronts.hpp"
+#include "ductile/runtime/colouring/detail/in_order.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
 

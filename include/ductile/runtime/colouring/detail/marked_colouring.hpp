@@ -16,12 +16,12 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/detail/blocks.hpp"
-#include "ductile/runtime/detail/first_fit.hpp"
-#include "ductile/runtime/detail/fronts.hpp"
-#include "ductile/runtime/detail/in_order.hpp"
+#include "ductile/runtime/colouring/detail/blocks.hpp"
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/detail/fronts.hpp"
+#include "ductile/runtime/colouring/detail/in_order.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {

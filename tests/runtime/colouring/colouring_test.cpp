@@ -1,4 +1,4 @@
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ TEST(Colouring, IsTheSameAtAnyThreadCountUnlessItSpeculates) {
 TEST(Colouring, LetsNeighboursBeRepeatedOnOneSideOnly) {
   // A ring with chords, whose even vertices name each neighbour thrice and whose odd ones once.
   const std::uint32_t n = 4000;
-  const auto graph = callback_graph(n, [](std::uint32_t v, auto&& visit) {
+  const auto graph = CallbackGraph(n, [](std::uint32_t v, auto&& visit) {
     for (int repetition = 0; repetition < (v % 2 == 0 ? 3 : 1); ++repetition)
       for (const std::uint32_t step : {1U, 7U, 100U}) {
         visit((v + step) % n);
@@ -147,7 +147,7 @@ TEST(Colouring, SerialIsFirstFitInOrder) {
     const Executor executor({.threads = 1});
     EXPECT_EQ(colour(executor, graph.view(), ColouringMethod::serial).colour_of, expected)
         << graph.name;
-    const auto called_back = callback_graph(
+    const auto called_back = CallbackGraph(
         graph.view().vertex_count(),
         [&graph](std::uint32_t v, auto&& visit) { graph.view().for_each_neighbour(v, visit); });
     EXPECT_EQ(colour(executor, called_back, ColouringMethod::serial).colour_of, expected)
@@ -210,7 +210,7 @@ TEST(Colouring, FindsAllClashesOfSpeculation) {
 TEST(Colouring, TakesNoMoreColoursWhereVerticesAreTheirOwnNeighbours) {
   const std::uint32_t clique = 50, cliques = 200;
   std::array<std::atomic<bool>, 2> has_begun;
-  const auto graph = callback_graph(clique * cliques, [&](std::uint32_t v, auto&& visit) {
+  const auto graph = CallbackGraph(clique * cliques, [&](std::uint32_t v, auto&& visit) {
     const std::uint32_t half = clique * cliques / 2;
     if (v % half == 0) {
       has_begun[v / half] = true;
@@ -292,7 +292,7 @@ TEST(Colouring, OfACallbackIsThatOfItsRows) {
   for (const auto& graph :
        {test::random_graph(5000, 30000, 10), test::rmat_graph(12, 200000, 14)}) {
     const CsrGraph<> rows = graph.view();
-    const auto callback = callback_graph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {
+    const auto callback = CallbackGraph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {
       rows.for_each_neighbour(v, visit);
     });
     const Executor executor({.threads = 2});

@@ -1,4 +1,4 @@
-#include "ductile/runtime/detail/fronts.hpp"
+#include "ductile/runtime/colouring/detail/fronts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "graphs.hpp"
 

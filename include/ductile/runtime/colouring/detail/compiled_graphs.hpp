@@ -5,8 +5,7 @@
 
 #include <cstdint>
 
-#include "ductile/runtime/any_graph.hpp"
-#include "ductile/runtime/graph.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -1,4 +1,4 @@
-#include "ductile/runtime/balance.hpp"
+#include "ductile/runtime/colouring/balance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ductile/runtime/graph.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/csr_rows.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "graphs.hpp"
 
 namespace ductile::runtime::graph_test {
@@ -26,7 +26,7 @@ TEST(Graph, ViewsShowTheNeighbours) {
   const CsrGraph<> rows = mesh.view();
   EXPECT_EQ(rows.vertex_count(), 16U);
   EXPECT_EQ(neighbours(rows, 5), (std::multiset<std::uint32_t>{0, 1, 4, 6, 9, 10}));
-  const auto same = callback_graph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {
+  const auto same = CallbackGraph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {
     rows.for_each_neighbour(v, visit);
   });
   static_assert(Graph<decltype(same)> && !PrefetchingGraph<decltype(same)>);

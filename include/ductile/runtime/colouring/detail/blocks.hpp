@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/detail/compiled_graphs.hpp"
+#include "ductile/runtime/colouring/detail/compiled_graphs.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 

@@ -1,4 +1,4 @@
-#include "ductile/runtime/ordering.hpp"
+#include "ductile/runtime/colouring/ordering.hpp"
 
 namespace ductile::runtime::detail {
 

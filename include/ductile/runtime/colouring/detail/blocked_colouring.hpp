@@ -14,10 +14,10 @@
 #include <span>
 #include <utility>
 
-#include "ductile/runtime/detail/blocks.hpp"
-#include "ductile/runtime/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/detail/blocks.hpp"
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {

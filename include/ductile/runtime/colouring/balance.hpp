@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/team.hpp"

@@ -4,6 +4,16 @@
 /// them at once. All methods are first-fit: a vertex takes the least colour no neighbour has.
 #pragma once
 
+// The methods in detail/ share first_fit and, except for by_priority, take vertices in the order of
+// their numbers:
+//
+//   Serial (in_order)        few vertices
+//   blocked_colouring        graphs that are not large; parts of graphs
+//   marked_colouring         large graphs; both are deterministic and cut by blocks
+//   priority_colouring       scattered vertices that are coloured anew, and to compare with
+//   speculative_colouring    on request: published schemes, which depend on timing; threads share
+//                            vertices out by fronts
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -11,15 +21,15 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/detail/blocked_colouring.hpp"
-#include "ductile/runtime/detail/compiled_graphs.hpp"
-#include "ductile/runtime/detail/first_fit.hpp"
-#include "ductile/runtime/detail/in_order.hpp"
-#include "ductile/runtime/detail/marked_colouring.hpp"
-#include "ductile/runtime/detail/priority_colouring.hpp"
-#include "ductile/runtime/detail/speculative_colouring.hpp"
+#include "ductile/runtime/colouring/detail/blocked_colouring.hpp"
+#include "ductile/runtime/colouring/detail/compiled_graphs.hpp"
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/detail/in_order.hpp"
+#include "ductile/runtime/colouring/detail/marked_colouring.hpp"
+#include "ductile/runtime/colouring/detail/priority_colouring.hpp"
+#include "ductile/runtime/colouring/detail/speculative_colouring.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/team.hpp"
 

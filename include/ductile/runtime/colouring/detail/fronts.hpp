@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include "ductile/runtime/graph.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 
 namespace ductile::runtime::detail {
 

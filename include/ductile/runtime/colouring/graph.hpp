@@ -1,16 +1,20 @@
 /// @file
-/// Graphs as the runtime sees them: anything that can name its vertex count and visit the
-/// neighbours of a vertex. Here are the concept, views of arrays and callbacks, and the square of
-/// a graph; boost_graph.hpp adapts Boost.Graph, any_graph.hpp spares compile time.
+/// Graphs as colourings see them: anything that can name its vertex count and visit the neighbours
+/// of a vertex. Here are the concept, rows in memory, views of callbacks, of squares and of graphs
+/// whose type is forgotten; boost_graph.hpp adapts Boost.Graph.
 /// Edges are symmetric: where u is a neighbour of v, v is one of u. Repeated neighbours and
 /// loops are allowed. Views do not own what they show; visiting is thread-safe, as it only reads.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace ductile::runtime {
 
@@ -74,6 +78,34 @@ struct CsrGraph {
   }
 };
 
+/// Compressed rows of a symmetric graph; view() shows them as a Graph.
+struct CsrRows {
+  std::vector<std::uint32_t> offset, neighbour;  ///< [vertex + 1]; [offset.back()]
+
+  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(view().vertex_count()); }
+  CsrGraph<> view() const { return {offset, neighbour}; }
+};
+
+/// Both directions of every edge, of which there are less than 2^31; a vertex's neighbours are in
+/// the order of the edges. Loops and repeated edges stay. Throws std::out_of_range for a vertex
+/// that is not there, std::bad_alloc. Thread safety: any thread; runs on the caller.
+inline CsrRows csr_rows(std::uint32_t vertex_count,
+                        std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
+  CsrRows rows{std::vector<std::uint32_t>(std::size_t{vertex_count} + 1), {}};
+  for (const auto& [u, v] : edges) {
+    ++rows.offset.at(std::size_t{u} + 1);
+    ++rows.offset.at(std::size_t{v} + 1);
+  }
+  std::partial_sum(rows.offset.begin(), rows.offset.end(), rows.offset.begin());
+  rows.neighbour.resize(rows.offset.back());
+  std::vector<std::uint32_t> next = rows.offset;
+  for (const auto& [u, v] : edges) {
+    rows.neighbour[next[u]++] = v;
+    rows.neighbour[next[v]++] = u;
+  }
+  return rows;
+}
+
 /// A graph known through a function neighbours_of(v, visit).
 template <class Neighbours>
 class CallbackGraph {
@@ -91,11 +123,6 @@ class CallbackGraph {
   std::size_t vertex_count_;
   Neighbours neighbours_of_;
 };
-
-template <class Neighbours>
-CallbackGraph<Neighbours> callback_graph(std::size_t vertex_count, Neighbours neighbours_of) {
-  return {vertex_count, std::move(neighbours_of)};
-}
 
 /// The square of a graph: vertices two edges apart are neighbours too, so that its colourings are
 /// distance-2 colourings of the graph.
@@ -118,5 +145,55 @@ class SquareGraph {
  private:
   const G* graph_;
 };
+
+/// A view of a graph whose type is forgotten, so that what works on it is compiled once, in the
+/// library, and not in every program. It hands on neighbours some at a time, which costs two calls
+/// for a row of a few dozen, and a nanosecond or so for an edge. Keeps a reference to the graph it
+/// shows, which must outlive it. Thread safety: as the graph.
+class AnyGraph {
+ public:
+  template <Graph G>
+  requires(!std::is_same_v<G, AnyGraph>) explicit AnyGraph(const G& graph)
+      : graph_(&graph), vertex_count_(graph.vertex_count()), read_(&read<G>) {}
+
+  std::size_t vertex_count() const { return vertex_count_; }
+
+  /// Throws what the graph or `visit` throws.
+  template <class Visit>
+  void for_each_neighbour(std::uint32_t v, Visit&& visit) const {
+    using Plain = std::remove_reference_t<Visit>;
+    const auto take = [](const void* context, Neighbours some) {
+      auto& visit_one = *static_cast<Plain*>(const_cast<void*>(context));
+      for (const std::uint32_t u : some) visit_one(u);
+    };
+    read_(graph_, v, {take, &visit});
+  }
+
+ private:
+  using Neighbours = std::span<const std::uint32_t>;
+  struct Sink {
+    void (*take)(const void* context, Neighbours some);
+    const void* context;
+  };
+
+  template <class G>
+  static void read(const void* graph, std::uint32_t v, Sink sink) {
+    std::array<std::uint32_t, 32> some;
+    std::size_t count = 0;
+    static_cast<const G*>(graph)->for_each_neighbour(v, [&](std::uint32_t u) {
+      some[count++] = u;
+      if (count < some.size()) return;
+      sink.take(sink.context, some);
+      count = 0;
+    });
+    sink.take(sink.context, Neighbours(some).first(count));
+  }
+
+  const void* graph_;
+  std::size_t vertex_count_;
+  void (*read_)(const void* graph, std::uint32_t v, Sink sink);
+};
+
+static_assert(Graph<AnyGraph>);
 
 }  // namespace ductile::runtime

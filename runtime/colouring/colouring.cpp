@@ -1,4 +1,4 @@
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
 
 #include <algorithm>
 #include <utility>

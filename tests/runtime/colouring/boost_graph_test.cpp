@@ -1,4 +1,4 @@
-#include "ductile/runtime/boost_graph.hpp"
+#include "ductile/runtime/colouring/boost_graph.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <boost/graph/adjacency_matrix.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 
-#include "ductile/runtime/colouring.hpp"
-#include "ductile/runtime/graph.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "graphs.hpp"
 
 namespace ductile::runtime::boost_graph_test {

@@ -18,8 +18,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/graph.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/team.hpp"
 

@@ -1,4 +1,4 @@
-#include "ductile/runtime/detail/compiled_graphs.hpp"
+#include "ductile/runtime/colouring/detail/compiled_graphs.hpp"
 
 #include <algorithm>
 #include <concepts>
@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/any_graph.hpp"
 #include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 
