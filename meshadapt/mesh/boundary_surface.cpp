@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"

@@ -11,8 +11,7 @@
 #include <span>
 
 #include "ductile/meshadapt/orientation.hpp"
-#include "ductile/runtime/atomic_count.hpp"
-#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"

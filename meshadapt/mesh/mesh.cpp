@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/grouping.hpp"

@@ -5,8 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/disjoint_sets.hpp"
 #include "ductile/runtime/filled_array.hpp"

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/fresh_memory.hpp"

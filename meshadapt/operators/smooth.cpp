@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "transfer/evaluate.hpp"

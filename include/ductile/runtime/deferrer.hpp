@@ -13,7 +13,7 @@
 #include <span>
 #include <utility>
 
-#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/detail/bit_field.hpp"
 #include "ductile/runtime/detail/buckets.hpp"
 #include "ductile/runtime/detail/source_order.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/reach.hpp"

@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/atomic_count.hpp"
-#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/detail/batches.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/hash.hpp"

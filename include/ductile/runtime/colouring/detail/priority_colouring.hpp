@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/atomic_count.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/colouring/detail/first_fit.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
