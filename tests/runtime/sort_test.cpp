@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "ductile/runtime/detail/run_sort.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/run_sort.hpp"
 
 namespace ductile::runtime::sort_test {
 namespace {

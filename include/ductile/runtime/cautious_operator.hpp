@@ -78,7 +78,7 @@ concept CautiousOperator = requires(const Op& reader, Op& op, const typename Op:
 
 /// Items are numbers, each that of the resource that it reaches for first; conflicts(item, visit)
 /// visits all others that it may reach, of which each may reach it, too. Besides its own an item
-/// only marks what it has reached (atomic_mark.hpp), which is the same in any order. Then it need
+/// only marks what it has reached (atomic.hpp), which is the same in any order. Then it need
 /// wait for none but those of its neighbours that come before it.
 template <class Op>
 concept ConflictingOperator = CautiousOperator<Op> &&

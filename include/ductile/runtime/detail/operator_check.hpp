@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/contract.hpp"
 #include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/detail/contract.hpp"
 #include "ductile/runtime/detail/opposite_order.hpp"
 #include "ductile/runtime/operator.hpp"
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/runtime/run_sort.hpp"
+#include "ductile/runtime/detail/run_sort.hpp"
 
 namespace ductile::runtime {
 
