@@ -16,7 +16,6 @@
 
 #include "cavity.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/hilbert.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/team.hpp"

@@ -18,7 +18,6 @@
 #include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/hilbert.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 
