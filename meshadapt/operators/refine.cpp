@@ -13,7 +13,7 @@
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::meshadapt {
 

@@ -8,7 +8,7 @@
 #include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/rounds_report.hpp"
 #include "operators/refine.hpp"
 
 namespace ductile::meshadapt {

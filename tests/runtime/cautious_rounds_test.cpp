@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "ductile/runtime/all_numbers.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/detail/region_map.hpp"

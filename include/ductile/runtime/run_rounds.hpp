@@ -9,6 +9,8 @@
 /// follows from the operator's members.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -59,5 +61,16 @@ std::vector<typename Op::Item> applied_in_order(const Executor& executor, Op& op
   if (report != nullptr) *report = run;
   return applied;
 }
+
+/// Work that takes no memory: 0, 1, ..., size() - 1.
+class AllNumbers {
+ public:
+  explicit AllNumbers(std::size_t count) : count_(count) {}
+  std::size_t size() const { return count_; }
+  std::uint32_t operator[](std::size_t i) const { return static_cast<std::uint32_t>(i); }
+
+ private:
+  std::size_t count_;
+};
 
 }  // namespace ductile::runtime

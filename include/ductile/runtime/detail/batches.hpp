@@ -19,7 +19,6 @@
 #include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/worklist.hpp"
 

@@ -21,7 +21,7 @@
 #include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 

@@ -22,7 +22,6 @@
 #include "ductile/runtime/detail/region_map.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 

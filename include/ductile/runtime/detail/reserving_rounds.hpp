@@ -19,7 +19,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
