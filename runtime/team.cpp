@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "ductile/runtime/team.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "loop.hpp"
 
 namespace ductile::runtime {

@@ -1,4 +1,4 @@
-#include "ductile/runtime/team.hpp"
+#include "ductile/runtime/executor.hpp"
 
 #include <gtest/gtest.h>
 

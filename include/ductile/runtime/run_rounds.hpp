@@ -21,7 +21,6 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 

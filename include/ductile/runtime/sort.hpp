@@ -26,7 +26,6 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 

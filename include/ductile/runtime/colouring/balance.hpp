@@ -16,7 +16,6 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 

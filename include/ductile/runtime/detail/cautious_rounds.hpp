@@ -24,7 +24,6 @@
 #include "ductile/runtime/detail/reservation_windows.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -27,7 +27,6 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/team.hpp"
 #include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
