@@ -10,11 +10,10 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "geometry/faced.hpp"
 #include "geometry/facet_sides.hpp"
 #include "geometry/rough_parts.hpp"

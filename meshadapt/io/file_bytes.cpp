@@ -10,7 +10,7 @@
 
 #include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
 
 namespace ductile::meshadapt {
 namespace {

@@ -11,9 +11,9 @@
 #include <span>
 
 #include "ductile/meshadapt/orientation.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/facet_key.hpp"
 #include "mesh/grouping.hpp"

@@ -5,8 +5,8 @@
 #include <memory>
 #include <span>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/grouping.hpp"
 

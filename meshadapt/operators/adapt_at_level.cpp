@@ -14,7 +14,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/curvature.hpp"
 #include "metric/demand.hpp"

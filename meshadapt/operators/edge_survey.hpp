@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/mesh.hpp"
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/lanes.hpp"
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {

@@ -7,10 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/filled_array.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/rounds_report.hpp"

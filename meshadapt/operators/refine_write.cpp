@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/deferred_update.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "operators/refine.hpp"

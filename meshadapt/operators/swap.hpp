@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "ductile/meshadapt/rules.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/run_rounds.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_range.hpp"
 

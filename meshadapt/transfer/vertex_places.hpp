@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "transfer/evaluate.hpp"
 #include "transfer/locator.hpp"

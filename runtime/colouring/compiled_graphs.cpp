@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime {
 

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "ductile/runtime/arena.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/growing_array.hpp"
 
 namespace ductile::meshadapt {

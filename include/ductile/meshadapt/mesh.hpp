@@ -16,8 +16,8 @@
 #include "ductile/meshadapt/list_pool.hpp"
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/growing_array.hpp"
 
 namespace ductile::meshadapt {

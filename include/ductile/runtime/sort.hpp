@@ -20,11 +20,11 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/detail/radix_sort.hpp"
 #include "ductile/runtime/detail/sample_sort.hpp"
 #include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime {

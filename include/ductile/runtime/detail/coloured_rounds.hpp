@@ -13,17 +13,16 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/detail/batches.hpp"
 #include "ductile/runtime/detail/surveyed_tiles.hpp"
 #include "ductile/runtime/detail/tiles.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 

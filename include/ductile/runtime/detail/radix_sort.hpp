@@ -14,8 +14,8 @@
 #include <span>
 #include <utility>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::sort_detail {

@@ -21,13 +21,13 @@
 #include <type_traits>
 #include <utility>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/detail/batches.hpp"
 #include "ductile/runtime/detail/coloured_rounds.hpp"
 #include "ductile/runtime/detail/reserving_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -18,10 +18,10 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/colouring/detail/blocked_colouring.hpp"
 #include "ductile/runtime/detail/ranked_blocks.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {

@@ -1,4 +1,4 @@
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -7,12 +7,16 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <memory>
 #include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/growing_array.hpp"
+#include "ductile/runtime/parallel_for.hpp"
 
-namespace ductile::runtime::fresh_memory_test {
+namespace ductile::runtime::arrays_test {
 namespace {
 
 /// Memory that the system has given no pages of yet.
@@ -117,5 +121,109 @@ TEST(MakeUnset, GivesElementsThatHoldWhatIsWritten) {
   }
 }
 
+struct Counted {
+  static inline int made = 0;
+  Counted() { ++made; }
+  std::uint32_t value = 3;
+};
+
+TEST(UnsetVector, MakesNothingOfWhatIsTriviallyCopyable) {
+  UnsetVector<Counted> values;
+  values.resize(1000);
+  EXPECT_EQ(Counted::made, 0);
+  EXPECT_EQ(values.size(), 1000U);
+  UnsetVector<std::uint32_t> numbers(10, 7);
+  numbers.resize(11, 9);  // a value that is given counts
+  EXPECT_EQ(numbers.front(), 7U);
+  EXPECT_EQ(numbers.back(), 9U);
+}
+
+TEST(UnsetVector, ConstructsAllElse) {
+  UnsetVector<std::string> names(3);
+  EXPECT_EQ(names, UnsetVector<std::string>(3, ""));
+  UnsetVector<std::unique_ptr<int>> owned(2);
+  EXPECT_EQ(owned[1], nullptr);
+}
+
+TEST(UnsetVector, KeepsItsElementsWhenItGrows) {
+  UnsetVector<std::uint64_t> numbers;
+  for (std::uint64_t i = 0; i < 5000; ++i) numbers.push_back(i * i);
+  const UnsetVector<std::uint64_t> copy = numbers;
+  ASSERT_EQ(copy.size(), 5000U);
+  for (std::uint64_t i = 0; i < 5000; ++i) EXPECT_EQ(copy[i], i * i);
+}
+
+TEST(UnsetVector, IsMadeForAllThreadsToFill) {
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{3000000}}) {
+    const Executor executor({.threads = 3});
+    auto numbers = make_unset_vector<std::uint32_t>(executor, n);
+    ASSERT_EQ(numbers.size(), n);
+    parallel_for(executor, n, [&](std::size_t i) { numbers[i] = static_cast<std::uint32_t>(i); });
+    for (std::size_t i = 0; i < n; i += 1000) ASSERT_EQ(numbers[i], i);
+  }
+}
+
+TEST(MakeVector, HoldsZeros) {
+  for (const int threads : {1, 2, 8})
+    for (const std::size_t n : {0UL, 1UL, 1000UL, 300001UL}) {
+      const auto numbers = make_vector<std::uint32_t>(Executor({.threads = threads}), n);
+      EXPECT_EQ(numbers.size(), n);
+      EXPECT_EQ(std::count(numbers.begin(), numbers.end(), 0U), static_cast<std::ptrdiff_t>(n));
+    }
+}
+
+TEST(MakeVector, HoldsDefaultValues) {
+  const auto names = make_vector<std::string>(Executor({.threads = 3}), 50000);
+  EXPECT_EQ(std::count(names.begin(), names.end(), ""), 50000);
+}
+
+TEST(MakeVector, ForgetsWhatMemoryHeld) {
+  const Executor executor({.threads = 3});
+  std::vector<std::uint64_t> values(200000, 7);
+  values.clear();
+  resize_empty(executor, EmptyVector{values, 100000});
+  EXPECT_EQ(std::count(values.begin(), values.end(), 0U), 100000);
+}
+
+TEST(FilledArray, KeepsWhatItHasAndFillsTheRest) {
+  for (const int threads : {1, 2, 8}) {
+    const Executor executor({.threads = threads});
+    FilledArray<std::uint32_t> array;
+    std::size_t before = 0;
+    for (const std::size_t n : {0UL, 1UL, 1000UL, 999UL, 40000UL, 40001UL, 300000UL}) {
+      array.resize(executor, n, static_cast<std::uint32_t>(7 * n));
+      ASSERT_EQ(array.size(), std::max(before, n));
+      for (std::size_t i = 0; i < array.size(); ++i) {
+        const auto expected = i < before ? i : 7 * n;
+        ASSERT_EQ(array[i], expected) << i << " of " << n;
+        array[i] = static_cast<std::uint32_t>(i);
+      }
+      before = array.size();
+    }
+  }
+}
+
+TEST(FilledArray, FillsAnewOnceItIsCleared) {
+  const Executor executor({.threads = 3});
+  FilledArray<std::uint8_t> array(executor, 100000, 7);
+  const std::uint8_t* const memory = array.data();
+  array.clear();
+  EXPECT_TRUE(array.empty());
+  array.resize(executor, 90000, 5);
+  EXPECT_EQ(array.data(), memory);
+  EXPECT_EQ(std::count(array.begin(), array.end(), 5), 90000);
+}
+
+TEST(FilledArray, MovesItsElementsAndLeavesNone) {
+  const Executor executor({.threads = 2});
+  FilledArray<int> from(executor, 10, 3), to(executor, 5, 4);
+  to = std::move(from);
+  EXPECT_EQ(std::count(to.begin(), to.end(), 3), 10);
+  const FilledArray<int> last(std::move(to));
+  EXPECT_EQ(last.size(), 10U);
+  // What is left of them is what is tested here. NOLINTNEXTLINE(bugprone-use-after-move)
+  for (const auto* array : {&from, &to}) EXPECT_TRUE(array->empty());
+}
+
 }  // namespace
-}  // namespace ductile::runtime::fresh_memory_test
+}  // namespace ductile::runtime::arrays_test

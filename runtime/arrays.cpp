@@ -1,4 +1,4 @@
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
 
 #include <algorithm>
 #include <cstdint>
