@@ -73,10 +73,10 @@ static bool any_above(std::span<const std::uint32_t> numbers, std::uint32_t boun
 }
 
 template <int Dim>
-runtime::FilledArray<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>& mesh,
+runtime::UnsetVector<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>& mesh,
                                                 std::uint32_t after) {
   constexpr std::size_t stretch = 64;
-  runtime::FilledArray<std::uint8_t> marked(executor, mesh.vertex_slots());
+  auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
   const auto mark = [&](std::size_t, std::size_t begin, std::size_t end) {
     if (!any_above(std::span(mesh.changed_at).subspan(begin, end - begin), after)) return;
     // Listed first, without branches, as which have changed cannot be foreseen.
@@ -107,9 +107,9 @@ template struct Mesh<2>;
 template struct Mesh<3>;
 template void rebuild_elements_of(const Executor&, Mesh<2>&);
 template void rebuild_elements_of(const Executor&, Mesh<3>&);
-template runtime::FilledArray<std::uint8_t> mark_changed(const Executor&, const Mesh<2>&,
+template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const Mesh<2>&,
                                                          std::uint32_t);
-template runtime::FilledArray<std::uint8_t> mark_changed(const Executor&, const Mesh<3>&,
+template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const Mesh<3>&,
                                                          std::uint32_t);
 template void update_shapes(const Executor&, Mesh<2>&);
 template void update_shapes(const Executor&, Mesh<3>&);

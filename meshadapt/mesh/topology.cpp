@@ -34,7 +34,7 @@ class Parts {
   Parts(const Executor& executor, const AnyMesh& mesh, Regions region_of)
       : elements_(elements_in<Dim>(mesh).vertices),
         region_of_(region_of),
-        lowest_(executor, mesh.vertex_count(), none),
+        lowest_(runtime::make_filled<std::uint32_t>(executor, mesh.vertex_count(), none)),
         sets_(executor, 0) {
     runtime::parallel_for(executor, elements_.size(), [&](std::size_t e) {
       for (const VertexId v : elements_[e]) runtime::atomic_min(lowest_[v], region(e));
@@ -82,7 +82,7 @@ class Parts {
 
   const std::vector<Corners<Dim>>& elements_;
   Regions region_of_;
-  runtime::FilledArray<std::uint32_t> lowest_;  // [vertex], region; none: of no element
+  runtime::UnsetVector<std::uint32_t> lowest_;  // [vertex], region; none: of no element
   runtime::UnsetVector<Other> others_;          // sorted
   runtime::DisjointSets sets_;
 };

@@ -22,12 +22,12 @@ namespace ductile::meshadapt {
 /// survey. All corners of elements changed since the survey was last used are marked.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
-runtime::FilledArray<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& executor,
+runtime::UnsetVector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& executor,
                                                             const Mesh<Dim>& mesh,
                                                             EdgeSurvey<Dim>& survey,
                                                             std::span<const std::uint8_t> marked,
                                                             double limit) {
-  runtime::FilledArray<std::uint8_t> ends(executor, mesh.vertex_slots());
+  auto ends = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
   survey.renew(executor, mesh, [&](ElementId e) {
     unsigned any = 0;
     for (const VertexId v : mesh.corners_of[e]) any |= marked[v];

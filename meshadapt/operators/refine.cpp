@@ -17,7 +17,7 @@
 namespace ductile::meshadapt {
 
 using runtime::few_nanoseconds;
-using runtime::FilledArray;
+using runtime::make_filled;
 using runtime::parallel_for;
 using runtime::PhaseTimer;
 
@@ -115,9 +115,9 @@ void Refine<Dim>::plan() {
   runtime::FreshMemory fresh;
   splits_.resize_for_overwrite(edges_.size(), fresh);
   fresh.touch(executor_);
-  refused_in_ = FilledArray<std::uint32_t>(executor_, edges_.size());
-  asked_ = FilledArray<std::uint8_t>(executor_, edges_.size());
-  FilledArray<std::uint8_t> is_cut(executor_, mesh_.element_slots());
+  refused_in_ = make_filled<std::uint32_t>(executor_, edges_.size());
+  asked_ = make_filled<std::uint8_t>(executor_, edges_.size());
+  auto is_cut = make_filled<std::uint8_t>(executor_, mesh_.element_slots());
   around_ = runtime::parallel_collect<Around>(
       executor_, edges_.size(), [&](std::size_t i, auto&& append) {
         const auto number = static_cast<std::uint32_t>(i);
@@ -138,7 +138,7 @@ void Refine<Dim>::plan() {
   parallel_for(
       executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); },
       few_nanoseconds);
-  around_begin_ = FilledArray<std::uint32_t>(executor_, edges_.size());
+  around_begin_ = make_filled<std::uint32_t>(executor_, edges_.size());
   const auto note = [this](std::size_t, std::size_t begin, std::size_t end) {
     note_splits(begin, end);
   };

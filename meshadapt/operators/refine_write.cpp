@@ -14,7 +14,7 @@
 namespace ductile::meshadapt {
 
 using runtime::few_nanoseconds;
-using runtime::FilledArray;
+using runtime::make_filled;
 using runtime::parallel_for;
 using runtime::PhaseTimer;
 
@@ -23,8 +23,8 @@ constexpr double many = 0.05;
 
 template <int Dim>
 void Refine<Dim>::number() {
-  place_of_ = FilledArray<std::uint32_t>(executor_, edges_.size());
-  first_piece_ = FilledArray<std::uint32_t>(executor_, elements_.size());
+  place_of_ = make_filled<std::uint32_t>(executor_, edges_.size());
+  first_piece_ = make_filled<std::uint32_t>(executor_, elements_.size());
   parallel_for(
       executor_, edges_.size(),
       [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); },

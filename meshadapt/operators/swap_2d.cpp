@@ -152,7 +152,7 @@ class FlipSearch {
   std::uint32_t after_;
   EdgeRange range_;
   float bound_;
-  runtime::FilledArray<std::uint8_t> marked_;
+  runtime::UnsetVector<std::uint8_t> marked_;
 };
 
 }  // namespace

@@ -146,68 +146,40 @@ std::vector<T> make_vector(const Executor& executor, std::size_t n) {
   return made;
 }
 
-/// An array that grows, with one value in what is new.
-/// Thread safety: elements as those of an array; what changes the size, one thread.
+/// Grows an array to n elements, if it has fewer: what is new holds `value`, and what there was is
+/// moved and what is new written by all threads. Throws std::bad_alloc.
+/// Thread safety: one caller; runs on the executor.
 template <class T>
 requires std::is_trivially_copyable_v<T>
-class FilledArray {
- public:
-  FilledArray() = default;
-  /// n elements that hold `value`. Throws std::bad_alloc.
-  FilledArray(const Executor& executor, std::size_t n, T value = {}) { resize(executor, n, value); }
-  FilledArray(FilledArray&& other) noexcept { swap(other); }
-  FilledArray& operator=(FilledArray&& other) noexcept {
-    FilledArray(std::move(other)).swap(*this);
-    return *this;
+void grow_filled(const Executor& executor, UnsetVector<T>& array, std::size_t n,
+                 std::type_identity_t<T> value) {
+  constexpr std::size_t pages = std::max<std::size_t>(1, 32768 / sizeof(T));
+  constexpr LoopOptions by_pages{.grain = pages, .serial_below = 4 * pages};
+  const std::size_t before = array.size();
+  if (n <= before) return;
+  if (n > array.capacity()) {
+    UnsetVector<T> larger;
+    larger.reserve(std::max(n, array.capacity() + array.capacity() / 2));
+    larger.resize(before);
+    const auto move = [&](std::size_t begin, std::size_t end) {
+      std::copy(array.data() + begin, array.data() + end, larger.data() + begin);
+    };
+    parallel_for_ranges(executor, before, move, by_pages);
+    array.swap(larger);
   }
+  array.resize(n);
+  const auto fill = [value](T* begin, T* end) { std::fill(begin, end, value); };
+  write_first(executor, array.data() + before, n - before, fill, by_pages);
+}
 
-  std::size_t size() const { return size_; }
-  bool empty() const { return size_ == 0; }
-  T* data() { return values_.get(); }
-  const T* data() const { return values_.get(); }
-  T* begin() { return data(); }
-  T* end() { return data() + size_; }
-  const T* begin() const { return data(); }
-  const T* end() const { return data() + size_; }
-  T& operator[](std::size_t i) { return values_[i]; }
-  const T& operator[](std::size_t i) const { return values_[i]; }
-
-  /// Grows to n elements, if there are fewer: what is new holds `value`. Throws std::bad_alloc.
-  void resize(const Executor& executor, std::size_t n, T value) {
-    if (n <= size_) return;
-    if (n > capacity_) move_to(executor, std::max(n, capacity_ + capacity_ / 2));
-    const auto fill = [value](T* begin, T* end) { std::fill(begin, end, value); };
-    write_first(executor, values_.get() + size_, n - size_, fill, by_pages);
-    size_ = n;
-  }
-
-  /// Forgets all elements and keeps the memory.
-  void clear() { size_ = 0; }
-
- private:
-  static constexpr std::size_t pages = std::max<std::size_t>(1, 32768 / sizeof(T));
-  static constexpr LoopOptions by_pages{.grain = pages, .serial_below = 4 * pages};
-
-  void swap(FilledArray& other) {
-    std::swap(values_, other.values_);
-    std::swap(size_, other.size_);
-    std::swap(capacity_, other.capacity_);
-  }
-
-  void move_to(const Executor& executor, std::size_t capacity) {
-    auto larger = std::make_unique_for_overwrite<T[]>(capacity);
-    parallel_for_ranges(
-        executor, size_,
-        [&](std::size_t begin, std::size_t end) {
-          std::copy(values_.get() + begin, values_.get() + end, larger.get() + begin);
-        },
-        by_pages);
-    values_ = std::move(larger);
-    capacity_ = capacity;
-  }
-
-  std::unique_ptr<T[]> values_;
-  std::size_t size_ = 0, capacity_ = 0;
-};
+/// n elements that hold `value`, written by all threads. Throws std::bad_alloc.
+/// Thread safety: one caller; runs on the executor.
+template <class T>
+UnsetVector<T> make_filled(const Executor& executor, std::size_t n,
+                           std::type_identity_t<T> value = {}) {
+  UnsetVector<T> made;
+  grow_filled(executor, made, n, value);
+  return made;
+}
 
 }  // namespace ductile::runtime

@@ -109,8 +109,8 @@ class ColouredRounds {
 
   /// New items of a growing operator may be woken, and conflict, in the round that makes them.
   void provide_items() {
-    woken_at_.resize(executor_, op_.item_count(), 0);
-    turn_of_.resize(executor_, op_.item_count(), absent);
+    grow_filled(executor_, woken_at_, op_.item_count(), 0);
+    grow_filled(executor_, turn_of_, op_.item_count(), absent);
   }
 
   void run_in_tiles(auto work) {
@@ -133,7 +133,7 @@ class ColouredRounds {
     parallel_sort(executor_, work);  // which mostly is in order
     Tiles<Op> tiles(executor_, op_, work);
     tiles.run([&] { return new_commit(); }, [&](Item item) { note_planned(item); });
-    const FilledArray<std::uint8_t>& is_left = tiles.left();
+    const UnsetVector<std::uint8_t>& is_left = tiles.left();
     const auto find = [&](std::size_t i, auto&& append) {
       if (is_left[i] != 0) append(work[i]);
     };
@@ -253,8 +253,8 @@ class ColouredRounds {
   Batches<Op, Check>& batches_;
   const Executor& executor_ = batches_.executor;
   Op& op_ = batches_.op;
-  FilledArray<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
-  FilledArray<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its class;
+  UnsetVector<std::uint32_t> woken_at_;  // [item], the window, or 0 if planned since
+  UnsetVector<std::uint32_t> turn_of_;   // [item], its place in the window's work, then its class;
                                          // or its turn in tiles (Turns); or absent
   UnsetVector<Item> by_class_;           // the window's work, class after class
   std::size_t turn_ = 0;                 // class being executed

@@ -94,7 +94,7 @@ class ReservingRounds {
       first_key_ = all_keys;
     }
     first_key_ -= wanted;
-    reserved_.resize(executor_, op_.resource_count(), ~std::uint32_t{0});
+    grow_filled(executor_, reserved_, op_.resource_count(), ~std::uint32_t{0});
   }
 
   void reserve_all(std::span<const Item> work) {
@@ -210,7 +210,7 @@ class ReservingRounds {
   Batches<Op, Check>& batches_;
   const Executor& executor_ = batches_.executor;
   Op& op_ = batches_.op;
-  FilledArray<std::uint32_t> reserved_;  // [resource], the lowest key that asked
+  UnsetVector<std::uint32_t> reserved_;  // [resource], the lowest key that asked
   std::uint32_t share_ = everyone;       // who has a hash up to this asks
 
   // ---- The window being run ----

@@ -50,7 +50,7 @@ class Tiles {
         tiles_(executor, tile_of(op.item_count()) + 1,
                [&](std::size_t tile) { return rank_of(tile); }),
         applied_of_(tile_of(op.item_count()) + 1),
-        left_(executor, work.size()) {}
+        left_(make_filled<std::uint8_t>(executor, work.size())) {}
 
   /// Plans and applies all items but those that are left, each with a commit of its tile; tells
   /// planning(item) before.
@@ -63,7 +63,7 @@ class Tiles {
     return std::accumulate(applied_of_.begin(), applied_of_.end(), std::size_t{0});
   }
   /// [position in the work], 1 if the item is left.
-  const FilledArray<std::uint8_t>& left() const { return left_; }
+  const UnsetVector<std::uint8_t>& left() const { return left_; }
 
  private:
   /// A tile that a thread has begun, and how far it is.
@@ -153,7 +153,7 @@ class Tiles {
   BlockLayout layout_;
   Ranked tiles_;
   std::vector<std::uint32_t> applied_of_;  // [tile]
-  FilledArray<std::uint8_t> left_;         // [position in the work]
+  UnsetVector<std::uint8_t> left_;         // [position in the work]
 };
 
 }  // namespace ductile::runtime::detail
