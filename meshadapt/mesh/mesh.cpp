@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <span>
 
 #include "ductile/runtime/arrays.hpp"
@@ -43,10 +42,9 @@ static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim>
 
 template <int Dim>
 void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
-  const auto count_of = runtime::make_unset<std::uint32_t>(executor, mesh.vertex_slots());
+  auto count_of = runtime::make_unset_vector<std::uint32_t>(executor, mesh.vertex_slots());
   auto& lists = mesh.elements_of;
-  Grouping grouping(executor, bounds_by_lowest(executor, mesh),
-                    std::span(count_of.get(), mesh.vertex_slots()),
+  Grouping grouping(executor, bounds_by_lowest(executor, mesh), std::span(count_of),
                     [&mesh](ElementId element, auto&& visit) {
                       if (!mesh.alive(element)) return;
                       for (const VertexId v : mesh.corners_of[element]) visit(v);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -134,7 +133,7 @@ void Refine<Dim>::plan() {
   if (around_.size() > std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("more elements around long edges than 32-bit numbers can count");
   elements_ = MarkedSet(executor_, is_cut);
-  cuts_ = runtime::make_unset<Cuts>(executor_, elements_.size());
+  cuts_ = runtime::make_unset_vector<Cuts>(executor_, elements_.size());
   parallel_for(
       executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); },
       few_nanoseconds);

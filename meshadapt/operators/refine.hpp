@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "ductile/meshadapt/background.hpp"
@@ -135,8 +134,8 @@ class Refine {
   MarkedSet elements_;                   // those that are cut
   runtime::UnsetVector<Around> around_;  // by edge, until it is known which are refused
   runtime::UnsetVector<std::uint32_t>
-      around_begin_;              // [edge], in around_; of no use if it was not located
-  std::unique_ptr<Cuts[]> cuts_;  // [place in elements_]
+      around_begin_;                 // [edge], in around_; of no use if it was not located
+  runtime::UnsetVector<Cuts> cuts_;  // [place in elements_]
   runtime::UnsetVector<std::uint32_t> place_of_;     // [edge], of its vertex among the new ones
   runtime::UnsetVector<std::uint32_t> first_piece_;  // [place in elements_], among the new pieces
   VertexId first_vertex_ = none;

@@ -112,15 +112,6 @@ TEST(TouchPages, AsksForManyOfWhichTheLastIsNotThere) {
   EXPECT_EQ(reused.count(), 1U);
 }
 
-TEST(MakeUnset, GivesElementsThatHoldWhatIsWritten) {
-  const Executor executor({.threads = 2});
-  for (const std::size_t n : {0U, 1U, 5000U, 3000000U}) {
-    const auto elements = make_unset<std::uint16_t>(executor, n);
-    std::fill_n(elements.get(), n, std::uint16_t{7});
-    EXPECT_EQ(std::count(elements.get(), elements.get() + n, 7), static_cast<std::ptrdiff_t>(n));
-  }
-}
-
 struct Counted {
   static inline int made = 0;
   Counted() { ++made; }

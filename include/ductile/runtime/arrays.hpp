@@ -67,15 +67,6 @@ void write_first(const Executor& executor, T* first, std::size_t n, Write&& writ
       options);
 }
 
-/// n elements that may hold anything and are all about to be set. Throws std::bad_alloc.
-/// Thread safety: one caller; runs on the executor.
-template <class T>
-std::unique_ptr<T[]> make_unset(const Executor& executor, std::size_t n) {
-  auto elements = std::make_unique_for_overwrite<T[]>(n);
-  touch_pages(executor, elements.get(), n * sizeof(T));
-  return elements;
-}
-
 // ---- Vectors ----
 
 /// std::allocator, but that an element made of nothing may hold anything, if its type is trivially
