@@ -11,7 +11,6 @@
 #include <unordered_map>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "geometry/faced.hpp"

@@ -5,7 +5,6 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 

@@ -12,7 +12,6 @@
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/facet_key.hpp"
 #include "mesh/grouping.hpp"

@@ -11,7 +11,6 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/classify.hpp"
 #include "mesh/array_lengths.hpp"

@@ -10,7 +10,6 @@
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/numbering.hpp"

@@ -10,7 +10,6 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"

@@ -10,7 +10,6 @@
 
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/growing_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/numbering.hpp"

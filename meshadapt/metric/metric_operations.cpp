@@ -12,7 +12,6 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/first_bad.hpp"
 #include "metric/bounded_metric.hpp"

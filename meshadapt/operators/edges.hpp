@@ -11,7 +11,6 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_survey.hpp"

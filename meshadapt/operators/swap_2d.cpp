@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "operators/swap.hpp"
 
 namespace ductile::meshadapt {

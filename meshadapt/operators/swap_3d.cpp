@@ -2,7 +2,7 @@
 #include <limits>
 #include <span>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "operators/base.hpp"
 #include "operators/cut_off.hpp"
 #include "operators/ring.hpp"

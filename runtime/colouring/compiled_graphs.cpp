@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/sort.hpp"

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/collect.hpp"
 #include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/detail/batches.hpp"
 #include "ductile/runtime/detail/surveyed_tiles.hpp"
