@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/detail/bit_field.hpp"
 #include "ductile/runtime/detail/buckets.hpp"
 #include "ductile/runtime/detail/source_order.hpp"
 

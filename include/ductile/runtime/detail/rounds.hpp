@@ -15,7 +15,7 @@
 //   operator_check           what run_rounds_checked adds, with opposite_order
 //
 // Updates that are deferred lie in buckets and are put in order by source_order; items that are
-// woken lie in a batch for each thread (batch.hpp), then in segments.
+// woken lie in a batch for each thread, then in segments.
 
 #include <cstdint>
 #include <type_traits>

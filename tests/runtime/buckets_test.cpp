@@ -1,8 +1,8 @@
-#include "ductile/runtime/detail/bit_field.hpp"
+#include "ductile/runtime/detail/buckets.hpp"
 
 #include <gtest/gtest.h>
 
-namespace ductile::runtime::detail::bit_field_test {
+namespace ductile::runtime::detail::buckets_test {
 namespace {
 
 TEST(BitField, TakesItsBitsAndNoOthers) {
@@ -18,4 +18,4 @@ TEST(BitField, IsZeroOfEveryNumberWhereItHasNoBits) {
 }
 
 }  // namespace
-}  // namespace ductile::runtime::detail::bit_field_test
+}  // namespace ductile::runtime::detail::buckets_test
