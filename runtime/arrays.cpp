@@ -51,10 +51,13 @@ void FreshMemory::touch(const Executor& executor) {
   for (auto [begin, count] : std::exchange(parts_, {}))
     for (; count > 0; begin += blocks.back().count * page_size(), count -= blocks.back().count)
       blocks.push_back({begin, std::min(block, count)});
-  parallel_for(executor, blocks.size(),
-               [&](std::size_t i) { get_pages(blocks[i].begin, blocks[i].count * page_size()); },
-               {.grain = 1, .serial_below = 3});
+  parallel_for(
+      executor, blocks.size(),
+      [&](std::size_t i) { detail::get_pages(blocks[i].begin, blocks[i].count * page_size()); },
+      {.grain = 1, .serial_below = 3});
 }
+
+namespace detail {
 
 bool is_fresh(void* memory, std::size_t bytes) {
   if (are_few_pages(bytes)) return false;
@@ -78,13 +81,17 @@ void touch_pages(const Executor& executor, void* memory, std::size_t bytes) {
   parallel_for_blocks(executor, bytes, most_at_once * page_size(), get);
 }
 
+}  // namespace detail
+
 #else
 
 void FreshMemory::add(void*, std::size_t) {}
 void FreshMemory::touch(const Executor&) {}
+namespace detail {
 bool is_fresh(void*, std::size_t) { return false; }
 void get_pages(void*, std::size_t) {}
 void touch_pages(const Executor&, void*, std::size_t) {}
+}  // namespace detail
 
 #endif
 

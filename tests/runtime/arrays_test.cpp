@@ -81,9 +81,9 @@ TEST(FreshMemory, GetsThePagesOfZerosBeforeTheyAreRead) {
   FreshMemory fresh;
   with.resize(1000000, fresh);
   fresh.touch(Executor({.threads = 2}));
-  const bool given_without = !is_fresh(without.data(), without.bytes());
+  const bool given_without = !detail::is_fresh(without.data(), without.bytes());
   // If so malloc gave it, as for sanitizers.
-  EXPECT_TRUE(given_without || !is_fresh(with.data(), with.size() * sizeof(std::uint64_t)));
+  EXPECT_TRUE(given_without || !detail::is_fresh(with.data(), with.size() * sizeof(std::uint64_t)));
   EXPECT_EQ(std::count(with.begin(), with.end(), 0U), 1000000);
 }
 
@@ -103,12 +103,12 @@ TEST(TouchPages, AsksForManyOfWhichTheLastIsNotThere) {
   const Executor executor({.threads = 2});
   const std::size_t page = Mapping::page;
   const Mapping fresh(1000), few(1000), reused(1000);
-  touch_pages(executor, fresh.at(0), 1000 * page);
+  detail::touch_pages(executor, fresh.at(0), 1000 * page);
   EXPECT_EQ(fresh.count(), 1000U);
-  touch_pages(executor, few.at(0), 10 * page);
+  detail::touch_pages(executor, few.at(0), 10 * page);
   EXPECT_EQ(few.count(), 0U);
   *reused.at(999 * page) = 1;
-  touch_pages(executor, reused.at(0), 1000 * page);
+  detail::touch_pages(executor, reused.at(0), 1000 * page);
   EXPECT_EQ(reused.count(), 1U);
 }
 

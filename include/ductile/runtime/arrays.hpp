@@ -42,6 +42,8 @@ class FreshMemory {
   std::vector<Pages> parts_;
 };
 
+namespace detail {
+
 /// Whether memory that malloc or new gave, which often has had it before, is worth touching: there
 /// is some of it, and its last page is not there. Thread safety: any thread.
 bool is_fresh(void* memory, std::size_t bytes);
@@ -53,16 +55,18 @@ void get_pages(void* memory, std::size_t bytes);
 /// Gets the pages of memory if it is fresh. Thread safety: as FreshMemory::touch().
 void touch_pages(const Executor& executor, void* memory, std::size_t bytes);
 
+}  // namespace detail
+
 /// Calls write(begin, end) with parts of the n elements at `first`, each on the thread that gets
 /// its pages before, if the elements are fresh. Thread safety: as FreshMemory::touch().
 template <class T, class Write>
 void write_first(const Executor& executor, T* first, std::size_t n, Write&& write,
                  const LoopOptions& options) {
-  const bool fresh = is_fresh(first, n * sizeof(T));
+  const bool fresh = detail::is_fresh(first, n * sizeof(T));
   parallel_for_ranges(
       executor, n,
       [&](std::size_t begin, std::size_t end) {
-        if (fresh) get_pages(first + begin, (end - begin) * sizeof(T));
+        if (fresh) detail::get_pages(first + begin, (end - begin) * sizeof(T));
         write(first + begin, first + end);
       },
       options);
@@ -99,7 +103,7 @@ template <class T>
 UnsetVector<T> make_unset_vector(const Executor& executor, std::size_t n) {
   UnsetVector<T> made;
   made.reserve(n);
-  touch_pages(executor, made.data(), n * sizeof(T));
+  detail::touch_pages(executor, made.data(), n * sizeof(T));
   made.resize(n);
   return made;
 }
@@ -119,7 +123,7 @@ template <class... T>
 void resize_empty(const Executor& executor, const EmptyVector<T>&... empty) {
   constexpr std::size_t large = std::size_t{1} << 17U;
   (empty.vector.reserve(empty.size), ...);
-  (touch_pages(executor, empty.vector.data(), empty.size * sizeof(T)), ...);
+  (detail::touch_pages(executor, empty.vector.data(), empty.size * sizeof(T)), ...);
   const auto resize = [&](std::size_t which) {
     std::size_t i = 0;
     ((i++ == which ? empty.vector.resize(empty.size) : void()), ...);
