@@ -42,7 +42,7 @@ if(EXISTS ${SOURCE_DIR}/meshadapt)
 endif()
 
 forbid("#include .*meshadapt" "runtime knows nothing of meshadapt" include/ductile/runtime runtime)
-set(older_contract "/detail/(coloured_rounds|surveyed_tiles|tiles)\\.hpp$")  # it colours in headers
+set(older_contract "/detail/(coloured_rounds|tiles)\\.hpp$")  # it colours in headers
 forbid_except("/runtime/colouring/|${older_contract}" "#include .*/colouring/"
   "colouring stands on the other parts of runtime, not they on it" include/ductile/runtime runtime)
 forbid("#include .*meshadapt" "runtime's tests build without meshadapt" tests/runtime)
