@@ -1,4 +1,4 @@
-#include "ductile/runtime/contract.hpp"
+#include "ductile/runtime/detail/contract.hpp"
 
 #include <utility>
 

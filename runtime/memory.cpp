@@ -1,4 +1,4 @@
-#include "ductile/runtime/memory.hpp"
+#include "ductile/runtime/process.hpp"
 
 #include <sys/resource.h>
 #include <unistd.h>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "ductile/runtime/recording.hpp"
 #include "loop.hpp"
 
 namespace ductile::runtime {
@@ -29,20 +28,6 @@ void run_alone(const Executor& executor, std::size_t n, RangeBody body, void* co
   body(context, 0, n);
 }
 
-/// Chunk after chunk on the caller.
-void run_recorded(Recording& recording, const Loop& loop) {
-  struct Recorded {
-    Recording& recording;
-    TeamMember member{0};
-    explicit Recorded(Recording& to) : recording(to) { recording.begin_loop(); }
-    ~Recorded() { recording.end_loop(); }
-  } const recorded(recording);
-  for (std::size_t begin = 0; begin < loop.n; begin += loop.grain) {
-    loop.body(loop.context, begin, std::min(loop.n, begin + loop.grain));
-    recording.end_chunk();
-  }
-}
-
 }  // namespace
 
 bool inside_a_loop() noexcept { return inside_loop; }
@@ -65,7 +50,6 @@ void run_loop(const Executor& executor, std::size_t n, RangeBody body, void* con
     return;
   }
   Loop loop{body, context, n, grain};
-  if (executor.recording() != nullptr) return run_recorded(*executor.recording(), loop);
   const Schedule schedule =
       options.schedule == Schedule::automatic ? executor.schedule() : options.schedule;
   switch (schedule) {

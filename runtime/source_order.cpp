@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-namespace ductile::runtime {
+namespace ductile::runtime::detail {
 
 template class RunSort<std::uint64_t, void*>;
-
-namespace detail {
 
 namespace {
 
@@ -40,5 +38,4 @@ std::uint64_t ahead_up_to(const std::vector<SourcePiece>& heap, const SourcePiec
   return piece.number < next.number ? next.first : next.first - 1;
 }
 
-}  // namespace detail
-}  // namespace ductile::runtime
+}  // namespace ductile::runtime::detail

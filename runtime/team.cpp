@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "ductile/runtime/team.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "loop.hpp"
 
 namespace ductile::runtime {
@@ -146,9 +146,7 @@ void Team::join_one(Seat& seat, const Task& task) const {
 }
 
 void run_with_team(const Executor& executor, TeamBody body, void* context) {
-  if (executor.threads() == 1 || executor.recording() != nullptr || led_team != nullptr ||
-      inside_a_loop())
-    return body(context);
+  if (executor.threads() == 1 || led_team != nullptr || inside_a_loop()) return body(context);
   Team team(executor);
   FirstError error;
   const auto come = [&](int thread, int size) {

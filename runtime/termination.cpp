@@ -1,4 +1,4 @@
-#include "ductile/runtime/termination.hpp"
+#include "ductile/runtime/process.hpp"
 
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): sigaction is POSIX's
 #include <unistd.h>

@@ -1,6 +1,6 @@
 /// @file
 /// The whole adaptation, measured: time by kernel and phase on 1, 2, ... threads, what determinism
-/// costs, quality and memory; a replay on up to 64 threads; and Mmg on the same files, if it is
+/// costs, quality and memory; and Mmg on the same files, if it is
 /// there. Leaves a page, plots, and every sample in a folder.
 #include <algorithm>
 #include <chrono>
@@ -11,7 +11,6 @@
 #include "child.hpp"
 #include "copies.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "forecast.hpp"
 #include "peer.hpp"
 #include "plan.hpp"
 #include "results.hpp"
@@ -66,11 +65,7 @@ void measure_case(Results& results, const Plan& plan, const AdaptCase& made) {
       results.samples.push_back(sampler.take(settings, i));
       say(results.samples.back());
     }
-  if (is_large(made.name)) return;
-  measure_copies(results, plan, made, sampler);
-  if (!plan.replays) return;
-  results.forecasts.push_back(forecast(sampler, made.name));
-  std::printf("%-16s recorded and replayed\n", made.name.c_str());
+  if (!is_large(made.name)) measure_copies(results, plan, made, sampler);
 }
 
 void measure_peer(Results& results, const Plan& plan, const AdaptCase& made) {

@@ -11,7 +11,7 @@ namespace ductile::bench {
 
 namespace {
 
-constexpr std::array<cli::Option, 10> options{{
+constexpr std::array<cli::Option, 9> options{{
     {"--cases", "A,B", "only these; NAME@FACTOR is NAME at so many times its size"},
     {"--quick", "", "small sizes, in less than two minutes"},
     {"--threads", "N", "at most this many (default: the cores this process may use)"},
@@ -19,7 +19,6 @@ constexpr std::array<cli::Option, 10> options{{
     {"--seconds", "S", "begin no further repetition of a case after so long (default: 120)"},
     {"--scale", "F", "multiplies the size of each case"},
     {"-o", "FOLDER", "where everything goes (default: bench-results/meshadapt)", "--output"},
-    {"--no-replays", "", "does not record and replay on up to 64 threads"},
     {"--no-peers", "", "does not run Mmg, even if it is on the PATH"},
     {"--help", "", "says this and lists the cases", "-h"},
 }};
@@ -71,7 +70,6 @@ Plan plan_from(const cli::Arguments& arguments) {
   plan.repetitions = arguments.integer("--repetitions", 1, 1000).value_or(quick ? 2 : 5);
   plan.pairs = std::min(plan.repetitions, quick ? 1 : 3);
   plan.seconds = arguments.positive("--seconds").value_or(quick ? 6 : 120);
-  plan.replays = !arguments.has("--no-replays");
   plan.peers = !arguments.has("--no-peers");
   return plan;
 }

@@ -19,7 +19,6 @@ struct Plan {
   int repetitions = 5;
   int pairs = 3;
   double seconds = 120;  ///< no further repetition of a case, or pair, is begun after so long
-  bool replays = true;
   bool peers = true;
 };
 

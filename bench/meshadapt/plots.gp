@@ -5,7 +5,7 @@ set style fill solid 0.8 border lc rgb "white"
 present(file) = system("test -f '".file."' && echo yes") eq "yes"
 names(pattern, prefix) = system("ls ".pattern." 2>/dev/null | sed 's/^".prefix."_//; s/.csv$//'")
 
-# Kernels, renumbering and the total: measured as points on lines, replayed as dashes.
+# Kernels, renumbering and the total: as measured.
 parts = "2 3 4 5 7 9"
 part(i) = int(word(parts, i))
 set linetype 6 lc rgb "black"
@@ -18,7 +18,6 @@ do for [name in names("measured_seconds_*.csv", "measured_seconds")] {
   set xrange [0.9:*]
   do for [what in "seconds efficiency"] {
     measured = "measured_".what."_".name.".csv"
-    replayed = "replayed_".what."_".name.".csv"
     if (what eq "seconds") {
       set logscale y
       set yrange [*:*]
@@ -28,15 +27,8 @@ do for [name in names("measured_seconds_*.csv", "measured_seconds")] {
       set yrange [0:1.2]
       set ylabel "parallel efficiency"
     }
-    if (present(replayed)) {
-      plot for [i=1:words(parts)] measured using 1:(column(part(i))) \
-             with linespoints lw 2 pt 7 ps 0.7 lt i title columnheader(part(i)), \
-           for [i=1:words(parts)] replayed skip 1 using 1:(column(part(i))) \
-             with lines lt i dt 2 title (i == 6 ? "replayed" : "")
-    } else {
-      plot for [i=1:words(parts)] measured using 1:(column(part(i))) \
-             with linespoints lw 2 pt 7 ps 0.7 lt i title columnheader(part(i))
-    }
+    plot for [i=1:words(parts)] measured using 1:(column(part(i))) \
+           with linespoints lw 2 pt 7 ps 0.7 lt i title columnheader(part(i))
   }
   unset multiplot
   unset logscale

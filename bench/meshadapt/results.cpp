@@ -74,16 +74,6 @@ void write_measured(std::span<const Summary> summaries, const std::string& name,
   shares.write_csv(folder / ("measured_efficiency_" + name + ".csv"));
 }
 
-void write_replayed(const Forecast& forecast, const fs::path& folder) {
-  Table seconds = part_columns({"threads"}), shares = part_columns({"threads"});
-  for (const ForecastRow& row : forecast.rows) {
-    seconds.add(row_of({row.threads}, row.seconds));
-    shares.add(row_of({row.threads}, row.efficiency));
-  }
-  seconds.write_csv(folder / ("replayed_seconds_" + forecast.case_name + ".csv"));
-  shares.write_csv(folder / ("replayed_efficiency_" + forecast.case_name + ".csv"));
-}
-
 /// Shares of the time on the fewest threads, in per cent, by case.
 Table share_table(std::span<const Summary> summaries) {
   Table table = part_columns({"case"});
@@ -167,15 +157,6 @@ void show_kernels(Page& page, const std::vector<Summary>& summaries, const fs::p
     show(page, folder, "phases_" + name + ".svg", name + ": seconds of each phase of each kernel");
 }
 
-void show_forecasts(Page& page, const std::vector<Forecast>& forecasts) {
-  if (forecasts.empty()) return;
-  page.heading("On more threads: a replay");
-  page.paragraph(
-      "Costs of loops recorded on one thread, handed out to P; a launch takes 1 us + 30 ns a "
-      "thread, a block 32 items. Memory that threads share is not in it, so real runs are slower.");
-  page.table(forecast_table(forecasts));
-}
-
 void show_pairs(Page& page, const std::vector<Pair>& pairs, const fs::path& folder) {
   if (pairs.empty()) return;
   page.heading("Beside Mmg");
@@ -194,14 +175,9 @@ bool Results::sound() const {
       return s.case_name != name || !s.settings.deterministic || s.fingerprint == bytes;
     });
   };
-  return std::all_of(samples.begin(), samples.end(),
-                     [&](const Sample& s) {
-                       return s.figures.valid &&
-                              (!s.settings.deterministic || agrees(s.case_name, s.fingerprint));
-                     }) &&
-         std::all_of(forecasts.begin(), forecasts.end(), [&](const Forecast& forecast) {
-           return agrees(forecast.case_name, forecast.fingerprint);
-         });
+  return std::all_of(samples.begin(), samples.end(), [&](const Sample& s) {
+    return s.figures.valid && (!s.settings.deterministic || agrees(s.case_name, s.fingerprint));
+  });
 }
 
 Table time_table(std::span<const Summary> summaries) {
@@ -302,16 +278,6 @@ Table growth_table(std::span<const Summary> summaries) {
   return table;
 }
 
-Table forecast_table(std::span<const Forecast> forecasts) {
-  Table table = part_columns({"case", "threads", "seconds", "serial s", "critical s"});
-  for (const Forecast& forecast : forecasts)
-    for (const ForecastRow& row : forecast.rows)
-      table.add(row_of({forecast.case_name, row.threads, row.seconds.back(), row.serial_seconds,
-                        row.critical_seconds},
-                       row.efficiency));
-  return table;
-}
-
 Table ratio_table(std::span<const Pair> pairs) {
   Table table({"case", "pairs", "Ductile s", "Mmg s", "Mmg / Ductile", "elements", "Mmg elements",
                "in range %", "Mmg %", "mean quality", "Mmg mean", "least quality", "Mmg least",
@@ -352,9 +318,6 @@ void write_tables(const Results& results, const fs::path& folder) {
   }
   if (!results.copies.empty())
     copies_table(summaries, results.copies).write_csv(folder / "copies.csv");
-  for (const Forecast& forecast : results.forecasts) write_replayed(forecast, folder);
-  if (!results.forecasts.empty())
-    forecast_table(results.forecasts).write_csv(folder / "forecasts.csv");
   if (results.pairs.empty()) return;
   pair_table(results.pairs).write_csv(folder / "pairs.csv");
   ratio_table(results.pairs).write_csv(folder / "ratios.csv");
@@ -369,7 +332,7 @@ void write_page(const Results& results, const fs::path& folder) {
                       : "; kernels " + std::string(results.samples.front().instructions)));
   page.paragraph(results.sound()
                      ? "All meshes are valid, and those of the deterministic mode the same bit for "
-                       "bit on every number of threads and in the recorded run."
+                       "bit on every number of threads."
                      : "NOT SOUND: a mesh is not valid, or the deterministic mode gave different "
                        "ones; see the table of meshes.");
   for (const std::string& note : results.notes) page.paragraph(note);
@@ -382,7 +345,6 @@ void write_page(const Results& results, const fs::path& folder) {
     page.table(determinism);
   }
   show_kernels(page, summaries, folder);
-  show_forecasts(page, results.forecasts);
   show_pairs(page, results.pairs, folder);
   page.write(folder / "report.html");
 }

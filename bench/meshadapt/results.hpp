@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "copies.hpp"
-#include "forecast.hpp"
 #include "peer.hpp"
 #include "sample.hpp"
 #include "summary.hpp"
@@ -19,16 +18,14 @@ namespace ductile::bench {
 struct Results {
   std::vector<Sample> samples;
   std::vector<CopiesRow> copies;
-  std::vector<Forecast> forecasts;
   std::vector<Pair> pairs;
   std::vector<std::string> notes;  ///< what was not measured, and why
 
-  /// Whether every result is valid, and every deterministic one the same at all threads, recorded
-  /// runs included.
+  /// Whether every result is valid, and every deterministic one the same at all threads.
   bool sound() const;
 };
 
-/// Writes samples.csv, copies.csv, pairs.csv, forecasts.csv and the tables for plots into the
+/// Writes samples.csv, copies.csv, pairs.csv and the tables for plots into the
 /// folder. Throws Error.
 void write_tables(const Results& results, const std::filesystem::path& folder);
 
@@ -51,8 +48,6 @@ Table phase_table(std::span<const Summary> summaries);
 Table determinism_table(std::span<const Summary> summaries);
 /// Time per element of NAME@FACTOR beside NAME's.
 Table growth_table(std::span<const Summary> summaries);
-/// Replayed seconds and efficiency.
-Table forecast_table(std::span<const Forecast> forecasts);
 /// Medians of pairs, by case.
 Table ratio_table(std::span<const Pair> pairs);
 

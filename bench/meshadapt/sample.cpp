@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "ductile/meshadapt/statistics.hpp"
-#include "ductile/runtime/recording.hpp"
 
 namespace ductile::bench {
 
@@ -92,12 +91,6 @@ std::uint64_t fingerprint(const AdaptedMesh& result) {
 Sampler::Sampler(const AdaptCase& adapt_case)
     : case_(adapt_case), start_metric_(case_.metric_on(judges_, case_.start)) {}
 
-AdaptedMesh Sampler::adapt_on(const Executor& executor) const {
-  AdaptedMesh result;
-  timed(executor, result);
-  return result;
-}
-
 meshadapt::AdaptOptions Sampler::options() const {
   return {.make = {.surface_tolerance = case_.surface_tolerance}};
 }
@@ -122,7 +115,6 @@ Sample Sampler::timed(const Executor& executor, AdaptedMesh& result) const {
     sample.wall_seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     sample.processor_seconds += processor_seconds() - processor;
-    if (executor.recording() != nullptr) executor.recording()->pause();
     add(sample, result.report);
   }
   return sample;

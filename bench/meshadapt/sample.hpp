@@ -70,9 +70,6 @@ class Sampler {
   /// Seconds of the first call on one thread; starts no threads.
   double first_call_alone() const;
 
-  /// The same calls on any executor, not judged.
-  meshadapt::AdaptedMesh adapt_on(const runtime::Executor& executor) const;
-
  private:
   meshadapt::AdaptOptions options() const;
   Sample timed(const runtime::Executor& executor, meshadapt::AdaptedMesh& result) const;

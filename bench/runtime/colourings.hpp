@@ -11,7 +11,7 @@
 #include "support/extent.hpp"
 #include "support/graphs.hpp"
 
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
 
 namespace ductile::bench {
 

@@ -11,8 +11,8 @@
 
 #include "support/loop_cases.hpp"
 
+#include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::bench {
 namespace {

@@ -15,7 +15,7 @@
 #include "support/add.hpp"
 #include "support/extent.hpp"
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/worklist.hpp"
 

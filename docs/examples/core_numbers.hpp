@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/worklist.hpp"

@@ -15,11 +15,10 @@
 #include <vector>
 
 #include "cavity.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/hilbert.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "ductile/runtime/team.hpp"
 #include "plane.hpp"
 
 namespace example {

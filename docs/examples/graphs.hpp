@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/csr_rows.hpp"
-#include "ductile/runtime/graph.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"

@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/all_numbers.hpp"
-#include "ductile/runtime/atomic_mark.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "graphs.hpp"
 

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/all_numbers.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "graphs.hpp"
 

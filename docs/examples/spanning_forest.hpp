@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/runtime/all_numbers.hpp"
 #include "ductile/runtime/disjoint_sets.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "graphs.hpp"

@@ -17,7 +17,7 @@
 #include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
-#include "ductile/runtime/memory.hpp"
+#include "ductile/runtime/process.hpp"
 #include "files.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"

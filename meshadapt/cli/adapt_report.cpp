@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/memory.hpp"
+#include "ductile/runtime/process.hpp"
 #include "files.hpp"
 #include "report.hpp"
 

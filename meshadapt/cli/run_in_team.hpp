@@ -6,12 +6,11 @@
 #include "system.hpp"
 
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::cli {
 
 /// Returns body(executor), an exit status. The executor's threads stay together meanwhile, so that
-/// they give their core away soon when they wait (runtime/team.hpp), and reuse memory.
+/// they give their core away soon when they wait (runtime::with_team), and reuse memory.
 template <class Body>
 int run_in_team(const runtime::ExecutorOptions& options, Body&& body) {
   const runtime::Executor executor(options);

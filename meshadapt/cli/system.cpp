@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "ductile/runtime/memory.hpp"
+#include "ductile/runtime/process.hpp"
 
 namespace ductile::cli {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/simplex.hpp"
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
-#include "ductile/runtime/csr_rows.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {

@@ -10,11 +10,9 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "geometry/faced.hpp"
 #include "geometry/facet_sides.hpp"
 #include "geometry/rough_parts.hpp"
@@ -87,7 +85,7 @@ class Classifier {
   void find_neighbours() {
     std::array<std::uint32_t, Dim> nobody;
     nobody.fill(none);
-    across_.resize(executor_, facets_.size(), nobody);
+    runtime::grow_filled(executor_, across_, facets_.size(), nobody);
     runtime::parallel_for(executor_, sides_.size(), [&](std::size_t i) {
       if (!sides_.begins_run(i)) return;
       const auto both = sides_.run_at(i);
@@ -564,7 +562,7 @@ class Classifier {
   double least_turn_;         // cosine of the angle from which on edges are ridges
   FacetSides<Dim> sides_;
   using Others = std::array<std::uint32_t, Dim>;
-  runtime::FilledArray<Others> across_;             // [facet][side], the other facet or none
+  runtime::UnsetVector<Others> across_;             // [facet][side], the other facet or none
   std::unordered_map<SideKey, ListedEdge> listed_;  // 3D
   std::vector<std::uint8_t> kept_;  // [vertex], whether facets there keep their shape
   std::vector<CurveEdge> curve_edges_;

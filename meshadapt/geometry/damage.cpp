@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "geometry/crossing_facets.hpp"
 
 namespace ductile::meshadapt {

@@ -4,7 +4,7 @@
 #include <compare>
 #include <span>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 
 namespace ductile::meshadapt {
 

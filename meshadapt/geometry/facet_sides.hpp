@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "geometry/classify.hpp"
 
 namespace ductile::meshadapt {

@@ -10,7 +10,7 @@
 
 #include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -36,15 +36,13 @@ std::string where_it_is(const std::string& name, int code) {
 /// Enlarges the memory for what is read; the size of a pipe is not known in advance.
 void grow(FileBytes& bytes, std::size_t& capacity) {
   capacity = std::max<std::size_t>(2 * capacity, 1 << 16);
-  auto larger = std::make_unique_for_overwrite<char[]>(capacity);
-  std::copy_n(bytes.data.get(), bytes.size, larger.get());
-  bytes.data = std::move(larger);
+  bytes.data.resize(capacity);
 }
 
 }  // namespace
 
 FileBytes read_bytes(const fs::path& path) {
-  FileBytes bytes{path.string(), nullptr, 0};
+  FileBytes bytes{path.string(), {}, 0};
   std::error_code error;
   if (path.empty()) throw InputError("expected the name of a file to read, found an empty one");
   if (fs::is_directory(path, error))
@@ -57,10 +55,10 @@ FileBytes read_bytes(const fs::path& path) {
   std::setvbuf(file.get(), nullptr, _IONBF, 0);
   const auto known_size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
   std::size_t capacity = error ? 0 : static_cast<std::size_t>(known_size) + 1;
-  bytes.data = runtime::make_unset<char>(runtime::Executor({.threads = 1}), capacity);
+  bytes.data = runtime::make_unset_vector<char>(runtime::Executor({.threads = 1}), capacity);
   while (!std::feof(file.get())) {
     if (bytes.size == capacity) grow(bytes, capacity);
-    bytes.size += std::fread(bytes.data.get() + bytes.size, 1, capacity - bytes.size, file.get());
+    bytes.size += std::fread(bytes.data.data() + bytes.size, 1, capacity - bytes.size, file.get());
     if (std::ferror(file.get())) fail_to_read(bytes.name, errno);
   }
   if (bytes.size == 0)

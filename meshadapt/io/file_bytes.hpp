@@ -4,18 +4,19 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <string>
+
+#include "ductile/runtime/arrays.hpp"
 
 namespace ductile::meshadapt {
 
 struct FileBytes {
-  std::string name;              ///< as the user gave it, for messages
-  std::unique_ptr<char[]> data;  ///< `size` bytes
+  std::string name;                 ///< as the user gave it, for messages
+  runtime::UnsetVector<char> data;  ///< the first `size` bytes
   std::size_t size = 0;
 
-  const char* begin() const { return data.get(); }
-  const char* end() const { return data.get() + size; }
+  const char* begin() const { return data.data(); }
+  const char* end() const { return data.data() + size; }
 };
 
 /// Reads a file, or a pipe to its end. Throws InputError if there is none, if it is a folder or a

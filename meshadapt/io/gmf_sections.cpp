@@ -6,7 +6,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/arrays.hpp"
 
 namespace ductile::meshadapt::gmf {
 

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/atomic_min.hpp"
-#include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 
@@ -14,14 +12,14 @@ namespace ductile::meshadapt {
 
 namespace {
 
-using Marks = runtime::FilledArray<std::uint8_t>;
+using Marks = runtime::UnsetVector<std::uint8_t>;
 
 /// Marks the vertices of elements of more than one region.
 template <int Dim>
 void mark_between_regions(const runtime::Executor& executor, const AnyMesh& mesh,
                           std::span<const std::uint32_t> region_of, Marks& marked) {
   const auto& elements = elements_in<Dim>(mesh).vertices;
-  runtime::FilledArray<std::uint32_t> lowest(executor, mesh.vertex_count(), none);
+  auto lowest = runtime::make_filled<std::uint32_t>(executor, mesh.vertex_count(), none);
   runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
     for (const VertexId v : elements[e]) runtime::atomic_min(lowest[v], region_of[e]);
   });
@@ -35,7 +33,8 @@ void mark_between_regions(const runtime::Executor& executor, const AnyMesh& mesh
 template <int Dim>
 Marks marked_vertices(const runtime::Executor& executor, const AnyMesh& mesh, BoundaryFrom from,
                       std::span<const std::uint32_t> region_of) {
-  Marks marked(executor, mesh.vertex_count(), from == BoundaryFrom::elements ? 1 : 0);
+  auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_count(),
+                                                   from == BoundaryFrom::elements ? 1 : 0);
   if (from == BoundaryFrom::elements) return marked;
   const auto& facets = facets_in<Dim>(mesh).vertices;
   runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {

@@ -12,9 +12,9 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/disjoint_sets.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::meshadapt {
 

@@ -7,14 +7,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <span>
 
 #include "ductile/meshadapt/orientation.hpp"
-#include "ductile/runtime/atomic_count.hpp"
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/facet_key.hpp"
 #include "mesh/grouping.hpp"
@@ -171,14 +168,14 @@ class AnyMeshChecker {
     Grouping grouping(executor_,
                       GroupingBounds::even(executor_, facet_count(), mesh_.vertex_count()),
                       std::span(end_), lowest_corner);
-    entries_ = runtime::make_unset<Entry>(executor_, grouping.size());
+    entries_ = runtime::make_unset_vector<Entry>(executor_, grouping.size());
     grouping.list(
         [&](std::uint32_t place, std::uint32_t facet) { entries_[place] = entry_of(facet); });
   }
 
-  std::span<Entry> bucket(std::size_t v) const {
+  std::span<Entry> bucket(std::size_t v) {
     const std::uint32_t begin = v == 0 ? 0 : end_[v - 1];
-    return {entries_.get() + begin, end_[v] - begin};
+    return {entries_.data() + begin, end_[v] - begin};
   }
 
   /// Are these all sound, and few? Counts each facet in a table.
@@ -214,7 +211,7 @@ class AnyMeshChecker {
     for (std::size_t at = 0, end = 0; at != all.size(); at = end) {
       std::array<int, 3> count{};
       for (; end != all.size() && all[end].others == all[at].others; ++end) ++count[all[end].kind];
-      faults_[static_cast<std::size_t>(&all[at] - entries_.get())] = fault(count);
+      faults_[static_cast<std::size_t>(&all[at] - entries_.data())] = fault(count);
     }
   }
 
@@ -299,9 +296,9 @@ class AnyMeshChecker {
   const Executor& executor_;
   const AnyMesh& mesh_;
   Problems problems_;
-  std::vector<std::uint32_t> end_;    // [vertex], of its bucket in entries_
-  std::unique_ptr<Entry[]> entries_;  // by bucket; sorted where they may have faults
-  std::vector<std::uint8_t> faults_;  // [entry], of the group that starts there
+  std::vector<std::uint32_t> end_;       // [vertex], of its bucket in entries_
+  runtime::UnsetVector<Entry> entries_;  // by bucket; sorted where they may have faults
+  std::vector<std::uint8_t> faults_;     // [entry], of the group that starts there
 };
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/statistics.hpp"
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {

@@ -6,7 +6,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/flatten.hpp"
-#include "ductile/runtime/atomic_count.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"

@@ -11,15 +11,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -73,7 +72,7 @@ class Grouping {
       begin = static_cast<std::uint32_t>(std::exchange(total, total + begin));
     if (total + own > std::numeric_limits<std::uint32_t>::max())
       throw std::length_error("a mesh of more elements than lists of 32-bit numbers can have");
-    noted_ = runtime::make_unset<Pair>(executor_, total);
+    noted_ = runtime::make_unset_vector<Pair>(executor_, total);
     if (total != 0) for_each_chunk([&](std::size_t c) { note(c); });
     spread_.clear();
   }
@@ -106,7 +105,7 @@ class Grouping {
     for (std::size_t c = 0; c + 1 < chunks_; ++c)
       before[c + 1] = before[c] + own_[c] + noted_begin(c + 1, 0) - noted_begin(c, 0);
     for_each_chunk([&](std::size_t c) {
-      const std::span all(noted_.get(), noted_begin_.back());
+      const std::span<const Pair> all = noted_;
       const auto noted = [&](std::size_t begin, std::size_t end, auto&& use) {
         for (const Pair& pair : all.subspan(begin, end - begin)) use(pair.key, pair.item);
       };
@@ -204,7 +203,7 @@ class Grouping {
   std::vector<std::uint32_t> own_;                  // [chunk], keys in it of its own items
   std::vector<std::vector<std::uint64_t>> spread_;  // [chunk], bits of items, for each_spread()
   std::vector<std::uint32_t> noted_begin_;          // [chunk of keys][chunk of items]
-  std::unique_ptr<Pair[]> noted_;
+  runtime::UnsetVector<Pair> noted_;
 };
 
 }  // namespace ductile::meshadapt

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/vector.hpp"
-#include "ductile/runtime/hilbert.hpp"
+#include "ductile/runtime/hash.hpp"
 #include "mesh/box.hpp"
 
 namespace ductile::meshadapt {

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <span>
 
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/grouping.hpp"
 
@@ -43,10 +42,9 @@ static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim>
 
 template <int Dim>
 void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
-  const auto count_of = runtime::make_unset<std::uint32_t>(executor, mesh.vertex_slots());
+  auto count_of = runtime::make_unset_vector<std::uint32_t>(executor, mesh.vertex_slots());
   auto& lists = mesh.elements_of;
-  Grouping grouping(executor, bounds_by_lowest(executor, mesh),
-                    std::span(count_of.get(), mesh.vertex_slots()),
+  Grouping grouping(executor, bounds_by_lowest(executor, mesh), std::span(count_of),
                     [&mesh](ElementId element, auto&& visit) {
                       if (!mesh.alive(element)) return;
                       for (const VertexId v : mesh.corners_of[element]) visit(v);
@@ -73,10 +71,10 @@ static bool any_above(std::span<const std::uint32_t> numbers, std::uint32_t boun
 }
 
 template <int Dim>
-runtime::FilledArray<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>& mesh,
+runtime::UnsetVector<std::uint8_t> mark_changed(const Executor& executor, const Mesh<Dim>& mesh,
                                                 std::uint32_t after) {
   constexpr std::size_t stretch = 64;
-  runtime::FilledArray<std::uint8_t> marked(executor, mesh.vertex_slots());
+  auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
   const auto mark = [&](std::size_t, std::size_t begin, std::size_t end) {
     if (!any_above(std::span(mesh.changed_at).subspan(begin, end - begin), after)) return;
     // Listed first, without branches, as which have changed cannot be foreseen.
@@ -107,9 +105,9 @@ template struct Mesh<2>;
 template struct Mesh<3>;
 template void rebuild_elements_of(const Executor&, Mesh<2>&);
 template void rebuild_elements_of(const Executor&, Mesh<3>&);
-template runtime::FilledArray<std::uint8_t> mark_changed(const Executor&, const Mesh<2>&,
+template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const Mesh<2>&,
                                                          std::uint32_t);
-template runtime::FilledArray<std::uint8_t> mark_changed(const Executor&, const Mesh<3>&,
+template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const Mesh<3>&,
                                                          std::uint32_t);
 template void update_shapes(const Executor&, Mesh<2>&);
 template void update_shapes(const Executor&, Mesh<3>&);

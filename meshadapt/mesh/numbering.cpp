@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "mesh/grouping.hpp"

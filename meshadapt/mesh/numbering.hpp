@@ -9,8 +9,8 @@
 #include <cstdint>
 
 #include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::meshadapt {
 

@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/mesh.hpp"
-#include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/numbering.hpp"
@@ -31,7 +30,7 @@ class Permutation {
       : executor_(executor),
         order_(order),
         largest_(largest),
-        scratch_(runtime::make_unset<std::byte>(executor, order.size() * largest)) {}
+        scratch_(runtime::make_unset_vector<std::byte>(executor, order.size() * largest)) {}
 
   /// values[i] becomes the old values[order[i]], of several arrays at once.
   template <class... T>
@@ -63,7 +62,7 @@ class Permutation {
   template <class... T>
   void permute(auto&&... value_at) {
     assert((sizeof(T) + ...) <= largest_);
-    std::byte* end = scratch_.get();
+    std::byte* end = scratch_.data();
     const auto take = [&](std::size_t bytes) { return std::exchange(end, end + bytes); };
     const std::tuple moved{reinterpret_cast<T*>(take(order_.size() * sizeof(T)))...};
     std::apply(
@@ -82,7 +81,7 @@ class Permutation {
   const Executor& executor_;
   const Ids& order_;
   [[maybe_unused]] std::size_t largest_;
-  std::unique_ptr<std::byte[]> scratch_;
+  runtime::UnsetVector<std::byte> scratch_;
 };
 
 void renumber_links(const Executor& executor, Mesh<3>& mesh, const Ids& vertices,

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/make_mesh.hpp"
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/growing_array.hpp"
-#include "ductile/runtime/make_vector.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/numbering.hpp"
 #include "metric/metric_range.hpp"

@@ -5,11 +5,9 @@
 #include <span>
 #include <utility>
 
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/atomic_min.hpp"
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/disjoint_sets.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 
@@ -35,7 +33,7 @@ class Parts {
   Parts(const Executor& executor, const AnyMesh& mesh, Regions region_of)
       : elements_(elements_in<Dim>(mesh).vertices),
         region_of_(region_of),
-        lowest_(executor, mesh.vertex_count(), none),
+        lowest_(runtime::make_filled<std::uint32_t>(executor, mesh.vertex_count(), none)),
         sets_(executor, 0) {
     runtime::parallel_for(executor, elements_.size(), [&](std::size_t e) {
       for (const VertexId v : elements_[e]) runtime::atomic_min(lowest_[v], region(e));
@@ -83,7 +81,7 @@ class Parts {
 
   const std::vector<Corners<Dim>>& elements_;
   Regions region_of_;
-  runtime::FilledArray<std::uint32_t> lowest_;  // [vertex], region; none: of no element
+  runtime::UnsetVector<std::uint32_t> lowest_;  // [vertex], region; none: of no element
   runtime::UnsetVector<Other> others_;          // sorted
   runtime::DisjointSets sets_;
 };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/walk.hpp"

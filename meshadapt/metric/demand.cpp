@@ -7,7 +7,7 @@
 
 #include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/wording.hpp"

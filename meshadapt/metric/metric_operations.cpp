@@ -11,9 +11,8 @@
 #include <utility>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "mesh/first_bad.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/simplex.hpp"
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "metric/metric_range.hpp"
 #include "metric/required_entities.hpp"

@@ -10,9 +10,9 @@
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "ductile/runtime/worklist.hpp"
 
 namespace ductile::meshadapt {

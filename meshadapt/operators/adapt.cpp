@@ -6,8 +6,8 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/team.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/wording.hpp"

@@ -14,9 +14,8 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/recording.hpp"
 #include "geometry/curvature.hpp"
 #include "metric/demand.hpp"
 #include "metric/required_sizes.hpp"
@@ -225,7 +224,6 @@ template <int Dim>
 Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const AnyField& metric,
                    const AdaptOptions& options) {
   const Stopwatch watch;
-  if (auto* recording = executor.recording()) recording->begin_section("setup");
   std::vector<std::string> warnings;
   std::size_t fixed = 0;
   bool may_meet = false;
@@ -244,7 +242,6 @@ Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const 
   };
   set_up();
   adapter->report().setup_seconds = watch.seconds();
-  if (auto* recording = executor.recording()) recording->begin_section("other");
   run<Dim>(adapter, set_up);
   Mesh<Dim> mesh = with_growth_limited(executor, options, metric.name, adapter);
   round_boundary(mesh);

@@ -9,10 +9,10 @@
 #include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "metric/demand.hpp"
 #include "operators/coarsen.hpp"
-#include "operators/kernel_timer.hpp"
 #include "operators/metric_path.hpp"
 #include "operators/refine.hpp"
 #include "operators/remaining_work.hpp"
@@ -372,7 +372,7 @@ RoundsReport Adapter<Dim>::run_by_conflicts(Op& op,
 
 template <int Dim>
 std::size_t Adapter<Dim>::coarsen() {
-  const KernelTimer timer(executor_, "coarsen", report_.coarsen.seconds);
+  const runtime::PhaseTimer timer(report_.coarsen.seconds);
   std::size_t changes = 0;
   for (int sweep = 0; sweep < 8; ++sweep) {
     const std::uint32_t after = end_epoch(seen_by_coarsen_);
@@ -401,7 +401,7 @@ std::size_t Adapter<Dim>::refine() {
 
 template <int Dim>
 auto Adapter<Dim>::split_edges_above(double limit) -> Splits {
-  const KernelTimer timer(executor_, "refine", report_.refine.seconds);
+  const runtime::PhaseTimer timer(report_.refine.seconds);
   const std::uint32_t after = end_epoch(seen_by_refine_);
   auto work = long_edges(executor_, mesh_, survey_for(limit), limit, after);
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
@@ -414,7 +414,7 @@ auto Adapter<Dim>::split_edges_above(double limit) -> Splits {
 template <int Dim>
 std::size_t Adapter<Dim>::swap(int sweeps, double below) {
   if (!options_.swap) return 0;
-  const KernelTimer timer(executor_, "swap", report_.swap.seconds);
+  const runtime::PhaseTimer timer(report_.swap.seconds);
   std::size_t changes = 0;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below, range());
@@ -442,7 +442,7 @@ SmoothOptions Adapter<Dim>::smoothing(double optimise_below, bool laplacian) con
 template <int Dim>
 std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplacian) {
   if (!options_.move) return 0;
-  const KernelTimer timer(executor_, "smooth", report_.smooth.seconds);
+  const runtime::PhaseTimer timer(report_.smooth.seconds);
   Smooth<Dim> op(mesh_, background_, smoothing(optimise_below, laplacian));
   std::size_t changes = 0;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -461,7 +461,7 @@ std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplaci
 
 template <int Dim>
 void Adapter<Dim>::renumber_mesh(VertexId unlisted) {
-  const KernelTimer timer(executor_, "renumber", report_.renumber_seconds);
+  const runtime::PhaseTimer timer(report_.renumber_seconds);
   renumber(executor_, mesh_, unlisted);
   in_order_ = true;
   survey_.forget();

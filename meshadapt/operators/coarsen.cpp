@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "operators/edges.hpp"
 
 namespace ductile::meshadapt {

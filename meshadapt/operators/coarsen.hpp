@@ -5,8 +5,8 @@
 #pragma once
 
 #include "ductile/meshadapt/rules.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_survey.hpp"
 

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/mesh.hpp"
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/lanes.hpp"
 
@@ -48,7 +48,7 @@ class EdgeSurvey {
   /// was last called is wanted.
   /// Thread safety: one caller; runs on the executor.
   void renew(const runtime::Executor& executor, const Mesh<Dim>& mesh, auto&& wanted) {
-    bits_.resize(executor, mesh.element_slots(), 0);
+    runtime::grow_filled(executor, bits_, mesh.element_slots(), 0);
     const auto measure_wanted = [&](std::size_t, std::size_t begin, std::size_t end) {
       const auto unknown = [&](std::size_t e) {
         return static_cast<int>(bits_[e] == 0) | static_cast<int>(mesh.changed_at[e] > seen_);
@@ -186,7 +186,7 @@ class EdgeSurvey {
     }
   }
 
-  runtime::FilledArray<Bits> bits_;  // [element], of no use where it is gone
+  runtime::UnsetVector<Bits> bits_;  // [element], of no use where it is gone
   Limits limits_;
   std::uint32_t seen_ = 0;  // what changed later is not known
 };

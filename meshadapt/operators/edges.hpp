@@ -9,11 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_survey.hpp"
 
@@ -23,12 +21,12 @@ namespace ductile::meshadapt {
 /// survey. All corners of elements changed since the survey was last used are marked.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
-runtime::FilledArray<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& executor,
+runtime::UnsetVector<std::uint8_t> mark_ends_of_short_edges(const runtime::Executor& executor,
                                                             const Mesh<Dim>& mesh,
                                                             EdgeSurvey<Dim>& survey,
                                                             std::span<const std::uint8_t> marked,
                                                             double limit) {
-  runtime::FilledArray<std::uint8_t> ends(executor, mesh.vertex_slots());
+  auto ends = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
   survey.renew(executor, mesh, [&](ElementId e) {
     unsigned any = 0;
     for (const VertexId v : mesh.corners_of[e]) any |= marked[v];

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -19,7 +19,8 @@ class MarkedSet {
 
   /// Thread safety: one caller; runs on the executor.
   MarkedSet(const runtime::Executor& executor, std::span<const std::uint8_t> marks)
-      : words_(executor, (marks.size() + word - 1) / word), place_(executor, words_.size()) {
+      : words_(runtime::make_filled<std::uint64_t>(executor, (marks.size() + word - 1) / word)),
+        place_(runtime::make_filled<std::uint32_t>(executor, words_.size())) {
     runtime::parallel_for(
         executor, words_.size(),
         [&](std::size_t w) {
@@ -30,7 +31,8 @@ class MarkedSet {
           place_[w] = static_cast<std::uint32_t>(std::popcount(bits));
         },
         by_word);
-    members_.resize(executor, runtime::exclusive_scan<std::uint32_t>(executor, place_), 0);
+    runtime::grow_filled(executor, members_,
+                         runtime::exclusive_scan<std::uint32_t>(executor, place_), 0);
     runtime::parallel_for(
         executor, words_.size(),
         [&](std::size_t w) {
@@ -55,9 +57,9 @@ class MarkedSet {
  private:
   static constexpr std::size_t word = 64;
   static constexpr runtime::LoopOptions by_word{.grain = 16, .serial_below = 64};
-  runtime::FilledArray<std::uint64_t> words_;    // a bit for each mark
-  runtime::FilledArray<std::uint32_t> place_;    // [word], of its first member
-  runtime::FilledArray<std::uint32_t> members_;  // in order
+  runtime::UnsetVector<std::uint64_t> words_;    // a bit for each mark
+  runtime::UnsetVector<std::uint32_t> place_;    // [word], of its first member
+  runtime::UnsetVector<std::uint32_t> members_;  // in order
 };
 
 }  // namespace ductile::meshadapt

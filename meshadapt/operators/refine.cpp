@@ -3,24 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 #include <utility>
 
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/filled_array.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::meshadapt {
 
 using runtime::few_nanoseconds;
-using runtime::FilledArray;
+using runtime::make_filled;
 using runtime::parallel_for;
-using runtime::Phase;
 using runtime::PhaseTimer;
 
 namespace {
@@ -75,15 +71,15 @@ runtime::RoundsReport Refine<Dim>::run(runtime::UnsetVector<LongEdge> edges) {
   report_.planned = edges_.size();
   if (edges_.empty()) return report_;
   {
-    const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
+    const PhaseTimer timer(report_.plan_seconds);
     plan();
   }
   {
-    const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
+    const PhaseTimer timer(report_.conflict_seconds);
     refuse();
   }
   {
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     number();
   }
   grow();
@@ -117,9 +113,9 @@ void Refine<Dim>::plan() {
   runtime::FreshMemory fresh;
   splits_.resize_for_overwrite(edges_.size(), fresh);
   fresh.touch(executor_);
-  refused_in_ = FilledArray<std::uint32_t>(executor_, edges_.size());
-  asked_ = FilledArray<std::uint8_t>(executor_, edges_.size());
-  FilledArray<std::uint8_t> is_cut(executor_, mesh_.element_slots());
+  refused_in_ = make_filled<std::uint32_t>(executor_, edges_.size());
+  asked_ = make_filled<std::uint8_t>(executor_, edges_.size());
+  auto is_cut = make_filled<std::uint8_t>(executor_, mesh_.element_slots());
   around_ = runtime::parallel_collect<Around>(
       executor_, edges_.size(), [&](std::size_t i, auto&& append) {
         const auto number = static_cast<std::uint32_t>(i);
@@ -136,11 +132,11 @@ void Refine<Dim>::plan() {
   if (around_.size() > std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("more elements around long edges than 32-bit numbers can count");
   elements_ = MarkedSet(executor_, is_cut);
-  cuts_ = runtime::make_unset<Cuts>(executor_, elements_.size());
+  cuts_ = runtime::make_unset_vector<Cuts>(executor_, elements_.size());
   parallel_for(
       executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); },
       few_nanoseconds);
-  around_begin_ = FilledArray<std::uint32_t>(executor_, edges_.size());
+  around_begin_ = make_filled<std::uint32_t>(executor_, edges_.size());
   const auto note = [this](std::size_t, std::size_t begin, std::size_t end) {
     note_splits(begin, end);
   };

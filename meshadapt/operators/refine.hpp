@@ -7,14 +7,13 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/rules.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edges.hpp"
 #include "operators/marked_set.hpp"
@@ -129,16 +128,16 @@ class Refine {
 
   runtime::UnsetVector<LongEdge> edges_;
   GrowingArray<Split> splits_;                      // [edge]
-  runtime::FilledArray<std::uint32_t> refused_in_;  // [edge], the round, or 0
-  runtime::FilledArray<std::uint8_t> asked_;  // [edge], an element asks to refuse it, or did once
+  runtime::UnsetVector<std::uint32_t> refused_in_;  // [edge], the round, or 0
+  runtime::UnsetVector<std::uint8_t> asked_;  // [edge], an element asks to refuse it, or did once
   std::uint32_t round_ = 0;
   MarkedSet elements_;                   // those that are cut
   runtime::UnsetVector<Around> around_;  // by edge, until it is known which are refused
-  runtime::FilledArray<std::uint32_t>
-      around_begin_;              // [edge], in around_; of no use if it was not located
-  std::unique_ptr<Cuts[]> cuts_;  // [place in elements_]
-  runtime::FilledArray<std::uint32_t> place_of_;     // [edge], of its vertex among the new ones
-  runtime::FilledArray<std::uint32_t> first_piece_;  // [place in elements_], among the new pieces
+  runtime::UnsetVector<std::uint32_t>
+      around_begin_;                 // [edge], in around_; of no use if it was not located
+  runtime::UnsetVector<Cuts> cuts_;  // [place in elements_]
+  runtime::UnsetVector<std::uint32_t> place_of_;     // [edge], of its vertex among the new ones
+  runtime::UnsetVector<std::uint32_t> first_piece_;  // [place in elements_], among the new pieces
   VertexId first_vertex_ = none;
   ElementId first_element_ = 0, end_of_elements_ = 0;
   bool lists_are_stale_ = false;

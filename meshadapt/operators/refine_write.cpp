@@ -5,18 +5,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/deferred_update.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
+#include "ductile/runtime/rounds_report.hpp"
 #include "operators/refine.hpp"
 
 namespace ductile::meshadapt {
 
 using runtime::few_nanoseconds;
-using runtime::FilledArray;
+using runtime::make_filled;
 using runtime::parallel_for;
-using runtime::Phase;
 using runtime::PhaseTimer;
 
 /// With more edges to split than this share of the number of elements, lists are left stale.
@@ -24,8 +23,8 @@ constexpr double many = 0.05;
 
 template <int Dim>
 void Refine<Dim>::number() {
-  place_of_ = FilledArray<std::uint32_t>(executor_, edges_.size());
-  first_piece_ = FilledArray<std::uint32_t>(executor_, elements_.size());
+  place_of_ = make_filled<std::uint32_t>(executor_, edges_.size());
+  first_piece_ = make_filled<std::uint32_t>(executor_, elements_.size());
   parallel_for(
       executor_, edges_.size(),
       [&](std::size_t i) { place_of_[i] = is_split(static_cast<std::uint32_t>(i)); },
@@ -65,7 +64,7 @@ void Refine<Dim>::grow() {
     if (!lists_are_stale_ || change.curve != 0) deferred.defer(owner, 0, change);
   };
   {
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     const std::size_t end_of_vertices = first_vertex_ + report_.applied;
     mesh_.grow(executor_, end_of_vertices, first_element_);
     const auto write = [&](std::size_t i) {
@@ -79,7 +78,7 @@ void Refine<Dim>::grow() {
     mesh_.grow(executor_, end_of_vertices, end_of_elements_);
     parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });
   }
-  const PhaseTimer timer(report_.commit_seconds, executor_, Phase::commit);
+  const PhaseTimer timer(report_.commit_seconds);
   report_.committed = deferred.commit(
       [&](VertexId owner, const ListChange& change) { change_list(mesh_, owner, change); });
 }

@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/edges.hpp"

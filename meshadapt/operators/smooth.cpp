@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ductile/runtime/atomic_mark.hpp"
-#include "ductile/runtime/collect.hpp"
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -34,7 +33,7 @@ Vector<Dim> shortest_in_hull(const Vectors& gradients) {
 /// The marked vertices that may move, in order.
 template <int Dim>
 runtime::UnsetVector<VertexId> movable_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
-                                          const runtime::FilledArray<std::uint8_t>& marked) {
+                                          const runtime::UnsetVector<std::uint8_t>& marked) {
   const auto find = [&](std::size_t v, auto&& append) {
     if (marked[v] != 0 && mesh.kind_of[v].freedom != 0) append(static_cast<VertexId>(v));
   };
@@ -56,7 +55,7 @@ runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices_of_poor(
     const runtime::Executor& executor, const Mesh<Dim>& mesh, double mean_ratio,
     std::uint32_t after) {
   const double bound = shape_of_mean_ratio<Dim>(mean_ratio);
-  runtime::FilledArray<std::uint8_t> marked(executor, mesh.vertex_slots());
+  auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     if (mesh.shape_of[e] >= bound || mesh.changed_at[e] <= after) return;
     if (!mesh.alive(static_cast<ElementId>(e))) return;

@@ -8,8 +8,8 @@
 
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/rules.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "operators/ball.hpp"
 #include "operators/edge_range.hpp"
 

@@ -12,9 +12,9 @@
 #include <stdexcept>
 
 #include "ductile/meshadapt/rules.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_range.hpp"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "operators/swap.hpp"
 
 namespace ductile::meshadapt {
@@ -144,7 +144,7 @@ class FlipSearch {
   std::uint32_t after_;
   EdgeRange range_;
   float bound_;
-  runtime::FilledArray<std::uint8_t> marked_;
+  runtime::UnsetVector<std::uint8_t> marked_;
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <limits>
 #include <span>
 
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "operators/base.hpp"
 #include "operators/cut_off.hpp"
 #include "operators/ring.hpp"
@@ -300,7 +300,7 @@ class EdgeSearch {
 /// Has the lists and elements of vertices soon after one brought into the cache, not the sites:
 /// where those are there already, to ask for so many takes longer than it spares elsewhere.
 [[gnu::always_inline]] inline void prefetch_stars_after(
-    const Mesh<3>& mesh, const runtime::FilledArray<std::uint8_t>& wanted, std::size_t vertex) {
+    const Mesh<3>& mesh, const runtime::UnsetVector<std::uint8_t>& wanted, std::size_t vertex) {
   constexpr std::size_t step = 3;
   if (vertex + 2 * step < wanted.size() && wanted[vertex + 2 * step] != 0)
     mesh.elements_of.prefetch(static_cast<VertexId>(vertex + 2 * step));

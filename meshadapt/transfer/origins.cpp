@@ -7,7 +7,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "ductile/runtime/make_vector.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "mesh/array_lengths.hpp"

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/runtime/atomic_min.hpp"
-#include "ductile/runtime/filled_array.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "transfer/evaluate.hpp"
 #include "transfer/locator.hpp"
@@ -30,7 +30,7 @@ class VertexPlaces {
         locator_(locator),
         old_mesh_(locator.mesh()),
         mesh_(mesh),
-        element_at_(executor, mesh.vertex_count(), none),
+        element_at_(runtime::make_filled<ElementId>(executor, mesh.vertex_count(), none)),
         origin_of_(mesh.vertex_count()) {
     find_elements();
     find_origins();
@@ -132,7 +132,7 @@ class VertexPlaces {
   const Locator<Dim>& locator_;
   const FixedMesh<Dim>& old_mesh_;
   const AnyMesh& mesh_;
-  runtime::FilledArray<ElementId> element_at_;  // [vertex], one of those around it, or none
+  runtime::UnsetVector<ElementId> element_at_;  // [vertex], one of those around it, or none
   std::vector<VertexId> origin_of_;             // [vertex]
 };
 

@@ -14,7 +14,6 @@
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::python {
 

@@ -16,7 +16,6 @@
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/statistics.hpp"
-#include "ductile/runtime/replay.hpp"
 #include "support/bits.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
@@ -92,21 +91,6 @@ TEST_P(Adapt, TellsWhereItsTimeWent) {
     kernels += kernel.seconds;
   }
   EXPECT_LE(kernels + report.setup_seconds + report.renumber_seconds, report.total_seconds);
-}
-
-TEST_P(Adapt, GivesEachKernelASectionOfARecording) {
-  const AnyMesh mesh = rich_mesh();
-  const AnyField metric = layered(mesh, 400);
-  runtime::Recording recording;
-  const auto recorded = adapt(Executor({.threads = 8, .recording = &recording}), mesh, metric);
-  expect_identical(recorded, adapt(Executor({.threads = 1}), mesh, metric));
-  const runtime::Replay replayed = runtime::replay(recording, {.threads = 4});
-  for (const char* name : {"setup", "coarsen", "refine", "swap", "smooth", "renumber", "other"}) {
-    const auto section = std::find_if(replayed.sections.begin(), replayed.sections.end(),
-                                      [&](const auto& one) { return one.name == name; });
-    ASSERT_NE(section, replayed.sections.end()) << name;
-    EXPECT_GT(section->total.elapsed, 0) << name;
-  }
 }
 
 TEST_P(Adapt, KeepsRegionsInterfacesReferencesAndWhatIsRequired) {

@@ -12,7 +12,7 @@
 namespace ductile::meshadapt::edges_test {
 namespace {
 
-std::vector<std::uint8_t> as_vector(const runtime::FilledArray<std::uint8_t>& marks) {
+std::vector<std::uint8_t> as_vector(const runtime::UnsetVector<std::uint8_t>& marks) {
   return {marks.begin(), marks.end()};
 }
 

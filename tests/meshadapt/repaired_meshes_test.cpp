@@ -13,7 +13,7 @@
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
-#include "ductile/runtime/team.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 

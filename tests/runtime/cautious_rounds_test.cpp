@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "ductile/runtime/all_numbers.hpp"
-#include "ductile/runtime/csr_rows.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/detail/region_map.hpp"
 #include "ductile/runtime/run_rounds.hpp"

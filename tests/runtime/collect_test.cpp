@@ -1,4 +1,4 @@
-#include "ductile/runtime/collect.hpp"
+#include "ductile/runtime/arrays.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "ductile/runtime/checked_rounds.hpp"
-#include "ductile/runtime/detail/blocks.hpp"
+#include "ductile/runtime/detail/block_layout.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"

@@ -7,14 +7,11 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <set>
 #include <stdexcept>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/recording.hpp"
 
 namespace ductile::runtime::detail::ranked_blocks_test {
 namespace {
@@ -53,9 +50,6 @@ void run(const Executor& executor, const Meetings& meetings, auto&& done) {
                  if (blocks.comes_before(met[begun.next], rank)) return met[begun.next];
                done(begun.block);
                return RankedBlocks<Begun>::none;
-             },
-             [&](std::size_t block, auto&& visit) {
-               for (const std::size_t other : meetings.met[block]) visit(other);
              });
 }
 
@@ -119,21 +113,6 @@ TEST(RankedBlocks, PassOnWhatABlockThrows) {
                        if (block == 77) throw std::runtime_error("no");
                      }),
                  std::runtime_error);
-}
-
-TEST(RankedBlocks, ArePartsOfARecordedLoopThatWaitForThoseTheyMeet) {
-  const Meetings meetings(100, 8, 5);
-  Recording recording;
-  std::size_t done = 0;
-  run(Executor({.threads = 4, .recording = &recording}), meetings, [&](std::size_t) { ++done; });
-  EXPECT_EQ(done, 100U);
-  const auto& loop = recording.stretches().back();
-  ASSERT_EQ(loop.count, 100U);
-  std::set<std::pair<std::size_t, std::size_t>> waits;
-  for (std::size_t b = 0; b < 100; ++b)
-    for (const std::size_t other : meetings.met[b])
-      if (meetings.rank_of[other] < meetings.rank_of[b]) waits.emplace(b, other);
-  EXPECT_EQ(loop.waits, waits.size());
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "ductile/runtime/detail/source_order.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/run_sort.hpp"
 
 namespace ductile::runtime::sort_test {
 namespace {
@@ -128,7 +128,7 @@ TEST(ParallelUnique, AgreesWithTheStandardOne) {
 }
 
 TEST(RunSort, IsStable) {
-  RunSort<std::uint32_t, std::uint32_t> order;
+  detail::RunSort<std::uint32_t, std::uint32_t> order;
   for (std::uint32_t n : {0U, 1U, 2U, 3U, 1000U, 1001U}) {
     for (std::uint32_t run : {1U, 7U, 1000U}) {
       order.clear();

@@ -1,4 +1,4 @@
-#include "ductile/runtime/team.hpp"
+#include "ductile/runtime/executor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +13,11 @@
 #include <thread>
 #include <vector>
 
-#include "ductile/runtime/balance.hpp"
-#include "ductile/runtime/colouring.hpp"
+#include "ductile/runtime/colouring/balance.hpp"
+#include "ductile/runtime/colouring/colouring.hpp"
+#include "ductile/runtime/colouring/ordering.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/ordering.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/recording.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "team.hpp"
 
@@ -153,15 +152,6 @@ TEST(WithTeam, InsideALoopCallsTheBodyAndNoMore) {
                },
                {.grain = 1});
   EXPECT_EQ(calls, 8);
-}
-
-TEST(WithTeam, RecordsLoopsAsWithoutATeam) {
-  Recording recording;
-  const Executor executor({.threads = 4, .recording = &recording});
-  with_team(executor, [&] {
-    parallel_for(executor, 100, [&](std::size_t) { EXPECT_TRUE(recording.in_loop()); },
-                 {.grain = 1});
-  });
 }
 
 TEST(WithTeam, SeveralThreadsHaveTheirOwn) {

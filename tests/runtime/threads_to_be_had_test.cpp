@@ -17,8 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime::threads_to_be_had_test {
 namespace {

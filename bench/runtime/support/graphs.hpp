@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/csr_rows.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
 
 namespace ductile::bench {
 

@@ -107,10 +107,8 @@ struct AdaptedMesh {
 /// no sense and input that is not a valid mesh; Error if the elements that the metric asks for
 /// would take more memory than options.memory_limit; Cancelled if options.progress asks for that;
 /// std::bad_alloc if memory runs out,
-/// std::length_error if there would be more entities than 32 bits count. If the executor has a
-/// recording, each kernel gets a section of it: "setup", "coarsen", "refine", "swap", "smooth",
-/// "renumber", and "other" for what is between them. Thread safety: any thread; the work runs on
-/// the executor.
+/// std::length_error if there would be more entities than 32 bits count. Thread safety: any thread;
+/// the work runs on the executor.
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options = {});
 

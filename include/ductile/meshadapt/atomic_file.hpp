@@ -4,7 +4,7 @@
 /// `NAME.ductile-tmp-PID-N`; commit() gives all of them their names when every byte of every one is
 /// on disk. Until then, and after an error or an interrupt, the files that were there before are
 /// untouched. Signals that end the process remove temporary files, and wait while names are given
-/// (runtime/termination.hpp). What is no regular file (/dev/null, a pipe) is written directly, and
+/// (runtime/process.hpp). What is no regular file (/dev/null, a pipe) is written directly, and
 /// so is what a name such as /dev/stdout or /dev/fd/3 stands for, where it is a regular file, too.
 #pragma once
 
@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ductile/runtime/termination.hpp"
+#include "ductile/runtime/process.hpp"
 
 namespace ductile::meshadapt {
 

@@ -10,7 +10,7 @@
 
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
-#include "ductile/runtime/lazy.hpp"
+#include "ductile/runtime/atomic.hpp"
 
 namespace ductile::meshadapt {
 

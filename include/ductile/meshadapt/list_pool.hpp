@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "ductile/runtime/arena.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/growing_array.hpp"
-#include "ductile/runtime/number_with_lock.hpp"
 
 namespace ductile::meshadapt {
 

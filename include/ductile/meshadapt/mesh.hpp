@@ -16,8 +16,8 @@
 #include "ductile/meshadapt/list_pool.hpp"
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/growing_array.hpp"
 
 namespace ductile::meshadapt {
@@ -177,7 +177,7 @@ void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim
 
 /// Marks the vertices next to an element that changed after this epoch.
 template <int Dim>
-runtime::FilledArray<std::uint8_t> mark_changed(const runtime::Executor& executor,
+runtime::UnsetVector<std::uint8_t> mark_changed(const runtime::Executor& executor,
                                                 const Mesh<Dim>& mesh, std::uint32_t after);
 
 /// Starts to bring a vertex's site into the cache. Inlined always: GCC 12 leaves out calls of

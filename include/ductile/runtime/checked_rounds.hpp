@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "ductile/runtime/cautious_operator.hpp"
-#include "ductile/runtime/contract.hpp"
 #include "ductile/runtime/detail/cautious_check.hpp"
 #include "ductile/runtime/detail/cautious_rounds.hpp"
+#include "ductile/runtime/detail/contract.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 

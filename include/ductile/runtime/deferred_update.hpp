@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/deferrer.hpp"
+#include "ductile/runtime/detail/deferrer.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 

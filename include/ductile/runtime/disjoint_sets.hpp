@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <utility>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime {
 

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 
 namespace ductile::runtime {
 

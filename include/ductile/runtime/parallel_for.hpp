@@ -3,7 +3,7 @@
 /// it: loops over fixed blocks, deterministic reductions, prefix sums, and per-thread storage.
 /// The first exception thrown in a body reaches the caller after all threads have joined. A loop
 /// started inside another loop runs on the calling thread alone.
-/// A loop outside of a team (team.hpp) starts and joins OpenMP's threads, which by default spin
+/// A loop outside of a team (with_team) starts and joins OpenMP's threads, which by default spin
 /// while they wait: where others use the cores too, it may take as long as the system's time slice,
 /// milliseconds. Whoever runs loops after loops does so in with_team(), or with
 /// OMP_WAIT_POLICY=passive in the environment.
@@ -32,7 +32,7 @@ struct LoopOptions {
 };
 
 /// For bodies of a few nanoseconds, such as copying a number: some hundred of them take as long as
-/// it takes for the threads of a team (team.hpp) to begin.
+/// it takes for the threads of a team (with_team) to begin.
 constexpr LoopOptions few_nanoseconds{.grain = 128, .serial_below = 512};
 
 namespace detail {

@@ -1,7 +1,8 @@
 /// @file
-/// Options and report of run_rounds.
+/// Options and report of run_rounds, and the timer of its phases.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <limits>
 
@@ -38,6 +39,22 @@ struct RoundsReport {
   }
 
   RoundsReport& operator+=(const RoundsReport& other);
+};
+
+/// Adds the time from its construction to its destruction to a report. Thread safety: one thread,
+/// outside of loops; the report outlives it.
+class PhaseTimer {
+ public:
+  explicit PhaseTimer(double& seconds) : seconds_(seconds) {}
+  PhaseTimer(const PhaseTimer&) = delete;
+  PhaseTimer& operator=(const PhaseTimer&) = delete;
+  ~PhaseTimer() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace ductile::runtime

@@ -4,6 +4,8 @@
 /// strategies (cautious_operator.hpp).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -11,7 +13,6 @@
 #include "ductile/runtime/detail/cautious_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 
@@ -59,5 +60,16 @@ std::vector<typename Op::Item> applied_in_order(const Executor& executor, Op& op
   if (report != nullptr) *report = run;
   return applied;
 }
+
+/// Work that takes no memory: 0, 1, ..., size() - 1.
+class AllNumbers {
+ public:
+  explicit AllNumbers(std::size_t count) : count_(count) {}
+  std::size_t size() const { return count_; }
+  std::uint32_t operator[](std::size_t i) const { return static_cast<std::uint32_t>(i); }
+
+ private:
+  std::size_t count_;
+};
 
 }  // namespace ductile::runtime

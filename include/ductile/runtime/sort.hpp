@@ -14,19 +14,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/detail/radix_sort.hpp"
 #include "ductile/runtime/detail/sample_sort.hpp"
 #include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime {
 
@@ -102,8 +100,8 @@ void merge_sort(const Executor& executor, std::span<T> values) {
                         const std::span part = values.subspan(begin, end - begin);
                         std::sort(part.begin(), part.end());
                       });
-  const auto scratch = make_unset<T>(executor, values.size());
-  std::span<T> from = values, to(scratch.get(), values.size());
+  auto scratch = make_unset_vector<T>(executor, values.size());
+  std::span<T> from = values, to = scratch;
   for (std::size_t width = block_size; width < values.size(); width *= 2) {
     merge_round<T>(executor, from, to, width, block_size);
     std::swap(from, to);
@@ -147,8 +145,8 @@ void sort_in_place(const Executor& executor, std::span<T> values) {
 /// Moves every value twice.
 template <class T>
 void sort_by_reference(const Executor& executor, std::span<T> values) {
-  const auto references = make_unset<Reference<T>>(executor, values.size());
-  const std::span order(references.get(), values.size());
+  auto references = make_unset_vector<Reference<T>>(executor, values.size());
+  const std::span order(references);
   const LoopOptions copying{.serial_below = 1024};
   parallel_for(
       executor, order.size(), [&](std::size_t i) { order[i] = {&values[i]}; }, copying);

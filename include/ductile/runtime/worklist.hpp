@@ -21,12 +21,11 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/detail/batch.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/detail/segments.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime {
 

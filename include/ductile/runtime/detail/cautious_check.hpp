@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "ductile/runtime/cautious_operator.hpp"
-#include "ductile/runtime/contract.hpp"
+#include "ductile/runtime/detail/contract.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/hash.hpp"

@@ -28,7 +28,6 @@
 #include "ductile/runtime/detail/tile_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/team.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -11,15 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -44,7 +42,7 @@ class ColourRounds {
       : executor_(executor),
         op_(op),
         woken_(executor, op.resource_count()),
-        place_of_(executor, op.resource_count(), absent) {}
+        place_of_(make_filled<std::uint32_t>(executor, op.resource_count(), absent)) {}
 
   /// Work has size() and items by [i].
   RoundsReport run(const auto& work, std::size_t most_rounds) {
@@ -69,12 +67,12 @@ class ColourRounds {
     for (std::size_t c = 0; c + 1 < classes.begin.size(); ++c)
       run_class(work, std::span(classes.places)
                           .subspan(classes.begin[c], classes.begin[c + 1] - classes.begin[c]));
-    const PhaseTimer timer(report_.wake_seconds, executor_, Phase::wake);
+    const PhaseTimer timer(report_.wake_seconds);
     return woken_.take();
   }
 
   ConflictClasses classes_of(std::span<const Item> work) {
-    const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
+    const PhaseTimer timer(report_.conflict_seconds);
     parallel_for(executor_, work.size(), [&](std::size_t i) {
       std::atomic_ref(place_of_[work[i]])
           .store(static_cast<std::uint32_t>(i), std::memory_order_relaxed);
@@ -104,7 +102,7 @@ class ColourRounds {
   }
 
   void run_class(std::span<const Item> work, std::span<const std::uint32_t> places) {
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     ++report_.batches;
     PerThread<Lane> lanes(executor_);
     const auto run_item = [&](std::size_t i) {
@@ -130,7 +128,7 @@ class ColourRounds {
   const Executor& executor_;
   Op& op_;
   WokenItems woken_;
-  FilledArray<std::uint32_t> place_of_;  // [item], in the round's work, or absent
+  UnsetVector<std::uint32_t> place_of_;  // [item], in the round's work, or absent
   RoundsReport report_;
 };
 

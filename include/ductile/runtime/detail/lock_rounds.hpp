@@ -16,7 +16,6 @@
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime::detail {
@@ -105,7 +104,7 @@ class LockRounds {
     const auto pools_of = [&](std::size_t p) -> Pools& { return parts[p].pools; };
     made_.deal(count, pools_of, [&](std::size_t) { return 8 * size + spare_; });
     owner_of_.resize(std::max(made_.resources().top(), op_.resource_count()), nobody);
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     parallel_for(executor_, count, [&](std::size_t p) { run_part(parts[p]); }, {.grain = 1});
     made_.take_back(count, pools_of);
     std::vector<Item> left;

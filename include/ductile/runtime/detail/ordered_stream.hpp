@@ -17,12 +17,12 @@
 #include <type_traits>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 

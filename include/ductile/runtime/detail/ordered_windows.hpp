@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"

@@ -14,8 +14,8 @@
 #include <span>
 #include <utility>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::sort_detail {
@@ -151,12 +151,12 @@ void radix_sort(const Executor& executor, std::span<T> values, unsigned low) {
   const std::size_t block = values.size() / radix_blocks(values.size(), threads) + 1;
   const std::size_t blocks = (values.size() + block - 1) / block;
   DigitPass pass{block, blocks, std::make_unique_for_overwrite<DigitCounts[]>(blocks), low};
-  const auto scratch = make_unset<T>(executor, values.size());
+  auto scratch = make_unset_vector<T>(executor, values.size());
   // All memory is taken before the first pass: later, running out of it would lose values.
   std::unique_ptr<Line<T>[]> lines;
   if (values.size_bytes() > 262144)
     lines = std::make_unique_for_overwrite<Line<T>[]>(blocks * digit_count);
-  std::span<T> from = values, to(scratch.get(), values.size());
+  std::span<T> from = values, to = scratch;
   for (; pass.shift < bits; pass.shift += digit_bits) {
     scatter_by_digit<T>(executor, from, to, pass, lines.get());
     std::swap(from, to);

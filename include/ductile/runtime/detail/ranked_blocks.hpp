@@ -12,14 +12,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <numeric>
 #include <thread>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/recording.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -31,30 +29,20 @@ class RankedBlocks {
 
   /// rank_of(block) is less than 255.
   RankedBlocks(const Executor& executor, std::size_t count, auto&& rank_of)
-      : executor_(executor),
-        rank_of_(count),
-        claimed_(count),
-        begun_(executor),
-        recording_(executor.recording()) {
-    // Loops that run inside another, or on one thread, are not recorded as loops.
-    if (executor.threads() == 1 || (recording_ != nullptr && recording_->in_loop()))
-      recording_ = nullptr;
+      : executor_(executor), rank_of_(count), claimed_(count), begun_(executor) {
     parallel_for(executor_, count,
                  [&](std::size_t block) {
                    rank_of_[block] = static_cast<std::uint8_t>(rank_of(block));
                    claimed_[block] = 0;
                  },
                  {.serial_below = 4096});
-    if (recording_ != nullptr) recording_->aside([&] { number_parts(); });
   }
 
   /// Runs all blocks. begin(block) makes a Begun; advance(begun) goes on until the block is done,
   /// and returns none then, or until another has to come before, and returns that.
-  /// visit_met(block, visit) calls visit with whichever blocks a block meets, for recordings.
-  void run(auto&& begin, auto&& advance, auto&& visit_met) {
+  void run(auto&& begin, auto&& advance) {
     parallel_for(executor_, rank_of_.size(),
-                 [&](std::size_t block) { run_from(block, begin, advance, visit_met); },
-                 {.grain = 1});
+                 [&](std::size_t block) { run_from(block, begin, advance); }, {.grain = 1});
   }
 
   /// Whether a block has to be done before one of this rank and is not. Who gets false for one of
@@ -81,20 +69,14 @@ class RankedBlocks {
 
   /// Runs a block unless somebody has begun it, and whichever have to come before, of which it
   /// keeps a stack: their ranks fall.
-  void run_from(std::size_t first, auto&& begin, auto&& advance, auto&& visit_met) {
+  void run_from(std::size_t first, auto&& begin, auto&& advance) {
     if (!claim(first)) return;
     const FailsIfThrown guard{failed_};
     std::vector<Entry>& stack = begun_.mine();
     stack.clear();
-    const auto push = [&](std::size_t block) {
-      begin_part(block);
-      stack.push_back({block, begin(block)});
-      if (recording_ != nullptr) [[unlikely]]
-        record_waits(block, visit_met);
-    };
+    const auto push = [&](std::size_t block) { stack.push_back({block, begin(block)}); };
     push(first);
     while (!stack.empty() && !failed_.load(std::memory_order_relaxed)) {
-      begin_part(stack.back().block);
       const std::size_t before = advance(stack.back().begun);
       if (before == none) {
         std::atomic_ref(rank_of_[stack.back().block]).store(done, std::memory_order_release);
@@ -140,43 +122,11 @@ class RankedBlocks {
     return none;
   }
 
-  // ---- Recordings: each block is a part of the loop, and those of lower rank come first ----
-
-  void begin_part(std::size_t block) {
-    if (recording_ != nullptr) [[unlikely]]
-      recording_->begin_part(part_of_[block]);
-  }
-
-  void number_parts() {
-    std::vector<std::size_t> blocks(rank_of_.size());
-    std::iota(blocks.begin(), blocks.end(), std::size_t{0});
-    std::stable_sort(blocks.begin(), blocks.end(),
-                     [&](std::size_t a, std::size_t b) { return rank_of_[a] < rank_of_[b]; });
-    part_of_.resize(blocks.size());
-    for (std::size_t i = 0; i < blocks.size(); ++i) part_of_[blocks[i]] = i;
-    first_rank_of_.assign(rank_of_.begin(), rank_of_.end());
-  }
-
-  void record_waits(std::size_t block, auto&& visit_met) {
-    recording_->aside([&] {
-      std::vector<std::size_t> before;
-      visit_met(block, [&](std::size_t other) {
-        if (first_rank_of_[other] < first_rank_of_[block]) before.push_back(part_of_[other]);
-      });
-      std::sort(before.begin(), before.end());
-      before.erase(std::unique(before.begin(), before.end()), before.end());
-      for (const std::size_t part : before) recording_->part_waits(part_of_[block], part);
-    });
-  }
-
   const Executor& executor_;
   UnsetVector<std::uint8_t> rank_of_;    // [block], or done
   UnsetVector<std::uint8_t> claimed_;    // [block], by a thread that has begun it
   PerThread<std::vector<Entry>> begun_;  // the thread's
   std::atomic<bool> failed_{false};
-  Recording* recording_;                     // null but where this is what is recorded
-  std::vector<std::size_t> part_of_;         // [block], if there is a recording
-  std::vector<std::uint8_t> first_rank_of_;  // [block], if there is a recording
 };
 
 }  // namespace ductile::runtime::detail

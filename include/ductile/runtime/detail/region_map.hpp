@@ -15,12 +15,11 @@
 #include <span>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/hilbert.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 

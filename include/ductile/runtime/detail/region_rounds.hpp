@@ -16,15 +16,14 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/detail/region_map.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -47,7 +46,7 @@ class RegionRounds {
       is_hopeless_ = 16 * (report_.applied - before) < items;
     }
     report_.left = work.size();
-    const PhaseTimer timer(report_.wake_seconds, executor_, Phase::wake);
+    const PhaseTimer timer(report_.wake_seconds);
     made_.close_holes();
     return report_;
   }
@@ -120,7 +119,7 @@ class RegionRounds {
 
   /// Until there is enough for many regions, or nothing left.
   std::vector<Item> run_one_by_one(std::vector<Item> work) {
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     const std::size_t used = made_.resources().used();
     const std::size_t enough = std::max(4 * least_resources, 2 * used);
     Region region;
@@ -158,7 +157,7 @@ class RegionRounds {
   std::vector<Item> run_phase(const std::vector<Item>& work, std::size_t count) {
     std::vector<Region> regions(count);
     {
-      const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
+      const PhaseTimer timer(report_.conflict_seconds);
       map_.cut(executor_, made_.resources(), [&](std::uint32_t r) { return op_.place_of(r); },
                {count, report_.rounds, report_.applied - applied_before_cut_, is_stuck_});
       applied_before_cut_ = report_.applied;
@@ -168,12 +167,12 @@ class RegionRounds {
       deal(regions, [&](std::size_t r) { return an_item * regions[r].stack.size() + few_items; });
     }
     {
-      const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+      const PhaseTimer timer(report_.apply_seconds);
       parallel_for(executor_, count,
                    [&](std::size_t r) { run_region(regions[r], static_cast<RegionNumber>(r)); },
                    {.grain = 1});
     }
-    const PhaseTimer timer(report_.wake_seconds, executor_, Phase::wake);
+    const PhaseTimer timer(report_.wake_seconds);
     return gather(regions);
   }
 

@@ -14,13 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/atomic_min.hpp"
+#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/sort.hpp"
 
@@ -100,7 +99,7 @@ class ReservationWindows {
     ++report_.batches;
     begin_window(count, item_at);
     {
-      const PhaseTimer timer(report_.plan_seconds, executor_, Phase::plan);
+      const PhaseTimer timer(report_.plan_seconds);
       parallel_for(
           executor_, count,
           [&](std::size_t i) {
@@ -109,7 +108,7 @@ class ReservationWindows {
           },
           grain);
     }
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     if constexpr (MadeThings<Op>::kinds > 0) {
       parallel_for(
           executor_, count, [&](std::size_t i) { settle(slots_[i], i); }, grain);

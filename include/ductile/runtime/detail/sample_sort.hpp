@@ -17,10 +17,9 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::sort_detail {
 
@@ -95,7 +94,7 @@ void sample_sort(const Executor& executor, std::span<T> values, unsigned low) {
   // All memory is taken before values are moved: later, running out of it would lose some.
   auto bucket_of = make_unset_vector<std::uint8_t>(executor, values.size());
   std::vector<std::uint32_t> place_of(blocks * buckets), begin_of(buckets + 1);  // [block][bucket]
-  const auto scratch = make_unset<T>(executor, values.size());
+  auto scratch = make_unset_vector<T>(executor, values.size());
   parallel_for_blocks(executor, values.size(), block,
                       [&](std::size_t b, std::size_t begin, std::size_t end) {
                         std::array<std::uint32_t, most_buckets> count{};
@@ -123,8 +122,8 @@ void sample_sort(const Executor& executor, std::span<T> values, unsigned low) {
   parallel_for(executor, buckets,
                [&](std::size_t bucket) {
                  const std::size_t begin = begin_of[bucket], size = begin_of[bucket + 1] - begin;
-                 sort_bucket(std::span<T>(scratch.get() + begin, size), values.subspan(begin, size),
-                             low);
+                 sort_bucket(std::span<T>(scratch.data() + begin, size),
+                             values.subspan(begin, size), low);
                },
                {.grain = 1});
 }

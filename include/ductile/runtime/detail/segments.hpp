@@ -1,7 +1,5 @@
 /// @file
-/// Segments: uninitialised places for items, known by position, that many threads may ask for at
-/// once. Each segment is as long as all before it, so that there is never a need to move items to
-/// make room; gather() puts them into one segment when nobody adds any.
+/// What a Worklist is made of: a Batch of each thread, and Segments, into which whole batches go.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +8,61 @@
 #include <bit>
 #include <cstddef>
 #include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
 
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
 
-/// Does not know which places hold an item: who puts them there destroys them.
+/// An array of a fixed capacity that one thread fills and somebody else then empties. Its memory
+/// comes with the first element and stays until release().
+template <class T>
+class Batch {
+ public:
+  Batch() = default;
+  ~Batch() { release(); }
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+
+  bool full() const { return next_ == end_; }  ///< or without memory yet
+  std::span<T> items() { return {begin_, next_}; }
+
+  /// Precondition: !full(). Changes nothing if moving or copying the item throws.
+  template <class Item>
+  void append(Item&& item) {
+    std::construct_at(next_, std::forward<Item>(item)), ++next_;
+  }
+
+  /// Precondition: no memory yet. Throws std::bad_alloc.
+  void reserve(std::size_t capacity) {
+    begin_ = next_ = std::allocator<T>().allocate(capacity);
+    end_ = begin_ + capacity;
+  }
+  bool reserved() const { return begin_ != nullptr; }
+
+  void clear() {
+    if constexpr (!std::is_trivially_destructible_v<T>) std::destroy(begin_, next_);
+    next_ = begin_;
+  }
+  void release() {
+    clear();
+    if (reserved()) std::allocator<T>().deallocate(begin_, static_cast<std::size_t>(end_ - begin_));
+    begin_ = next_ = end_ = nullptr;
+  }
+
+ private:
+  T* next_ = nullptr;
+  T* end_ = nullptr;
+  T* begin_ = nullptr;
+};
+
+/// Uninitialised places for items, known by position, that many threads may ask for at once. Each
+/// segment is as long as all before it, so that there is never a need to move items to make room;
+/// gather() puts them into one segment when nobody adds any. Does not know which places hold an
+/// item: who puts them there destroys them.
 template <class T>
 class Segments {
  public:

@@ -7,8 +7,8 @@
 #include <memory>
 #include <optional>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/fresh_memory.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {

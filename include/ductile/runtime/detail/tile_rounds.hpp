@@ -9,15 +9,13 @@
 #include <optional>
 #include <span>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/tiles.hpp"
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/phase_timer.hpp"
 #include "ductile/runtime/rounds_report.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -30,7 +28,7 @@ class TileRounds {
       : executor_(executor),
         op_(op),
         woken_(executor, op.resource_count()),
-        turn_of_(executor, op.resource_count(), Turns::absent) {}
+        turn_of_(make_filled<std::uint32_t>(executor, op.resource_count(), Turns::absent)) {}
 
   /// Work has size() and items by [i].
   RoundsReport run(const auto& work, std::size_t most_rounds) {
@@ -47,7 +45,7 @@ class TileRounds {
     woken_.begin_round();
     const auto work = all.first(std::min<std::size_t>(all.size(), Turns::most_items));
     run_tiles(work);
-    const PhaseTimer timer(report_.wake_seconds, executor_, Phase::wake);
+    const PhaseTimer timer(report_.wake_seconds);
     parallel_for(
         executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = Turns::absent; },
         few_nanoseconds);
@@ -58,10 +56,10 @@ class TileRounds {
   void run_tiles(std::span<const Item> work) {
     std::optional<Tiles<Op, WokenItems::Commit>> tiles;
     {
-      const PhaseTimer timer(report_.conflict_seconds, executor_, Phase::conflict);
+      const PhaseTimer timer(report_.conflict_seconds);
       tiles.emplace(executor_, op_, work, turn_of_.data());
     }
-    const PhaseTimer timer(report_.apply_seconds, executor_, Phase::apply);
+    const PhaseTimer timer(report_.apply_seconds);
     tiles->run([&] { return woken_.commit(); }, [&](Item item) { return !woken_.has(item); },
                [&](Item item) { woken_.postpone(item); });
     const auto [planned, applied] = tiles->counts();
@@ -73,7 +71,7 @@ class TileRounds {
   const Executor& executor_;
   Op& op_;
   WokenItems woken_;
-  FilledArray<std::uint32_t> turn_of_;  // [item], in the round, see Turns
+  UnsetVector<std::uint32_t> turn_of_;  // [item], in the round, see Turns
   RoundsReport report_;
 };
 

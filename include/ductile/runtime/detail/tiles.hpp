@@ -19,14 +19,14 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/cautious_operator.hpp"
-#include "ductile/runtime/detail/blocks.hpp"
+#include "ductile/runtime/detail/block_layout.hpp"
 #include "ductile/runtime/detail/ranked_blocks.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -81,14 +81,11 @@ class Tiles {
       if (before == none) run_items(begun, is_here, leaving_out);
       return before;
     };
-    const auto visit_met = [&](std::size_t tile, auto&& visit) {
-      for (const std::uint32_t other : waits_of(tile)) visit(other);
-    };
     const auto begin = [&](std::size_t tile) {
       if (conflicts_stay) survey(tile);
       return Begun{tile, new_commit()};
     };
-    tiles_.run(begin, advance, visit_met);
+    tiles_.run(begin, advance);
   }
 
   struct Counts {

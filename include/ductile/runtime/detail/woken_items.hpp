@@ -8,11 +8,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/filled_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/unset_vector.hpp"
 #include "ductile/runtime/worklist.hpp"
 
 namespace ductile::runtime::detail {
@@ -35,7 +34,7 @@ class WokenItems {
 
   WokenItems(const Executor& executor, std::size_t resource_count)
       : items_(executor, {.order = WorkOrder::by_item, .unique = true}),
-        woken_in_(executor, resource_count, 0) {}
+        woken_in_(make_filled<std::uint32_t>(executor, resource_count)) {}
 
   void begin_round() { ++round_; }
 
@@ -60,7 +59,7 @@ class WokenItems {
 
  private:
   Worklist<Item> items_;
-  FilledArray<std::uint32_t> woken_in_;  // [item], the last round
+  UnsetVector<std::uint32_t> woken_in_;  // [item], the last round
   std::uint32_t round_ = 0;
 };
 

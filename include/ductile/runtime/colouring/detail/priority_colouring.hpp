@@ -1,0 +1,221 @@
+/// @file
+/// First-fit in order of priority, on many threads (Jones and Plassmann, SIAM J. Sci. Comput. 14,
+/// 1993): a vertex waits for its uncoloured neighbours of higher priority and ignores those of
+/// lower, which wait for it. It is counted whom it waits for; the last of them hands it on, so that
+/// a neighbour is looked at twice, however long the wait is. A thread goes on with the vertices it
+/// has set free itself, but for more than it can take, which all share in the next round.
+/// The result is that of serial first-fit in descending order of priority.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ductile/runtime/atomic.hpp"
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
+
+namespace ductile::runtime::detail {
+
+/// An object and not a function, so that it is inlined where it is handed on.
+struct Outranks {
+  bool operator()(std::uint32_t u, std::uint32_t v) const { return mix32(u) < mix32(v); }
+};
+inline constexpr Outranks outranks;
+
+/// For how many neighbours each vertex waits, by vertex.
+class AwaitedByVertex {
+ public:
+  AwaitedByVertex(std::size_t vertex_count, std::span<const std::uint32_t>)
+      : count_(std::make_unique_for_overwrite<std::uint32_t[]>(vertex_count)) {}
+  void begin(std::uint32_t v) { count_[v] = 0; }
+  std::uint32_t& operator[](std::uint32_t v) { return count_[v]; }
+
+ private:
+  std::unique_ptr<std::uint32_t[]> count_;
+};
+
+/// The same where few of the vertices are given, in ascending order, and hardly any is a neighbour
+/// of another: as little memory as they need, and a search for those that wait.
+class AwaitedByPlace {
+ public:
+  AwaitedByPlace(std::size_t, std::span<const std::uint32_t> vertices)
+      : vertices_(vertices), count_(vertices.size()) {}
+  void begin(std::uint32_t) {}
+  std::uint32_t& operator[](std::uint32_t v) {
+    const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), v);
+    return count_[static_cast<std::size_t>(at - vertices_.begin())];
+  }
+
+ private:
+  std::span<const std::uint32_t> vertices_;
+  std::vector<std::uint32_t> count_;
+};
+
+/// Takes the colours of vertices away and gives them new ones. `before(u, v)` is a strict order.
+template <class Awaited, class Width, Graph G, class Before>
+class PriorityRun {
+ public:
+  PriorityRun(const Executor& executor, const G& graph, std::span<const std::uint32_t> vertices,
+              Colours<Width> colours, const Before& before)
+      : executor_(executor),
+        graph_(graph),
+        vertices_(vertices),
+        colours_(colours),
+        before_(before),
+        awaited_(colours.vertex_count(), vertices),
+        free_(executor, {.order = WorkOrder::arrival}) {}
+
+  void run() {
+    for_each(vertices_, [&](std::uint32_t v) {
+      colours_.set(v, Colours<Width>::waiting);
+      awaited_.begin(v);
+    });
+    for_each(vertices_, [&](std::uint32_t v) { colour_or_announce(v); });
+    for_each(vertices_, [&](std::uint32_t v) {
+      if (colours_[v] == Colours<Width>::waiting && awaited_[v] == 0) free_.append(v);
+    });
+    for (free_.collect(); !free_.empty(); free_.collect()) {
+      const UnsetVector<std::uint32_t> now = free_.take();
+      for_each(now, [&](std::uint32_t v) { colour_from(v); });
+    }
+  }
+
+ private:
+  /// Of few vertices few are handed out at once, so that each of many threads gets some.
+  template <class Body>
+  void for_each(std::span<const std::uint32_t> vertices, Body body) const {
+    const std::size_t grain = std::clamp<std::size_t>(vertices.size() / 512, 8, 64);
+    parallel_for(executor_, vertices.size(),
+                 [&](std::size_t i) {
+                   prefetch_after(graph_, {vertices.size(), vertices.data()}, i);
+                   body(vertices[i]);
+                 },
+                 {.grain = grain, .serial_below = 64});
+  }
+
+  /// Tells who waits for v as often as v will hand on to them: its row may repeat a neighbour more
+  /// often than that one's repeats v. If no neighbour waits at all, v is coloured at once.
+  void colour_or_announce(std::uint32_t v) {
+    bool missed = false;
+    TakenColours<Colours<Width>> seen;
+    graph_.for_each_neighbour(v, [&](std::uint32_t u) {
+      const std::uint32_t colour = colours_[u];
+      seen.add(colour);
+      if (colour != Colours<Width>::waiting || u == v) return;
+      missed = true;
+      if (before_(v, u)) atomic_count(awaited_[u]);
+    });
+    if (!missed) colours_.set(v, least_free(graph_, v, colours_, seen));
+  }
+
+  /// Colours v, and whom it sets free.
+  void colour_from(std::uint32_t v) {
+    std::array<std::uint32_t, 64> stack;
+    std::size_t size = 0;
+    for (stack[size++] = v; size > 0;) {
+      v = stack[--size];
+      colours_.set(v, least_free(graph_, v, colours_));
+      graph_.for_each_neighbour(v, [&](std::uint32_t u) {
+        if (colours_[u] != Colours<Width>::waiting || !hand_on(u)) return;
+        if (size < stack.size()) {
+          stack[size++] = u;
+        } else {
+          free_.append(u);
+        }
+      });
+    }
+  }
+
+  /// A neighbour of u has its colour; true if it was the last that u waited for. Each sees what
+  /// those before it released, so that the last one knows the colours of all.
+  bool hand_on(std::uint32_t u) {
+    return std::atomic_ref(awaited_[u]).fetch_sub(1, std::memory_order_acq_rel) == 1;
+  }
+
+  const Executor& executor_;
+  const G& graph_;
+  std::span<const std::uint32_t> vertices_;
+  Colours<Width> colours_;
+  const Before& before_;
+  Awaited awaited_;               // [vertex], neighbours it waits for; of those given
+  Worklist<std::uint32_t> free_;  // wait for nobody
+};
+
+template <class Awaited = AwaitedByVertex, class Width, Graph G, class Before>
+void colour_by_priority(const Executor& executor, const G& graph,
+                        std::span<const std::uint32_t> vertices, Colours<Width> colours,
+                        const Before& before) {
+  PriorityRun<Awaited, Width, G, Before>(executor, graph, vertices, colours, before).run();
+}
+
+inline std::vector<std::uint32_t> listed(const VertexSet& vertices) {
+  std::vector<std::uint32_t> all(vertices.count);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = vertices[i];
+  return all;
+}
+
+struct ByPriority {
+  static constexpr std::uint32_t marks = 0;
+  static constexpr bool bound_by_memory = true;  ///< has no use for words that are read faster
+
+  template <class Width, Graph G>
+  static void run(const Executor& executor, const G& graph, VertexSet vertices,
+                  Colours<Width> colours) {
+    colour_by_priority(executor, graph, listed(vertices), colours, outranks);
+  }
+};
+
+/// Greater sizes first, ties by hash.
+struct Greater {
+  const std::uint32_t* size_of;  // [vertex]
+
+  bool operator()(std::uint32_t u, std::uint32_t v) const {
+    return size_of[u] != size_of[v] ? size_of[u] > size_of[v] : outranks(u, v);
+  }
+};
+
+/// What vertices are taken by the size of.
+enum class Degree { itself, logarithm };
+
+template <class Width, Graph G>
+void colour_by_degree(const Executor& executor, const G& graph, VertexSet vertices,
+                      Colours<Width> colours, Degree size) {
+  std::vector<std::uint32_t> size_of(colours.vertex_count());
+  parallel_for(executor, vertices.count,
+               [&](std::size_t i) {
+                 std::uint32_t degree = 0;
+                 graph.for_each_neighbour(vertices[i], [&](std::uint32_t) { ++degree; });
+                 size_of[vertices[i]] = size == Degree::itself
+                                            ? degree
+                                            : static_cast<std::uint32_t>(std::bit_width(degree));
+               },
+               {.grain = 256, .serial_below = 1024});
+  colour_by_priority(executor, graph, listed(vertices), colours, Greater{size_of.data()});
+}
+
+/// Greater degrees first, or greater binary logarithms of them, which makes shorter chains of
+/// vertices that wait for each other (Hasenplaugh et al., SPAA 2014). Ties by hash.
+template <Degree size>
+struct ByDegree {
+  static constexpr std::uint32_t marks = 0;
+  static constexpr bool bound_by_memory = true;
+
+  template <class Width, Graph G>
+  static void run(const Executor& executor, const G& graph, VertexSet vertices,
+                  Colours<Width> colours) {
+    colour_by_degree(executor, graph, vertices, colours, size);
+  }
+};
+
+}  // namespace ductile::runtime::detail

@@ -1,0 +1,1 @@
+#include "ductile/runtime/colouring/graph.hpp"
