@@ -10,6 +10,8 @@
 ///   to_string(Item)        messages name the item, not only its place (numbers name themselves)
 /// Of a cautious operator it sees where items that have reached for nothing in common change each
 /// other's plans, and whether plan() gives up where it should; most_rounds is not heeded.
+/// Where items lower what others have not reached for, as LevelledOperator allows, the operator has
+/// a member `lowers_minima`: then another item may lose its plan.
 /// An operator that on purpose does not wake all who could plan again has a member `forgoes_wakes`.
 #pragma once
 

@@ -8,7 +8,8 @@
 //   ordered_run            in_order: a plain loop, or
 //     ordered_stream       operators that tell conflicts
 //     ordered_windows      all others
-//   reservation_windows    reservations
+//   reservation_windows    reservations, or
+//     level_rounds         operators with levels
 //   lock_rounds            locks
 // made_things has the numbers of what operators make.
 
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/level_rounds.hpp"
 #include "ductile/runtime/detail/lock_rounds.hpp"
 #include "ductile/runtime/detail/ordered_run.hpp"
 #include "ductile/runtime/detail/region_rounds.hpp"
@@ -50,6 +52,10 @@ constexpr void expect_whole_members() {
   constexpr bool has_places = requires { &Op::place_of; };
   static_assert(!has_places || PlacedOperator<Op>,
                 "place_of(std::uint32_t) const returns std::array<double, 2> or of 3");
+  constexpr bool has_levels = requires { &Op::level; };
+  static_assert(!has_levels || LevelledOperator<Op>,
+                "level(const Item&) const returns std::uint32_t");
+  static_assert(!has_levels || !makes_things, "an operator with levels makes no things");
 }
 
 /// Whether it is a cautious operator. Says at compile time what one lacks.
@@ -66,6 +72,12 @@ constexpr bool expect_cautious() {
 /// lacks what it needs.
 template <CautiousOperator Op>
 Strategy strategy_of(const Executor& executor, const RoundsOptions& options) {
+  if constexpr (LevelledOperator<Op>) {
+    if (options.strategy == Strategy::automatic || options.strategy == Strategy::reservations)
+      return Strategy::reservations;
+    throw std::invalid_argument(
+        "the operator has levels, which only the strategies automatic and reservations keep");
+  }
   switch (options.strategy) {
     case Strategy::regions:
       if (!PlacedOperator<Op>)
@@ -113,6 +125,8 @@ RoundsReport run_cautious_rounds(const Executor& executor, Op& op, Work work,
   const Strategy strategy = strategy_of<Op>(executor, options);
   const auto most_rounds = static_cast<std::size_t>(options.most_rounds);
   return with_team(executor, [&] {
+    if constexpr (LevelledOperator<Op>)
+      return LevelRounds<Op>(executor, op).run(to_vector<Item>(std::move(work)), most_rounds);
     if constexpr (PlacedOperator<Op>)
       if (strategy == Strategy::regions)
         return RegionRounds<Op>(executor, op).run(to_vector<Item>(std::move(work)), most_rounds);
