@@ -137,17 +137,15 @@ void eliminate_at_once(const Executor& executor, Elimination& op) {
   Items round;
   RoundsReport report;
   detail::OrderedWindows<Elimination, Items> windows(executor, op, round);
-  while (waiting.take_lowest(round))
-    windows.run_waking(
-        0, round.size(),
-        [&](const Elimination::Item& item, Elimination::Plan& plan, Items& woken) {
-          Commit commit{woken};
-          op.apply(item, plan, commit);
-        },
-        [&](const Elimination::Item&, std::span<const Elimination::Item> woken) {
-          for (const auto& item : woken) waiting.add(item);
-        },
-        report);
+  const auto apply = [&](const Elimination::Item& item, Elimination::Plan& plan, Items& woken) {
+    Commit commit{woken};
+    op.apply(item, plan, commit);
+  };
+  const auto wake = [&](std::span<const Elimination::Item> woken) {
+    for (const auto& item : woken) waiting.add(item);
+  };
+  const detail::WindowSteps steps{apply, detail::TellNobody(), wake};
+  while (waiting.take_lowest(round)) windows.run_waking(0, round.size(), steps, report);
 }
 
 /// Few and many vertices; hardly any edges, and enough that cliques grow.

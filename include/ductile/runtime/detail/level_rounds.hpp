@@ -94,6 +94,7 @@ class LevelRounds {
   }
 
  private:
+  using Windows = OrderedWindows<Op, std::vector<Item>>;
   static constexpr std::size_t part = 16384, tried_every = 16;
   static constexpr double too_short_to_share = 8000;  // nanoseconds
 
@@ -146,17 +147,17 @@ class LevelRounds {
       NotingCommit commit{woken};
       op_.apply(item, plan, commit);
     };
-    const auto applied = [&](const Item&, std::span<const Item> woken) {
+    const auto wake = [&](std::span<const Item> woken) {
       for (const Item& item : woken) waiting_.add(item);
     };
-    at_once_windows_->run_waking(begin, end, apply, applied, report_);
+    at_once_windows_->run_waking(begin, end, WindowSteps{apply, TellNobody(), wake}, report_);
   }
 
   const Executor& executor_;
   Op& op_;
   ItemsByLevel<Op> waiting_;
   std::vector<Item> round_;
-  std::optional<OrderedWindows<Op, std::vector<Item>>> at_once_windows_;
+  std::optional<Windows> at_once_windows_;
   Plan plan_{};
   double plain_ = 0, at_once_ = 0;  // nanoseconds an item, when it was done last
   std::size_t turn_ = 0;

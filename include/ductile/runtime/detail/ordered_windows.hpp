@@ -20,6 +20,17 @@
 
 namespace ductile::runtime::detail {
 
+/// What is done in windows. apply(item, plan, woken) carries a plan out and adds whom it wakes to a
+/// vector; in the order of the work, applied(item) is told of it, and wake(woken) of these.
+template <class Apply, class Applied, class Wake>
+struct WindowSteps {
+  Apply apply;
+  Applied applied;
+  Wake wake;
+};
+template <class Apply, class Applied, class Wake>
+WindowSteps(Apply, Applied, Wake) -> WindowSteps<Apply, Applied, Wake>;
+
 /// One run. Work has size() and items by [i]. An item that has no plan leaves at once: those
 /// before it in its window give it none.
 template <CautiousOperator Op, class Work>
@@ -34,18 +45,15 @@ class OrderedWindows {
   /// Runs a part of the work, all before which is done. apply(item, plan) carries a plan out;
   /// applied(item) is told of it, in the order of the work.
   void run(std::size_t begin, std::size_t end, auto&& apply, auto&& applied, RoundsReport& report) {
-    run_waking(
-        begin, end, [&](const Item& item, Plan& plan, auto&) { apply(item, plan); },
-        [&](const Item& item, std::span<const Item>) { applied(item); }, report);
+    const auto apply_alone = [&](const Item& item, Plan& plan, auto&) { apply(item, plan); };
+    run_waking(begin, end, WindowSteps{apply_alone, applied, TellNobody()}, report);
   }
 
-  /// The same where items wake others: apply(item, plan, woken) adds them to a vector, and
-  /// applied(item, woken) is told of them.
-  void run_waking(std::size_t begin, std::size_t end, auto&& apply, auto&& applied,
-                  RoundsReport& report) {
+  /// The same where items may wake others.
+  void run_waking(std::size_t begin, std::size_t end, const auto& steps, RoundsReport& report) {
     holder_of_.resize(op_.resource_count(), nobody);
     for (; begin < end; begin += window)
-      run_window(begin, std::min<std::size_t>(begin + window, end), apply, applied, report);
+      run_window(begin, std::min<std::size_t>(begin + window, end), steps, report);
   }
 
  private:
@@ -75,8 +83,7 @@ class OrderedWindows {
     return true;
   }
 
-  void run_window(std::size_t begin, std::size_t end, auto&& apply, auto&& applied,
-                  RoundsReport& report) {
+  void run_window(std::size_t begin, std::size_t end, const auto& steps, RoundsReport& report) {
     ++report.batches;
     report.planned += end - begin;
     begin_window();
@@ -88,29 +95,30 @@ class OrderedWindows {
                         });
     const std::size_t count = (end - begin + size - 1) / size;
     parallel_for(executor_, count,
-                 [&](std::size_t block) { apply_winners(blocks_[block], begin, apply); },
+                 [&](std::size_t block) { apply_winners(blocks_[block], begin, steps.apply); },
                  {.grain = 1});
-    for (std::size_t block = 0; block < count; ++block)
-      end_block(blocks_[block], apply, applied, report);
+    for (std::size_t block = 0; block < count; ++block) end_block(blocks_[block], steps, report);
   }
 
   /// Runs the losers, and tells of all that were applied.
-  void end_block(Block& block, auto&& apply, auto&& applied, RoundsReport& report) {
-    std::size_t first = 0;
+  void end_block(const Block& block, const auto& steps, RoundsReport& report) {
+    const std::span<const Item> woken(block.woken);
+    std::size_t first = 0, told = 0;
     for (std::size_t c = 0; c < block.count; ++c) {
       const Candidate& candidate = block.candidates[c];
       const Item item = work_[candidate.place];
-      if (candidate.won) {
-        applied(item,
-                std::span<const Item>(block.woken).subspan(first, candidate.woken_end - first));
-        first = candidate.woken_end;
-      } else {
+      if (!candidate.won) {
         ++report.lost;
-        if (!run_alone(item, apply)) continue;
-        applied(item, std::span<const Item>(woken_));
+        if (!run_alone(item, steps.apply)) continue;
+        steps.wake(woken.subspan(told, first - told));
+        steps.wake(std::span<const Item>(woken_));
+        told = first;
       }
+      first = candidate.woken_end;
+      steps.applied(item);
       ++report.applied;
     }
+    steps.wake(woken.subspan(told));
   }
 
   /// Keys fall from window to window, so that what was reserved in earlier ones counts no more.
