@@ -4,7 +4,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -126,26 +125,11 @@ void eliminate_plainly(Elimination& op) {
 }
 
 /// All rounds by several threads at once, which a whole run does only where that was faster so far.
-void eliminate_at_once(const Executor& executor, Elimination& op) {
-  using Items = std::vector<Elimination::Item>;
-  struct Commit {
-    Items& woken;
-    void wake(const Elimination::Item& item) { woken.push_back(item); }
-  };
-  detail::ItemsByLevel<Elimination> waiting(op);
-  for (const auto& item : op.all_items()) waiting.add(item);
-  Items round;
-  RoundsReport report;
-  detail::OrderedWindows<Elimination, Items> windows(executor, op, round);
-  const auto apply = [&](const Elimination::Item& item, Elimination::Plan& plan, Items& woken) {
-    Commit commit{woken};
-    op.apply(item, plan, commit);
-  };
-  const auto wake = [&](std::span<const Elimination::Item> woken) {
-    for (const auto& item : woken) waiting.add(item);
-  };
-  const detail::WindowSteps steps{apply, detail::TellNobody(), wake};
-  while (waiting.take_lowest(round)) windows.run_waking(0, round.size(), steps, report);
+template <class Op>
+RoundsReport run_at_once(const Executor& executor, Op& op,
+                         const std::vector<typename Op::Item>& work) {
+  return detail::LevelRounds<Op>(executor, op, detail::Sharing::always)
+      .run(work, std::numeric_limits<std::size_t>::max());
 }
 
 /// Few and many vertices; hardly any edges, and enough that cliques grow.
@@ -165,7 +149,7 @@ TEST(LevelRounds, GiveWhatAPlainLoopGivesAtAnyNumberOfThreads) {
         EXPECT_EQ(report.applied, n);
         EXPECT_EQ(report.left, 0U);
         ASSERT_TRUE(op == plain) << n << ", " << threads << " threads";
-        eliminate_at_once(executor, at_once);
+        run_at_once(executor, at_once, at_once.all_items());
         ASSERT_TRUE(at_once == plain) << n << ", " << threads << " threads";
       }
     }
@@ -222,7 +206,7 @@ TEST(LevelRounds, PassOnWhatOperatorsThrow) {
     Elimination op(1, 20000, 10000), at_once(1, 20000, 10000);
     op.throws_at = at_once.throws_at = 17000;
     EXPECT_THROW(run_rounds(executor, op, op.all_items()), std::runtime_error);
-    EXPECT_THROW(eliminate_at_once(executor, at_once), std::runtime_error);
+    EXPECT_THROW(run_at_once(executor, at_once, at_once.all_items()), std::runtime_error);
   }
 }
 
@@ -293,6 +277,9 @@ TEST(LevelRounds, LowerMinima) {
       LoweringThatTells op(n);
       run_rounds(Executor({.threads = threads}), op, op.start());
       EXPECT_EQ(op.least, std::vector<std::uint32_t>(n, least)) << threads;
+      LoweringThatTells at_once(n);
+      run_at_once(Executor({.threads = threads}), at_once, at_once.start());
+      EXPECT_EQ(at_once.least, std::vector<std::uint32_t>(n, least)) << threads;
     }
     if (n > 100) continue;
     LoweringThatTells checked(n);

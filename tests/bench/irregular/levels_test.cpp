@@ -4,11 +4,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "ductile/runtime/checked_rounds.hpp"
+#include "lean/minimum_degree.hpp"
 #include "lean/shortest_paths.hpp"
+#include "minimum_degree.hpp"
 #include "shortest_paths.hpp"
 
 namespace {
@@ -43,6 +47,14 @@ std::vector<WeightedGraph> large_graphs() {
   return graphs;
 }
 
+/// All rounds by several threads at once, which a whole run does only where that was faster so far.
+template <class Op>
+void run_at_once(int threads, Op& op, const std::vector<typename Op::Item>& work) {
+  runtime::detail::LevelRounds<Op>(runtime::Executor({.threads = threads}), op,
+                                   runtime::detail::Sharing::always)
+      .run(work, std::numeric_limits<std::size_t>::max());
+}
+
 TEST(ShortestPaths, AreDijkstras) {
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
     const WeightedGraph graph = weighted_graph(seed, 1 + seed % 70);
@@ -75,7 +87,7 @@ TEST(ShortestPaths, DoNotDependOnHowWideLevelsAre) {
       for (const int threads : thread_counts) {
         ShortestPaths paths(graph.rows.view(), graph.weight_of, bits);
         const std::vector start{paths.start(0)};
-        runtime::run_rounds(runtime::Executor({.threads = threads}), paths, start);
+        run_at_once(threads, paths, start);
         ASSERT_EQ(paths.distance_of, expected) << bits << ", " << threads << " threads";
       }
   }
@@ -89,6 +101,75 @@ TEST(ShortestPaths, KeepTheContract) {
     const std::vector start{paths.start(0)};
     runtime::run_rounds_checked(runtime::Executor(), paths, start);
     ASSERT_EQ(paths.distance_of, lean::shortest_paths(graph.rows.view(), graph.weight_of, 0));
+  }
+}
+
+// ---- Minimum degree ----
+
+/// Eliminates vertices one by one; returns the entries of the factor, or 0 if it is no ordering.
+std::uint64_t entries(const runtime::CsrRows& rows, const std::vector<Vertex>& order) {
+  if (std::set(order.begin(), order.end()).size() != rows.vertex_count()) return 0;
+  std::vector<std::set<Vertex>> beside(rows.vertex_count());
+  for (Vertex v = 0; v < rows.vertex_count(); ++v)
+    beside[v].insert(rows.view().row(v).begin(), rows.view().row(v).end());
+  std::uint64_t sum = 0;
+  for (const Vertex gone : order) {
+    sum += 1 + beside[gone].size();
+    for (const Vertex v : beside[gone]) {
+      beside[v].insert(beside[gone].begin(), beside[gone].end());
+      beside[v].erase(v);
+      beside[v].erase(gone);
+    }
+  }
+  return sum;
+}
+
+TEST(MinimumDegree, OrdersAllAndCountsTheFill) {
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    const runtime::CsrRows rows = weighted_graph(seed, 1 + seed % 70).rows;
+    const Ordering one = minimum_degree_in_parallel(runtime::Executor({.threads = 1}), rows.view());
+    ASSERT_EQ(entries(rows, one.order), one.fill) << seed;
+    for (const int threads : thread_counts) {
+      MinimumDegree at_once(rows.view());
+      run_at_once(threads, at_once, at_once.all_items());
+      ASSERT_EQ(at_once.ordering(runtime::Executor()), one) << seed << ", " << threads;
+    }
+  }
+}
+
+TEST(MinimumDegree, IsTheSameAtAnyNumberOfThreads) {
+  std::vector<runtime::CsrRows> graphs;
+  graphs.push_back(grid_graph(10000));
+  graphs.push_back(geometric_graph(10000).rows);
+  graphs.push_back(weighted_graph(4, 600).rows);
+  for (const runtime::CsrRows& rows : graphs) {
+    const Ordering one = minimum_degree_in_parallel(runtime::Executor({.threads = 1}), rows.view());
+    for (const int threads : thread_counts) {
+      const runtime::Executor executor({.threads = threads});
+      ASSERT_EQ(minimum_degree_in_parallel(executor, rows.view()), one) << threads << " threads";
+      MinimumDegree at_once(rows.view());
+      run_at_once(threads, at_once, at_once.all_items());
+      ASSERT_EQ(at_once.ordering(executor), one) << threads << " threads";
+    }
+  }
+}
+
+TEST(MinimumDegree, HasHardlyMoreFillThanSerially) {
+  for (const runtime::CsrRows& rows : {grid_graph(90000), geometric_graph(20000).rows}) {
+    const Ordering ordering = minimum_degree_in_parallel(runtime::Executor(), rows.view());
+    const std::uint64_t serial = lean::MinimumDegree(rows.view()).run().fill;
+    EXPECT_LE(20 * ordering.fill, 21 * serial);
+  }
+}
+
+TEST(MinimumDegree, KeepsTheContract) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const runtime::CsrRows rows = weighted_graph(seed, 1 + seed % 70).rows;
+    MinimumDegree elimination(rows.view());
+    runtime::run_rounds_checked(runtime::Executor(), elimination, elimination.all_items());
+    ASSERT_EQ(elimination.ordering(runtime::Executor()),
+              minimum_degree_in_parallel(runtime::Executor({.threads = 2}), rows.view()))
+        << seed;
   }
 }
 

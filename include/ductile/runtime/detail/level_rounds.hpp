@@ -71,19 +71,25 @@ class ItemsByLevel {
   std::uint32_t lowest_ = 0;
 };
 
+/// For tests.
+enum class Sharing : std::uint8_t { where_faster, always };
+
 template <LevelledOperator Op>
 class LevelRounds {
  public:
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
 
-  LevelRounds(const Executor& executor, Op& op) : executor_(executor), op_(op), waiting_(op) {}
+  LevelRounds(const Executor& executor, Op& op, Sharing sharing = Sharing::where_faster)
+      : executor_(executor), op_(op), sharing_(sharing), waiting_(op) {}
 
   RoundsReport run(const std::vector<Item>& work, std::size_t most_rounds) {
     for (const Item& item : work) waiting_.add(item);
     while (report_.rounds < most_rounds && waiting_.take_lowest(round_)) {
       ++report_.rounds;
-      if (executor_.threads() == 1) {
+      if (sharing_ == Sharing::always) {
+        run_at_once(0, round_.size());
+      } else if (executor_.threads() == 1) {
         run_plainly(0, round_.size());
       } else {
         run_shared();
@@ -155,6 +161,7 @@ class LevelRounds {
 
   const Executor& executor_;
   Op& op_;
+  Sharing sharing_;
   ItemsByLevel<Op> waiting_;
   std::vector<Item> round_;
   std::optional<Windows> at_once_windows_;
