@@ -81,7 +81,6 @@ class QuotientGraph {
 
  private:
   static constexpr Vertex none = 0xffffffffU;
-
   struct Node {
     std::uint32_t begin = 0, elements = 0, neighbours = 0;  // its list
     std::uint32_t size = 1;           // 0 for elements and what is one with another
@@ -101,7 +100,6 @@ class QuotientGraph {
   /// Leaves the new element, others that reach beyond it, and neighbours that are not in it.
   /// Without any of these two the vertex goes with the pivot.
   void shorten(Vertex pivot, Vertex v, Scratch& scratch) {
-    Node& node = nodes_[v];
     std::vector<Vertex>& kept = scratch.kept;
     kept.assign(1, pivot);
     for (const Vertex e : elements(v)) {
@@ -111,11 +109,11 @@ class QuotientGraph {
     const auto elements = static_cast<std::uint32_t>(kept.size());
     for (const Vertex u : neighbours(v))
       if (is_left(u) && nodes_[u].mark != pivot) kept.push_back(u);
-    node.elements = elements;
-    node.neighbours = static_cast<std::uint32_t>(kept.size()) - elements;
-    std::copy(kept.begin(), kept.end(), lists_.begin() + node.begin);
+    nodes_[v].elements = elements;
+    nodes_[v].neighbours = static_cast<std::uint32_t>(kept.size()) - elements;
+    std::copy(kept.begin(), kept.end(), lists_.begin() + nodes_[v].begin);
     if (kept.size() == 1) {
-      nodes_[pivot].degree -= node.size;
+      nodes_[pivot].degree -= nodes_[v].size;
       unite(pivot, v);
     } else {
       scratch.hashes.emplace_back(std::accumulate(kept.begin(), kept.end(), std::uint64_t{0}), v);
@@ -126,15 +124,13 @@ class QuotientGraph {
   /// element first, neighbours as the rows of the graph have them.
   void unite_alike(std::vector<std::pair<std::uint64_t, Vertex>>& hashes) {
     std::sort(hashes.begin(), hashes.end());
-    for (std::size_t i = 0; i < hashes.size(); ++i) {
-      const auto [hash, v] = hashes[i];
-      for (std::size_t j = i + 1; j < hashes.size() && hashes[j].first == hash; ++j) {
-        const Vertex other = hashes[j].second;
-        if (is_left(v) && is_left(other) && nodes_[other].elements == nodes_[v].elements &&
+    for (auto one = hashes.begin(); one != hashes.end(); ++one)
+      for (auto two = one + 1; two != hashes.end() && two->first == one->first; ++two) {
+        const Vertex v = one->second, other = two->second;
+        if (is_left(v) && is_left(other) && nodes_[v].elements == nodes_[other].elements &&
             std::ranges::equal(list(v), list(other)))
           unite(v, other);
       }
-    }
   }
 
   /// What is in two elements beside the new one counts twice.
