@@ -2,7 +2,9 @@
 /// The core number of each vertex: the greatest k such that it has k neighbours in what is left
 /// when vertices with fewer than k neighbours are taken away again and again. Peels shell after
 /// shell. This loop has no conflicts to find, so it uses the parts that run_rounds is made of: the
-/// losses of a shell's neighbours are deferred, and a vertex that falls to k joins the worklist.
+/// losses of a shell's neighbours are deferred, and a vertex that falls to k joins the worklist. As
+/// an operator with levels a vertex would have to reach for all its neighbours, since a count is no
+/// minimum that several may lower: those beside a hub would go one after the other.
 #pragma once
 
 #include <cstddef>

@@ -7,37 +7,39 @@
 
 #include "algorithms.hpp"
 #include "lean/minimum_degree.hpp"
+#include "minimum_degree.hpp"
 
 namespace ductile::bench::irregular {
 
 namespace {
 
-struct Result {
-  lean::Ordering ordering;
-
-  friend bool operator==(const Result& one, const Result& two) {
-    return one.ordering.order == two.ordering.order && one.ordering.fill == two.ordering.fill;
-  }
-};
+using example::Ordering;
 
 /// Each vertex once, and at most a twentieth more fill than the serial code's.
-std::string fault(const GraphInput& input, const Result& result, const Result& serial) {
+std::string fault(const GraphInput& input, const Ordering& result, const Ordering& serial) {
   std::vector<std::uint8_t> seen(input.view().vertex_count());
-  for (const example::Vertex vertex : result.ordering.order)
+  for (const example::Vertex vertex : result.order)
     if (vertex >= seen.size() || std::exchange(seen[vertex], 1) != 0) return "gives no ordering";
-  if (result.ordering.order.size() != seen.size()) return "leaves vertices out";
-  return unless(20 * result.ordering.fill <= 21 * serial.ordering.fill, "gives too much fill");
+  if (result.order.size() != seen.size()) return "leaves vertices out";
+  return unless(20 * result.fill <= 21 * serial.fill, "gives too much fill");
 }
 
 }  // namespace
 
 Algorithm minimum_degree() {
-  return algorithm(Row<GraphInput, Result>{
+  return algorithm(Row<GraphInput, Ordering>{
       .name = "minimum_degree",
       .inputs = {"grid", "geometric"},
       .make_input = graph_input,
-      .serial = [](const GraphInput& input,
-                   Result& result) { result.ordering = lean::MinimumDegree(input.view()).run(); },
+      .serial =
+          [](const GraphInput& input, Ordering& result) {
+            lean::Ordering ordering = lean::MinimumDegree(input.view()).run();
+            result = {std::move(ordering.order), ordering.fill};
+          },
+      .ductile =
+          [](const runtime::Executor& executor, const GraphInput& input, Ordering& result) {
+            result = example::minimum_degree_in_parallel(executor, input.view());
+          },
       .fault = fault});
 }
 

@@ -5,6 +5,7 @@
 
 #include "algorithms.hpp"
 #include "lean/shortest_paths.hpp"
+#include "shortest_paths.hpp"
 
 namespace ductile::bench::irregular {
 
@@ -39,6 +40,11 @@ Algorithm shortest_paths() {
       .serial =
           [](const GraphInput& input, Distances& distance_of) {
             distance_of = lean::shortest_paths(input.view(), input.graph.weight_of, 0);
+          },
+      .ductile =
+          [](const runtime::Executor& executor, const GraphInput& input, Distances& distance_of) {
+            distance_of = example::shortest_paths_in_parallel(executor, input.view(),
+                                                              input.graph.weight_of, 0);
           },
       .fault =
           [](const GraphInput& input, const Distances& distance_of, const Distances& /*serial*/) {

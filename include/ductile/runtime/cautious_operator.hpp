@@ -16,8 +16,9 @@ namespace ductile::runtime {
 
 /// How a CautiousOperator is run. All but `locks` give the same result at any number of threads.
 enum class Strategy : std::uint8_t {
-  automatic,     ///< locks if the executor need not be deterministic; otherwise regions if the
-                 ///< operator has place_of(), in_order if it has conflicts(), or reservations
+  automatic,     ///< reservations if the operator has level(), locks if the executor need not be
+                 ///< deterministic; otherwise regions if it has place_of(), in_order if it has
+                 ///< conflicts(), or reservations
   regions,       ///< resources are cut into regions along a space-filling curve, and each region
                  ///< runs its items on one thread, the last woken first; what reaches into another
                  ///< region waits for the next phase, whose cuts lie elsewhere
@@ -26,7 +27,7 @@ enum class Strategy : std::uint8_t {
                  ///< alone, and one without a plan never gets one later
   reservations,  ///< items reserve what they reach, in windows of the work; those that hold all of
                  ///< it are applied. The lowest priority() wins, or whoever is first in a random
-                 ///< order of the work
+                 ///< order of the work. Level by level if the operator has level()
   tiles,    ///< stretches of the work, each run by one thread; of items with a conflict the one
             ///< whose tile has the lower rank comes first. Nothing is made
   colours,  ///< classes of items without conflicts, found by speculative colouring, one class
@@ -124,6 +125,19 @@ concept PlacedOperator = CautiousOperator<Op> &&(
     requires(const Op& op, std::uint32_t resource) {
       { op.place_of(resource) } -> std::same_as<std::array<double, 3>>;
     });
+
+/// level(item) says when an item runs; it follows from the item alone. All of the lowest level that
+/// is there run first, in the order in which they have come; whom they wake at that level, or below
+/// it, runs after them, but still in it; then the next level comes. The result is that of a plain
+/// loop which does the same if, within a level, what an item reaches depends on items before it
+/// alone, and one without a plan gets none later, unless it is woken. What an item writes besides
+/// what it has reached may only be a minimum that several may lower (atomic.hpp): whoever waits
+/// may lose its plan by that, and the end is the same whether it does in time or not.
+template <class Op>
+concept LevelledOperator = CautiousOperator<Op> &&
+    requires(const Op& op, const typename Op::Item& item) {
+  { op.level(item) } -> std::same_as<std::uint32_t>;
+};
 
 /// An operator that makes numbered things of one or more kinds, of which the first are resources:
 ///

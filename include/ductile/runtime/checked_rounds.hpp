@@ -6,6 +6,8 @@
 /// operator tells, the more it sees:
 ///   Plan has ==            compares plans, not only whether there is one
 ///   to_string(Item)        messages name the item, not only its place (numbers name themselves)
+/// Where items lower what others have not reached for, as LevelledOperator allows, the operator has
+/// a member `lowers_minima`: then another item may lose its plan.
 /// An operator that on purpose does not wake all who could plan again has a member `forgoes_wakes`.
 #pragma once
 

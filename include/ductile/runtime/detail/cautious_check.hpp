@@ -63,11 +63,12 @@ class CautiousCheck {
       const Numbered item = waiting_.back();
       waiting_.pop_back();
       if constexpr (ConflictingOperator<Op>) --waits_of_[item.item];
+      if constexpr (has_levels) begin_item_of_level(item);
       ++report.planned;
       const bool is_applied = run_item(item);
       report.applied += is_applied;
-      // In order nobody is woken, so whoever has had its turn may have a plan again.
-      if (!in_order_ || !is_applied) considered_.push_back(item);
+      // Nobody is woken in order, or need be of a level, once it was applied.
+      if (!is_applied || !(in_order_ || has_levels)) considered_.push_back(item);
     }
     expect_nothing_left();
     renumber();
@@ -76,11 +77,14 @@ class CautiousCheck {
 
  private:
   static constexpr std::size_t kinds = kinds_made<Op>, watched = 32;
+  static constexpr bool has_levels = LevelledOperator<Op>;
+  static constexpr bool lowers_minima = requires { Op::lowers_minima; };
 
   /// With its place among all that were in the work or were woken.
   struct Numbered {
     Item item{};
     std::size_t number = 0;
+    std::uint32_t level = 0;
   };
 
   /// What plan() made of an item.
@@ -122,7 +126,15 @@ class CautiousCheck {
       expect_known(item);
       ++waits_of_[item];
     }
-    waiting_.push_back({item, added_++});
+    Numbered added{item, added_++};
+    auto before = waiting_.end();
+    if constexpr (has_levels) {
+      added.level = std::max(level_, op_.level(item));
+      before = std::partition_point(waiting_.begin(), waiting_.end(), [&](const Numbered& other) {
+        return other.level > added.level;
+      });
+    }
+    waiting_.insert(before, added);
   }
   void expect_known(std::uint32_t item) {
     waits_of_.resize(op_.resource_count());
@@ -130,6 +142,17 @@ class CautiousCheck {
       throw ContractBroken(ContractRule::numbers_in_range, std::to_string(item), 1,
                            "it is in the work or was woken, but there are " +
                                std::to_string(waits_of_.size()) + " resources");
+  }
+
+  /// Those that are in a round together do not know of those that were woken in it.
+  void begin_item_of_level(const Numbered& item) {
+    if (item.level != level_ || item.number >= round_end_) round_end_ = added_;
+    level_ = item.level;
+  }
+  /// Whether an item may be in one window with the one before it.
+  bool is_in_order_after(const Numbered& other) const {
+    if constexpr (has_levels) return other.level == level_ && other.number < round_end_;
+    return in_order_ && !ConflictingOperator<Op>;
   }
 
   static std::string name_of(const Numbered& item) { return item_name(item.item, item.number); }
@@ -297,12 +320,12 @@ class CautiousCheck {
     const std::vector<std::uint32_t>& before = other.before.reached;
     const Decision after = decide(other.item.item);
     if (std::none_of(before.begin(), before.end(), had_reached)) {
-      if (!is_same(after, other.before))
+      if (!is_same(after, other.before) && !(lowers_minima && !after.found))
         refuse(ContractRule::touches_announced, other.item,
                "its plan changed when item " + name_of(applied) +
                    " was applied, though the two have reached for nothing in common: one reads " +
                    "or writes what it has not reached for");
-    } else if (in_order_ && !ConflictingOperator<Op>) {
+    } else if (is_in_order_after(other.item)) {
       const bool is_known =
           std::all_of(after.reached.begin(), after.reached.end(), [&](std::uint32_t r) {
             return had_reached(r) || std::find(before.begin(), before.end(), r) != before.end();
@@ -310,8 +333,8 @@ class CautiousCheck {
       if (!is_known || (after.found && !other.before.found))
         refuse(ContractRule::order_kept, other.item,
                "when item " + name_of(applied) + " was applied it got a plan, or reaches for " +
-                   "what neither of them had reached: in strategy in_order the result would " +
-                   "depend on the number of threads");
+                   "what neither of them had reached: in order, the result would depend on the " +
+                   "number of threads");
     }
   }
 
@@ -352,6 +375,8 @@ class CautiousCheck {
   std::vector<std::uint32_t> waits_of_;  // [item], how often it waits, if there are conflicts
   std::vector<Numbered> considered_;     // had their turn
   std::size_t added_ = 0;
+  std::uint32_t level_ = 0;    // that runs
+  std::size_t round_end_ = 0;  // items with lower numbers were there when the round began
   Plan used_plan_{};
   std::array<std::size_t, kinds> top_{}, room_{};  // [kind]
   std::array<NumberPool, kinds> holes_;            // [kind]

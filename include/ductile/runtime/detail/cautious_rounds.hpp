@@ -8,7 +8,8 @@
 //   ordered_run            in_order: a plain loop, or
 //     ordered_stream       operators that tell conflicts
 //     ordered_windows      all others
-//   reservation_windows    reservations
+//   reservation_windows    reservations, or
+//     level_rounds         operators with levels
 //   lock_rounds            locks
 //   tile_rounds            tiles, of which there is more in tiles and ranked_blocks
 //   colour_rounds          colours
@@ -21,6 +22,7 @@
 
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/colour_rounds.hpp"
+#include "ductile/runtime/detail/level_rounds.hpp"
 #include "ductile/runtime/detail/lock_rounds.hpp"
 #include "ductile/runtime/detail/ordered_run.hpp"
 #include "ductile/runtime/detail/region_rounds.hpp"
@@ -51,6 +53,10 @@ constexpr void expect_whole_operator() {
   constexpr bool has_priority = requires { &Op::priority; };
   static_assert(!has_priority || RankedOperator<Op>,
                 "priority(const Item&) const returns std::uint32_t");
+  constexpr bool has_levels = requires { &Op::level; };
+  static_assert(!has_levels || LevelledOperator<Op>,
+                "level(const Item&) const returns std::uint32_t");
+  static_assert(!has_levels || !makes_things, "an operator with levels makes no things");
 }
 
 /// Throws std::invalid_argument if the operator or the executor lacks what the strategy needs.
@@ -89,6 +95,12 @@ void expect_possible(const Executor& executor, Strategy strategy) {
 /// The strategy that options and operator ask for. Throws as expect_possible().
 template <CautiousOperator Op>
 Strategy strategy_of(const Executor& executor, const RoundsOptions& options) {
+  if constexpr (LevelledOperator<Op>) {
+    if (options.strategy == Strategy::automatic || options.strategy == Strategy::reservations)
+      return Strategy::reservations;
+    throw std::invalid_argument(
+        "the operator has levels, which only the strategies automatic and reservations keep");
+  }
   expect_possible<Op>(executor, options.strategy);
   if (options.strategy != Strategy::automatic) return options.strategy;
   if (!executor.deterministic()) return Strategy::locks;
@@ -116,7 +128,9 @@ RoundsReport run_by(const Executor& executor, Op& op, Work work, std::size_t mos
   if constexpr (S == Strategy::regions)
     return RegionRounds<Op>(executor, op).run(items(), most_rounds);
   if constexpr (S == Strategy::in_order) return run_in_order(executor, op, work, TellNobody());
-  if constexpr (S == Strategy::reservations)
+  if constexpr (S == Strategy::reservations && LevelledOperator<Op>)
+    return LevelRounds<Op>(executor, op).run(items(), most_rounds);
+  if constexpr (S == Strategy::reservations && !LevelledOperator<Op>)
     return ReservationWindows<Op>(executor, op).run(items(), most_rounds);
   if constexpr (S == Strategy::tiles) return TileRounds<Op>(executor, op).run(work, most_rounds);
   if constexpr (S == Strategy::colours)
@@ -133,6 +147,8 @@ RoundsReport run_cautious_rounds(const Executor& executor, Op& op, Work work,
     return run_by<S>(executor, op, std::move(work), most_rounds);
   };
   return with_team(executor, [&] {
+    if constexpr (LevelledOperator<Op>)
+      return run.template operator()<Strategy::reservations>();
     if constexpr (PlacedOperator<Op>)
       if (strategy == Strategy::regions) return run.template operator()<Strategy::regions>();
     if constexpr (kinds_made<Op> == 0)

@@ -21,7 +21,7 @@ enum class ContractRule : std::uint8_t {
   woken_if_plannable,    ///< who had its turn and can plan again is woken
   gives_up_if_denied,    ///< plan() returns false once reach() has
   nobody_woken,          ///< in strategy in_order
-  order_kept,            ///< in strategy in_order what others do gives an item nothing new
+  order_kept,            ///< in order, or in a level, what others do gives an item nothing new
 };
 
 class ContractBroken : public std::logic_error {

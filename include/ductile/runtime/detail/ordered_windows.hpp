@@ -1,13 +1,14 @@
 /// @file
-/// OrderedWindows: the strategy `in_order` where items tell no conflicts. A window of the work is
-/// planned at once; an item with a plan reserves what it has reached by its place, the first wins,
-/// and those that hold all they have reached are applied. All others of the window are then planned
-/// and applied one by one.
+/// OrderedWindows: the strategy `in_order` where items tell no conflicts, and what runs items of
+/// one level. A window of the work is planned at once; an item with a plan reserves what it has
+/// reached by its place, the first wins, and those that hold all they have reached are applied. All
+/// others of the window are then planned and applied one by one.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ductile/runtime/atomic.hpp"
@@ -19,9 +20,19 @@
 
 namespace ductile::runtime::detail {
 
+/// What is done in windows. apply(item, plan, woken) carries a plan out and adds whom it wakes to a
+/// vector; in the order of the work, applied(item) is told of it, and wake(woken) of these.
+template <class Apply, class Applied, class Wake>
+struct WindowSteps {
+  Apply apply;
+  Applied applied;
+  Wake wake;
+};
+template <class Apply, class Applied, class Wake>
+WindowSteps(Apply, Applied, Wake) -> WindowSteps<Apply, Applied, Wake>;
+
 /// One run. Work has size() and items by [i]. An item that has no plan leaves at once: those
-/// before it in its window would have to wake it to give it one, and in this strategy nobody is
-/// woken.
+/// before it in its window give it none.
 template <CautiousOperator Op, class Work>
 class OrderedWindows {
  public:
@@ -34,57 +45,80 @@ class OrderedWindows {
   /// Runs a part of the work, all before which is done. apply(item, plan) carries a plan out;
   /// applied(item) is told of it, in the order of the work.
   void run(std::size_t begin, std::size_t end, auto&& apply, auto&& applied, RoundsReport& report) {
+    const auto apply_alone = [&](const Item& item, Plan& plan, auto&) { apply(item, plan); };
+    run_waking(begin, end, WindowSteps{apply_alone, applied, TellNobody()}, report);
+  }
+
+  /// The same where items may wake others.
+  void run_waking(std::size_t begin, std::size_t end, const auto& steps, RoundsReport& report) {
     holder_of_.resize(op_.resource_count(), nobody);
     for (; begin < end; begin += window)
-      run_window(begin, std::min<std::size_t>(begin + window, end), apply, applied, report);
+      run_window(begin, std::min<std::size_t>(begin + window, end), steps, report);
   }
 
  private:
-  static constexpr std::size_t window = 8192, block_size = 256;
+  static constexpr std::size_t window = 8192, block_size = 256, least_block_size = 16;
   static constexpr std::uint32_t nobody = 0xffffffffU;
 
   struct Candidate {
     Plan plan{};
     std::uint32_t place = 0;        // in the work
     std::uint32_t reached_end = 0;  // in the block's list, where the one before ends as well
+    std::uint32_t woken_end = 0;    // likewise
     bool won = false;
   };
   /// Of a window. The first `count` candidates have plans; the others keep their memory.
   struct alignas(128) Block {
     std::vector<Candidate> candidates;
     std::vector<std::uint32_t> reached;
+    std::vector<Item> woken;
     std::size_t count = 0;
   };
 
   bool run_alone(const Item& item, auto&& apply) {
     ReachAll reach;
     if (!op_.plan(item, plan_, reach)) return false;
-    apply(item, plan_);
+    woken_.clear();
+    apply(item, plan_, woken_);
     return true;
   }
 
-  void run_window(std::size_t begin, std::size_t end, auto&& apply, auto&& applied,
-                  RoundsReport& report) {
+  void run_window(std::size_t begin, std::size_t end, const auto& steps, RoundsReport& report) {
     ++report.batches;
     report.planned += end - begin;
     begin_window();
-    parallel_for_blocks(executor_, end - begin, block_size,
+    const std::size_t size =
+        std::max(least_block_size, (end - begin + blocks_.size() - 1) / blocks_.size());
+    parallel_for_blocks(executor_, end - begin, size,
                         [&](std::size_t block, std::size_t first, std::size_t last) {
                           plan_block(blocks_[block], begin, begin + first, begin + last);
                         });
-    const std::size_t count = (end - begin + block_size - 1) / block_size;
+    const std::size_t count = (end - begin + size - 1) / size;
     parallel_for(executor_, count,
-                 [&](std::size_t block) { apply_winners(blocks_[block], begin, apply); },
+                 [&](std::size_t block) { apply_winners(blocks_[block], begin, steps.apply); },
                  {.grain = 1});
-    for (std::size_t block = 0; block < count; ++block)
-      for (std::size_t c = 0; c < blocks_[block].count; ++c) {
-        const Candidate& candidate = blocks_[block].candidates[c];
-        const Item item = work_[candidate.place];
-        report.lost += !candidate.won;
-        if (!candidate.won && !run_alone(item, apply)) continue;
-        applied(item);
-        ++report.applied;
+    for (std::size_t block = 0; block < count; ++block) end_block(blocks_[block], steps, report);
+  }
+
+  /// Runs the losers, and tells of all that were applied.
+  void end_block(const Block& block, const auto& steps, RoundsReport& report) {
+    const std::span<const Item> woken(block.woken);
+    std::size_t first = 0, told = 0;
+    for (std::size_t c = 0; c < block.count; ++c) {
+      const Candidate& candidate = block.candidates[c];
+      const Item item = work_[candidate.place];
+      if (!candidate.won) {
+        ++report.lost;
+        if (!run_alone(item, steps.apply)) continue;
+        steps.wake(woken.subspan(told, first - told));
+        steps.wake(std::span<const Item>(woken_));
+        told = first;
       }
+      first = candidate.woken_end;
+      steps.applied(item);
+      ++report.applied;
+    }
+    steps.wake(woken.subspan(told));
   }
 
   /// Keys fall from window to window, so that what was reserved in earlier ones counts no more.
@@ -118,6 +152,7 @@ class OrderedWindows {
   }
 
   void apply_winners(Block& block, std::size_t window_begin, auto&& apply) {
+    block.woken.clear();
     std::size_t first = 0;
     for (std::size_t c = 0; c < block.count; ++c) {
       Candidate& candidate = block.candidates[c];
@@ -125,7 +160,8 @@ class OrderedWindows {
       candidate.won = true;
       for (; first < candidate.reached_end; ++first)
         candidate.won = candidate.won && holder_of_[block.reached[first]] == key;
-      if (candidate.won) apply(work_[candidate.place], candidate.plan);
+      if (candidate.won) apply(work_[candidate.place], candidate.plan, block.woken);
+      candidate.woken_end = static_cast<std::uint32_t>(block.woken.size());
     }
   }
 
@@ -137,7 +173,8 @@ class OrderedWindows {
   std::vector<Block> blocks_;             // [block of the window]
   std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first that has reached it
   std::uint32_t first_key_ = nobody;
-  Plan plan_{};
+  Plan plan_{};  // of those that run one by one, and whom they have woken
+  std::vector<Item> woken_;
 };
 
 }  // namespace ductile::runtime::detail

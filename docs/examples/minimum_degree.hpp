@@ -1,0 +1,134 @@
+/// @file
+/// A minimum-degree ordering of a graph, for sparse factors: the vertex with the least neighbours
+/// is eliminated, which joins these to each other, then the next. Levels are degrees. Of vertices
+/// of the same degree those that are not near each other may go at once.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/run_rounds.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "graphs.hpp"
+#include "quotient_graph.hpp"
+
+namespace example {
+
+namespace runtime = ductile::runtime;
+
+struct Ordering {
+  std::vector<Vertex> order;  ///< all vertices
+  std::uint64_t fill = 0;     ///< entries of the factor L, its diagonal included
+  friend bool operator==(const Ordering&, const Ordering&) = default;
+};
+
+class MinimumDegree {
+ public:
+  struct Item {
+    Vertex vertex;
+    std::uint32_t degree, version;
+  };
+  struct Plan {
+    std::vector<Vertex> clique;  // what is beside the vertex
+    QuotientGraph::Scratch scratch;
+    friend bool operator==(const Plan& a, const Plan& b) { return a.clique == b.clique; }
+  };
+
+  explicit MinimumDegree(runtime::CsrGraph<> graph)
+      : graph_(graph),
+        version_of_(graph.vertex_count()),
+        step_of_(graph.vertex_count()),
+        is_pivot_(graph.vertex_count()) {}
+
+  /// All vertices.
+  std::vector<Item> all_items() const {
+    std::vector<Item> items(graph_.size());
+    for (Vertex v = 0; v < items.size(); ++v) items[v] = {v, graph_.degree(v), 0};
+    return items;
+  }
+
+  // ---- Resources: vertices, and the elements that they become ----
+  std::size_t resource_count() const { return graph_.size(); }
+  std::uint32_t level(const Item& item) const { return item.degree; }
+
+  // ---- Plan: what is beside the vertex. Reaches for that, and for what is in its lists ----
+  bool plan(const Item& item, Plan& plan, auto& reach) const {
+    if (!reach(item.vertex) || version_of_[item.vertex] != item.version) return false;
+    plan.clique.clear();
+    const auto add = [&](Vertex v) {
+      if (!reach(v)) return false;
+      if (v == item.vertex || !graph_.is_left(v)) return true;
+      plan.clique.push_back(v);
+      for (const Vertex other : graph_.list(v))
+        if (!reach(other)) return false;
+      return true;
+    };
+    for (const Vertex element : graph_.elements(item.vertex)) {
+      if (!reach(element)) return false;
+      for (const Vertex v : graph_.members(element))
+        if (!add(v)) return false;
+    }
+    for (const Vertex v : graph_.neighbours(item.vertex))
+      if (!add(v)) return false;
+    return true;
+  }
+  // ---- Apply: the vertex becomes an element; degrees change ----
+  void apply(const Item& item, Plan& plan, auto& commit) {
+    std::vector<Vertex>& clique = plan.clique;
+    std::sort(clique.begin(), clique.end());
+    clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
+    std::uint32_t step = step_of_[item.vertex];
+    for (const Vertex v : clique) {
+      step = std::max(step, step_of_[v]);
+      ++version_of_[v];
+    }
+    ++version_of_[item.vertex];
+    step_of_[item.vertex] = ++step;
+    is_pivot_[item.vertex] = 1;
+    graph_.eliminate(item.vertex, clique, plan.scratch);
+    for (const Vertex v : clique) {
+      step_of_[v] = step;
+      commit.wake({v, graph_.degree(v), version_of_[v]});
+    }
+  }
+
+  /// What the run has done: vertices by their steps, since those of one step do not meet.
+  Ordering ordering(const runtime::Executor& executor) const {
+    std::vector<std::uint64_t> pivots;  // steps and vertices
+    for (Vertex v = 0; v < graph_.size(); ++v)
+      if (is_pivot_[v] != 0) pivots.push_back(std::uint64_t{step_of_[v]} << 32U | v);
+    runtime::parallel_sort(executor, std::span(pivots));
+    Ordering result;
+    for (const std::uint64_t pivot : pivots) {
+      const auto vertex = static_cast<Vertex>(pivot);
+      const std::size_t before = result.order.size();
+      graph_.for_each_of(vertex, [&](Vertex v) { result.order.push_back(v); });
+      const std::uint64_t count = result.order.size() - before;
+      result.fill += count * graph_.degree(vertex) + count * (count + 1) / 2;
+    }
+    return result;
+  }
+
+ private:
+  QuotientGraph graph_;
+  std::vector<std::uint32_t> version_of_;  // [vertex], how often its neighbours have changed
+  std::vector<std::uint32_t> step_of_;     // [vertex], more than of all that had to go before
+  std::vector<std::uint8_t> is_pivot_;     // [vertex], was eliminated by an item of its own
+};
+
+/// Fills in a report if there is one.
+inline Ordering minimum_degree_in_parallel(const runtime::Executor& executor,
+                                           runtime::CsrGraph<> graph,
+                                           runtime::RoundsReport* report = nullptr) {
+  MinimumDegree elimination(graph);
+  const runtime::RoundsReport rounds =
+      runtime::run_rounds(executor, elimination, elimination.all_items());
+  if (report != nullptr) *report = rounds;
+  return elimination.ordering(executor);
+}
+
+}  // namespace example

@@ -1,0 +1,150 @@
+/// @file
+/// A graph whose vertices are eliminated (George & Liu, SIAM Review 31, 1989). One that is becomes
+/// an element: a list of its neighbours, which are a clique from then on. Elements that lie in the
+/// new one go; vertices with the same neighbours become one, with a size. Degrees are bounds
+/// (Amestoy, Davis & Duff, SIAM J. Matrix Anal. Appl. 17, 1996).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "graphs.hpp"
+
+namespace example {
+
+class QuotientGraph {
+ public:
+  /// What eliminate() works with, to be used again.
+  struct Scratch {
+    std::vector<Vertex> kept;
+    std::vector<std::pair<std::uint64_t, Vertex>> hashes;
+  };
+
+  /// Of a graph without loops and repeated edges, whose rows are ascending.
+  explicit QuotientGraph(ductile::runtime::CsrGraph<> graph)
+      : nodes_(graph.vertex_count()),
+        lists_(graph.neighbour.begin(), graph.neighbour.end()),
+        members_(graph.vertex_count()) {
+    for (Vertex v = 0; v < nodes_.size(); ++v) {
+      nodes_[v].begin = graph.offset[v];
+      nodes_[v].degree = nodes_[v].neighbours = graph.offset[v + 1] - graph.offset[v];
+      nodes_[v].last = v;
+    }
+  }
+
+  std::size_t size() const { return nodes_.size(); }
+  /// Whether a vertex is neither eliminated nor one with another.
+  bool is_left(Vertex v) const { return nodes_[v].size > 0; }
+  /// At least how many vertices are beside it, itself and those that are one with it not counted.
+  std::uint32_t degree(Vertex v) const { return nodes_[v].degree; }
+  /// A vertex's list has elements first, then neighbours.
+  std::span<const Vertex> list(Vertex v) const {
+    return {lists_.data() + nodes_[v].begin, nodes_[v].elements + nodes_[v].neighbours};
+  }
+  std::span<const Vertex> elements(Vertex v) const { return list(v).first(nodes_[v].elements); }
+  std::span<const Vertex> neighbours(Vertex v) const { return list(v).subspan(nodes_[v].elements); }
+  /// Nothing if it is none, or lies in another by now.
+  std::span<const Vertex> members(Vertex element) const { return members_[element]; }
+
+  /// Eliminates a vertex. `clique` is what is beside it, in the end without what has become one
+  /// with others. Changes the vertex, these, and what their lists have; reads nothing else.
+  void eliminate(Vertex pivot, std::vector<Vertex>& clique, Scratch& scratch) {
+    for (const Vertex e : elements(pivot)) members_[e] = {};
+    nodes_[pivot].degree = 0;  // what the members of the element weigh
+    for (const Vertex v : clique) {
+      nodes_[v].mark = pivot;
+      nodes_[pivot].degree += nodes_[v].size;
+      for (const Vertex e : elements(v)) {
+        if (std::exchange(nodes_[e].mark, pivot) != pivot) nodes_[e].left = nodes_[e].degree;
+        nodes_[e].left -= nodes_[v].size;
+      }
+    }
+    nodes_[pivot].mark = pivot;
+    scratch.hashes.clear();
+    for (const Vertex v : clique) shorten(pivot, v, scratch);
+    unite_alike(scratch.hashes);
+    nodes_[pivot].size = 0;
+    std::erase_if(clique, [&](Vertex v) { return !is_left(v); });
+    members_[pivot].assign(clique.begin(), clique.end());
+    for (const Vertex v : clique) bound_degree(pivot, v);
+  }
+
+  /// A vertex and all that have become one with it, which were eliminated together.
+  void for_each_of(Vertex v, auto&& visit) const {
+    for (; v != none; v = nodes_[v].next) visit(v);
+  }
+
+ private:
+  static constexpr Vertex none = 0xffffffffU;
+  struct Node {
+    std::uint32_t begin = 0, elements = 0, neighbours = 0;  // its list
+    std::uint32_t size = 1;           // 0 for elements and what is one with another
+    std::uint32_t degree = 0;         // of an element, what its members weigh
+    std::uint32_t left = 0;           // of an element, what of that is not in the new one
+    Vertex mark = none;               // the last that has met it
+    Vertex next = none, last = none;  // of those that are one
+  };
+
+  /// Vertex `gone` becomes one with `kept`.
+  void unite(Vertex kept, Vertex gone) {
+    nodes_[kept].size += std::exchange(nodes_[gone].size, 0);
+    nodes_[nodes_[kept].last].next = gone;
+    nodes_[kept].last = nodes_[gone].last;
+  }
+
+  /// Leaves the new element, others that reach beyond it, and neighbours that are not in it.
+  /// Without any of these two the vertex goes with the pivot.
+  void shorten(Vertex pivot, Vertex v, Scratch& scratch) {
+    std::vector<Vertex>& kept = scratch.kept;
+    kept.assign(1, pivot);
+    for (const Vertex e : elements(v)) {
+      if (nodes_[e].left == 0) members_[e] = {};
+      if (!members_[e].empty()) kept.push_back(e);
+    }
+    const auto elements = static_cast<std::uint32_t>(kept.size());
+    for (const Vertex u : neighbours(v))
+      if (is_left(u) && nodes_[u].mark != pivot) kept.push_back(u);
+    nodes_[v].elements = elements;
+    nodes_[v].neighbours = static_cast<std::uint32_t>(kept.size()) - elements;
+    std::copy(kept.begin(), kept.end(), lists_.begin() + nodes_[v].begin);
+    if (kept.size() == 1) {
+      nodes_[pivot].degree -= nodes_[v].size;
+      unite(pivot, v);
+    } else {
+      scratch.hashes.emplace_back(std::accumulate(kept.begin(), kept.end(), std::uint64_t{0}), v);
+    }
+  }
+
+  /// Those with the same lists, among those with the same sum. Lists are in one order: the newest
+  /// element first, neighbours as the rows of the graph have them.
+  void unite_alike(std::vector<std::pair<std::uint64_t, Vertex>>& hashes) {
+    std::sort(hashes.begin(), hashes.end());
+    for (auto one = hashes.begin(); one != hashes.end(); ++one)
+      for (auto two = one + 1; two != hashes.end() && two->first == one->first; ++two) {
+        const Vertex v = one->second, other = two->second;
+        if (is_left(v) && is_left(other) && nodes_[v].elements == nodes_[other].elements &&
+            std::ranges::equal(list(v), list(other)))
+          unite(v, other);
+      }
+  }
+
+  /// What is in two elements beside the new one counts twice.
+  void bound_degree(Vertex pivot, Vertex v) {
+    const std::uint32_t others = nodes_[pivot].degree - nodes_[v].size;
+    std::uint32_t sum = others;
+    for (const Vertex e : elements(v).subspan(1)) sum += nodes_[e].left;
+    for (const Vertex u : neighbours(v)) sum += nodes_[u].size;
+    nodes_[v].degree = std::min(sum, nodes_[v].degree + others);
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<Vertex> lists_;
+  std::vector<std::vector<Vertex>> members_;  // [element]
+};
+
+}  // namespace example

@@ -1,0 +1,174 @@
+/// @file
+/// LevelRounds: the strategy `reservations` for operators with levels. All items of the lowest
+/// level that are there are a round; whom they wake comes later. Parts of a round are run by a
+/// plain loop, or by several threads at once, whichever has been faster so far: the result is the
+/// same.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/ordered_windows.hpp"
+#include "ductile/runtime/detail/reach.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace ductile::runtime::detail {
+
+/// Items that wait, by level, in a radix heap (Ahuja, Mehlhorn, Orlin & Tarjan, J. ACM 37, 1990):
+/// levels never fall below the lowest that was taken, so items wait in 33 bags, by the highest bit
+/// in which their level differs from that one. Those of one level stay in the order in which they
+/// came. Thread safety: one thread.
+template <LevelledOperator Op>
+class ItemsByLevel {
+ public:
+  using Item = typename Op::Item;
+
+  explicit ItemsByLevel(const Op& op) : op_(op) {}
+
+  /// Of a level below the lowest, it waits among the lowest.
+  void add(const Item& item) { bags_[std::bit_width(level_of(item) ^ lowest_)].push_back(item); }
+
+  /// Fills in all items of the lowest level. False if there is none.
+  bool take_lowest(std::vector<Item>& items) {
+    items.clear();
+    if (bags_[0].empty()) deal_out();
+    items.swap(bags_[0]);
+    return !items.empty();
+  }
+
+  std::size_t size() const {
+    std::size_t sum = 0;
+    for (const std::vector<Item>& bag : bags_) sum += bag.size();
+    return sum;
+  }
+
+ private:
+  std::uint32_t level_of(const Item& item) const { return std::max(op_.level(item), lowest_); }
+
+  /// The first bag that is not empty among those before it.
+  void deal_out() {
+    const auto bag = std::find_if(bags_.begin() + 1, bags_.end(),
+                                  [](const std::vector<Item>& items) { return !items.empty(); });
+    if (bag == bags_.end()) return;
+    std::uint32_t lowest = level_of(bag->front());
+    for (const Item& item : *bag) lowest = std::min(lowest, level_of(item));
+    lowest_ = lowest;
+    for (const Item& item : *bag) add(item);
+    bag->clear();
+  }
+
+  const Op& op_;
+  std::array<std::vector<Item>, 33> bags_;
+  std::uint32_t lowest_ = 0;
+};
+
+/// For tests.
+enum class Sharing : std::uint8_t { where_faster, always };
+
+template <LevelledOperator Op>
+class LevelRounds {
+ public:
+  using Item = typename Op::Item;
+  using Plan = typename Op::Plan;
+
+  LevelRounds(const Executor& executor, Op& op, Sharing sharing = Sharing::where_faster)
+      : executor_(executor), op_(op), sharing_(sharing), waiting_(op) {}
+
+  RoundsReport run(const std::vector<Item>& work, std::size_t most_rounds) {
+    for (const Item& item : work) waiting_.add(item);
+    while (report_.rounds < most_rounds && waiting_.take_lowest(round_)) {
+      ++report_.rounds;
+      if (sharing_ == Sharing::always) {
+        run_at_once(0, round_.size());
+      } else if (executor_.threads() == 1) {
+        run_plainly(0, round_.size());
+      } else {
+        run_shared();
+      }
+    }
+    report_.left = waiting_.size();
+    return report_;
+  }
+
+ private:
+  using Windows = OrderedWindows<Op, std::vector<Item>>;
+  static constexpr std::size_t part = 16384, tried_every = 16;
+  static constexpr double too_short_to_share = 8000;  // nanoseconds
+
+  struct PlainCommit {
+    ItemsByLevel<Op>& waiting;
+    void wake(const Item& item) { waiting.add(item); }
+  };
+  struct NotingCommit {
+    std::vector<Item>& woken;
+    void wake(const Item& item) { woken.push_back(item); }
+  };
+
+  /// Both ways are tried now and then, where it is worth it.
+  void run_shared() {
+    for (std::size_t begin = 0; begin < round_.size(); begin += part) {
+      const std::size_t end = std::min<std::size_t>(begin + part, round_.size());
+      const auto count = static_cast<double>(end - begin);
+      bool is_plain = count * plain_ < too_short_to_share;
+      if (!is_plain) {
+        const std::size_t turn = turn_++ % tried_every;
+        is_plain = turn == 0 || (turn != 1 && plain_ < at_once_);
+      }
+      const auto start = std::chrono::steady_clock::now();
+      if (is_plain) {
+        run_plainly(begin, end);
+      } else {
+        run_at_once(begin, end);
+      }
+      const std::chrono::duration<double, std::nano> time =
+          std::chrono::steady_clock::now() - start;
+      (is_plain ? plain_ : at_once_) = time.count() / count;
+    }
+  }
+
+  void run_plainly(std::size_t begin, std::size_t end) {
+    ReachAll reach;
+    PlainCommit commit{waiting_};
+    report_.planned += end - begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Item item = round_[i];
+      if (!op_.plan(item, plan_, reach)) continue;
+      op_.apply(item, plan_, commit);
+      ++report_.applied;
+    }
+  }
+
+  void run_at_once(std::size_t begin, std::size_t end) {
+    if (!at_once_windows_) at_once_windows_.emplace(executor_, op_, round_);
+    const auto apply = [&](const Item& item, Plan& plan, std::vector<Item>& woken) {
+      NotingCommit commit{woken};
+      op_.apply(item, plan, commit);
+    };
+    const auto wake = [&](std::span<const Item> woken) {
+      for (const Item& item : woken) waiting_.add(item);
+    };
+    at_once_windows_->run_waking(begin, end, WindowSteps{apply, TellNobody(), wake}, report_);
+  }
+
+  const Executor& executor_;
+  Op& op_;
+  Sharing sharing_;
+  ItemsByLevel<Op> waiting_;
+  std::vector<Item> round_;
+  std::optional<Windows> at_once_windows_;
+  Plan plan_{};
+  double plain_ = 0, at_once_ = 0;  // nanoseconds an item, when it was done last
+  std::size_t turn_ = 0;
+  RoundsReport report_;
+};
+
+}  // namespace ductile::runtime::detail
