@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "ductile/runtime/operator.hpp"
-
 namespace ductile::runtime {
 
 ContractBroken::ContractBroken(ContractRule rule, std::string item, std::uint32_t round,
@@ -13,9 +11,5 @@ ContractBroken::ContractBroken(ContractRule rule, std::string item, std::uint32_
       rule_(rule),
       item_(std::move(item)),
       round_(round) {}
-
-UnknownItem::UnknownItem(std::uint32_t item, std::uint32_t item_count)
-    : std::out_of_range("item " + std::to_string(item) + " was woken, but item_count() is " +
-                        std::to_string(item_count)) {}
 
 }  // namespace ductile::runtime

@@ -23,8 +23,9 @@
 namespace ductile::meshadapt {
 
 using runtime::parallel_for;
-using runtime::RoundsOptions;
 using runtime::RoundsReport;
+using runtime::run_rounds_by;
+using runtime::Strategy;
 
 namespace {
 
@@ -41,10 +42,6 @@ constexpr double much_of_demand = 0.2;
 /// Of elements: where a sweep of collapses makes fewer, what it leaves waits for the next round of
 /// all kernels. Most of that is refused again as long as nothing else has changed.
 constexpr double many_collapses = 0.1;
-
-/// Swapping takes the worst elements first only within windows, which stay in cache while they are
-/// reserved, planned and applied.
-constexpr RoundsOptions by_windows{.most_rounds = 1000, .reserving_window = 32768};
 
 /// Rearranging also collapses edges that are hardly long enough: some would end up too short.
 constexpr double eager = 1.03;
@@ -372,7 +369,8 @@ std::size_t Adapter<Dim>::coarsen() {
     auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey_for(long_edge()),
                                                rules().short_edge, after);
     Coarsen<Dim> op(mesh_, rules());
-    const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = 30});
+    const RoundsReport rounds =
+        run_rounds_by<Strategy::tiles>(executor_, op, std::move(work), {.most_rounds = 30});
     add(report_.coarsen, rounds);
     changes += rounds.applied;
     if (share(rounds.applied) < many_collapses) break;
@@ -413,7 +411,8 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
     auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below, range());
     if (work.empty()) break;
     Swap<Dim> op(executor_, mesh_, range());
-    const RoundsReport rounds = run_rounds(executor_, op, std::move(work), by_windows);
+    const RoundsReport rounds =
+        run_rounds_by<Strategy::reservations>(executor_, op, std::move(work));
     add(report_.swap, rounds);
     changes += rounds.applied;
     if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 0.015)) break;
@@ -435,18 +434,20 @@ template <int Dim>
 std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplacian) {
   if (!options_.move) return 0;
   const runtime::PhaseTimer timer(report_.smooth.seconds);
-  SmoothOptions options = smoothing(optimise_below, laplacian);
-  options.again = sweeps > 1;
-  Smooth<Dim> op(mesh_, background_, options);
-  auto work = laplacian
-                  ? Smooth<Dim>::movable_vertices(executor_, mesh_, end_epoch(seen_by_smooth_))
-                  : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below,
-                                                          end_epoch(seen_by_smooth_));
-  const RoundsReport rounds = run_rounds(executor_, op, std::move(work), {.most_rounds = sweeps});
-  add(report_.smooth, rounds);
-  if (rounds.applied != 0) survey_.forget();
-  tell("smooth", rounds.applied);
-  return rounds.applied;
+  Smooth<Dim> op(mesh_, background_, smoothing(optimise_below, laplacian));
+  std::size_t changes = 0;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    const std::uint32_t after = end_epoch(seen_by_smooth_);
+    auto work =
+        laplacian ? Smooth<Dim>::movable_vertices(executor_, mesh_, after)
+                  : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below, after);
+    const RoundsReport rounds = run_rounds_by<Strategy::tiles>(executor_, op, std::move(work));
+    add(report_.smooth, rounds);
+    changes += rounds.applied;
+  }
+  if (changes != 0) survey_.forget();
+  tell("smooth", changes);
+  return changes;
 }
 
 template <int Dim>

@@ -1,5 +1,5 @@
 /// @file
-/// What the operators share: small buffers, the deferred changes to a vertex's lists, walks over a
+/// What the operators share: small buffers, changes to a vertex's lists, walks over a
 /// vertex's neighbourhood, and the replacement of one set of elements by another.
 #pragma once
 
@@ -94,13 +94,17 @@ void update_element(Mesh<Dim>& mesh, ElementId element) {
   mesh.changed_at[element] = mesh.epoch;
 }
 
-template <class Commit>
-void defer_add(Commit& commit, VertexId owner, ElementId element) {
-  commit.defer(owner, {ListChange::Kind::add_element, element});
+/// Changes a list that others may change at the same time: lists are sorted, so that it comes out
+/// the same.
+template <int Dim>
+void add_to_list(Mesh<Dim>& mesh, VertexId owner, ElementId element) {
+  const auto held = mesh.elements_of.hold(owner);
+  mesh.elements_of.insert(owner, element);
 }
-template <class Commit>
-void defer_remove(Commit& commit, VertexId owner, ElementId element) {
-  commit.defer(owner, {ListChange::Kind::remove_element, element});
+template <int Dim>
+void remove_from_list(Mesh<Dim>& mesh, VertexId owner, ElementId element) {
+  const auto held = mesh.elements_of.hold(owner);
+  mesh.elements_of.erase(owner, element);
 }
 
 /// Do elements close a ring around this vertex, in which each neighbour comes first in the facet
@@ -153,6 +157,32 @@ VertexBuffer neighbours_of(const Mesh<Dim>& mesh, VertexId vertex) {
   visit_neighbours(mesh, vertex, [&](VertexId other) { seen.number_of(other); });
   neighbours.assign(seen.vertices().begin(), seen.vertices().end());
   return neighbours;
+}
+
+/// Gives an element the number of one that is gone.
+template <int Dim>
+void move_element(Mesh<Dim>& mesh, ElementId from, ElementId to) {
+  for (const VertexId v : mesh.corners_of[from]) {
+    if (v == none) break;
+    remove_from_list(mesh, v, from);
+    add_to_list(mesh, v, to);
+  }
+  mesh.corners_of[to] = mesh.corners_of[from];
+  mesh.patches_of[to] = mesh.patches_of[from];
+  mesh.region_of[to] = mesh.region_of[from];
+  mesh.shape_of[to] = mesh.shape_of[from];
+  mesh.changed_at[to] = mesh.changed_at[from];
+  mesh.corners_of[from].fill(none);
+}
+
+/// Reaches for a vertex and its neighbours: who has those may do what he likes with the elements
+/// around the vertex.
+template <int Dim>
+bool reach_ball(const Mesh<Dim>& mesh, VertexId vertex, auto& reach) {
+  if (!reach(vertex)) return false;
+  bool reached = true;
+  visit_neighbours(mesh, vertex, [&](VertexId other) { reached = reached && reach(other); });
+  return reached;
 }
 
 /// The patch on which the edge a-b of this element lies, judging by the element's own facets.
@@ -264,20 +294,22 @@ Buffer<FacetOnPatch<Dim>, 16> tagged_facets(const Mesh<Dim>& mesh, const Replace
   return tagged;
 }
 
-/// Carries out a replacement: outer facets keep their patches; all changes of lists are deferred.
-template <int Dim, class Commit>
-void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, Commit& commit) {
+/// Carries out a replacement: outer facets keep their patches. fresh() is the number of an element
+/// that is not there yet. Thread safety: any thread, if nobody reads or writes the elements to go,
+/// or reads the lists of their corners.
+template <int Dim>
+void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, auto&& fresh) {
   const auto tagged = tagged_facets(mesh, plan);
   const std::uint32_t region = mesh.region_of[plan.old_elements[0]];
   for (std::size_t n = 0; n < plan.new_elements.size(); ++n) {
-    const ElementId e = n < plan.old_elements.size() ? plan.old_elements[n] : commit.fresh();
+    const ElementId e = n < plan.old_elements.size() ? plan.old_elements[n] : fresh();
     Corners<Dim> before;
     before.fill(none);
     if (n < plan.old_elements.size()) before = mesh.corners_of[e];
     for (const VertexId v : before)
-      if (v != none && !contains(plan.new_elements[n], v)) defer_remove(commit, v, e);
+      if (v != none && !contains(plan.new_elements[n], v)) remove_from_list(mesh, v, e);
     for (const VertexId v : plan.new_elements[n])
-      if (!contains(before, v)) defer_add(commit, v, e);
+      if (!contains(before, v)) add_to_list(mesh, v, e);
     mesh.corners_of[e] = plan.new_elements[n];
     mesh.region_of[e] = region;
     update_element(mesh, e);
@@ -290,7 +322,7 @@ void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, Commit& commit) {
   }
   for (std::size_t n = plan.new_elements.size(); n < plan.old_elements.size(); ++n) {
     Corners<Dim>& corners = mesh.corners_of[plan.old_elements[n]];
-    for (const VertexId v : corners) defer_remove(commit, v, plan.old_elements[n]);
+    for (const VertexId v : corners) remove_from_list(mesh, v, plan.old_elements[n]);
     corners.fill(none);
   }
 }

@@ -30,28 +30,29 @@ Coarsen<Dim>::Coarsen(Mesh<Dim>& mesh, const Rules& rules)
                                          [](const Region& region) { return region.required; })) {}
 
 template <int Dim>
-auto Coarsen<Dim>::plan(VertexId gone) const -> std::optional<Plan> {
+bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
   const auto ball = mesh_.elements_of.of(gone);
   if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].freedom == 0)
-    return {};
+    return false;
   const Ring ring = ring_around(gone);
   const auto choices = candidates(gone, ring);
-  if (choices.empty()) return {};
+  if (choices.empty()) return false;
   const double longest = longest_allowed(ring);
   double worst = 1;
   for (const ElementId e : ball) {
-    if (has_required_elements_ && mesh_.required_element(e)) return {};
+    if (has_required_elements_ && mesh_.required_element(e)) return false;
     worst = std::min<double>(worst, mesh_.shape_of[e]);
   }
+  plan.gone = gone;
   for (const Candidate& choice : choices) {
-    Plan plan{gone, choice.kept};
+    plan.kept = choice.kept;
     if (!keeps_edges_short(plan, ring, longest) || !keeps_shapes(plan, worst) ||
         !keeps_surface(plan) || !keeps_sides_apart(plan))
       continue;
-    plan.crowded = crowded_after(plan, ring);
-    return plan;
+    note_crowded(plan, ring);
+    return true;
   }
-  return {};
+  return false;
 }
 
 template <int Dim>
@@ -69,7 +70,7 @@ auto Coarsen<Dim>::candidates(VertexId gone, const Ring& ring) const -> Buffer<C
   for (std::size_t i = 0; i < ring.edges.size(); ++i) {
     const EndSquares& edge = ring.edges[i];
     const VertexId kept = ring.vertices[i];
-    if (shorter_than(edge, rules_.short_edge) && keeps_geometry({gone, kept}))
+    if (shorter_than(edge, rules_.short_edge) && keeps_geometry(gone, kept))
       found.push_back({edge.at_a * edge.at_b, kept});
   }
   std::sort(found.begin(), found.end());
@@ -80,33 +81,32 @@ auto Coarsen<Dim>::candidates(VertexId gone, const Ring& ring) const -> Buffer<C
 /// the edge may have two facets on patches there: it would take the boundary with it (such an
 /// element is flat but for rounding).
 template <int Dim>
-bool Coarsen<Dim>::keeps_geometry(const Plan& plan) const {
-  const int freedom = mesh_.kind_of[plan.gone].freedom;
+bool Coarsen<Dim>::keeps_geometry(VertexId gone, VertexId kept) const {
+  const int freedom = mesh_.kind_of[gone].freedom;
   if (freedom == Dim) return true;
-  for (const ElementId e : mesh_.elements_of.of(plan.gone)) {
-    const int at_kept = corner_of(mesh_.corners_of[e], plan.kept);
+  for (const ElementId e : mesh_.elements_of.of(gone)) {
+    const int at_kept = corner_of(mesh_.corners_of[e], kept);
     if (at_kept >= 0 && mesh_.patches_of[e][static_cast<std::size_t>(at_kept)] != 0) return false;
   }
-  if (Dim == 3 && freedom == 1)
-    return mesh_.curve_of(plan.gone, plan.kept) != 0 && keeps_patches(plan);
-  for (const ElementId e : mesh_.elements_of.of(plan.gone))
-    if (contains(mesh_.corners_of[e], plan.kept) &&
-        patch_of_edge(mesh_, e, plan.gone, plan.kept) == mesh_.entity_of[plan.gone])
+  if (Dim == 3 && freedom == 1) return mesh_.curve_of(gone, kept) != 0 && keeps_patches(gone, kept);
+  for (const ElementId e : mesh_.elements_of.of(gone))
+    if (contains(mesh_.corners_of[e], kept) &&
+        patch_of_edge(mesh_, e, gone, kept) == mesh_.entity_of[gone])
       return true;
   return false;
 }
 
 /// Between the ends of two smooth curves there may be a last triangle of a patch.
 template <int Dim>
-bool Coarsen<Dim>::keeps_patches(const Plan& plan) const {
-  if (!on_smooth_curve(mesh_, plan.gone) || mesh_.kind_of[plan.kept].freedom != 0) return true;
-  for (const CurveLink& link : mesh_.links_of.of(plan.gone)) {
-    if (link.to == plan.kept || mesh_.kind_of[link.to].freedom != 0) continue;
-    for (const ElementId e : mesh_.elements_of.of(plan.gone)) {
+bool Coarsen<Dim>::keeps_patches(VertexId gone, VertexId kept) const {
+  if (!on_smooth_curve(mesh_, gone) || mesh_.kind_of[kept].freedom != 0) return true;
+  for (const CurveLink& link : mesh_.links_of.of(gone)) {
+    if (link.to == kept || mesh_.kind_of[link.to].freedom != 0) continue;
+    for (const ElementId e : mesh_.elements_of.of(gone)) {
       const Corners<Dim>& corners = mesh_.corners_of[e];
-      if (!contains(corners, plan.kept) || !contains(corners, link.to)) continue;
+      if (!contains(corners, kept) || !contains(corners, link.to)) continue;
       for (std::size_t i = 0; i <= Dim; ++i)
-        if (mesh_.patches_of[e][i] != 0 && corners[i] != plan.gone && corners[i] != plan.kept &&
+        if (mesh_.patches_of[e][i] != 0 && corners[i] != gone && corners[i] != kept &&
             corners[i] != link.to)
           return false;
     }
@@ -141,6 +141,7 @@ bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const Ring& ring, double 
 /// Notes the shapes in the plan.
 template <int Dim>
 bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
+  plan.shapes.clear();
   const double least = std::min(rules_.kept_shape * worst_before, rules_.accepted_shape);
   const bool on_boundary = mesh_.kind_of[plan.gone].freedom < Dim;
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
@@ -152,8 +153,7 @@ bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
     sites[static_cast<std::size_t>(corner_of(corners, plan.gone))] = &kept;
     const double shape = shape_if_above<Dim>(sites, least);
     if (!(shape > 0)) return false;
-    if (plan.shapes.size() < EdgeCollapse::most_shapes)
-      plan.shapes.push_back(static_cast<float>(shape));
+    plan.shapes.push_back(static_cast<float>(shape));
   }
   return true;
 }
@@ -241,34 +241,17 @@ bool Coarsen<Dim>::joins_rim(const Plan& plan, ElementId element, std::size_t fa
   return false;
 }
 
-/// Does this neighbour of the vertex that goes get a short edge to the one that is kept?
 template <int Dim>
-bool Coarsen<Dim>::becomes_crowded(VertexId vertex, const Plan& plan) const {
-  return vertex != plan.kept && mesh_.kind_of[vertex].freedom != 0 &&
-         shorter_than(mesh_.site_of[vertex], mesh_.site_of[plan.kept], rules_.short_edge);
+void Coarsen<Dim>::note_crowded(Plan& plan, const Ring& ring) const {
+  plan.crowded.clear();
+  for (const VertexId v : ring.vertices)
+    if (v != plan.kept && mesh_.kind_of[v].freedom != 0 &&
+        shorter_than(mesh_.site_of[v], mesh_.site_of[plan.kept], rules_.short_edge))
+      plan.crowded.push_back(v);
 }
 
 template <int Dim>
-auto Coarsen<Dim>::crowded_after(const Plan& plan, const Ring& ring) const
-    -> EdgeCollapse::Crowded {
-  EdgeCollapse::Crowded crowded;
-  for (const VertexId v : ring.vertices) {
-    if (!becomes_crowded(v, plan)) continue;
-    crowded.many = crowded.vertices.size() == EdgeCollapse::Crowded::most;
-    if (crowded.many) break;
-    crowded.vertices.push_back(v);
-  }
-  return crowded;
-}
-
-template <int Dim>
-void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
-  if (plan.crowded.many) {
-    for (const VertexId v : neighbours_of(mesh_, plan.gone))
-      if (becomes_crowded(v, plan)) commit.reconsider(v);
-  } else {
-    for (const VertexId v : plan.crowded.vertices) commit.reconsider(v);
-  }
+void Coarsen<Dim>::collapse(const Plan& plan) {
   Buffer<ElementId, 64> removed, stretched;
   for (const ElementId e : mesh_.elements_of.of(plan.gone))
     (contains(mesh_.corners_of[e], plan.kept) ? removed : stretched).push_back(e);
@@ -277,8 +260,7 @@ void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
     const ElementId e = stretched[i];
     Corners<Dim>& corners = mesh_.corners_of[e];
     corners[static_cast<std::size_t>(corner_of(corners, plan.gone))] = plan.kept;
-    mesh_.shape_of[e] =
-        i < plan.shapes.size() ? plan.shapes[i] : static_cast<float>(mesh_.shape_at(corners));
+    mesh_.shape_of[e] = plan.shapes[i];
     mesh_.changed_at[e] = mesh_.epoch;
   }
   for (const ElementId e : removed) remove_element(e, plan);
@@ -289,8 +271,6 @@ void Coarsen<Dim>::apply(const Plan& plan, runtime::Commit<Coarsen>& commit) {
   }
   if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan);
   mesh_.elements_of.clear(plan.gone);
-  // All new neighbours are neighbours of this one.
-  if (mesh_.kind_of[plan.kept].freedom != 0) commit.wake(plan.kept);
 }
 
 /// An element on the collapsing edge folds flat: what lies on the patch of its facet at `kept` is

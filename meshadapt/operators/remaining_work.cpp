@@ -36,7 +36,10 @@ std::size_t RemainingWork<Dim>::changes_of_lengths(EdgeSurvey<Dim>& survey) cons
   const auto edges = long_edges(executor_, mesh_, survey, rules.long_edge, 0);
   const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
   const auto changes_at = [&](std::size_t k) -> std::size_t {
-    if (k < crowded.size()) return coarsening.plan(crowded[k]).has_value();
+    if (k < crowded.size()) {
+      EdgeCollapse collapse{};
+      return coarsening.decide(crowded[k], collapse) ? 1 : 0;
+    }
     const LongEdge& edge = edges[k - crowded.size()];
     return refinement.splits(edge) ? splits_of(edge, rules.long_edge) : 0;
   };
@@ -58,12 +61,12 @@ template <int Dim>
 bool RemainingWork<Dim>::is_raised(const Smooth<Dim>& smoothing, VertexId vertex) const {
   const auto elements = mesh_.elements_of.of(vertex);
   if (elements.size() > BallShapes<Dim>::most) return false;
-  const auto move = smoothing.plan(vertex);
-  if (!move) return false;
+  VertexMove<Dim> move;
+  if (!smoothing.decide(vertex, move)) return false;
   float before = 1, after = 1;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     before = std::min(before, mesh_.shape_of[elements[i]]);
-    after = std::min(after, move->shapes[i]);
+    after = std::min(after, move.shapes[i]);
   }
   return after > 1.1F * before + 0.01F;
 }

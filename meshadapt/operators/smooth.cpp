@@ -65,13 +65,13 @@ runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices_of_poor(
 }
 
 template <int Dim>
-auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
+bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
   const auto elements = mesh_.elements_of.of(vertex);
-  if (elements.empty() || elements.size() > mesh_.largest_ball) return {};
+  if (elements.empty() || elements.size() > mesh_.largest_ball) return false;
   constexpr double sound = 1e-6;  // the inverse of a shape tells something
   const double good_enough = shape_of_mean_ratio<Dim>(options_.optimise_below);
   const auto is_good = [&](ElementId e) { return mesh_.shape_of[e] >= good_enough; };
-  if (!options_.laplacian && std::all_of(elements.begin(), elements.end(), is_good)) return {};
+  if (!options_.laplacian && std::all_of(elements.begin(), elements.end(), is_good)) return false;
   background_.prefetch_corners(mesh_.host_of[vertex]);
   const Ball<Dim> ball(mesh_, vertex);
   std::array<Place, 2> places{Place{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present()}};
@@ -83,10 +83,11 @@ auto Smooth<Dim>::plan(VertexId vertex) const -> std::optional<Plan> {
         best.score.worst > sound && best.score.sum < poor * static_cast<double>(ball.size());
     moved = optimise(vertex, ball, all_poor ? Aim::mean : Aim::worst, best) || moved;
   }
-  if (!moved) return {};
+  if (!moved) return false;
   const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
   const bool far = squared_length(best.site.metric, step) > options_.far * options_.far;
-  return Plan{vertex, best.host, best.site, best.shapes, far};
+  plan = {best.host, best.site, best.shapes, far};
+  return true;
 }
 
 /// Is it certain that every element around the vertex has a positive volume if it moves there, and
@@ -305,10 +306,10 @@ bool Smooth<Dim>::optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Plac
 }
 
 template <int Dim>
-void Smooth<Dim>::apply(const Plan& plan, runtime::Commit<Smooth>& commit) {
-  mesh_.site_of[plan.vertex] = plan.site;
-  mesh_.host_of[plan.vertex] = plan.host;
-  const auto elements = mesh_.elements_of.of(plan.vertex);
+void Smooth<Dim>::move(VertexId vertex, const Plan& plan) {
+  mesh_.site_of[vertex] = plan.site;
+  mesh_.host_of[vertex] = plan.host;
+  const auto elements = mesh_.elements_of.of(vertex);
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const ElementId e = elements[i];
     mesh_.shape_of[e] = i < BallShapes<Dim>::most
@@ -316,10 +317,6 @@ void Smooth<Dim>::apply(const Plan& plan, runtime::Commit<Smooth>& commit) {
                             : static_cast<float>(mesh_.shape_at(mesh_.corners_of[e]));
     if (plan.far) mesh_.changed_at[elements[i]] = mesh_.epoch;  // else it is too little to matter
   }
-  if (!plan.far || !options_.again) return;
-  commit.wake(plan.vertex);
-  for (const VertexId v : neighbours_of(mesh_, plan.vertex))
-    if (mesh_.kind_of[v].freedom != 0) commit.wake(v);
 }
 
 template class Smooth<2>;

@@ -3,16 +3,13 @@
 /// towards the mean of the places where each of its elements would be regular (a Laplacian in
 /// metric space, constrained by quality); where elements stay bad, it climbs towards the place
 /// where the worst of them is best, or all are on the whole. Neighbours never move together, so a
-/// sweep is a Gauss-Seidel iteration. run_rounds runs it in tiles, as conflicts stay; surveyed ones
-/// where few vertices are to move.
+/// sweep is a Gauss-Seidel iteration. It runs in tiles.
 #pragma once
-
-#include <optional>
 
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/run_rounds.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "operators/ball.hpp"
 #include "operators/edge_range.hpp"
 
@@ -20,11 +17,10 @@ namespace ductile::meshadapt {
 
 template <int Dim>
 struct VertexMove {
-  VertexId vertex;
   ElementId host;
   Site<Dim> site;
   BallShapes<Dim> shapes;  // of the elements around, as they will be
-  bool far;                // far enough for the neighbours to be worth another look
+  bool far;                // far enough for its neighbours to be worth another look
   friend bool operator==(const VertexMove&, const VertexMove&) = default;
 };
 
@@ -34,7 +30,6 @@ struct SmoothOptions {
   double mean_below = 0;        ///< ... where their mean is below this: the harmonic mean of all,
                                 ///< though the worst may get worse
   double far = 0.08;            ///< metric length of a move that neighbours take notice of
-  bool again = true;            ///< wake whoever has a neighbour that moved far
   EdgeRange range = {};         ///< which no move leads edges out of, or farther out of
 };
 
@@ -44,10 +39,7 @@ class Smooth {
   // ---- What it works on ----
   using Item = VertexId;
   using Plan = VertexMove<Dim>;
-  struct Update {};                                  // every write is the item's own
-  static constexpr bool keeps_conflicts = true;      // moving changes no adjacency
-  static constexpr bool keeps_to_neighbours = true;  // reads and wakes nothing beyond
-  static constexpr bool forgoes_wakes = true;        // who moves a little wakes nobody
+  static constexpr bool forgoes_wakes = true;  // the next sweep looks at what has changed
 
   Smooth(Mesh<Dim>& mesh, const Background<Dim>& background, const SmoothOptions& options)
       : mesh_(mesh), background_(background), options_(options) {}
@@ -64,22 +56,22 @@ class Smooth {
                                                                  std::uint32_t after);
 
   // ---- Plan: a better place, if there is one. Reads only. ----
-  std::optional<Plan> plan(VertexId vertex) const;
+  bool plan(VertexId vertex, Plan& plan, auto& reach) const {
+    return reach_ball(mesh_, vertex, reach) && decide(vertex, plan);
+  }
+  /// For whoever has reached for the vertex and its neighbours.
+  bool decide(VertexId vertex, Plan& plan) const;
 
   // ---- Conflict rule: a vertex stands still while its neighbours move ----
   void conflicts(VertexId vertex, auto&& visit) const { visit_neighbours(mesh_, vertex, visit); }
-  std::size_t item_count() const { return mesh_.vertex_slots(); }
+  std::size_t resource_count() const { return mesh_.vertex_slots(); }
   void prefetch(VertexId vertex, int stage) const {
     prefetch_ball(mesh_, vertex, stage);
     if (stage == 1) background_.prefetch(mesh_.host_of[vertex]);
   }
-  void prefetch_neighbour(VertexId vertex) const { prefetch_site(mesh_, vertex); }
 
-  // ---- Apply: move it, renew the shapes around it, wake whom it concerns ----
-  void apply(const Plan& plan, runtime::Commit<Smooth>& commit);
-
-  // ---- Commit: nothing is deferred ----
-  void commit(std::uint32_t, const Update&) {}
+  // ---- Apply: move it, renew the shapes around it ----
+  void apply(VertexId vertex, const Plan& plan, auto&) { move(vertex, plan); }
 
  private:
   /// What is climbed: the worst shape around, or the harmonic mean of all.
@@ -91,6 +83,7 @@ class Smooth {
     Score score;
     BallShapes<Dim> shapes{};
   };
+  void move(VertexId vertex, const Plan& plan);
   bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
   bool keeps_surface(VertexId vertex, const Vector<Dim>& position) const;
   bool keeps_lengths(VertexId vertex, const Site<Dim>& site) const;

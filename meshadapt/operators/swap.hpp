@@ -3,16 +3,18 @@
 /// flips the edge between two triangles. In 3D it removes an edge, with the best triangulation of
 /// the ring around it (3-2, 4-4 and so on up to seven elements, also on flat boundary), or replaces
 /// the face between two tetrahedra by an edge (2-3); below a smooth patch it cuts poor elements off
-/// (cut_off.hpp). run_rounds runs it by reservations: few of all edges and faces act.
+/// (cut_off.hpp). It runs by reservations of elements, as few of all edges and
+/// faces act; lists of vertices are read where nobody writes.
 #pragma once
 
 #include <array>
-#include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/run_rounds.hpp"
+#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_range.hpp"
 
@@ -31,7 +33,6 @@ class Swap {
   // ---- What it works on ----
   using Item = Swappable;
   using Plan = Replacement<Dim>;
-  using Update = ListChange;
   static constexpr bool forgoes_wakes = true;  // the next sweep looks at what has changed
 
   Swap(const runtime::Executor& executor, Mesh<Dim>& mesh, const EdgeRange& range = {})
@@ -48,45 +49,54 @@ class Swap {
   /// New elements are worth it if the worst of them is better than this.
   static double bar(double worst_before) { return worst_before * 1.02 + 1e-4; }
 
-  // ---- Plan: the elements to come, if they are better than those to go. Reads only. ----
-  std::optional<Plan> plan(const Item& item) const;
-
-  // ---- Conflict rule: nobody else touches the elements to go; the worst go first ----
-  void footprint(const Item& item, auto&& visit) const {
+  // ---- Plan: the elements to come, if they are better than those to go. Reads only. Nobody else
+  // touches the elements to go; the worst go first. ----
+  bool plan(const Item& item, Plan& plan, auto& reach) const {
     const auto of_a = mesh_.elements_of.of(item.a), of_b = mesh_.elements_of.of(item.b);
     const bool fewer = of_b.size() < of_a.size();
     const VertexId other = fewer ? item.a : item.b, third = item.c == none ? other : item.c;
+    Shell shell;
     for (const ElementId e : fewer ? of_b : of_a) {
       int found = 0;  // no branches: any corner may be the one
       for (const VertexId v : mesh_.corners_of[e])
         found |= static_cast<int>(v == other) | 2 * static_cast<int>(v == third);
-      if (found == 3) visit(e);
+      if (found != 3) continue;
+      if (!reach(e)) return false;
+      shell.push_back(e);
     }
+    return decide(item, shell, plan);
   }
+  /// For whoever has reached for the elements around the edge, or on both sides of the face.
+  bool decide(const Item& item, const Shell& shell, Plan& plan) const;
+
   [[gnu::always_inline]] void prefetch(const Item& item, int stage) const {
     prefetch_shell(mesh_, item.a, item.b, stage);
   }
   std::size_t resource_count() const { return mesh_.element_slots(); }
-  std::uint8_t priority(const Item& item) const {
-    return static_cast<std::uint8_t>(255 * std::min(1.0F, std::max(0.0F, item.worst)));
+  std::uint32_t priority(const Item& item) const {
+    return static_cast<std::uint32_t>(0x1p24F * std::clamp(item.worst, 0.0F, 1.0F));
   }
 
-  // ---- Apply: replace the elements, defer their vertices' lists ----
+  // ---- Apply: replace the elements, with new ones where they become more ----
+  void apply(const Item&, const Plan& plan, auto& commit) {
+    replace(mesh_, plan, [&] { return commit.fresh(); });
+  }
   std::array<std::uint32_t, 1> demand(const Plan& plan) const {
     const std::size_t gone = plan.old_elements.size(), come = plan.new_elements.size();
     return {static_cast<std::uint32_t>(come > gone ? come - gone : 0)};
   }
-  std::array<std::uint32_t, 1> grow(const std::array<std::uint32_t, 1>& total) {
-    const auto elements = static_cast<std::uint32_t>(mesh_.element_slots());
-    if (std::size_t{elements} + total[0] >= none)
+  std::array<std::size_t, 1> counts() const { return {mesh_.element_slots()}; }
+  void grow(const std::array<std::size_t, 1>& room) {
+    if (room[0] >= none)
       throw std::length_error("a mesh of more elements than 32-bit numbers can count");
-    mesh_.grow(executor_, mesh_.vertex_slots(), elements + total[0]);
-    return {elements};
+    const std::size_t before = mesh_.element_slots();
+    mesh_.grow(executor_, mesh_.vertex_slots(), room[0]);
+    for (std::size_t e = before; e < room[0]; ++e) mesh_.corners_of[e].fill(none);
   }
-  void apply(const Plan& plan, runtime::Commit<Swap>& commit);
-
-  // ---- Commit: one owner's list ----
-  void commit(std::uint32_t owner, const Update& update) { change_list(mesh_, owner, update); }
+  /// What is beyond the count stays as elements that are gone.
+  void renumber(std::size_t, std::span<const runtime::Renumbered> moved, std::size_t) {
+    for (const auto& [from, to] : moved) move_element(mesh_, from, to);
+  }
 
  private:
   const runtime::Executor& executor_;

@@ -38,26 +38,18 @@ bool worth_a_flip(const Mesh<2>& mesh, const Kite& kite, const EdgeRange& range)
 }  // namespace
 
 template <>
-std::optional<Replacement<2>> Swap<2>::plan(const Swappable& edge) const {
-  Shell shell;
-  shell_of(mesh_, edge.a, edge.b, shell);
-  if (shell.size() != 2) return {};
+bool Swap<2>::decide(const Swappable& edge, const Shell& shell, Plan& plan) const {
+  if (shell.size() != 2) return false;
   const Corners<2>& first = mesh_.corners_of[shell[0]];
   int corner = 0;
   while (first[static_cast<std::size_t>(corner)] == edge.a ||
          first[static_cast<std::size_t>(corner)] == edge.b)
     ++corner;
   const Kite kite = make_kite(mesh_, shell[0], corner, shell[1]);
-  if (!worth_a_flip(mesh_, kite, range_)) return {};
-  Replacement<2> result;
-  result.old_elements = {kite.first, kite.second};
-  result.new_elements = {{kite.a, kite.d, kite.c}, {kite.d, kite.b, kite.c}};
-  return result;
-}
-
-template <>
-void Swap<2>::apply(const Replacement<2>& plan, runtime::Commit<Swap>& commit) {
-  replace(mesh_, plan, commit);
+  if (!worth_a_flip(mesh_, kite, range_)) return false;
+  plan.old_elements = {kite.first, kite.second};
+  plan.new_elements = {{kite.a, kite.d, kite.c}, {kite.d, kite.b, kite.c}};
+  return true;
 }
 
 namespace {

@@ -181,30 +181,24 @@ std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappabl
 }  // namespace
 
 template <>
-std::optional<Replacement<3>> Swap<3>::plan(const Swappable& item) const {
-  Shell shell;
+bool Swap<3>::decide(const Swappable& item, const Shell& shell, Plan& plan) const {
+  const auto take = [&](const std::optional<Replacement<3>>& found) {
+    if (found) plan = *found;
+    return found.has_value();
+  };
   float worst = 1;
-  footprint(item, [&](ElementId e) {
-    shell.push_back(e);
-    worst = std::min(worst, mesh_.shape_of[e]);
-  });
+  for (const ElementId e : shell) worst = std::min(worst, mesh_.shape_of[e]);
   if (item.c != none)
-    return shell.size() == 2 ? plan_face_swap(mesh_, item, shell, bar(worst), range_)
-                             : std::nullopt;
+    return shell.size() == 2 && take(plan_face_swap(mesh_, item, shell, bar(worst), range_));
   Ring ring;
   if (!ring.close(shell.size(), item.a, item.b,
                   [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }))
-    return {};
+    return false;
   auto result = triangulate(mesh_, item, ring, bar(worst));
   if (result && accept_edge_removal(mesh_, item, shell, ring, *result) &&
       keeps_lengths(mesh_, *result, {item.a, item.b}, range_))
-    return result;
-  return mesh_.surface ? plan_cut_off(mesh_, item.a, item.b, shell, ring) : std::nullopt;
-}
-
-template <>
-void Swap<3>::apply(const Replacement<3>& plan, runtime::Commit<Swap>& commit) {
-  replace(mesh_, plan, commit);
+    return take(result);
+  return mesh_.surface && take(plan_cut_off(mesh_, item.a, item.b, shell, ring));
 }
 
 namespace {

@@ -1,182 +1,229 @@
-#include "ductile/runtime/detail/tiles.hpp"
+#include "ductile/runtime/detail/surveyed_tiles.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
+#include <bit>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 
-#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/checked_rounds.hpp"
+#include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
 
-namespace ductile::runtime::tiles_test {
+namespace ductile::runtime::surveyed_tiles_test {
 namespace {
 
 using test::all_items;
 using test::thread_counts;
 using test::Vertex;
 
-/// Vertices of a grid whose rows are numbered one after the other; each takes on the mean of its
-/// neighbours, so that the order of any two neighbours shows in the last bit.
-class Mean {
+/// Contracts edges of a graph: a vertex of few neighbours goes, one of them takes over the others.
+/// So conflicts change, and two that do not conflict may change the neighbours of a third.
+class Contract {
  public:
   using Item = Vertex;
   struct Plan {
-    Vertex vertex;
-    double value;
+    Vertex gone, kept;
+    friend bool operator==(const Plan&, const Plan&) = default;
   };
   struct Update {};
-  static constexpr bool keeps_conflicts = true;
   static constexpr bool keeps_to_neighbours = true;
+  static constexpr bool forgoes_wakes = true;
 
-  explicit Mean(Vertex side) : value(std::size_t{side} * side), turns(value.size()), side_(side) {
-    for (std::size_t v = 0; v < value.size(); ++v) value[v] = std::sin(static_cast<double>(v * v));
+  explicit Contract(Vertex side)
+      : neighbours(std::size_t{side} * side),
+        turns(neighbours.size()),
+        mutex_of_(std::make_unique<std::mutex[]>(neighbours.size())) {
+    const auto join = [&](Vertex a, Vertex b) {
+      neighbours[a].insert(b);
+      neighbours[b].insert(a);
+    };
+    for (Vertex v = 0; v < neighbours.size(); ++v) {
+      if (v % side + 1 < side) join(v, v + 1);
+      if (v + side < neighbours.size()) join(v, v + side);
+      if (v % side + 1 < side && v + side < neighbours.size()) join(v, v + side + 1);
+    }
   }
 
   std::optional<Plan> plan(Vertex v) const {
     if (v == throws_at) throw std::runtime_error("plan");
-    double sum = 0;
-    int count = 0;
-    conflicts(v, [&](Vertex other) { sum += value[other], ++count; });
-    return Plan{v, sum / count};
+    const std::set<Vertex>& around = neighbours[v];
+    if (around.empty() || around.size() > 7 || mix32(v) % 3 == 0) return {};
+    return Plan{v, *std::next(around.begin(), mix32(v) % static_cast<Vertex>(around.size()))};
   }
   void conflicts(Vertex v, auto&& visit) const {
-    const Vertex column = v % side_, row = v / side_;
-    if (column > 0) visit(v - 1);
-    if (column + 1 < side_) visit(v + 1);
-    if (row > 0) visit(v - side_);
-    if (row + 1 < side_) visit(v + side_);
+    for (const Vertex other : neighbours[v]) visit(other);
   }
-  std::size_t item_count() const { return value.size(); }
+  std::size_t item_count() const { return neighbours.size(); }
   void prefetch(Vertex, int) const {}
-  void prefetch_neighbour(Vertex) const { neighbours_fetched.fetch_add(1); }  // in tiles only
-  void apply(const Plan& plan, Commit<Mean>& commit) {
-    value[plan.vertex] = plan.value;
-    if (++turns[plan.vertex] == 1 && wakes)
-      conflicts(plan.vertex, [&](Vertex other) { commit.wake(other); });
+
+  void apply(const Plan& plan, auto& commit) {
+    ++turns[plan.gone];
+    const std::set<Vertex> around = std::move(neighbours[plan.gone]);
+    neighbours[plan.gone].clear();
+    for (const Vertex other : around) {
+      const std::lock_guard held(mutex_of_[other]);
+      neighbours[other].erase(plan.gone);
+      if (other == plan.kept) {
+        neighbours[other].insert(around.begin(), around.end());
+        neighbours[other].erase(plan.kept);
+      } else {
+        neighbours[other].insert(plan.kept);
+        if (other % 4 == 0) commit.reconsider(other);
+      }
+    }
+    commit.wake(plan.kept);
   }
   void commit(std::uint32_t, const Update&) {}
 
-  static inline std::atomic<std::size_t> neighbours_fetched{0};
-  std::vector<double> value;  // [vertex]
-  std::vector<int> turns;     // [vertex], so far
+  std::vector<std::set<Vertex>> neighbours;  // [vertex]
+  std::vector<int> turns;                    // [vertex], how often it was applied
   Vertex throws_at = ~0U;
-  bool wakes = true;
 
  private:
-  Vertex side_;
+  std::unique_ptr<std::mutex[]> mutex_of_;
 };
 
-static_assert(SteadyTiledOperator<Mean>);
+static_assert(TiledOperator<Contract> && !SteadyTiledOperator<Contract>);
 
-struct Outcome {
-  Mean mean;
-  RoundsReport report;
+/// Rounds of Contract one item after the other, by the definition of their order.
+class InTurn {
+ public:
+  explicit InTurn(Contract& op) : op_(op) {}
+
+  /// Returns the next round's work.
+  std::vector<Vertex> run(const std::vector<Vertex>& work) {
+    woken_.clear();
+    turn_of_.clear();
+    const int bits = std::clamp(static_cast<int>(std::bit_width(work.size())) - 11, 1, 6);
+    const detail::BlockLayout layout{static_cast<unsigned>(bits), 5};
+    const auto tile_at = [&](std::size_t place) { return place >> layout.block_bits; };
+    std::vector<std::size_t> place_of(op_.item_count(), work.size());
+    for (std::size_t i = 0; i < work.size(); ++i) {
+      turn_of_[work[i]] = {detail::rank_of_block(layout, tile_at(i)), i};
+      place_of[work[i]] = i;
+    }
+    std::vector<Vertex> order;
+    for (const Vertex v : work) {
+      bool waits = false;
+      op_.conflicts(v, [&](Vertex other) {
+        if (turn_of_.count(other) == 0) return;
+        waits = waits || (turn_of_[other].first == turn_of_[v].first &&
+                          tile_at(place_of[other]) < tile_at(place_of[v]));
+      });
+      waits ? wake(v) : order.push_back(v);
+    }
+    late += woken_.size();
+    std::sort(order.begin(), order.end(),
+              [&](Vertex a, Vertex b) { return turn_of_[a] < turn_of_[b]; });
+    for (const Vertex v : order) {
+      if (woken_.count(v) != 0) continue;
+      now_ = v;
+      if (const auto plan = op_.plan(v)) op_.apply(*plan, *this);
+    }
+    return {woken_.begin(), woken_.end()};
+  }
+
+  void wake(Vertex v) { woken_.insert(v); }
+  void reconsider(Vertex v) {
+    if (turn_of_.count(v) == 0 || turn_of_[v] < turn_of_[now_]) wake(v);
+  }
+
+  std::size_t late = 0;
+
+ private:
+  Contract& op_;
+  std::map<Vertex, std::pair<std::uint8_t, std::size_t>> turn_of_;
+  std::set<Vertex> woken_;
+  Vertex now_ = 0;
 };
 
-Outcome run(Vertex side, int threads, const std::vector<Vertex>& work, int rounds = 1) {
-  Outcome outcome{Mean(side), {}};
-  const Executor executor({.threads = threads});
-  outcome.report = run_rounds(executor, outcome.mean, work, {.most_rounds = rounds});
-  return outcome;
+/// Works of many and few items, side by side and apart, in order and not.
+std::vector<std::vector<Vertex>> works(Vertex side) {
+  std::vector<std::vector<Vertex>> works{all_items(side * side), {}, {}, {side + 1}};
+  for (Vertex v = 0; v < side * side; v += 7) works[1].push_back(v);
+  for (Vertex v = 0; v < 100; ++v) works[2].push_back(mix32(v) % (side * side));
+  std::sort(works[2].begin(), works[2].end());
+  works[2].erase(std::unique(works[2].begin(), works[2].end()), works[2].end());
+  std::reverse(works[2].begin(), works[2].end());
+  return works;
 }
 
-TEST(Tiles, GiveEveryItemOneTurnWhateverTheThreads) {
+TEST(SurveyedTiles, RunByTheirRanksAndWakeWhomAnEqualOneComesBefore) {
   constexpr Vertex side = 150;
-  const auto work = all_items(side * side);
-  const Outcome first = run(side, 1, work);
-  for (const int threads : thread_counts) {
-    Mean::neighbours_fetched = 0;
-    const Outcome outcome = run(side, threads, work);
-    EXPECT_GT(Mean::neighbours_fetched, 0U);
-    EXPECT_GT(outcome.report.batches, 1U);  // the tiles, then those of what was left
-    EXPECT_EQ(outcome.report.planned, work.size());
-    EXPECT_EQ(outcome.report.applied, work.size());
-    EXPECT_EQ(outcome.mean.turns, std::vector<int>(work.size(), 1)) << threads << " threads";
-    EXPECT_EQ(outcome.mean.value, first.mean.value) << threads << " threads";
-  }
-}
-
-/// What tiles of all items are to give, by the definition of their order.
-TEST(Tiles, RunByTheirRanksAndLeaveWhomAnEqualOneComesBefore) {
-  constexpr Vertex side = 150;
-  const auto work = all_items(side * side);
-  Mean expected(side);
-  const detail::BlockLayout layout = detail::tiles_of(work.size());
-  const auto rank = [&](Vertex v) { return 7 * layout.step_of(v) % layout.step_count(); };
-  std::vector<std::uint8_t> left(work.size());
-  const auto is_left = [&](Vertex v) {
-    bool any = false;
-    expected.conflicts(v, [&](Vertex other) {
-      any = any || (other < v && !layout.same_block(other, v) && rank(other) == rank(v));
-    });
-    return any;
-  };
-  std::transform(work.begin(), work.end(), left.begin(), is_left);
-  EXPECT_GT(std::count(left.begin(), left.end(), 1), 0);
-  auto order = work;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Vertex a, Vertex b) { return rank(a) < rank(b); });
-  for (const Vertex v : order)
-    if (left[v] == 0) expected.value[v] = expected.plan(v)->value;
-
-  for (const int threads : thread_counts) {
-    const Executor executor({.threads = threads});
-    Mean mean(side);
-    mean.wakes = false;
-    detail::Tiles<Mean> tiles(executor, mean, work);
-    tiles.run([] { return Commit<Mean>(); }, [](Vertex) {});
-    EXPECT_TRUE(std::equal(tiles.left().begin(), tiles.left().end(), left.begin(), left.end()));
-    EXPECT_EQ(mean.value, expected.value) << threads << " threads";
-  }
-}
-
-TEST(Tiles, LeaveFewItemsOfManyToTilesOfTheirOwn) {
-  constexpr Vertex side = 700;  // 490,000 vertices, of which 4900 are work
-  std::vector<Vertex> work(4900);
-  for (std::size_t i = 0; i < work.size(); ++i) work[i] = static_cast<Vertex>(100 * i);
-  Mean::neighbours_fetched = 0;
-  const Outcome first = run(side, 1, work);
-  EXPECT_EQ(Mean::neighbours_fetched, 0U);
-  EXPECT_EQ(first.report.applied, work.size());
-  EXPECT_EQ(run(side, 8, work).mean.value, first.mean.value);
-}
-
-TEST(Tiles, PassOnWhatAnItemThrows) {
-  constexpr Vertex side = 150;
-  for (const int threads : thread_counts)
-    for (const Vertex culprit : {0U, 5000U, side * side - 1}) {
-      Mean mean(side);
-      mean.throws_at = culprit;
-      const Executor executor({.threads = threads});
-      EXPECT_THROW(run_rounds(executor, mean, all_items(side * side)), std::runtime_error);
+  for (const auto& work : works(side))
+    for (const int rounds : {1, 30}) {
+      Contract expected(side);
+      InTurn in_turn(expected);
+      std::vector<Vertex> left = work;
+      for (int round = 0; round < rounds && !left.empty(); ++round) left = in_turn.run(left);
+      if (work.size() == expected.item_count()) {
+        EXPECT_GT(in_turn.late, 0U);
+      }
+      for (const int threads : thread_counts) {
+        Contract contract(side);
+        const Executor executor({.threads = threads});
+        const RoundsReport report = run_rounds(executor, contract, work, {.most_rounds = rounds});
+        EXPECT_EQ(contract.neighbours, expected.neighbours) << threads << " threads";
+        EXPECT_EQ(contract.turns, expected.turns);
+        EXPECT_EQ(report.left, left.size());
+        EXPECT_EQ(report.committed, 0U);
+      }
     }
 }
 
-TEST(Tiles, TakeWorkInAnyOrder) {
-  constexpr Vertex side = 90;
-  auto work = all_items(side * side);
-  const Outcome first = run(side, 2, work);
-  std::reverse(work.begin(), work.end());
-  EXPECT_EQ(run(side, 2, work).mean.value, first.mean.value);
-}
-
-TEST(Tiles, WakeNeighboursThatHadTheirTurn) {
+TEST(SurveyedTiles, CountWhoLeavesTheRound) {
   constexpr Vertex side = 100;
   const auto work = all_items(side * side);
-  const Outcome first = run(side, 1, work, 2);
-  EXPECT_EQ(first.report.rounds, 2U);
-  // Of two neighbours the one that comes first is woken by the other.
-  EXPECT_GT(first.report.applied, work.size() * 3 / 2);
-  EXPECT_LT(first.report.applied, work.size() * 2);
-  for (const int threads : thread_counts) {
-    const Outcome outcome = run(side, threads, work, 2);
-    EXPECT_EQ(outcome.report.applied, first.report.applied);
-    EXPECT_EQ(outcome.mean.value, first.mean.value) << threads << " threads";
+  Contract contract(side);
+  const RoundsReport report =
+      run_rounds(Executor({.threads = 2}), contract, work, {.most_rounds = 1});
+  EXPECT_EQ(report.batches, 1U);
+  EXPECT_EQ(report.planned + report.dropped, work.size());
+  EXPECT_GT(report.dropped, 0U);
+  EXPECT_EQ(report.applied,
+            static_cast<std::size_t>(std::count(contract.turns.begin(), contract.turns.end(), 1)));
+}
+
+/// Of few vertices, as a check plans all that wait after each batch.
+TEST(SurveyedTiles, AreForOperatorsThatKeepTheContract) {
+  constexpr Vertex side = 20;
+  Contract contract(side);
+  EXPECT_GT(run_rounds_checked(Executor({.threads = 1}), contract, all_items(side * side)).applied,
+            side);
+}
+
+TEST(SurveyedTiles, PassOnWhatAnItemThrows) {
+  constexpr Vertex side = 150;
+  for (const int threads : thread_counts)
+    for (const Vertex culprit : {0U, 5000U, side * side - 1}) {
+      Contract contract(side);
+      contract.throws_at = culprit;
+      EXPECT_THROW(run_rounds(Executor({.threads = threads}), contract, all_items(side * side)),
+                   std::runtime_error);
+    }
+}
+
+/// More than fit at once into what collects the tiles that an item meets.
+TEST(SurveyedTiles, MeetAnyNumberOfTiles) {
+  constexpr Vertex side = 150;
+  Contract expected(side);
+  for (Vertex v = 0; v + 1 < side * side; v += 3) {  // all around the last one
+    expected.neighbours[v].insert(side * side - 1);
+    expected.neighbours[side * side - 1].insert(v);
   }
+  Contract contract(side);
+  contract.neighbours = expected.neighbours;
+  InTurn(expected).run(all_items(side * side));
+  run_rounds(Executor({.threads = 4}), contract, all_items(side * side), {.most_rounds = 1});
+  EXPECT_EQ(contract.neighbours, expected.neighbours);
 }
 
 }  // namespace
-}  // namespace ductile::runtime::tiles_test
+}  // namespace ductile::runtime::surveyed_tiles_test

@@ -24,9 +24,15 @@ enum class Strategy : std::uint8_t {
   in_order,      ///< in the order of the work, with the result of a plain loop over it. Nobody is
                  ///< woken and nothing is made. What an item reaches depends on items before it
                  ///< alone, and one without a plan never gets one later
-  reservations,  ///< items reserve what they reach, in windows of a random order of the work
-  locks,         ///< whoever comes first: the result depends on timing. Not if the executor is to
-                 ///< be deterministic
+  reservations,  ///< items reserve what they reach, in windows of the work; those that hold all of
+                 ///< it are applied. The lowest priority() wins, or whoever is first in a random
+                 ///< order of the work
+  tiles,    ///< stretches of the work, each run by one thread; of items with a conflict the one
+            ///< whose tile has the lower rank comes first. Nothing is made
+  colours,  ///< classes of items without conflicts, found by speculative colouring, one class
+            ///< after the other. Nothing is made
+  locks,    ///< whoever comes first: the result depends on timing. Not if the executor is to
+            ///< be deterministic
 };
 
 /// A thing that is given another number.
@@ -77,13 +83,34 @@ concept CautiousOperator = requires(const Op& reader, Op& op, const typename Op:
 };
 
 /// Items are numbers, each that of the resource that it reaches for first; conflicts(item, visit)
-/// visits all others that it may reach, of which each may reach it, too. Besides its own an item
-/// only marks what it has reached (atomic.hpp), which is the same in any order. Then it need
-/// wait for none but those of its neighbours that come before it.
+/// visits all others that it may reach, of which each may reach it, too; repetition is allowed. An
+/// item runs beside any with which it has no conflict. What two such both write, as a mark of a
+/// common neighbour (atomic.hpp) or its list under a lock, comes out the same in any order.
+/// An item wakes only itself and those that it conflicts with. If applying gives conflicts to
+/// others, one of each pair is woken: until its round is over, an item has the conflicts that it
+/// had at first, and whoever is woken leaves the round.
 template <class Op>
 concept ConflictingOperator = CautiousOperator<Op> &&
     std::same_as<typename Op::Item, std::uint32_t> && requires(const Op& op, std::uint32_t item) {
   op.conflicts(item, [](std::uint32_t) {});
+};
+
+/// Where reservations meet, the lower priority(item) wins. Items are then taken in the order of the
+/// work, window by window, so the priority counts among those that are near in it.
+template <class Op>
+concept RankedOperator = CautiousOperator<Op> &&
+    requires(const Op& op, const typename Op::Item& item) {
+  { op.priority(item) } -> std::same_as<std::uint32_t>;
+};
+
+/// prefetch(item, stage) starts to bring what plan(item) will read into the cache. It is called
+/// with the stages 2, 1 and 0, with some other items looked at or planned between them, so that a
+/// stage can follow what the one before has brought; now and then a stage is left out. Const, and
+/// it only reads.
+template <class Op>
+concept PrefetchingOperator = CautiousOperator<Op> &&
+    requires(const Op& op, const typename Op::Item& item) {
+  op.prefetch(item, 2);
 };
 
 /// place_of(resource) is where a resource lies, in a plane or in space: what is reached together

@@ -1,19 +1,14 @@
 /// @file
 /// run_rounds_checked: run_rounds for those who write an operator: slow, on one thread, and throws
 /// ContractBroken as soon as the operator does something that would be wrong, or would depend on
-/// timing, on many. Every batch is applied item by item, each committed before the next: if the
-/// operator keeps its contract that gives the same as all at once.
-/// It sees what an operator tells and how plans change, not single reads and writes; the more an
+/// timing, on many. It sees where items that have reached for nothing in common change each other's
+/// plans, and whether plan() gives up where it should; not single reads and writes. The more an
 /// operator tells, the more it sees:
 ///   Plan has ==            compares plans, not only whether there is one
-///   Op has == and copies   applies each batch in two orders and compares
 ///   to_string(Item)        messages name the item, not only its place (numbers name themselves)
-/// Of a cautious operator it sees where items that have reached for nothing in common change each
-/// other's plans, and whether plan() gives up where it should; most_rounds is not heeded.
 /// An operator that on purpose does not wake all who could plan again has a member `forgoes_wakes`.
 #pragma once
 
-#include <concepts>
 #include <utility>
 #include <vector>
 
@@ -21,31 +16,21 @@
 #include "ductile/runtime/detail/cautious_check.hpp"
 #include "ductile/runtime/detail/cautious_rounds.hpp"
 #include "ductile/runtime/detail/contract.hpp"
-#include "ductile/runtime/detail/expect_operator.hpp"
-#include "ductile/runtime/detail/operator_check.hpp"
-#include "ductile/runtime/detail/rounds.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime {
 
-/// As run_rounds(), for items that can be copied. Plans every waiting item after every batch.
-/// Throws ContractBroken, and what the operator throws; the operator's data are then not to be
-/// used. Thread safety: one caller.
+/// As run_rounds(), for items that can be copied; most_rounds is not heeded. Throws ContractBroken,
+/// and what the operator throws; the operator's data are then not to be used. Thread safety: one
+/// caller.
 template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds_checked(const Executor& executor, Op& op, Work work,
                                 const RoundsOptions& options = {}) {
-  if constexpr (detail::expect_cautious<Op>()) {
-    const bool in_order = detail::strategy_of<Op>(executor, options) == Strategy::in_order;
-    return detail::CautiousCheck<Op>(op, in_order)
-        .run(detail::to_vector<typename Op::Item>(std::move(work)));
-  } else if constexpr (detail::expect_operator<Op, Work>()) {
-    static_assert(std::copyable<typename Op::Item>, "items of checked rounds can be copied");
-    const Executor alone({.threads = 1, .deterministic = executor.deterministic()});
-    return detail::run_all_rounds<Op, detail::OperatorCheck<Op>>(alone, op, std::move(work),
-                                                                 options);
-  }
+  detail::expect_whole_operator<Op>();
+  const bool in_order = detail::strategy_of<Op>(executor, options) == Strategy::in_order;
+  return detail::CautiousCheck<Op>(op, in_order)
+      .run(detail::to_vector<typename Op::Item>(std::move(work)));
 }
 
 }  // namespace ductile::runtime

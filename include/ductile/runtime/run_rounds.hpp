@@ -2,11 +2,6 @@
 /// run_rounds: applies an operator to a set of items, and to those that it wakes, until none is
 /// left. A CautiousOperator reaches for what it reads and writes, and is run by one of several
 /// strategies (cautious_operator.hpp).
-/// The older contract of operator.hpp: in each round items are found that may run together, each of
-/// them plans, then applies its plan, then what was deferred is committed; phases never overlap,
-/// but in tiles (TiledOperator). Items that may run together are found by colouring of their
-/// conflict graph, class by class, or by reservation of what they touch by priority. Which one
-/// follows from the operator's members.
 #pragma once
 
 #include <cstddef>
@@ -16,30 +11,35 @@
 
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/cautious_rounds.hpp"
-#include "ductile/runtime/detail/expect_operator.hpp"
-#include "ductile/runtime/detail/rounds.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime {
 
-/// Applies `op`, a CautiousOperator, ColouredOperator or ReservingOperator, to `work`, and to
-/// whatever it wakes, until nothing is left, or for most_rounds. The work is a vector of items, or
-/// of a cautious operator whatever has size() and items by [i], see AllNumbers; where there are
-/// conflicts() it has each item once. With a deterministic executor the result does not depend on
-/// threads or timing, provided that the operator keeps its contract. Throws what the operator
-/// throws, and std::invalid_argument if the operator lacks what options.strategy needs; the
-/// operator's data are then not to be used. Thread safety: one caller; runs on the executor, in a
-/// team.
+/// Applies `op`, a CautiousOperator, to `work`, and to whatever it wakes, until nothing is left, or
+/// for most_rounds. The work is a vector of items, or whatever has size() and items by [i], see
+/// AllNumbers; where there are conflicts() it has each item once. With a deterministic executor the
+/// result does not depend on threads or timing, provided that the operator keeps its contract.
+/// Throws what the operator throws, and std::invalid_argument if the operator lacks what
+/// options.strategy needs; the operator's data are then not to be used. Thread safety: one caller;
+/// runs on the executor, in a team.
 template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds(const Executor& executor, Op& op, Work work,
                         const RoundsOptions& options = {}) {
-  if constexpr (detail::expect_cautious<Op>()) {
-    return detail::run_cautious_rounds(executor, op, std::move(work), options);
-  } else if constexpr (detail::expect_operator<Op, Work>()) {
-    return detail::run_all_rounds(executor, op, std::move(work), options);
-  }
+  detail::expect_whole_operator<Op>();
+  return detail::run_cautious_rounds(executor, op, std::move(work), options);
+}
+
+/// The same by a strategy that the compiler knows, which compiles no other. options.strategy does
+/// not count.
+template <Strategy S, class Op, class Work = std::vector<typename Op::Item>>
+requires(S != Strategy::automatic) RoundsReport
+    run_rounds_by(const Executor& executor, Op& op, Work work, const RoundsOptions& options = {}) {
+  detail::expect_whole_operator<Op>();
+  detail::expect_possible<Op>(executor, S);
+  const auto most_rounds = static_cast<std::size_t>(options.most_rounds);
+  return with_team(executor,
+                   [&] { return detail::run_by<S>(executor, op, std::move(work), most_rounds); });
 }
 
 /// Runs a cautious operator by Strategy::in_order and returns the items that were applied, in the

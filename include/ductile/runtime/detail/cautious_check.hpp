@@ -17,11 +17,23 @@
 #include "ductile/runtime/detail/contract.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
-#include "ductile/runtime/detail/opposite_order.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime::detail {
+
+template <class Item>
+std::string item_name(const Item& item, std::size_t place) {
+  if constexpr (std::integral<Item>) {
+    return std::to_string(item);
+  } else if constexpr (requires {
+                         { to_string(item) } -> std::convertible_to<std::string>;
+                       }) {
+    return to_string(item);
+  } else {
+    return "number " + std::to_string(place);
+  }
+}
 
 template <CautiousOperator Op>
 class CautiousCheck {
@@ -50,6 +62,7 @@ class CautiousCheck {
     while (!waiting_.empty()) {
       const Numbered item = waiting_.back();
       waiting_.pop_back();
+      if constexpr (ConflictingOperator<Op>) --waits_of_[item.item];
       ++report.planned;
       const bool is_applied = run_item(item);
       report.applied += is_applied;
@@ -90,10 +103,10 @@ class CautiousCheck {
     CautiousCheck& check;
     const Numbered& item;
     std::array<std::size_t, kinds> next{}, end{};
-    bool has_woken = false;
-    void wake(const Item& woken) {
-      has_woken = true;
-      check.add(woken);
+    std::vector<Item> woken{};
+    void wake(const Item& item) {
+      woken.push_back(item);
+      check.add(item);
     }
     std::uint32_t fresh(std::size_t kind = 0) requires(kinds > 0) {
       if (next[kind] == end[kind])
@@ -104,7 +117,20 @@ class CautiousCheck {
     }
   };
 
-  void add(const Item& item) { waiting_.push_back({item, added_++}); }
+  void add(const Item& item) {
+    if constexpr (ConflictingOperator<Op>) {
+      expect_known(item);
+      ++waits_of_[item];
+    }
+    waiting_.push_back({item, added_++});
+  }
+  void expect_known(std::uint32_t item) {
+    waits_of_.resize(op_.resource_count());
+    if (item >= waits_of_.size())
+      throw ContractBroken(ContractRule::numbers_in_range, std::to_string(item), 1,
+                           "it is in the work or was woken, but there are " +
+                               std::to_string(waits_of_.size()) + " resources");
+  }
 
   static std::string name_of(const Numbered& item) { return item_name(item.item, item.number); }
   [[noreturn]] static void refuse(ContractRule rule, const Numbered& item, const std::string& how) {
@@ -206,7 +232,9 @@ class CautiousCheck {
     }
     std::sort(decision.reached.begin(), decision.reached.end());
     for (const Watched& other : others) expect_unchanged(other, item, decision.reached);
-    if (in_order_ && commit.has_woken)
+    if constexpr (ConflictingOperator<Op>)
+      for (const Watched& other : others) expect_woken(other, item, commit.woken);
+    if (in_order_ && !commit.woken.empty())
       refuse(ContractRule::nobody_woken, item,
              "it wakes an item, but in strategy in_order only the work itself has an order");
   }
@@ -215,7 +243,16 @@ class CautiousCheck {
   struct Watched {
     Numbered item;
     Decision before;
+    std::vector<std::uint32_t> conflicts;  // ascending
   };
+
+  std::vector<std::uint32_t> conflicts_of([[maybe_unused]] const Item& item) const {
+    std::vector<std::uint32_t> conflicts;
+    if constexpr (ConflictingOperator<Op>)
+      op_.conflicts(item, [&](std::uint32_t other) { conflicts.push_back(other); });
+    std::sort(conflicts.begin(), conflicts.end());
+    return conflicts;
+  }
 
   /// Some that wait: the next and random ones.
   std::vector<Watched> watch_others() const {
@@ -226,9 +263,24 @@ class CautiousCheck {
       Decision decision = decide(other.item);
       if (!is_same(decide(other.item), decision))
         refuse(ContractRule::plan_only_reads, other, "plan() called again decides something else");
-      others.push_back({other, std::move(decision)});
+      others.push_back({other, std::move(decision), conflicts_of(other.item)});
     }
     return others;
+  }
+
+  /// Of two that wait and have got a new conflict by what was applied, has one been woken?
+  void expect_woken(const Watched& other, const Numbered& applied,
+                    const std::vector<Item>& woken) const {
+    const auto is_woken = [&](std::uint32_t item) {
+      return std::find(woken.begin(), woken.end(), item) != woken.end();
+    };
+    if (is_woken(other.item.item)) return;
+    for (const std::uint32_t with : conflicts_of(other.item.item))
+      if (with != other.item.item && waits_of_[with] > 0 && !is_woken(with) &&
+          !std::binary_search(other.conflicts.begin(), other.conflicts.end(), with))
+        refuse(ContractRule::woken_if_in_conflict, other.item,
+               "it got a conflict with item " + std::to_string(with) + " when item " +
+                   name_of(applied) + " was applied, which has woken neither");
   }
 
   /// `reached` is ascending: what the item that was applied had reached.
@@ -291,8 +343,9 @@ class CautiousCheck {
 
   Op& op_;
   bool in_order_;
-  std::vector<Numbered> waiting_;     // the next last
-  std::vector<Numbered> considered_;  // had their turn
+  std::vector<Numbered> waiting_;        // the next last
+  std::vector<std::uint32_t> waits_of_;  // [item], how often it waits, if there are conflicts
+  std::vector<Numbered> considered_;     // had their turn
   std::size_t added_ = 0;
   Plan used_plan_{};
   std::array<std::size_t, kinds> top_{}, room_{};  // [kind]

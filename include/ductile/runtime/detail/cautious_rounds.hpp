@@ -10,6 +10,8 @@
 //     ordered_windows      all others
 //   reservation_windows    reservations
 //   lock_rounds            locks
+//   tile_rounds            tiles, of which there is more in tiles and ranked_blocks
+//   colour_rounds          colours
 // made_things has the numbers of what operators make.
 
 #include <cstddef>
@@ -18,27 +20,24 @@
 #include <vector>
 
 #include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/colour_rounds.hpp"
 #include "ductile/runtime/detail/lock_rounds.hpp"
 #include "ductile/runtime/detail/ordered_run.hpp"
 #include "ductile/runtime/detail/region_rounds.hpp"
 #include "ductile/runtime/detail/reservation_windows.hpp"
+#include "ductile/runtime/detail/tile_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime::detail {
 
-/// Operators of the older contract have a type Update.
+/// Says at compile time what an operator lacks, and which optional member is there but cannot be
+/// used.
 template <class Op>
-concept LooksCautious = requires {
-  typename Op::Item;
-  typename Op::Plan;
-  &Op::resource_count;
-}
-&&!requires { typename Op::Update; };
-
-/// Says at compile time where an optional member is there but cannot be used.
-template <CautiousOperator Op>
-constexpr void expect_whole_members() {
+constexpr void expect_whole_operator() {
+  static_assert(CautiousOperator<Op>,
+                "an operator has bool plan(const Item&, Plan&, auto& reach) const, "
+                "apply(const Item&, Plan&, auto& commit) and resource_count() const");
   constexpr bool makes_things = requires { &Op::demand; }
   || requires { &Op::counts; }
   || requires { &Op::grow; };
@@ -49,47 +48,52 @@ constexpr void expect_whole_members() {
   constexpr bool has_places = requires { &Op::place_of; };
   static_assert(!has_places || PlacedOperator<Op>,
                 "place_of(std::uint32_t) const returns std::array<double, 2> or of 3");
+  constexpr bool has_priority = requires { &Op::priority; };
+  static_assert(!has_priority || RankedOperator<Op>,
+                "priority(const Item&) const returns std::uint32_t");
 }
 
-/// Whether it is a cautious operator. Says at compile time what one lacks.
-template <class Op>
-constexpr bool expect_cautious() {
-  static_assert(CautiousOperator<Op> || !LooksCautious<Op>,
-                "a cautious operator has bool plan(const Item&, Plan&, auto& reach) const, "
-                "apply(const Item&, Plan&, auto& commit) and resource_count() const");
-  if constexpr (CautiousOperator<Op>) expect_whole_members<Op>();
-  return CautiousOperator<Op>;
+/// Throws std::invalid_argument if the operator or the executor lacks what the strategy needs.
+template <CautiousOperator Op>
+void expect_possible(const Executor& executor, Strategy strategy) {
+  constexpr bool makes_things = kinds_made<Op> != 0;
+  const auto expect = [&](bool holds, const char* message) {
+    if (!holds) throw std::invalid_argument(message);
+  };
+  switch (strategy) {
+    case Strategy::regions:
+      return expect(PlacedOperator<Op>,
+                    "strategy regions: the operator has no member place_of(resource) const that "
+                    "returns std::array<double, 2> or std::array<double, 3>");
+    case Strategy::in_order:
+      return expect(!makes_things,
+                    "strategy in_order: the operator makes things, whose numbers follow another "
+                    "order");
+    case Strategy::locks:
+      return expect(!executor.deterministic(),
+                    "strategy locks: the executor is deterministic, see ExecutorOptions");
+    case Strategy::tiles:
+      return expect(ConflictingOperator<Op> && !makes_things,
+                    "strategy tiles: the operator has no member conflicts(item, visit) const, or "
+                    "it makes things");
+    case Strategy::colours:
+      return expect(ConflictingOperator<Op> && !makes_things,
+                    "strategy colours: the operator has no member conflicts(item, visit) const, "
+                    "or it makes things");
+    case Strategy::reservations:
+    case Strategy::automatic:
+      return;
+  }
 }
 
-/// The strategy that options and operator ask for. Throws std::invalid_argument if the operator
-/// lacks what it needs.
+/// The strategy that options and operator ask for. Throws as expect_possible().
 template <CautiousOperator Op>
 Strategy strategy_of(const Executor& executor, const RoundsOptions& options) {
-  switch (options.strategy) {
-    case Strategy::regions:
-      if (!PlacedOperator<Op>)
-        throw std::invalid_argument(
-            "strategy regions: the operator has no member place_of(resource) const that returns "
-            "std::array<double, 2> or std::array<double, 3>");
-      break;
-    case Strategy::in_order:
-      if (kinds_made<Op> != 0)
-        throw std::invalid_argument(
-            "strategy in_order: the operator makes things, whose numbers follow another order");
-      break;
-    case Strategy::locks:
-      if (executor.deterministic())
-        throw std::invalid_argument(
-            "strategy locks: the executor is deterministic, see ExecutorOptions");
-      break;
-    case Strategy::reservations:
-      break;
-    case Strategy::automatic:
-      if (!executor.deterministic()) return Strategy::locks;
-      if (PlacedOperator<Op>) return Strategy::regions;
-      return ConflictingOperator<Op> ? Strategy::in_order : Strategy::reservations;
-  }
-  return options.strategy;
+  expect_possible<Op>(executor, options.strategy);
+  if (options.strategy != Strategy::automatic) return options.strategy;
+  if (!executor.deterministic()) return Strategy::locks;
+  if (PlacedOperator<Op>) return Strategy::regions;
+  return ConflictingOperator<Op> ? Strategy::in_order : Strategy::reservations;
 }
 
 template <class Item>
@@ -104,23 +108,41 @@ std::vector<Item> to_vector(const auto& work) {
   return items;
 }
 
-/// Work has size() and items by [i].
+/// Runs by a strategy that is possible. Work has size() and items by [i].
+template <Strategy S, CautiousOperator Op, class Work>
+RoundsReport run_by(const Executor& executor, Op& op, Work work, std::size_t most_rounds) {
+  using Item = typename Op::Item;
+  const auto items = [&] { return to_vector<Item>(std::move(work)); };
+  if constexpr (S == Strategy::regions)
+    return RegionRounds<Op>(executor, op).run(items(), most_rounds);
+  if constexpr (S == Strategy::in_order) return run_in_order(executor, op, work, TellNobody());
+  if constexpr (S == Strategy::reservations)
+    return ReservationWindows<Op>(executor, op).run(items(), most_rounds);
+  if constexpr (S == Strategy::tiles) return TileRounds<Op>(executor, op).run(work, most_rounds);
+  if constexpr (S == Strategy::colours)
+    return ColourRounds<Op>(executor, op).run(work, most_rounds);
+  if constexpr (S == Strategy::locks) return LockRounds<Op>(executor, op).run(items(), most_rounds);
+}
+
 template <CautiousOperator Op, class Work>
 RoundsReport run_cautious_rounds(const Executor& executor, Op& op, Work work,
                                  const RoundsOptions& options) {
-  using Item = typename Op::Item;
   const Strategy strategy = strategy_of<Op>(executor, options);
   const auto most_rounds = static_cast<std::size_t>(options.most_rounds);
+  const auto run = [&]<Strategy S>() {
+    return run_by<S>(executor, op, std::move(work), most_rounds);
+  };
   return with_team(executor, [&] {
     if constexpr (PlacedOperator<Op>)
-      if (strategy == Strategy::regions)
-        return RegionRounds<Op>(executor, op).run(to_vector<Item>(std::move(work)), most_rounds);
+      if (strategy == Strategy::regions) return run.template operator()<Strategy::regions>();
     if constexpr (kinds_made<Op> == 0)
-      if (strategy == Strategy::in_order) return run_in_order(executor, op, work, TellNobody());
-    if (strategy == Strategy::locks)
-      return LockRounds<Op>(executor, op).run(to_vector<Item>(std::move(work)), most_rounds);
-    return ReservationWindows<Op>(executor, op)
-        .run_spread(to_vector<Item>(std::move(work)), most_rounds);
+      if (strategy == Strategy::in_order) return run.template operator()<Strategy::in_order>();
+    if constexpr (ConflictingOperator<Op> && kinds_made<Op> == 0) {
+      if (strategy == Strategy::tiles) return run.template operator()<Strategy::tiles>();
+      if (strategy == Strategy::colours) return run.template operator()<Strategy::colours>();
+    }
+    if (strategy == Strategy::locks) return run.template operator()<Strategy::locks>();
+    return run.template operator()<Strategy::reservations>();
   });
 }
 

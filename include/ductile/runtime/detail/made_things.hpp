@@ -55,16 +55,8 @@ class MadeThings {
   /// The first of so many new numbers of each kind, which are taken at once.
   std::array<std::size_t, kinds> take(const std::array<std::size_t, kinds>& more) {
     std::array<std::size_t, kinds> first{};
-    bool has_room = true;
-    for (std::size_t k = 0; k < kinds; ++k) {
-      first[k] = numbers_[k].extend(more[k]);
-      has_room = has_room && numbers_[k].top() <= room_[k];
-    }
-    if (!has_room) {
-      for (std::size_t k = 0; k < kinds; ++k)
-        room_[k] = std::max(room_[k], numbers_[k].top() + numbers_[k].top() / 2);
-      op_.grow(room_);
-    }
+    for (std::size_t k = 0; k < kinds; ++k) first[k] = numbers_[k].extend(more[k]);
+    make_room();
     return first;
   }
 
@@ -89,8 +81,12 @@ class MadeThings {
 
  private:
   void make_room() {
-    for (std::size_t k = 0; k < kinds; ++k) room_[k] = std::max(room_[k], numbers_[k].top());
-    op_.grow(room_);
+    bool has_room = true;
+    for (std::size_t k = 0; k < kinds; ++k) {
+      has_room = has_room && numbers_[k].top() <= room_[k];
+      room_[k] = std::max(room_[k], numbers_[k].top());
+    }
+    if (!has_room) op_.grow(room_);
   }
 
   Op& op_;

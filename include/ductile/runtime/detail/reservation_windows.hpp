@@ -2,13 +2,14 @@
 /// ReservationWindows: the strategy `reservations`. A window of the work is planned at once; an
 /// item with a plan reserves what it has reached by its place in the window, the first wins, and
 /// those that hold all they have reached are applied. How many items a window has follows from how
-/// many of those before have lost.
+/// many of those before have lost. Where items have priorities, the place is that in their order.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -31,16 +33,14 @@ class ReservationWindows {
 
   ReservationWindows(const Executor& executor, Op& op) : executor_(executor), op_(op), made_(op) {}
 
-  /// Each pass takes items that are far apart in the work, which seldom meet; those that have lost
-  /// and those that were woken are the next pass's work.
-  RoundsReport run_spread(std::vector<Item> work, std::size_t most_passes) {
+  /// Those that have lost and those that were woken are the next pass's work.
+  RoundsReport run(std::vector<Item> work, std::size_t most_passes) {
     while (!work.empty() && report_.rounds < most_passes) {
       ++report_.rounds;
-      const Strides strides(work.size(), window_);
-      for (std::size_t at = 0; at < work.size();) {
-        const std::size_t count = std::min(window_, work.size() - at);
-        run_window(count, [&](std::size_t i) -> const Item& { return work[strides(at + i)]; });
-        at += count;
+      if constexpr (RankedOperator<Op>) {
+        run_pass(work, [](std::size_t i) { return i; });
+      } else {
+        run_pass(work, Strides(work.size(), window_));
       }
       work.swap(lost_);
       lost_.clear();
@@ -51,7 +51,16 @@ class ReservationWindows {
   }
 
  private:
-  /// The order 0, k, 2 k, ..., 1, 1 + k, ... of n places, for k of about n over the window.
+  void run_pass(const std::vector<Item>& work, auto&& place_at) {
+    for (std::size_t at = 0; at < work.size();) {
+      const std::size_t count = std::min(window_, work.size() - at);
+      run_window(count, [&](std::size_t i) -> const Item& { return work[place_at(at + i)]; });
+      at += count;
+    }
+  }
+
+  /// The order 0, k, 2 k, ..., 1, 1 + k, ... of n places, for k of about n over the window. Items
+  /// that are far apart in the work seldom meet.
   class Strides {
    public:
     Strides(std::size_t n, std::size_t window)
@@ -88,11 +97,16 @@ class ReservationWindows {
 
   void run_window(std::size_t count, auto&& item_at) {
     ++report_.batches;
-    begin_window(count);
+    begin_window(count, item_at);
     {
       const PhaseTimer timer(report_.plan_seconds);
       parallel_for(
-          executor_, count, [&](std::size_t i) { plan(slots_[i], item_at(i), i); }, grain);
+          executor_, count,
+          [&](std::size_t i) {
+            prefetch_after(i, count, item_at);
+            plan(slots_[i], item_at(i), i);
+          },
+          grain);
     }
     const PhaseTimer timer(report_.apply_seconds);
     if constexpr (MadeThings<Op>::kinds > 0) {
@@ -114,7 +128,8 @@ class ReservationWindows {
   }
 
   /// Keys fall from window to window, so that what earlier ones have reserved counts no more.
-  void begin_window(std::size_t count) {
+  void begin_window(std::size_t count, auto&& item_at) {
+    if constexpr (RankedOperator<Op>) rank(count, item_at);
     if (slots_.size() < count) slots_.resize(count);
     if (first_key_ < count) {
       std::fill(holder_of_.begin(), holder_of_.end(), nobody);
@@ -124,7 +139,41 @@ class ReservationWindows {
     holder_of_.resize(std::max(holder_of_.size(), op_.resource_count()), nobody);
   }
 
-  std::uint32_t key_of(std::size_t i) const { return first_key_ + static_cast<std::uint32_t>(i); }
+  /// The places of the window in the order of priority; of equal ones the first in the work.
+  void rank(std::size_t count, auto&& item_at) {
+    by_priority_.resize(count);
+    rank_of_.resize(count);
+    parallel_for(
+        executor_, count,
+        [&](std::size_t i) {
+          by_priority_[i] = std::uint64_t{op_.priority(item_at(i))} << 32U | i;
+        },
+        few_nanoseconds);
+    parallel_sort(executor_, std::span(by_priority_));
+    parallel_for(
+        executor_, count,
+        [&](std::size_t rank) {
+          rank_of_[by_priority_[rank] & 0xffffffffU] = static_cast<std::uint32_t>(rank);
+        },
+        few_nanoseconds);
+  }
+
+  std::uint32_t key_of(std::size_t i) const {
+    if constexpr (RankedOperator<Op>) {
+      return first_key_ + rank_of_[i];
+    } else {
+      return first_key_ + static_cast<std::uint32_t>(i);
+    }
+  }
+
+  /// What memory takes to answer is about as long as planning two items.
+  void prefetch_after(std::size_t i, std::size_t count, auto&& item_at) const {
+    if constexpr (PrefetchingOperator<Op>)
+      for (const int stage : {2, 1, 0}) {
+        const std::size_t ahead = i + 2 * (static_cast<std::size_t>(stage) + 1);
+        if (ahead < count) op_.prefetch(item_at(ahead), stage);
+      }
+  }
 
   void plan(Slot& slot, const Item& item, std::size_t i) {
     slot.item = item;
@@ -216,6 +265,8 @@ class ReservationWindows {
   std::vector<Slot> slots_;               // [place in the window]
   std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first that has reached it
   std::uint32_t first_key_ = nobody;
+  std::vector<std::uint64_t> by_priority_;  // of the window, priority and place
+  std::vector<std::uint32_t> rank_of_;      // [place in the window], if there are priorities
   std::size_t window_ = first_window;
   std::vector<Item> lost_, woken_;
   typename MadeThings<Op>::Pools not_taken_;  // numbers that were demanded

@@ -1,159 +1,235 @@
 /// @file
-/// Tiles: stretches of items, in each of which one thread plans and applies one after the other
-/// while what they touch is in its cache; nothing is coloured and no plan is kept. Each tile has
-/// one of 32 ranks (steps of blocks.hpp), and of neighbours the one whose tile has the lower rank
+/// Tiles: stretches of a piece of work, in each of which one thread plans and applies one item
+/// after the other while what they touch is in its cache; no plan is kept. Each tile has one of 32
+/// ranks (steps of blocks.hpp), and of items that conflict the one whose tile has the lower rank
 /// comes first, see ranked_blocks.hpp. Few items have an earlier neighbour in another tile of the
-/// same rank; they are left, lest tiles wait for each other in long chains, and run last, in tiles
-/// of their own (surveyed_tiles.hpp).
+/// same rank; they are late, lest tiles wait for each other in long chains, and left out.
+/// All conflicts are looked at before any item runs, so they may change while items run. Work
+/// should list next to each other what lies together.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
-#include <optional>
+#include <memory>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/colouring/detail/blocked_colouring.hpp"
+#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/block_layout.hpp"
 #include "ductile/runtime/detail/ranked_blocks.hpp"
+#include "ductile/runtime/detail/reach.hpp"
+#include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/operator.hpp"
+#include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
 
-/// Tiles of 16 to 64 items: longer ones wait for each other in longer chains.
-inline BlockLayout tiles_of(std::size_t item_count) {
-  const int bits = std::clamp(static_cast<int>(std::bit_width(item_count)) - 12, 4, 6);
-  return {static_cast<unsigned>(bits), 5};
-}
+/// When items of the work have their turn, as a number: the rank of the tile comes first, then the
+/// place in the work. So who comes before whom, in which tile, is told by comparing numbers.
+struct Turns {
+  static constexpr unsigned rank_bits = 5, place_bits = 32 - rank_bits;
+  static constexpr std::uint32_t most_items = (1U << place_bits) - 1;
+  static constexpr std::uint32_t absent = 0xffffffffU;  ///< of an item that is not in the work
 
-template <SteadyTiledOperator Op>
+  static std::uint32_t at(std::uint32_t rank, std::size_t place) {
+    return rank << place_bits | static_cast<std::uint32_t>(place);
+  }
+  static std::uint32_t place_of(std::uint32_t turn) { return turn & most_items; }
+};
+
+/// Commit is what apply() is handed.
+template <ConflictingOperator Op, class Commit>
 class Tiles {
  public:
-  using Item = typename Op::Item;
-  static_assert(std::is_empty_v<typename Op::Update>, "tiles defer nothing");
+  using Item = std::uint32_t;
 
-  /// Not worth it: so few items, or so small a share of all, as each tile is looked at. Those are
-  /// for SurveyedTiles.
-  static bool are_few(std::size_t work, std::size_t all) { return work < 2048 || work < all / 4; }
-
-  /// Of work in ascending order, which outlives this.
-  Tiles(const Executor& executor, Op& op, std::span<const Item> work)
+  /// Looks at the conflicts of at most Turns::most_items items. turn_of is [item]; it is to be
+  /// Turns::absent for all, and has the turns of the work then. All of these outlive this. Throws
+  /// std::invalid_argument if an item is in the work twice.
+  Tiles(const Executor& executor, Op& op, std::span<const Item> work, std::uint32_t* turn_of)
       : op_(op),
         work_(work),
-        layout_(tiles_of(op.item_count())),
-        tiles_(executor, tile_of(op.item_count()) + 1,
-               [&](std::size_t tile) { return rank_of(tile); }),
-        applied_of_(tile_of(op.item_count()) + 1),
-        left_(make_filled<std::uint8_t>(executor, work.size())) {}
-
-  /// Plans and applies all items but those that are left, each with a commit of its tile; tells
-  /// planning(item) before.
-  void run(auto&& new_commit, auto&& planning) {
-    tiles_.run([&](std::size_t tile) { return begin(tile, new_commit()); },
-               [&](Begun& begun) { return advance(begun, planning); });
+        turn_of_(turn_of),
+        layout_(layout_of(work.size())),
+        tiles_(executor, tile_count(), [&](std::size_t tile) { return rank_of(tile); }),
+        is_late_(std::make_unique_for_overwrite<bool[]>(work.size())),
+        range_of_(tile_count()),
+        counts_of_(tile_count()),
+        met_(executor) {
+    parallel_for(
+        executor, work.size(),
+        [&](std::size_t place) {
+          std::atomic_ref(turn_of_[work_[place]]).store(turn_at(place), std::memory_order_relaxed);
+        },
+        few_nanoseconds);
+    parallel_for(executor, tile_count(), [&](std::size_t tile) { survey(tile); },
+                 {.grain = 1, .serial_below = few_to_survey >> layout_.block_bits});
   }
 
-  std::size_t applied() const {
-    return std::accumulate(applied_of_.begin(), applied_of_.end(), std::size_t{0});
+  /// Plans and applies the items for which is_here(item) holds when they have their turn, each with
+  /// a commit of its tile; calls leaving_out(item) for those that are late.
+  void run(auto&& new_commit, auto&& is_here, auto&& leaving_out) {
+    const auto advance = [&](Begun& begun) {
+      const std::size_t before = first_before(begun);
+      if (before == none) run_items(begun, is_here, leaving_out);
+      return before;
+    };
+    tiles_.run([&](std::size_t tile) { return Begun{tile, new_commit()}; }, advance);
   }
-  /// [position in the work], 1 if the item is left.
-  const UnsetVector<std::uint8_t>& left() const { return left_; }
+
+  struct Counts {
+    std::size_t planned = 0, applied = 0;
+  };
+  Counts counts() const {
+    Counts sum;
+    for (const Counts& counts : counts_of_)
+      sum = {sum.planned + counts.planned, sum.applied + counts.applied};
+    return sum;
+  }
 
  private:
-  /// A tile that a thread has begun, and how far it is.
+  /// A tile that a thread has begun, and how many of those it waits for were seen to be done.
   struct Begun {
     std::size_t tile;
-    std::uint8_t rank;
-    std::span<const Item> items;
-    std::uint8_t* left;  // of its items
-    Commit<Op> commit;
-    std::size_t step = 0;
+    Commit commit;
+    std::size_t seen = 0;
   };
   using Ranked = RankedBlocks<Begun>;
-
-  /// Steps between asking for something that an item needs and the next stage of it. Three are as
-  /// long as memory takes to answer three times.
-  static constexpr std::size_t ahead = 5;
   static constexpr std::size_t none = Ranked::none;
+  /// Items between asking for something that an item needs and the next stage of it.
+  static constexpr std::size_t ahead = 3;
+  /// Items whose conflicts are looked at before other threads would have begun.
+  static constexpr std::size_t few_to_survey = 16;
 
-  Begun begin(std::size_t tile, Commit<Op> commit) {
-    const std::span<const Item> items = items_of(tile);
-    return {tile, rank_of(tile), items, left_.data() + (items.data() - work_.data()),
-            std::move(commit)};
+  /// What a thread's tiles wait for, one tile after the other.
+  struct Met {
+    std::vector<std::uint32_t> tiles;
+    std::vector<std::uint32_t> last_of;  // [tile], the last one that it was noted for
+  };
+  struct Range {
+    std::uint32_t thread, begin, end;  // of the thread's tiles
+  };
+
+  /// Half a thousand tiles or more, if there are as many pairs of items: few items in long tiles
+  /// would wait for each other in a chain. Longer ones than 64 would, too.
+  static BlockLayout layout_of(std::size_t items) {
+    const int bits = std::clamp(static_cast<int>(std::bit_width(items)) - 11, 1, 6);
+    return {static_cast<unsigned>(bits), Turns::rank_bits};
   }
-
+  std::size_t tile_count() const {
+    return (work_.size() + layout_.block_size() - 1) >> layout_.block_bits;
+  }
+  std::uint8_t rank_of(std::size_t tile) const { return rank_of_block(layout_, tile); }
+  std::size_t first_place(std::size_t tile) const { return tile << layout_.block_bits; }
+  std::uint32_t turn_at(std::size_t place) const {
+    return Turns::at(rank_of(place >> layout_.block_bits), place);
+  }
   std::span<const Item> items_of(std::size_t tile) const {
-    const std::size_t first = position_of(tile << layout_.block_bits);
-    return work_.subspan(first, position_of((tile + 1) << layout_.block_bits) - first);
+    const std::size_t begin = first_place(tile);
+    return work_.subspan(begin, std::min(layout_.block_size(), work_.size() - begin));
   }
 
-  /// Where items from this one on begin.
-  std::size_t position_of(std::size_t item) const {
-    const auto at = std::lower_bound(work_.begin(), work_.end(), item);
-    return static_cast<std::size_t>(at - work_.begin());
-  }
-
-  /// Goes on with a tile until it is done, or another has to come before: returns which, or none.
-  std::size_t advance(Begun& begun, auto&& planning) {
-    const std::span<const Item> items = begun.items;
-    for (; begun.step < items.size() + 3 * ahead; ++begun.step) {
-      const auto in_stage = [&](std::size_t stage) { return begun.step - stage * ahead; };
-      if (in_stage(0) < items.size()) op_.prefetch(items[in_stage(0)], 2);
-      if (in_stage(1) < items.size()) op_.prefetch(items[in_stage(1)], 1);
-      if (in_stage(2) < items.size()) {
-        const std::size_t before = look(items[in_stage(2)], begun, begun.left[in_stage(2)]);
-        if (before != none) return before;
-      }
-      if (in_stage(3) >= items.size() || begun.left[in_stage(3)] != 0) continue;
-      planning(items[in_stage(3)]);
-      const std::optional<typename Op::Plan> plan = op_.plan(items[in_stage(3)]);
-      if (!plan) continue;
-      op_.apply(*plan, begun.commit);
-      ++applied_of_[begun.tile];
+  /// Finds which of a tile's items are late, and which tiles of lower rank it meets.
+  void survey(std::size_t tile) {
+    const std::span<const Item> items = items_of(tile);
+    Met& met = met_.mine();
+    met.last_of.resize(tile_count(), Turns::absent);
+    const auto begin = static_cast<std::uint32_t>(met.tiles.size());
+    for (std::size_t i = 0; i < items.size() + 2 * ahead; ++i) {
+      if (i < items.size()) prefetch_item(op_, items[i], 2);
+      if (i - ahead < items.size()) prefetch_item(op_, items[i - ahead], 1);
+      if (i >= 2 * ahead) look(first_place(tile) + i - 2 * ahead, tile, met);
     }
+    counts_of_[tile] = {};
+    range_of_[tile] = {static_cast<std::uint32_t>(this_thread()), begin,
+                       static_cast<std::uint32_t>(met.tiles.size())};
+  }
+
+  /// Finds out whether the item at this place is late; notes the tiles of lower rank that it meets.
+  /// Without branches for each neighbour, as the answers cannot be foreseen.
+  void look(std::size_t place, std::size_t tile, Met& met) const {
+    const Item item = work_[place];
+    if (turn_of_[item] != turn_at(place)) throw_twice(item);
+    const std::uint32_t first_of_tile = turn_at(first_place(tile));
+    const std::uint32_t first_of_rank = Turns::at(rank_of(tile), 0);
+    std::array<std::uint32_t, 256> lower;
+    std::size_t count = 0;
+    unsigned late = 0;
+    op_.conflicts(item, [&](Item other) {
+      const std::uint32_t turn = turn_of_[other];
+      late |= static_cast<unsigned>(turn - first_of_rank < first_of_tile - first_of_rank);
+      lower[count] = turn;
+      count += static_cast<std::size_t>(turn < first_of_rank);
+      if (count == lower.size()) [[unlikely]]
+        note(tile, std::span(lower).first(std::exchange(count, 0)), met);
+    });
+    note(tile, std::span(lower).first(count), met);
+    is_late_[place] = late != 0;
+  }
+
+  void note(std::size_t tile, std::span<const std::uint32_t> turns, Met& met) const {
+    for (const std::uint32_t turn : turns) {
+      const std::uint32_t other = Turns::place_of(turn) >> layout_.block_bits;
+      if (std::exchange(met.last_of[other], static_cast<std::uint32_t>(tile)) != tile)
+        met.tiles.push_back(other);
+    }
+  }
+
+  std::span<const std::uint32_t> waits_of(std::size_t tile) const {
+    const Range& range = range_of_[tile];
+    return std::span(met_[range.thread].tiles).subspan(range.begin, range.end - range.begin);
+  }
+
+  /// One of the tiles that this one waits for; none if they are done.
+  std::size_t first_before(Begun& begun) {
+    const std::span<const std::uint32_t> waits = waits_of(begun.tile);
+    for (; begun.seen < waits.size(); ++begun.seen)
+      if (tiles_.comes_before(waits[begun.seen], rank_of(begun.tile))) return waits[begun.seen];
     return none;
   }
 
-  /// Sees whether an item is left. Returns a tile that has to be done before, or none. Also asks
-  /// for what planning reads of the neighbours. Without branches, as the answers cannot be
-  /// foreseen.
-  std::size_t look(Item item, const Begun& begun, std::uint8_t& left) {
-    const Apart apart(layout_);
-    unsigned is_left = 0, waits = 0;
-    op_.conflicts(item, [&](Item other) {
-      op_.prefetch_neighbour(other);
-      is_left |= static_cast<unsigned>(other < item) & static_cast<unsigned>(apart(other, item));
-      waits |= static_cast<unsigned>(tiles_.comes_before(tile_of(other), begun.rank));
-    });
-    left = is_left != 0;
-    return waits == 0 ? none : first_before(item, begun.rank);
+  /// Asks ahead only for items that run: others may change at the same time what belongs to one
+  /// that has left the round.
+  void run_items(Begun& begun, auto&& is_here, auto&& leaving_out) {
+    const std::span<const Item> items = items_of(begun.tile);
+    const bool* const late = is_late_.get() + first_place(begun.tile);
+    const auto runs = [&](std::size_t i) {
+      return i < items.size() && !late[i] && is_here(items[i]);
+    };
+    typename Op::Plan plan{};
+    ReachAll reach;
+    Counts& counts = counts_of_[begun.tile];
+    for (std::size_t i = 0; i < items.size() + 3 * ahead; ++i) {
+      for (const int stage : {2, 1, 0}) {
+        const std::size_t asked = i - static_cast<std::size_t>(2 - stage) * ahead;
+        if (runs(asked)) prefetch_item(op_, items[asked], stage);
+      }
+      const std::size_t now = i - 3 * ahead;
+      if (now >= items.size()) continue;
+      if (late[now]) leaving_out(items[now]);
+      if (!runs(now)) continue;
+      ++counts.planned;
+      if (!std::as_const(op_).plan(items[now], plan, reach)) continue;
+      ++counts.applied;
+      op_.apply(items[now], plan, begun.commit);
+    }
   }
-
-  /// One of the tiles that an item waits for; none if they are done by now.
-  [[gnu::noinline, gnu::cold]] std::size_t first_before(Item item, std::uint8_t rank) {
-    std::size_t before = none;
-    op_.conflicts(item, [&](Item other) {
-      if (tiles_.comes_before(tile_of(other), rank)) before = tile_of(other);
-    });
-    return before;
-  }
-
-  std::size_t tile_of(Item item) const { return item >> layout_.block_bits; }
-
-  std::uint8_t rank_of(std::size_t tile) const { return rank_of_block(layout_, tile); }
 
   Op& op_;
   std::span<const Item> work_;
+  std::uint32_t* turn_of_;  // [item]
   BlockLayout layout_;
   Ranked tiles_;
-  std::vector<std::uint32_t> applied_of_;  // [tile]
-  UnsetVector<std::uint8_t> left_;         // [position in the work]
+  std::unique_ptr<bool[]> is_late_;  // [place]
+  UnsetVector<Range> range_of_;      // [tile], what it waits for
+  UnsetVector<Counts> counts_of_;    // [tile]
+  PerThread<Met> met_;
 };
 
 }  // namespace ductile::runtime::detail

@@ -1,0 +1,135 @@
+/// @file
+/// ColourRounds: the strategy `colours`. Each round colours the conflict graph of its work, and
+/// runs the items of one colour at once, class after class. Whoever is woken leaves the round, and
+/// is the next round's work.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/detail/reach.hpp"
+#include "ductile/runtime/detail/woken_items.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/rounds_report.hpp"
+
+namespace ductile::runtime::detail {
+
+/// Places grouped by colour.
+struct ConflictClasses {
+  std::vector<std::uint32_t> places;
+  std::vector<std::size_t> begin;  // [class], and the end
+};
+
+/// Colours a graph in compressed rows, [place + 1] and [begin[place]]: by blocks if the executor is
+/// deterministic, else by speculation (detect_again). Throws std::bad_alloc.
+/// Thread safety: one caller; runs on the executor.
+ConflictClasses classes_of_conflicts(const Executor& executor, std::span<const std::uint64_t> begin,
+                                     std::span<const std::uint32_t> neighbours);
+
+template <ConflictingOperator Op>
+class ColourRounds {
+ public:
+  using Item = std::uint32_t;
+
+  ColourRounds(const Executor& executor, Op& op)
+      : executor_(executor),
+        op_(op),
+        woken_(executor, op.resource_count()),
+        place_of_(make_filled<std::uint32_t>(executor, op.resource_count(), absent)) {}
+
+  /// Work has size() and items by [i].
+  RoundsReport run(const auto& work, std::size_t most_rounds) {
+    UnsetVector<Item> next = known_items(executor_, work, place_of_.size());
+    while (!next.empty() && report_.rounds < most_rounds) next = run_round(next);
+    report_.left = next.size();
+    return report_;
+  }
+
+ private:
+  static constexpr std::uint32_t absent = 0xffffffffU;
+  /// What a thread needs for a class.
+  struct Lane {
+    typename Op::Plan plan{};
+    std::size_t planned = 0, applied = 0;
+  };
+
+  UnsetVector<Item> run_round(std::span<const Item> work) {
+    ++report_.rounds;
+    woken_.begin_round();
+    const ConflictClasses classes = classes_of(work);
+    for (std::size_t c = 0; c + 1 < classes.begin.size(); ++c)
+      run_class(work, std::span(classes.places)
+                          .subspan(classes.begin[c], classes.begin[c + 1] - classes.begin[c]));
+    const PhaseTimer timer(report_.wake_seconds);
+    return woken_.take();
+  }
+
+  ConflictClasses classes_of(std::span<const Item> work) {
+    const PhaseTimer timer(report_.conflict_seconds);
+    parallel_for(executor_, work.size(), [&](std::size_t i) {
+      std::atomic_ref(place_of_[work[i]])
+          .store(static_cast<std::uint32_t>(i), std::memory_order_relaxed);
+    });
+    std::vector<std::uint64_t> begin(work.size() + 1);
+    parallel_for(executor_, work.size(), [&](std::size_t i) {
+      if (place_of_[work[i]] != i) throw_twice(work[i]);
+      visit_places(work[i], [&](std::uint32_t) { ++begin[i + 1]; });
+    });
+    for (std::size_t i = 0; i < work.size(); ++i) begin[i + 1] += begin[i];
+    auto neighbours = make_unset_vector<std::uint32_t>(executor_, begin.back());
+    parallel_for(executor_, work.size(), [&](std::size_t i) {
+      std::size_t at = begin[i];
+      visit_places(work[i], [&](std::uint32_t place) { neighbours[at++] = place; });
+    });
+    parallel_for(
+        executor_, work.size(), [&](std::size_t i) { place_of_[work[i]] = absent; },
+        few_nanoseconds);
+    return classes_of_conflicts(executor_, begin, neighbours);
+  }
+
+  /// Of the conflicts that are in the work.
+  void visit_places(Item item, auto&& visit) const {
+    op_.conflicts(item, [&](Item other) {
+      if (place_of_[other] != absent) visit(place_of_[other]);
+    });
+  }
+
+  void run_class(std::span<const Item> work, std::span<const std::uint32_t> places) {
+    const PhaseTimer timer(report_.apply_seconds);
+    ++report_.batches;
+    PerThread<Lane> lanes(executor_);
+    const auto run_item = [&](std::size_t i) {
+      const Item item = work[places[i]];
+      if (woken_.has(item)) return;
+      Lane& lane = lanes.mine();
+      ReachAll reach;
+      ++lane.planned;
+      if (!std::as_const(op_).plan(item, lane.plan, reach)) return;
+      auto commit = woken_.commit();
+      op_.apply(item, lane.plan, commit);
+      ++lane.applied;
+    };
+    parallel_for(executor_, places.size(), run_item, {.grain = 16});
+    report_.lost += places.size();
+    for (std::size_t t = 0; t < lanes.size(); ++t) {
+      report_.planned += lanes[t].planned;
+      report_.lost -= lanes[t].planned;
+      report_.applied += lanes[t].applied;
+    }
+  }
+
+  const Executor& executor_;
+  Op& op_;
+  WokenItems woken_;
+  UnsetVector<std::uint32_t> place_of_;  // [item], in the round's work, or absent
+  RoundsReport report_;
+};
+
+}  // namespace ductile::runtime::detail
