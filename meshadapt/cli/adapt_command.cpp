@@ -64,6 +64,7 @@ constexpr std::array<Option, 29> own_options{{
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
     {"--iterations", "N", "at most this many rounds of all kernels"},
     {"--thorough", "", "goes on for better shapes and lengths"},
+    {"--by-colours", "", "collapses and moves by classes of a colouring, as published; slower"},
     {"--racing", "", "works in order of arrival: valid too, but runs may differ"},
     {"--json", "FILE", "writes counts, times, quality and memory there, a .json"},
     {"--vtu", "FILE", "writes the adapted mesh for ParaView, too, a .vtu"},
@@ -174,6 +175,7 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   adapt.gradation = gradation_of(arguments, "-hgrad");
   if (!arguments.has("-nosizreq")) adapt.required_gradation = gradation_of(arguments, "-hgradreq");
   adapt.thorough = arguments.has("--thorough");
+  adapt.by_colours = arguments.has("--by-colours");
   adapt.move = !arguments.has("-nomove");
   adapt.swap = !arguments.has("-noswap");
   adapt.insert = !arguments.has("-noinsert");

@@ -360,17 +360,26 @@ EdgeSurvey<Dim>& Adapter<Dim>::survey_for(double longer) {
   return survey_;
 }
 
+/// Collapses may wake each other many times, for little; moves wake nobody.
+template <int Dim>
+template <class Op>
+RoundsReport Adapter<Dim>::run_by_conflicts(Op& op,
+                                            const runtime::UnsetVector<VertexId>& work) const {
+  constexpr runtime::RoundsOptions limits{.most_rounds = 30};
+  return options_.by_colours ? run_rounds_by<Strategy::colours>(executor_, op, work, limits)
+                             : run_rounds_by<Strategy::tiles>(executor_, op, work, limits);
+}
+
 template <int Dim>
 std::size_t Adapter<Dim>::coarsen() {
   const runtime::PhaseTimer timer(report_.coarsen.seconds);
   std::size_t changes = 0;
   for (int sweep = 0; sweep < 8; ++sweep) {
     const std::uint32_t after = end_epoch(seen_by_coarsen_);
-    auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey_for(long_edge()),
-                                               rules().short_edge, after);
+    const auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey_for(long_edge()),
+                                                     rules().short_edge, after);
     Coarsen<Dim> op(mesh_, rules());
-    const RoundsReport rounds =
-        run_rounds_by<Strategy::tiles>(executor_, op, std::move(work), {.most_rounds = 30});
+    const RoundsReport rounds = run_by_conflicts(op, work);
     add(report_.coarsen, rounds);
     changes += rounds.applied;
     if (share(rounds.applied) < many_collapses) break;
@@ -441,7 +450,7 @@ std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplaci
     auto work =
         laplacian ? Smooth<Dim>::movable_vertices(executor_, mesh_, after)
                   : Smooth<Dim>::movable_vertices_of_poor(executor_, mesh_, optimise_below, after);
-    const RoundsReport rounds = run_rounds_by<Strategy::tiles>(executor_, op, std::move(work));
+    const RoundsReport rounds = run_by_conflicts(op, work);
     add(report_.smooth, rounds);
     changes += rounds.applied;
   }

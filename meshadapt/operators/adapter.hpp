@@ -63,6 +63,8 @@ class Adapter {
   Splits split_edges_above(double limit);
   std::size_t swap(int sweeps, double below);
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
+  template <class Op>
+  runtime::RoundsReport run_by_conflicts(Op& op, const runtime::UnsetVector<VertexId>& work) const;
 
   // ---- Steps, in the order of a run ----
   bool is_far() const;

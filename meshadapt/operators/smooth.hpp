@@ -39,7 +39,8 @@ class Smooth {
   // ---- What it works on ----
   using Item = VertexId;
   using Plan = VertexMove<Dim>;
-  static constexpr bool forgoes_wakes = true;  // the next sweep looks at what has changed
+  static constexpr bool keeps_conflicts = true;  // moving changes no adjacency
+  static constexpr bool forgoes_wakes = true;    // the next sweep looks at what has changed
 
   Smooth(Mesh<Dim>& mesh, const Background<Dim>& background, const SmoothOptions& options)
       : mesh_(mesh), background_(background), options_(options) {}

@@ -114,6 +114,19 @@ TEST_P(Adapt, GivesTheSameBytesAtEachThreadCountAndInEachRun) {
   }
 }
 
+TEST_P(Adapt, GivesTheSameBytesByColours) {
+  const AnyMesh mesh = rich_mesh();
+  const AnyField metric = layered(mesh, 500);
+  const AdaptOptions options{.by_colours = true};
+  const AdaptedMesh first = adapt(Executor({.threads = 1}), mesh, metric, options);
+  const auto faults = test::faults_of(Executor(), mesh, first);
+  EXPECT_TRUE(faults.empty()) << test::joined(faults);
+  for (const int threads : {2, 3, 4, 8}) {
+    SCOPED_TRACE(threads);
+    expect_identical(first, adapt(Executor({.threads = threads}), mesh, metric, options));
+  }
+}
+
 TEST_P(Adapt, IsValidInArrivalOrder) {
   const AnyMesh mesh = rich_mesh();
   const AnyField metric = layered(mesh, 500);

@@ -57,9 +57,10 @@ struct Case {
 template <class Op, int Dim>
 void expect_sound(Mesh<Dim>& mesh, Op&& op,
                   runtime::UnsetVector<typename std::decay_t<Op>::Item> work,
-                  const runtime::RoundsOptions& options = {}) {
+                  runtime::Strategy strategy) {
   try {
-    const auto report = runtime::run_rounds_checked(executor, op, std::move(work), options);
+    const auto report =
+        runtime::run_rounds_checked(executor, op, std::move(work), {.strategy = strategy});
     EXPECT_GT(report.applied, 0U);
   } catch (const runtime::ContractBroken& broken) {
     ADD_FAILURE() << broken.what();
@@ -80,7 +81,8 @@ TYPED_TEST(KernelsChecked, CoarsenKeepsItsContract) {
     const Rules rules;
     EdgeSurvey<Dim> survey({.shorter = rules.short_edge, .longer = rules.long_edge});
     expect_sound(mesh, Coarsen<Dim>(mesh, rules),
-                 Coarsen<Dim>::crowded_vertices(executor, mesh, survey, rules.short_edge, 0));
+                 Coarsen<Dim>::crowded_vertices(executor, mesh, survey, rules.short_edge, 0),
+                 runtime::Strategy::tiles);
   }
 }
 
@@ -88,7 +90,8 @@ TYPED_TEST(KernelsChecked, SwapKeepsItsContract) {
   constexpr int Dim = TypeParam::value;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 80 : 60);
-    expect_sound(mesh, Swap<Dim>(executor, mesh), Swap<Dim>::improvements(executor, mesh, 0, 1.0));
+    expect_sound(mesh, Swap<Dim>(executor, mesh), Swap<Dim>::improvements(executor, mesh, 0, 1.0),
+                 runtime::Strategy::reservations);
   }
 }
 
@@ -97,7 +100,7 @@ TYPED_TEST(KernelsChecked, SmoothKeepsItsContract) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 80 : 60);
     expect_sound(mesh, Smooth<Dim>(mesh, *background, {.optimise_below = 0.6}),
-                 Smooth<Dim>::movable_vertices(executor, mesh, 0), {.most_rounds = 4});
+                 Smooth<Dim>::movable_vertices(executor, mesh, 0), runtime::Strategy::tiles);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/runtime/run_rounds.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::swap_test {
@@ -151,7 +152,10 @@ TEST(Swap, CutsOffAPoorElementBelowASmoothPatch) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(std::pair(found[0].a, found[0].b), std::pair(VertexId{0}, VertexId{1}));
   Swap<3> swap(executor, mesh);
-  EXPECT_EQ(run_rounds(executor, swap, std::move(found)).applied, 1U);
+  EXPECT_EQ(
+      runtime::run_rounds_by<runtime::Strategy::reservations>(executor, swap, std::move(found))
+          .applied,
+      1U);
   std::size_t on_top = 0, elements = 0;
   for (std::size_t e = 0; e < mesh.element_slots(); ++e) {
     if (!mesh.alive(static_cast<ElementId>(e))) continue;
@@ -168,7 +172,7 @@ TEST(Swap, CutsNothingOffThatIsFarFromTheInputOrNotPoorOrBelowAnotherRegion) {
   const auto cuts = [](Mesh<3> mesh) {
     auto found = improvements(mesh);
     Swap<3> swap(executor, mesh);
-    run_rounds(executor, swap, std::move(found));
+    runtime::run_rounds_by<runtime::Strategy::reservations>(executor, swap, std::move(found));
     return !contains(mesh.corners_of[0], 3);
   };
   EXPECT_TRUE(cuts(half_orange(0.01, 0.03)));

@@ -235,31 +235,22 @@ TEST(WithTeam, ColouringsFormOne) {
   EXPECT_TRUE(is_proper(executor, ring, colouring));
 }
 
-/// Each item once, by reservations or by colours; asked how many there are between loops.
+/// Each item once; asked how many there are between loops.
 struct Visits {
   using Item = std::uint32_t;
-  using Plan = Item;
-  struct Update {};
+  struct Plan {};
 
   const Executor& executor;
   std::atomic<int>& outside;
   std::thread::id leader = std::this_thread::get_id();
 
-  std::optional<Plan> plan(Item item) const { return item; }
-  void apply(const Plan&, auto&) {}
-  void commit(std::uint32_t, const Update&) {}
-  std::size_t count() const {
+  bool plan(Item item, Plan&, auto& reach) const { return reach(item); }
+  void apply(Item, const Plan&, auto&) {}
+  void conflicts(Item, auto&&) const {}
+  std::size_t resource_count() const {
     if (!in_a_team(executor, leader)) ++outside;
     return 1000;
   }
-};
-struct ReservedVisits : Visits {
-  void footprint(Item item, auto&& visit) const { visit(item); }
-  std::size_t resource_count() const { return count(); }
-};
-struct ColouredVisits : Visits {
-  void conflicts(Item, auto&&) const {}
-  std::size_t item_count() const { return count(); }
 };
 
 TEST(WithTeam, RoundsFormOne) {
@@ -267,10 +258,11 @@ TEST(WithTeam, RoundsFormOne) {
   std::atomic<int> outside = 0;
   std::vector<std::uint32_t> items(1000);
   std::iota(items.begin(), items.end(), 0U);
-  ReservedVisits reserved{{executor, outside}};
-  EXPECT_EQ(run_rounds(executor, reserved, items).applied, 1000U);
-  ColouredVisits coloured{{executor, outside}};
-  EXPECT_EQ(run_rounds(executor, coloured, items).applied, 1000U);
+  for (const Strategy strategy :
+       {Strategy::reservations, Strategy::tiles, Strategy::colours, Strategy::in_order}) {
+    Visits visits{executor, outside};
+    EXPECT_EQ(run_rounds(executor, visits, items, {.strategy = strategy}).applied, 1000U);
+  }
   EXPECT_EQ(outside, 0);
 }
 

@@ -41,12 +41,14 @@ struct AdaptOptions {
                                   ///< fall, by at most this factor per unit of metric length; 0 or
                                   ///< less: as given. Mmg's default is 2.3
   std::size_t memory_limit =
-      0;                  ///< bytes that adapt() may take; metrics that ask for more elements
-                          ///< than certainly fit are refused before the work; 0: no limit
-  bool thorough = false;  ///< better shapes and lengths for more time (docs/performance.md)
-  bool move = true;       ///< smooth vertices
-  bool swap = true;       ///< swap edges and faces
-  bool insert = true;     ///< split and collapse edges
+      0;                    ///< bytes that adapt() may take; metrics that ask for more elements
+                            ///< than certainly fit are refused before the work; 0: no limit
+  bool thorough = false;    ///< better shapes and lengths for more time (docs/performance.md)
+  bool by_colours = false;  ///< collapses and moves run class by class of a speculative colouring,
+                            ///< as published, not in tiles: valid and deterministic too, but slower
+  bool move = true;         ///< smooth vertices
+  bool swap = true;         ///< swap edges and faces
+  bool insert = true;       ///< split and collapse edges
   Rules rules = {};
   MakeMeshOptions make = {};
   /// Called on the calling thread after each step, many times a second in small meshes. If it

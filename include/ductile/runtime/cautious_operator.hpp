@@ -91,7 +91,8 @@ concept CautiousOperator = requires(const Op& reader, Op& op, const typename Op:
 /// common neighbour (atomic.hpp) or its list under a lock, comes out the same in any order.
 /// An item wakes only itself and those that it conflicts with. If applying gives conflicts to
 /// others, one of each pair is woken: until its round is over, an item has the conflicts that it
-/// had at first, and whoever is woken leaves the round.
+/// had at first, and whoever is woken leaves the round. An operator that never changes conflicts
+/// may say so by a static member `keeps_conflicts`, which saves time in tiles.
 template <class Op>
 concept ConflictingOperator = CautiousOperator<Op> &&
     std::same_as<typename Op::Item, std::uint32_t> && requires(const Op& op, std::uint32_t item) {

@@ -103,9 +103,9 @@ class CautiousCheck {
     const Numbered& item;
     std::array<std::size_t, kinds> next{}, end{};
     std::vector<Item> woken{};
-    void wake(const Item& item) {
-      woken.push_back(item);
-      check.add(item);
+    void wake(const Item& also) {
+      woken.push_back(also);
+      check.add(also);
     }
     std::uint32_t fresh(std::size_t kind = 0) requires(kinds > 0) {
       if (next[kind] == end[kind])
@@ -273,6 +273,11 @@ class CautiousCheck {
     const auto is_woken = [&](std::uint32_t item) {
       return std::find(woken.begin(), woken.end(), item) != woken.end();
     };
+    if constexpr (requires { Op::keeps_conflicts; })
+      if (conflicts_of(other.item.item) != other.conflicts)
+        refuse(ContractRule::woken_if_in_conflict, other.item,
+               "its conflicts changed when item " + name_of(applied) +
+                   " was applied, though the operator has a member keeps_conflicts");
     if (is_woken(other.item.item)) return;
     for (const std::uint32_t with : conflicts_of(other.item.item))
       if (with != other.item.item && waits_of_[with] > 0 && !is_woken(with) &&

@@ -4,8 +4,8 @@
 /// ranks (steps of blocks.hpp), and of items that conflict the one whose tile has the lower rank
 /// comes first, see ranked_blocks.hpp. Few items have an earlier neighbour in another tile of the
 /// same rank; they are late, lest tiles wait for each other in long chains, and left out.
-/// All conflicts are looked at before any item runs, so they may change while items run. Work
-/// should list next to each other what lies together.
+/// All conflicts are looked at before any item runs, so they may change while items run; a tile's
+/// own, if they stay, not before it begins. Work should list next to each other what lies together.
 #pragma once
 
 #include <algorithm>
@@ -68,8 +68,9 @@ class Tiles {
           std::atomic_ref(turn_of_[work_[place]]).store(turn_at(place), std::memory_order_relaxed);
         },
         few_nanoseconds);
-    parallel_for(executor, tile_count(), [&](std::size_t tile) { survey(tile); },
-                 {.grain = 1, .serial_below = few_to_survey >> layout_.block_bits});
+    if (!conflicts_stay)
+      parallel_for(executor, tile_count(), [&](std::size_t tile) { survey(tile); },
+                   {.grain = 1, .serial_below = few_to_survey >> layout_.block_bits});
   }
 
   /// Plans and applies the items for which is_here(item) holds when they have their turn, each with
@@ -80,7 +81,11 @@ class Tiles {
       if (before == none) run_items(begun, is_here, leaving_out);
       return before;
     };
-    tiles_.run([&](std::size_t tile) { return Begun{tile, new_commit()}; }, advance);
+    const auto begin = [&](std::size_t tile) {
+      if (conflicts_stay) survey(tile);
+      return Begun{tile, new_commit()};
+    };
+    tiles_.run(begin, advance);
   }
 
   struct Counts {
@@ -94,6 +99,8 @@ class Tiles {
   }
 
  private:
+  static constexpr bool conflicts_stay = requires { Op::keeps_conflicts; };
+
   /// A tile that a thread has begun, and how many of those it waits for were seen to be done.
   struct Begun {
     std::size_t tile;
