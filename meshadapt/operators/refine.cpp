@@ -8,9 +8,9 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
+#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::meshadapt {
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/deferred_update.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 #include "operators/refine.hpp"
 
 namespace ductile::meshadapt {

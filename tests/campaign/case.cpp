@@ -203,7 +203,8 @@ class CaseMaker {
     if (!is("short-required")) choose_gradation();
     if (kind_.asks == Asks::anything && case_.metric) choose_bounds();
     if (!is("short-required"))
-      for (const char* word : {"-nosurf", "-noswap", "-nomove", "-noinsert", "--thorough", "--by-colours"})
+      for (const char* word :
+           {"-nosurf", "-noswap", "-nomove", "-noinsert", "--thorough", "--by-colours"})
         if (random_.chance(0.06)) option(word);
     if (has("-nosurf")) case_.promise.tolerance = 0;
     if (random_.chance(0.04)) {

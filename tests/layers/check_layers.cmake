@@ -42,8 +42,7 @@ if(EXISTS ${SOURCE_DIR}/meshadapt)
 endif()
 
 forbid("#include .*meshadapt" "runtime knows nothing of meshadapt" include/ductile/runtime runtime)
-set(older_contract "/detail/(coloured_rounds|tiles)\\.hpp$")  # it colours in headers
-forbid_except("/runtime/colouring/|${older_contract}" "#include .*/colouring/"
+forbid_except("/runtime/colouring/" "#include .*/colouring/"
   "colouring stands on the other parts of runtime, not they on it" include/ductile/runtime runtime)
 forbid("#include .*meshadapt" "runtime's tests build without meshadapt" tests/runtime)
 forbid("#include .*cli/" "only the program includes the program" ${below_program} c python)

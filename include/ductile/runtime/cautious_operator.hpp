@@ -1,13 +1,16 @@
 /// @file
 /// CautiousOperator: what an algorithm tells run_rounds about its items, and nothing about threads.
 /// It is cautious: it reaches for whatever it reads before it writes anything, and gives up where
-/// it is told to. So every strategy can run it: only what reach() says differs.
+/// it is told to. So every strategy can run it: only what reach() says differs. Options and report
+/// of a run are here, too.
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -168,5 +171,54 @@ inline constexpr std::size_t kinds_made<Op> =
     std::tuple_size_v<decltype(std::declval<const Op&>().counts())>;
 
 }  // namespace detail
+
+// ---- Options and report of a run ----
+
+struct RoundsOptions {
+  Strategy strategy = Strategy::automatic;
+  /// Stop there even if work is left, and report how much. By default a run goes on until nothing
+  /// is left, which is never if the operator wakes items for ever. Within one round of the
+  /// strategies regions and locks whoever is woken has its turn in the same round, too. In order
+  /// there is one round.
+  int most_rounds = std::numeric_limits<int>::max();
+};
+
+/// What a run did. Seconds are wall-clock; a phase's are those of all its loops and what is
+/// between. Where an item is applied right after it was planned, both count as applying; in order
+/// no seconds are told.
+struct RoundsReport {
+  std::size_t rounds = 0;
+  std::size_t batches = 0;    ///< sets of items that ran together: windows, classes, or tiles
+  std::size_t planned = 0;    ///< calls of plan
+  std::size_t applied = 0;    ///< plans carried out
+  std::size_t lost = 0;       ///< how often an item had to wait for another, or to plan again
+  std::size_t committed = 0;  ///< deferred updates
+  std::size_t left = 0;       ///< work that most_rounds cut off; 0 unless that is set
+
+  double conflict_seconds = 0, plan_seconds = 0, apply_seconds = 0, commit_seconds = 0;
+  double wake_seconds = 0;  ///< collecting the next round's work
+
+  double seconds() const {
+    return conflict_seconds + plan_seconds + apply_seconds + commit_seconds + wake_seconds;
+  }
+
+  RoundsReport& operator+=(const RoundsReport& other);
+};
+
+/// Adds the time from its construction to its destruction to a report. Thread safety: one thread,
+/// outside of loops; the report outlives it.
+class PhaseTimer {
+ public:
+  explicit PhaseTimer(double& seconds) : seconds_(seconds) {}
+  PhaseTimer(const PhaseTimer&) = delete;
+  PhaseTimer& operator=(const PhaseTimer&) = delete;
+  ~PhaseTimer() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 }  // namespace ductile::runtime

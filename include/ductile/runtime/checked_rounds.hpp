@@ -19,7 +19,6 @@
 #include "ductile/runtime/detail/cautious_rounds.hpp"
 #include "ductile/runtime/detail/contract.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime {
 

@@ -12,7 +12,6 @@
 #include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/cautious_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime {
 

@@ -18,7 +18,6 @@
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/hash.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime::detail {
 

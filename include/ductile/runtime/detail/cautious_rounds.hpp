@@ -29,7 +29,6 @@
 #include "ductile/runtime/detail/reservation_windows.hpp"
 #include "ductile/runtime/detail/tile_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime::detail {
 

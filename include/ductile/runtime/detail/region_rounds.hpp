@@ -23,7 +23,6 @@
 #include "ductile/runtime/detail/region_map.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -20,7 +20,6 @@
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 #include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime::detail {

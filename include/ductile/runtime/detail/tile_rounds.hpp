@@ -15,7 +15,6 @@
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime::detail {
 

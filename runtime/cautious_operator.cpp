@@ -1,4 +1,4 @@
-#include "ductile/runtime/rounds_report.hpp"
+#include "ductile/runtime/cautious_operator.hpp"
 
 namespace ductile::runtime {
 
