@@ -19,7 +19,6 @@
 #include "ductile/runtime/detail/ordered_windows.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/rounds_report.hpp"
 
 namespace ductile::runtime::detail {
 
