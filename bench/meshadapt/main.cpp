@@ -1,7 +1,7 @@
 /// @file
-/// The whole adaptation, measured: time by kernel and phase on 1, 2, ... threads, what determinism
-/// costs, quality and memory; and Mmg on the same files, if it is
-/// there. Leaves a page, plots, and every sample in a folder.
+/// The whole adaptation, measured: time by kernel and phase on 1, 2, ... threads, what the
+/// published method costs on the same kernels, quality and memory; and Mmg on the same files, if it
+/// is there. Leaves a page, plots, and every sample in a folder.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -28,11 +28,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 void say(const Sample& sample) {
-  std::printf(
-      "%-16s %3d threads %-13s %8.3f s %9zu elements, cores %s%s%s\n", sample.case_name.c_str(),
-      sample.settings.threads, sample.settings.deterministic ? "deterministic" : "racing",
-      sample.wall_seconds, sample.elements, sample.placement().c_str(),
-      sample.steady() ? "" : ", which moved meanwhile", sample.figures.valid ? "" : ", NOT VALID");
+  std::printf("%-16s %3d threads %-13s %8.3f s %9zu elements, cores %s%s%s\n",
+              sample.case_name.c_str(), sample.settings.threads, name_of(sample.settings.mode),
+              sample.wall_seconds, sample.elements, sample.placement().c_str(),
+              sample.steady() ? "" : ", which moved meanwhile",
+              sample.figures.valid ? "" : ", NOT VALID");
   std::fflush(stdout);
 }
 

@@ -76,12 +76,12 @@ Plan plan_from(const cli::Arguments& arguments) {
 
 std::vector<RunSettings> settings_for(const Plan& plan, const std::string& case_name) {
   const int most = plan.most_threads;
-  if (is_large(case_name)) return {{most, true}};
+  if (is_large(case_name)) return {{most, Mode::tiles}};
   std::vector<RunSettings> settings;
-  for (int threads = 1; threads < most; threads *= 2) settings.push_back({threads, true});
-  settings.push_back({most, true});
-  settings.push_back({1, false});
-  if (most > 1) settings.push_back({most, false});
+  for (int threads = 1; threads < most; threads *= 2) settings.push_back({threads, Mode::tiles});
+  settings.push_back({most, Mode::tiles});
+  settings.push_back({1, Mode::colours});
+  if (most > 1) settings.push_back({most, Mode::colours});
   return settings;
 }
 

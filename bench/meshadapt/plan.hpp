@@ -27,7 +27,7 @@ std::span<const cli::Option> plan_options();
 /// Throws UsageError.
 Plan plan_from(const cli::Arguments& arguments);
 
-/// What to measure of a case: 1, 2, 4, ... threads, and racing mode on the fewest and the most. Of
+/// What to measure of a case: 1, 2, 4, ... threads, and by colours on the fewest and the most. Of
 /// a large one, NAME@FACTOR with a factor above 1, only the most threads.
 std::vector<RunSettings> settings_for(const Plan& plan, const std::string& case_name);
 

@@ -21,12 +21,12 @@ std::vector<Cell> row_of(std::vector<Cell> row, const PartSeconds& values) {
   return row;
 }
 
-/// The deterministic summary of a case on the fewest threads.
+/// The summary of a case on the fewest threads.
 const Summary* fewest_threads(std::span<const Summary> summaries, const std::string& case_name,
-                              bool deterministic = true) {
+                              Mode mode = Mode::tiles) {
   const Summary* fewest = nullptr;
   for (const Summary& s : summaries)
-    if (s.case_name == case_name && s.settings.deterministic == deterministic)
+    if (s.case_name == case_name && s.settings.mode == mode)
       if (fewest == nullptr || s.settings.threads < fewest->settings.threads) fewest = &s;
   return fewest;
 }
@@ -37,10 +37,6 @@ std::vector<std::string> case_names(std::span<const Summary> summaries) {
     if (std::find(names.begin(), names.end(), s.case_name) == names.end())
       names.push_back(s.case_name);
   return names;
-}
-
-const char* mode(const RunSettings& settings) {
-  return settings.deterministic ? "deterministic" : "racing";
 }
 
 const char* yes_or_no(bool is) { return is ? "yes" : "NO"; }
@@ -61,7 +57,7 @@ void write_measured(std::span<const Summary> summaries, const std::string& name,
   if (alone == nullptr) return;
   Table seconds = part_columns({"threads"}), shares = part_columns({"threads"});
   for (const Summary& s : summaries) {
-    if (s.case_name != name || !s.settings.deterministic) continue;
+    if (s.case_name != name || s.settings.mode != Mode::tiles) continue;
     PartSeconds share{};
     for (std::size_t i = 0; i < share.size(); ++i)
       if (s.median.part_seconds[i] > 0)
@@ -149,7 +145,7 @@ void show_meshes(Page& page, const std::vector<Summary>& summaries) {
 
 void show_kernels(Page& page, const std::vector<Summary>& summaries, const fs::path& folder) {
   page.heading("Kernels and phases");
-  page.paragraph("Seconds of the deterministic mode. Looking: finding the work of a kernel.");
+  page.paragraph("Seconds in tiles. Looking: finding the work of a kernel.");
   page.table(part_table(summaries));
   show(page, folder, "kernels.svg", "shares of the kernels in the time, by case");
   page.table(phase_table(summaries));
@@ -170,13 +166,13 @@ void show_pairs(Page& page, const std::vector<Pair>& pairs, const fs::path& fold
 }  // namespace
 
 bool Results::sound() const {
-  const auto agrees = [&](const std::string& name, std::uint64_t bytes) {
-    return std::all_of(samples.begin(), samples.end(), [&](const Sample& s) {
-      return s.case_name != name || !s.settings.deterministic || s.fingerprint == bytes;
-    });
+  const auto agree = [](const Sample& a, const Sample& b) {
+    return a.case_name != b.case_name || a.settings.mode != b.settings.mode ||
+           a.fingerprint == b.fingerprint;
   };
-  return std::all_of(samples.begin(), samples.end(), [&](const Sample& s) {
-    return s.figures.valid && (!s.settings.deterministic || agrees(s.case_name, s.fingerprint));
+  return std::all_of(samples.begin(), samples.end(), [&](const Sample& one) {
+    return one.figures.valid && std::all_of(samples.begin(), samples.end(),
+                                            [&](const Sample& s) { return agree(one, s); });
   });
 }
 
@@ -184,9 +180,9 @@ Table time_table(std::span<const Summary> summaries) {
   Table table({"case", "threads", "mode", "elements", "seconds", "processor seconds",
                "M elements a second", "efficiency", "cores", "samples"});
   for (const Summary& s : summaries) {
-    const Summary* alone = fewest_threads(summaries, s.case_name, s.settings.deterministic);
-    table.add({s.case_name, s.settings.threads, mode(s.settings), std::to_string(s.median.elements),
-               s.median.wall_seconds, s.median.processor_seconds,
+    const Summary* alone = fewest_threads(summaries, s.case_name, s.settings.mode);
+    table.add({s.case_name, s.settings.threads, name_of(s.settings.mode),
+               std::to_string(s.median.elements), s.median.wall_seconds, s.median.processor_seconds,
                1e-6 * static_cast<double>(s.median.elements) / s.median.wall_seconds,
                efficiency(*alone, s), s.placement,
                std::to_string(s.used) + " of " + std::to_string(s.taken)});
@@ -197,8 +193,8 @@ Table time_table(std::span<const Summary> summaries) {
 Table copies_table(std::span<const Summary> summaries, std::span<const CopiesRow> copies) {
   Table table({"case", "copies", "get done", "threads are as fast", "of that %"});
   for (const CopiesRow& row : copies) {
-    const Summary* alone = find(summaries, row.case_name, {1, true});
-    const Summary* many = find(summaries, row.case_name, {row.copies, true});
+    const Summary* alone = find(summaries, row.case_name, {1, Mode::tiles});
+    const Summary* many = find(summaries, row.case_name, {row.copies, Mode::tiles});
     if (alone == nullptr || many == nullptr) continue;
     const double speed = row.copies * efficiency(*alone, *many);
     table.add({row.case_name, row.copies, row.speed, speed, 100 * speed / row.speed});
@@ -211,15 +207,15 @@ Table mesh_table(std::span<const Summary> summaries) {
                "least quality", "valid", "memory MB", "bytes an element", "same bytes"});
   for (const Summary& s : summaries) {
     const Sample& m = s.median;
-    const Summary* alone = fewest_threads(summaries, s.case_name);
+    const Summary* alone = fewest_threads(summaries, s.case_name, s.settings.mode);
     const bool same =
         alone != nullptr && s.same_bytes && m.fingerprint == alone->median.fingerprint;
     const auto largest = static_cast<double>(std::max(m.elements, m.start_elements));
-    table.add({s.case_name, s.settings.threads, mode(s.settings), std::to_string(m.start_elements),
-               std::to_string(m.elements), 100 * m.figures.share_in_range, m.figures.mean_quality,
-               m.figures.least_quality, yes_or_no(m.figures.valid), megabytes(m.peak_memory),
-               static_cast<double>(m.peak_memory) / largest,
-               s.settings.deterministic ? yes_or_no(same) : "-"});
+    table.add({s.case_name, s.settings.threads, name_of(s.settings.mode),
+               std::to_string(m.start_elements), std::to_string(m.elements),
+               100 * m.figures.share_in_range, m.figures.mean_quality, m.figures.least_quality,
+               yes_or_no(m.figures.valid), megabytes(m.peak_memory),
+               static_cast<double>(m.peak_memory) / largest, yes_or_no(same)});
   }
   return table;
 }
@@ -227,7 +223,7 @@ Table mesh_table(std::span<const Summary> summaries) {
 Table part_table(std::span<const Summary> summaries) {
   Table table = part_columns({"case", "threads"});
   for (const Summary& s : summaries)
-    if (s.settings.deterministic)
+    if (s.settings.mode == Mode::tiles)
       table.add(row_of({s.case_name, s.settings.threads}, s.median.part_seconds));
   return table;
 }
@@ -248,13 +244,13 @@ Table phase_table(std::span<const Summary> summaries) {
   return table;
 }
 
-Table determinism_table(std::span<const Summary> summaries) {
-  Table table({"case", "threads", "deterministic s", "racing s", "cost %"});
+Table colours_table(std::span<const Summary> summaries) {
+  Table table({"case", "threads", "tiles s", "colours s", "cost %"});
   for (const Summary& s : summaries) {
-    const Summary* racing = find(summaries, s.case_name, {s.settings.threads, false});
-    if (!s.settings.deterministic || racing == nullptr) continue;
-    const double ratio = s.median.wall_seconds / racing->median.wall_seconds;
-    table.add({s.case_name, s.settings.threads, s.median.wall_seconds, racing->median.wall_seconds,
+    const Summary* colours = find(summaries, s.case_name, {s.settings.threads, Mode::colours});
+    if (s.settings.mode != Mode::tiles || colours == nullptr) continue;
+    const double ratio = colours->median.wall_seconds / s.median.wall_seconds;
+    table.add({s.case_name, s.settings.threads, s.median.wall_seconds, colours->median.wall_seconds,
                100 * (ratio - 1)});
   }
   return table;
@@ -331,18 +327,18 @@ void write_page(const Results& results, const fs::path& folder) {
                       ? std::string()
                       : "; kernels " + std::string(results.samples.front().instructions)));
   page.paragraph(results.sound()
-                     ? "All meshes are valid, and those of the deterministic mode the same bit for "
-                       "bit on every number of threads."
-                     : "NOT SOUND: a mesh is not valid, or the deterministic mode gave different "
-                       "ones; see the table of meshes.");
+                     ? "All meshes are valid, and those of each mode the same bit for bit on "
+                       "every number of threads."
+                     : "NOT SOUND: a mesh is not valid, or threads made a difference; "
+                       " see the table of meshes.");
   for (const std::string& note : results.notes) page.paragraph(note);
   show_times(page, summaries, folder);
   show_copies(page, summaries, results.copies);
   show_meshes(page, summaries);
-  const Table determinism = determinism_table(summaries);
-  if (determinism.size() > 0) {
-    page.heading("What determinism costs");
-    page.table(determinism);
+  const Table colours = colours_table(summaries);
+  if (colours.size() > 0) {
+    page.heading("The published method: collapses and moves by colours");
+    page.table(colours);
   }
   show_kernels(page, summaries, folder);
   show_pairs(page, results.pairs, folder);

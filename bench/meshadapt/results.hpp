@@ -21,7 +21,7 @@ struct Results {
   std::vector<Pair> pairs;
   std::vector<std::string> notes;  ///< what was not measured, and why
 
-  /// Whether every result is valid, and every deterministic one the same at all threads.
+  /// Whether every result is valid, and of each case and mode the same at all threads.
   bool sound() const;
 };
 
@@ -40,12 +40,12 @@ Table time_table(std::span<const Summary> summaries);
 Table copies_table(std::span<const Summary> summaries, std::span<const CopiesRow> copies);
 /// Elements, quality, memory, and whether bytes were the same.
 Table mesh_table(std::span<const Summary> summaries);
-/// Seconds of each part, deterministic.
+/// Seconds of each part, in tiles.
 Table part_table(std::span<const Summary> summaries);
 /// Seconds of each phase of each kernel on the fewest threads.
 Table phase_table(std::span<const Summary> summaries);
-/// What determinism costs.
-Table determinism_table(std::span<const Summary> summaries);
+/// What the published method, by colours, costs.
+Table colours_table(std::span<const Summary> summaries);
 /// Time per element of NAME@FACTOR beside NAME's.
 Table growth_table(std::span<const Summary> summaries);
 /// Medians of pairs, by case.

@@ -91,17 +91,18 @@ std::uint64_t fingerprint(const AdaptedMesh& result) {
 Sampler::Sampler(const AdaptCase& adapt_case)
     : case_(adapt_case), start_metric_(case_.metric_on(judges_, case_.start)) {}
 
-meshadapt::AdaptOptions Sampler::options() const {
-  return {.make = {.surface_tolerance = case_.surface_tolerance}};
+meshadapt::AdaptOptions Sampler::options(Mode mode) const {
+  return {.by_colours = mode == Mode::colours,
+          .make = {.surface_tolerance = case_.surface_tolerance}};
 }
 
 double Sampler::first_call_alone() const {
-  return adapt(Executor({.threads = 1}), case_.start, start_metric_, options())
+  return adapt(Executor({.threads = 1}), case_.start, start_metric_, options(Mode::tiles))
       .report.total_seconds;
 }
 
 /// The metric of the next call is evaluated while no clock runs.
-Sample Sampler::timed(const Executor& executor, AdaptedMesh& result) const {
+Sample Sampler::timed(const Executor& executor, Mode mode, AdaptedMesh& result) const {
   Sample sample;
   meshadapt::AnyMesh last;
   meshadapt::AnyField metric;
@@ -111,7 +112,8 @@ Sample Sampler::timed(const Executor& executor, AdaptedMesh& result) const {
     if (!first) metric = case_.metric_on(judges_, last);
     const double processor = processor_seconds();
     const auto clock = std::chrono::steady_clock::now();
-    result = adapt(executor, first ? case_.start : last, first ? start_metric_ : metric, options());
+    result =
+        adapt(executor, first ? case_.start : last, first ? start_metric_ : metric, options(mode));
     sample.wall_seconds +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     sample.processor_seconds += processor_seconds() - processor;
@@ -128,11 +130,11 @@ MeshFigures Sampler::judge(const AdaptedMesh& result) const {
 }
 
 Sample Sampler::take(const RunSettings& settings, int repetition) {
-  const Executor executor({.threads = settings.threads, .deterministic = settings.deterministic});
+  const Executor executor({.threads = settings.threads});
   AdaptedMesh result;
   const CoreDistance before = core_distance(settings.threads);
   reset_peak_memory();
-  Sample sample = timed(executor, result);
+  Sample sample = timed(executor, settings.mode, result);
   sample.peak_memory = peak_memory();
   sample.before = before;
   sample.after = core_distance(settings.threads);
@@ -165,9 +167,8 @@ Table sample_table(const std::vector<Sample>& samples) {
     columns.emplace_back(name);
   Table table(columns);
   for (const Sample& s : samples) {
-    std::vector<Cell> row{
-        s.case_name,  s.settings.threads, s.settings.deterministic ? "deterministic" : "racing",
-        s.repetition, s.wall_seconds,     s.processor_seconds};
+    std::vector<Cell> row{s.case_name,  s.settings.threads, name_of(s.settings.mode),
+                          s.repetition, s.wall_seconds,     s.processor_seconds};
     row.insert(row.end(), s.part_seconds.begin(), s.part_seconds.end());
     for (const PhaseSeconds& phases : s.phase_seconds)
       row.insert(row.end(), phases.begin(), phases.end());

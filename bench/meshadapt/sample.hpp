@@ -17,10 +17,15 @@
 
 namespace ductile::bench {
 
+/// How collapses and moves run: AdaptOptions::by_colours.
+enum class Mode : std::uint8_t { tiles, colours };
+
 struct RunSettings {
   int threads = 1;
-  bool deterministic = true;
+  Mode mode = Mode::tiles;
 };
+
+inline const char* name_of(Mode mode) { return mode == Mode::tiles ? "tiles" : "colours"; }
 
 /// How good a mesh is in the metric that it was made for: the start mesh's, interpolated, for one
 /// call; the formula's for several.
@@ -71,8 +76,8 @@ class Sampler {
   double first_call_alone() const;
 
  private:
-  meshadapt::AdaptOptions options() const;
-  Sample timed(const runtime::Executor& executor, meshadapt::AdaptedMesh& result) const;
+  meshadapt::AdaptOptions options(Mode mode) const;
+  Sample timed(const runtime::Executor& executor, Mode mode, meshadapt::AdaptedMesh& result) const;
   MeshFigures judge(const meshadapt::AdaptedMesh& result) const;
 
   const AdaptCase& case_;

@@ -8,7 +8,7 @@ namespace ductile::bench {
 namespace {
 
 bool same(const RunSettings& a, const RunSettings& b) {
-  return a.threads == b.threads && a.deterministic == b.deterministic;
+  return a.threads == b.threads && a.mode == b.mode;
 }
 
 /// The placement that most steady samples have; "moving" if none is steady.

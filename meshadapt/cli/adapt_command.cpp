@@ -65,7 +65,7 @@ constexpr std::array<Option, 29> own_options{{
     {"--iterations", "N", "at most this many rounds of all kernels"},
     {"--thorough", "", "goes on for better shapes and lengths"},
     {"--by-colours", "", "collapses and moves by classes of a colouring, as published; slower"},
-    {"--racing", "", "works in order of arrival: valid too, but runs may differ"},
+    {"--racing", "", "with --by-colours, in order of arrival: runs may differ"},
     {"--json", "FILE", "writes counts, times, quality and memory there, a .json"},
     {"--vtu", "FILE", "writes the adapted mesh for ParaView, too, a .vtu"},
     {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},

@@ -21,11 +21,11 @@ TEST(Plan, TakesTheCasesThatAreNamed) {
 
 TEST(Plan, DoublesThreadsUpToTheMost) {
   const auto settings = settings_for(plan({"--threads", "6"}), "psi2d");
-  std::vector<int> deterministic, racing;
+  std::vector<int> tiles, colours;
   for (const RunSettings& one : settings)
-    (one.deterministic ? deterministic : racing).push_back(one.threads);
-  EXPECT_EQ(deterministic, (std::vector<int>{1, 2, 4, 6}));
-  EXPECT_EQ(racing, (std::vector<int>{1, 6}));
+    (one.mode == Mode::tiles ? tiles : colours).push_back(one.threads);
+  EXPECT_EQ(tiles, (std::vector<int>{1, 2, 4, 6}));
+  EXPECT_EQ(colours, (std::vector<int>{1, 6}));
 }
 
 TEST(Plan, RunsLargeCasesOnAllThreadsOnly) {

@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Sampling,
                          testing::Values("uni2d@0.05", "uni3d@0.02", "ring2d@0.05", "dome3d@0.03"));
 
 TEST_P(Sampling, PartsSumUpToTheWhole) {
-  const Sample sample = sampler_.take({2, true}, 0);
+  const Sample sample = sampler_.take({2, Mode::tiles}, 0);
   const PartSeconds& parts = sample.part_seconds;
   EXPECT_NEAR(std::accumulate(parts.begin(), parts.end() - 1, 0.0), parts.back(), 1e-9);
   EXPECT_LE(parts.back(), sample.wall_seconds);
@@ -31,7 +31,7 @@ TEST_P(Sampling, PartsSumUpToTheWhole) {
 }
 
 TEST_P(Sampling, JudgesWhatCameOut) {
-  const Sample sample = sampler_.take({1, true}, 0);
+  const Sample sample = sampler_.take({1, Mode::tiles}, 0);
   EXPECT_TRUE(sample.figures.valid);
   EXPECT_GT(sample.elements, 100U);
   EXPECT_GT(sample.figures.share_in_range, 0.8);
@@ -42,7 +42,8 @@ TEST_P(Sampling, JudgesWhatCameOut) {
 
 TEST_P(Sampling, AllThreadsGiveTheSameBytes) {
   Results results;
-  for (const int threads : {1, 2, 3}) results.samples.push_back(sampler_.take({threads, true}, 0));
+  for (const int threads : {1, 2, 3})
+    results.samples.push_back(sampler_.take({threads, Mode::tiles}, 0));
   EXPECT_EQ(results.samples[0].fingerprint, results.samples[2].fingerprint);
   EXPECT_TRUE(results.sound());
   results.samples[1].fingerprint ^= 1;

@@ -48,12 +48,12 @@ TEST(Summary, SaysThatAllMoved) {
 TEST(Summary, KeepsThreadsAndModesApart) {
   std::vector samples{sample(1, 4, 0, 0), sample(2, 2, 100, 100), sample(1, 6, 0, 0)};
   samples.push_back(sample(2, 1, 100, 100));
-  samples.back().settings.deterministic = false;
+  samples.back().settings.mode = Mode::colours;
   const auto summaries = summarise(samples);
   ASSERT_EQ(summaries.size(), 3U);
-  EXPECT_EQ(find(summaries, "x", {1, true})->median.wall_seconds, 5);
-  EXPECT_EQ(find(summaries, "x", {2, false})->median.wall_seconds, 1);
-  EXPECT_EQ(find(summaries, "x", {4, true}), nullptr);
+  EXPECT_EQ(find(summaries, "x", {1, Mode::tiles})->median.wall_seconds, 5);
+  EXPECT_EQ(find(summaries, "x", {2, Mode::colours})->median.wall_seconds, 1);
+  EXPECT_EQ(find(summaries, "x", {4, Mode::tiles}), nullptr);
 }
 
 TEST(Summary, IsValidOnlyIfAllSamplesAre) {
