@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/colouring/graph.hpp"
 #include "graphs.hpp"
 
 namespace ductile::runtime::graph_test {
