@@ -248,7 +248,7 @@ void Worklist<T>::drop_after(std::size_t count) {
   length_.store(count, std::memory_order_relaxed);
 }
 
-// Of the items that coloured operators have: compiled once.
+// Of items that are numbers: compiled once.
 extern template class Worklist<std::uint32_t>;
 
 }  // namespace ductile::runtime
