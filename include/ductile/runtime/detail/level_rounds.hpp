@@ -101,7 +101,7 @@ class LevelRounds {
 
  private:
   using Windows = OrderedWindows<Op, std::vector<Item>>;
-  static constexpr std::size_t part = 16384, tried_every = 16;
+  static constexpr std::size_t part = 16384, tried_often = 16, tried_seldom = 1024;
   static constexpr double too_short_to_share = 8000;  // nanoseconds
 
   struct PlainCommit {
@@ -113,25 +113,27 @@ class LevelRounds {
     void wake(const Item& item) { woken.push_back(item); }
   };
 
-  /// Both ways are tried now and then, where it is worth it.
+  /// Takes the way that was faster and tries the other now and then, ever less often where it
+  /// loses.
   void run_shared() {
     for (std::size_t begin = 0; begin < round_.size(); begin += part) {
       const std::size_t end = std::min<std::size_t>(begin + part, round_.size());
-      const auto count = static_cast<double>(end - begin);
-      bool is_plain = count * plain_ < too_short_to_share;
-      if (!is_plain) {
-        const std::size_t turn = turn_++ % tried_every;
-        is_plain = turn == 0 || (turn != 1 && plain_ < at_once_);
-      }
+      const bool is_short = static_cast<double>(end - begin) * plain_ < too_short_to_share;
+      const bool is_try = !is_short && --until_try_ == 0;
+      const bool is_at_once = !is_short && (at_once_ < plain_) != is_try;
       const auto start = std::chrono::steady_clock::now();
-      if (is_plain) {
-        run_plainly(begin, end);
-      } else {
+      if (is_at_once) {
         run_at_once(begin, end);
+      } else {
+        run_plainly(begin, end);
       }
       const std::chrono::duration<double, std::nano> time =
           std::chrono::steady_clock::now() - start;
-      (is_plain ? plain_ : at_once_) = time.count() / count;
+      (is_at_once ? at_once_ : plain_) = time.count() / static_cast<double>(end - begin);
+      if (!is_try) continue;
+      const bool has_won = (at_once_ < plain_) == is_at_once;
+      tried_every_ = has_won ? tried_often : std::min(2 * tried_every_, tried_seldom);
+      until_try_ = tried_every_;
     }
   }
 
@@ -167,7 +169,7 @@ class LevelRounds {
   std::optional<Windows> at_once_windows_;
   Plan plan_{};
   double plain_ = 0, at_once_ = 0;  // nanoseconds an item, when it was done last
-  std::size_t turn_ = 0;
+  std::size_t tried_every_ = tried_often, until_try_ = tried_often;  // parts
   RoundsReport report_;
 };
 
