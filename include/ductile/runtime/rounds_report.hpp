@@ -33,7 +33,7 @@ struct RoundsOptions {
 
 /// What a run did. Seconds are wall-clock; a phase's are those of all its loops and what is
 /// between. In tiles, planning and applying are one phase, and count as planning; in regions and
-/// with locks they count as applying, and in order no seconds are told. Of cautious operators
+/// with locks they count as applying; in order, and by levels, none are told. Of cautious operators
 /// `lost` counts how often an item had to wait or to plan again, and `woken` is not counted.
 struct RoundsReport {
   std::size_t rounds = 0;
