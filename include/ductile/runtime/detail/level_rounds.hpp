@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -101,7 +102,7 @@ class LevelRounds {
 
  private:
   using Windows = OrderedWindows<Op, std::vector<Item>>;
-  static constexpr std::size_t part = 16384, tried_often = 16, tried_seldom = 1024;
+  static constexpr std::size_t part = 16384, tried_often = 32, tried_seldom = 512;
   static constexpr double too_short_to_share = 8000;  // nanoseconds
 
   struct PlainCommit {
@@ -113,28 +114,45 @@ class LevelRounds {
     void wake(const Item& item) { woken.push_back(item); }
   };
 
-  /// Takes the way that was faster and tries the other now and then, ever less often where it
-  /// loses.
+  /// Tries both ways now and then, ever less often while the same one wins.
   void run_shared() {
     for (std::size_t begin = 0; begin < round_.size(); begin += part) {
       const std::size_t end = std::min<std::size_t>(begin + part, round_.size());
-      const bool is_short = static_cast<double>(end - begin) * plain_ < too_short_to_share;
-      const bool is_try = !is_short && --until_try_ == 0;
-      const bool is_at_once = !is_short && (at_once_ < plain_) != is_try;
-      const auto start = std::chrono::steady_clock::now();
-      if (is_at_once) {
-        run_at_once(begin, end);
-      } else {
-        run_plainly(begin, end);
+      const auto items = static_cast<double>(end - begin);
+      if (items * plain_ < too_short_to_share) {
+        plain_ = timed([&] { run_plainly(begin, end); }) / items;
+        continue;
       }
-      const std::chrono::duration<double, std::nano> time =
-          std::chrono::steady_clock::now() - start;
-      (is_at_once ? at_once_ : plain_) = time.count() / static_cast<double>(end - begin);
-      if (!is_try) continue;
-      const bool has_won = (at_once_ < plain_) == is_at_once;
-      tried_every_ = has_won ? tried_often : std::min(2 * tried_every_, tried_seldom);
-      until_try_ = tried_every_;
+      if (trial_ == 0 && --until_trial_ == 0) begin_trial();
+      const bool is_at_once = trial_ > 0 ? trial_ % 2 == 0 : at_once_wins_;
+      double& best = is_at_once ? best_at_once_ : best_plain_;
+      if (is_at_once) {
+        best = std::min(best, timed([&] { run_at_once(begin, end); }) / items);
+      } else {
+        plain_ = timed([&] { run_plainly(begin, end); }) / items;
+        best = std::min(best, plain_);
+      }
+      if (trial_ > 0 && --trial_ == 0) end_trial();
     }
+  }
+
+  void begin_trial() {
+    trial_ = 6;  // the least of three parts each, because others may need the cores meanwhile
+    best_plain_ = best_at_once_ = std::numeric_limits<double>::max();
+  }
+  void end_trial() {
+    const bool wins = best_at_once_ < best_plain_;
+    tried_every_ = wins == at_once_wins_ ? std::min(2 * tried_every_, tried_seldom) : tried_often;
+    until_trial_ = tried_every_;
+    at_once_wins_ = wins;
+  }
+
+  /// Nanoseconds.
+  static double timed(auto&& run) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start)
+        .count();
   }
 
   void run_plainly(std::size_t begin, std::size_t end) {
@@ -168,8 +186,11 @@ class LevelRounds {
   std::vector<Item> round_;
   std::optional<Windows> at_once_windows_;
   Plan plan_{};
-  double plain_ = 0, at_once_ = 0;  // nanoseconds an item, when it was done last
-  std::size_t tried_every_ = tried_often, until_try_ = tried_often;  // parts
+  double plain_ = 0;                          // nanoseconds an item, when it was done last
+  double best_plain_ = 0, best_at_once_ = 0;  // in a trial
+  bool at_once_wins_ = false;
+  std::size_t trial_ = 0;  // parts left of the trial that is on
+  std::size_t until_trial_ = 1, tried_every_ = tried_often;
   RoundsReport report_;
 };
 
