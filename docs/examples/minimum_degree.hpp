@@ -1,7 +1,7 @@
 /// @file
 /// A minimum-degree ordering of a graph, for sparse factors: the vertex with the least neighbours
-/// is eliminated, which joins these to each other, then the next. Levels are degrees. Of vertices
-/// of the same degree those that are not near each other may go at once.
+/// is eliminated, which joins these to each other, then the next. Levels are degrees; vertices of
+/// the same degree go one 64th of the numbers after the other, which leaves less fill in the plane.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +53,10 @@ class MinimumDegree {
 
   // ---- Resources: vertices, and the elements that they become ----
   std::size_t resource_count() const { return graph_.size(); }
-  std::uint32_t level(const Item& item) const { return item.degree; }
+  std::uint32_t level(const Item& item) const {
+    constexpr std::uint64_t parts = 64;
+    return static_cast<std::uint32_t>(parts * item.degree + parts * item.vertex / graph_.size());
+  }
 
   // ---- Plan: what is beside the vertex. Reaches for that, and for what is in its lists ----
   bool plan(const Item& item, Plan& plan, auto& reach) const {

@@ -184,8 +184,8 @@ struct RoundsOptions {
 };
 
 /// What a run did. Seconds are wall-clock; a phase's are those of all its loops and what is
-/// between. Where an item is applied right after it was planned, both count as applying; in order
-/// no seconds are told.
+/// between. Where an item is applied right after it was planned, both count as applying; in order,
+/// and by levels, no seconds are told.
 struct RoundsReport {
   std::size_t rounds = 0;
   std::size_t batches = 0;    ///< sets of items that ran together: windows, classes, or tiles

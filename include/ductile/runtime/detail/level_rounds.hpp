@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -100,7 +101,7 @@ class LevelRounds {
 
  private:
   using Windows = OrderedWindows<Op, std::vector<Item>>;
-  static constexpr std::size_t part = 16384, tried_every = 16;
+  static constexpr std::size_t part = 16384, tried_often = 32, tried_seldom = 512;
   static constexpr double too_short_to_share = 8000;  // nanoseconds
 
   struct PlainCommit {
@@ -112,26 +113,45 @@ class LevelRounds {
     void wake(const Item& item) { woken.push_back(item); }
   };
 
-  /// Both ways are tried now and then, where it is worth it.
+  /// Tries both ways now and then, ever less often while the same one wins.
   void run_shared() {
     for (std::size_t begin = 0; begin < round_.size(); begin += part) {
       const std::size_t end = std::min<std::size_t>(begin + part, round_.size());
-      const auto count = static_cast<double>(end - begin);
-      bool is_plain = count * plain_ < too_short_to_share;
-      if (!is_plain) {
-        const std::size_t turn = turn_++ % tried_every;
-        is_plain = turn == 0 || (turn != 1 && plain_ < at_once_);
+      const auto items = static_cast<double>(end - begin);
+      if (items * plain_ < too_short_to_share) {
+        plain_ = timed([&] { run_plainly(begin, end); }) / items;
+        continue;
       }
-      const auto start = std::chrono::steady_clock::now();
-      if (is_plain) {
-        run_plainly(begin, end);
+      if (trial_ == 0 && --until_trial_ == 0) begin_trial();
+      const bool is_at_once = trial_ > 0 ? trial_ % 2 == 0 : at_once_wins_;
+      double& best = is_at_once ? best_at_once_ : best_plain_;
+      if (is_at_once) {
+        best = std::min(best, timed([&] { run_at_once(begin, end); }) / items);
       } else {
-        run_at_once(begin, end);
+        plain_ = timed([&] { run_plainly(begin, end); }) / items;
+        best = std::min(best, plain_);
       }
-      const std::chrono::duration<double, std::nano> time =
-          std::chrono::steady_clock::now() - start;
-      (is_plain ? plain_ : at_once_) = time.count() / count;
+      if (trial_ > 0 && --trial_ == 0) end_trial();
     }
+  }
+
+  void begin_trial() {
+    trial_ = 6;  // the least of three parts each, because others may need the cores meanwhile
+    best_plain_ = best_at_once_ = std::numeric_limits<double>::max();
+  }
+  void end_trial() {
+    const bool wins = best_at_once_ < best_plain_;
+    tried_every_ = wins == at_once_wins_ ? std::min(2 * tried_every_, tried_seldom) : tried_often;
+    until_trial_ = tried_every_;
+    at_once_wins_ = wins;
+  }
+
+  /// Nanoseconds.
+  static double timed(auto&& run) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start)
+        .count();
   }
 
   void run_plainly(std::size_t begin, std::size_t end) {
@@ -165,8 +185,11 @@ class LevelRounds {
   std::vector<Item> round_;
   std::optional<Windows> at_once_windows_;
   Plan plan_{};
-  double plain_ = 0, at_once_ = 0;  // nanoseconds an item, when it was done last
-  std::size_t turn_ = 0;
+  double plain_ = 0;                          // nanoseconds an item, when it was done last
+  double best_plain_ = 0, best_at_once_ = 0;  // in a trial
+  bool at_once_wins_ = false;
+  std::size_t trial_ = 0;  // parts left of the trial that is on
+  std::size_t until_trial_ = 1, tried_every_ = tried_often;
   RoundsReport report_;
 };
 
