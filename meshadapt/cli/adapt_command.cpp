@@ -36,7 +36,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-constexpr std::array<Option, 29> own_options{{
+constexpr std::array<Option, 30> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
