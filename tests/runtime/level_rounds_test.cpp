@@ -115,8 +115,9 @@ void eliminate_plainly(Elimination& op) {
   while (!waiting.empty()) {
     const std::uint32_t lowest = waiting.begin()->first;
     Commit commit{waiting, lowest};
-    for (std::size_t i = 0; i < waiting[lowest].size(); ++i) {
-      const Elimination::Item item = waiting[lowest][i];
+    std::size_t next = 0;
+    while (next < waiting[lowest].size()) {
+      const Elimination::Item item = waiting[lowest][next++];
       Elimination::Plan plan;
       if (op.plan(item, plan, reach)) op.apply(item, plan, commit);
     }
