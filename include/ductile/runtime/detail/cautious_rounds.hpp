@@ -146,8 +146,7 @@ RoundsReport run_cautious_rounds(const Executor& executor, Op& op, Work work,
     return run_by<S>(executor, op, std::move(work), most_rounds);
   };
   return with_team(executor, [&] {
-    if constexpr (LevelledOperator<Op>)
-      return run.template operator()<Strategy::reservations>();
+    if constexpr (LevelledOperator<Op>) return run.template operator()<Strategy::reservations>();
     if constexpr (PlacedOperator<Op>)
       if (strategy == Strategy::regions) return run.template operator()<Strategy::regions>();
     if constexpr (kinds_made<Op> == 0)
