@@ -55,7 +55,7 @@ bool atomic_min(Word& where, std::type_identity_t<Word> value) {
 }
 
 /// A number below 2^31 and a lock in its free bit, for many small things, such as the neighbours of
-/// a vertex. Who waits for it spins, so it is for what takes no longer than some hundred
+/// a vertex. A thread that waits for the lock spins, so hold it for no longer than some hundred
 /// instructions. Thread safety: hold() any thread; get() and set() whoever holds it, or one thread
 /// if no other does anything with it.
 class NumberWithLock {
@@ -94,7 +94,7 @@ class NumberWithLock {
 };
 
 /// A value that is seldom needed, made when a thread first asks for it. Others that ask meanwhile
-/// wait; from then on asking costs one load. What is made must not depend on who asks.
+/// wait; from then on asking costs one load. What is made must not depend on the thread that asks.
 template <class T>
 class Lazy {
  public:

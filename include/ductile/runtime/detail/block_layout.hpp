@@ -33,8 +33,8 @@ struct BlockLayout {
 };
 
 /// The rank of a block of items that run one after the other, by its step. Blocks next to each
-/// other are mostly neighbours: their ranks are far apart, as all of a row would wait in a chain if
-/// one came right after the other.
+/// other mostly have neighbours in common. If their ranks followed each other, all blocks of a row
+/// would wait in a chain, so their ranks are far apart.
 inline std::uint8_t rank_of_block(const BlockLayout& layout, std::size_t block) {
   const auto first = static_cast<std::uint32_t>(block << layout.block_bits);
   return static_cast<std::uint8_t>(7 * layout.step_of(first) & (layout.step_count() - 1));

@@ -1,8 +1,8 @@
 /// @file
 /// How the deterministic parallel colourings go over a graph's blocks (block_layout.hpp): of every
 /// row one block is coloured in a step, each by first-fit in order. What is coloured in one step
-/// does not see each other: pairs of neighbours among it are noted, and who turns out to have lost
-/// against its neighbour is coloured anew at the end.
+/// does not see each other. Pairs of neighbours among it are noted; where both have got the same
+/// colour, one of them is coloured anew at the end.
 #pragma once
 
 #include <concepts>
