@@ -9,9 +9,7 @@ namespace ductile::runtime::detail {
 ConflictClasses classes_of_conflicts(const Executor& executor, std::span<const std::uint64_t> begin,
                                      std::span<const std::uint32_t> neighbours) {
   const CsrGraph<std::uint64_t> graph{begin, neighbours};
-  const auto method =
-      executor.deterministic() ? ColouringMethod::automatic : ColouringMethod::detect_again;
-  ColourClasses classes = colour_classes(executor, colour(executor, graph, method));
+  ColourClasses classes = colour_classes(executor, colour(executor, graph));
   return {std::move(classes.vertices), std::move(classes.begin)};
 }
 

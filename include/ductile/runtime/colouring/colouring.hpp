@@ -7,12 +7,11 @@
 // The methods in detail/ share first_fit and, except for by_priority, take vertices in the order of
 // their numbers:
 //
-//   Serial (in_order)        few vertices
-//   blocked_colouring        graphs that are not large; parts of graphs
-//   marked_colouring         large graphs; both are deterministic and cut by blocks
+//   Serial (in_order)        one thread, few vertices, and orders that are chains
+//   together                 else: the same colours, in windows_in_order or in parts_in_order
 //   priority_colouring       scattered vertices that are coloured anew, and to compare with
-//   speculative_colouring    on request: published schemes, which depend on timing; threads share
-//                            vertices out by fronts
+//   speculative_colouring    on request, and for the parts' borders: published schemes, which
+//                            depend on timing; threads share vertices out by fronts
 
 #include <algorithm>
 #include <cstddef>
@@ -21,13 +20,12 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/colouring/detail/blocked_colouring.hpp"
 #include "ductile/runtime/colouring/detail/compiled_graphs.hpp"
 #include "ductile/runtime/colouring/detail/first_fit.hpp"
 #include "ductile/runtime/colouring/detail/in_order.hpp"
-#include "ductile/runtime/colouring/detail/marked_colouring.hpp"
 #include "ductile/runtime/colouring/detail/priority_colouring.hpp"
 #include "ductile/runtime/colouring/detail/speculative_colouring.hpp"
+#include "ductile/runtime/colouring/detail/together.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -35,9 +33,9 @@
 namespace ductile::runtime {
 
 enum class ColouringMethod {
-  automatic,          ///< blocked: parallel, and the same at any thread count
+  automatic,          ///< the colours of `serial`, on all threads where that is faster; an executor
+                      ///< that is not deterministic may take one colour more
   serial,             ///< first-fit in vertex order on the calling thread
-  blocked,            ///< blocks side by side, clashes repaired by priority; deterministic
   by_priority,        ///< hashed priority decides who waits for whom; deterministic, a yardstick
                       ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
   largest_first,      ///< by_priority, but greater degrees go first: fewer colours, longer chains
@@ -57,15 +55,25 @@ struct Colouring {
 
 namespace detail {
 
-constexpr std::size_t few_vertices = 256;    // coloured on the caller, in order
-constexpr std::size_t many_vertices = 8192;  // worth the launches of MarkedBlocks
+constexpr std::size_t few_vertices = 256;     // coloured on the caller, in order
+constexpr std::size_t many_vertices = 32768;  // worth a team where it has little to do for each
 
 /// What a method comes down to for so many vertices on these threads.
 ColouringMethod choose(const Executor& executor, ColouringMethod method, std::size_t vertex_count);
 
+/// The same for a graph.
+template <Graph G>
+ColouringMethod choose(const Executor& executor, ColouringMethod method, const G& graph) {
+  method = choose(executor, method, graph.vertex_count());
+  if (method != ColouringMethod::automatic) return method;
+  const auto threads = static_cast<std::size_t>(executor.threads());
+  const bool is_shared = OrderOfGraph<G>(graph, threads).shares().kind != Shares::none;
+  return is_shared ? method : ColouringMethod::serial;
+}
+
 /// Calls use(Method()), with the class that choose() stands for, and returns what it returns.
 template <class Use>
-bool with_class_of(ColouringMethod chosen, std::size_t vertex_count, Use&& use) {
+bool with_class_of(ColouringMethod chosen, Use&& use) {
   switch (chosen) {
     case ColouringMethod::serial:
       return use(Serial());
@@ -80,7 +88,7 @@ bool with_class_of(ColouringMethod chosen, std::size_t vertex_count, Use&& use) 
     case ColouringMethod::two_phase:
       return use(TwoPhase());
     default:
-      return vertex_count < many_vertices ? use(Blocked()) : use(MarkedBlocks());
+      return use(Together());
   }
 }
 
@@ -141,7 +149,7 @@ template <Graph G>
 Colouring colour_by(const Executor& executor, const G& graph, ColouringMethod method) {
   const std::size_t n = graph.vertex_count();
   std::vector<std::uint8_t> bytes(n, Colours<OneByte<>>::none);
-  const bool fits = with_class_of(method, n, [&]<class Method>(Method) {
+  const bool fits = with_class_of(method, [&]<class Method>(Method) {
     if constexpr (requires { Method::bound_by_memory; }) {
       return colour_slowly_in_bytes(executor, as_compiled(graph), method, bytes);
     } else {
@@ -165,13 +173,12 @@ void recolour_in_team(const Executor& executor, const G& graph,
       loop);
   const VertexSet set{vertices.size(), vertices.data()};
   const Colours<FourBytes<>> colours(colour_of);
-  if (vertices.size() < few_vertices) {
-    Serial::run(executor, graph, set, colours);
-  } else if (vertices.size() < colour_of.size() / 16) {
-    // Scattered vertices hardly wait for each other, and blocks would cost as if all were there.
+  // Scattered vertices hardly wait for each other.
+  const bool are_scattered = vertices.size() < colour_of.size() / 16;
+  if (vertices.size() >= few_vertices && are_scattered) {
     colour_by_priority<AwaitedByPlace>(executor, graph, vertices, colours, outranks);
   } else {
-    Blocked::run(executor, graph, set, colours);
+    Serial::run(executor, graph, set, colours);
   }
   const auto next = [&](std::size_t i) { return colour_of[vertices[i]] + 1; };
   const auto greater = [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); };
@@ -180,13 +187,14 @@ void recolour_in_team(const Executor& executor, const G& graph,
 
 }  // namespace detail
 
-/// Colours all vertices. `detect_again` and `two_phase` depend on timing, and on one thread are
-/// `serial`; the others give the same colours at any thread count. Throws std::bad_alloc and what
-/// the graph throws. Thread safety: any thread.
+/// Colours all vertices. `detect_again` and `two_phase` depend on timing, and so does `automatic`
+/// if the executor is not deterministic; on one thread they are `serial`. The others give the same
+/// colours at any thread count. Throws std::bad_alloc and what the graph throws.
+/// Thread safety: any thread.
 template <Graph G>
 Colouring colour(const Executor& executor, const G& graph,
                  ColouringMethod method = ColouringMethod::automatic) {
-  method = detail::choose(executor, method, graph.vertex_count());
+  method = detail::choose(executor, method, graph);
   const auto colour_all = [&] { return detail::colour_by(executor, graph, method); };
   if (method == ColouringMethod::serial) return colour_all();
   return with_team(executor, colour_all);

@@ -141,11 +141,14 @@ struct TakenColours {
     constexpr std::uint64_t colours = (std::uint64_t{1} << count) - 1;
     return ~bits & (bits + 1) & colours;
   }
+  static std::uint64_t bit_of_mark(std::uint32_t number) {
+    return std::uint64_t{1} << (61 - number);
+  }
   /// The bits of `waiting`, and of all marks but these. A number that no mark has is that of
   /// nobody.
   static std::uint64_t others(std::same_as<std::uint32_t> auto... numbers) {
     constexpr std::uint64_t all = ~std::uint64_t{0} << count << 1U >> 1U;  // but that of `none`
-    return all & ~((std::uint64_t{1} << (61 - numbers)) | ...);
+    return all & ~(bit_of_mark(numbers) | ...);
   }
   bool shows_others(std::uint32_t number) const { return (bits & others(number)) != 0; }
 };

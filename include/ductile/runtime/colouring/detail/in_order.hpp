@@ -32,6 +32,11 @@ struct LeavingPainter : Painter {
   std::uint32_t next;
 };
 
+/// One that calls what shows these bits others, and nothing else.
+struct HeedingPainter : LeavingPainter {
+  std::uint64_t heeded;
+};
+
 /// The rows of a window's vertices, up or down, and asks for those to come.
 template <Graph G, bool ascending, bool leaves>
 class RowsInOrder {
@@ -166,6 +171,7 @@ template <bool ascending, class Width, Graph G, std::derived_from<Painter> P, cl
   asm("" : "+r"(mark_bit));  // as long as GCC knows it, it makes a branch of a look at it
   const std::uint32_t own = painter.number < Width::marks ? painter.newest : painter.number;
   std::uint64_t others = Seen::others(painter.number, own);
+  if constexpr (std::same_as<P, HeedingPainter>) others = painter.heeded;
   asm("" : "+r"(others));  // else GCC puts it together anew for each vertex
 
   Word newest = Colours<Width>::none;  // the colour of the newest vertex

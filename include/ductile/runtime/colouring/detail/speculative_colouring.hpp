@@ -141,6 +141,29 @@ void colour_again(const G& graph, std::uint32_t v, const Colours<Width>& colours
 /// When those that clash get other colours.
 enum class Recolouring { at_once, when_all_are_found };
 
+/// Gives other colours to vertices of a list until none clashes. Of any two that clash, one at
+/// least is on it.
+template <Recolouring when, class Width, Graph G>
+void recolour_clashing(const Executor& executor, const G& graph, UnsetVector<std::uint32_t> list,
+                       const Colours<Width>& colours) {
+  Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
+  for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
+    const auto look_at = [&](std::size_t i) {
+      prefetch_after(graph, {list.size(), list.data()}, i);
+      if (!clashes(graph, list[i], colours, rivals)) return;
+      if (when == Recolouring::at_once) colour_again(graph, list[i], colours);
+      clashing.append(list[i]);
+    };
+    parallel_for(executor, list.size(), look_at, speculative_loop);
+    clashing.collect();
+    list = clashing.take();
+    if (when == Recolouring::at_once) continue;
+    parallel_for(
+        executor, list.size(), [&](std::size_t i) { colour_again(graph, list[i], colours); },
+        speculative_loop);
+  }
+}
+
 template <Recolouring when>
 struct Speculation {
   static constexpr std::uint32_t marks = 2 * speculative_marks;
@@ -148,24 +171,8 @@ struct Speculation {
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> words) {
-    UnsetVector<std::uint32_t> list = FirstRound<Width, G>(executor, graph, words).run();
-    const auto colours = words.template as<LongOf<Width>>();
-    Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
-    for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
-      const auto look_at = [&](std::size_t i) {
-        prefetch_after(graph, {list.size(), list.data()}, i);
-        if (!clashes(graph, list[i], colours, rivals)) return;
-        if (when == Recolouring::at_once) colour_again(graph, list[i], colours);
-        clashing.append(list[i]);
-      };
-      parallel_for(executor, list.size(), look_at, speculative_loop);
-      clashing.collect();
-      list = clashing.take();
-      if (when == Recolouring::at_once) continue;
-      parallel_for(
-          executor, list.size(), [&](std::size_t i) { colour_again(graph, list[i], colours); },
-          speculative_loop);
-    }
+    recolour_clashing<when>(executor, graph, FirstRound<Width, G>(executor, graph, words).run(),
+                            words.template as<LongOf<Width>>());
   }
 };
 

@@ -1,0 +1,169 @@
+/// @file
+/// First-fit in order where neighbours have ids near each other, on many threads: each has a part
+/// of the vertices, of which it colours those of later parts as if the earlier were not there. That
+/// is a guess, which errs near the border and less and less away from it, unless the graph is a
+/// grid. Then, in order, who has an earlier neighbour in another part or one that has changed is
+/// looked at again, until all have the colours that one thread gives.
+/// Where results may depend on timing, only those whose colours clash get others, by the scheme
+/// with one barrier a round (speculative_colouring.hpp), if that takes no more than one colour more
+/// than the first part, whose colours are those of one thread.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/detail/fronts.hpp"
+#include "ductile/runtime/colouring/detail/in_order.hpp"
+#include "ductile/runtime/colouring/detail/speculative_colouring.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime::detail {
+
+/// The colours of vertices before v; none of others.
+template <class Width>
+class BeforeVertex {
+ public:
+  using Word = typename Width::Word;
+  static constexpr Word most = Width::most;
+  static constexpr std::uint32_t marks = Width::marks;
+
+  BeforeVertex(Colours<Width> colours, std::uint32_t v) : colours_(colours), v_(v) {}
+  Word operator[](std::uint32_t u) const { return u < v_ ? colours_[u] : Colours<Width>::none; }
+
+ private:
+  Colours<Width> colours_;
+  std::uint32_t v_;
+};
+
+/// Colours all vertices of the graph.
+template <class Width, Graph G>
+class PartsRun {
+ public:
+  using Word = typename Width::Word;
+
+  PartsRun(const Executor& executor, const G& graph, Colours<Width> colours)
+      : executor_(executor),
+        graph_(graph),
+        colours_(colours),
+        parts_(static_cast<std::size_t>(executor.threads())) {}
+
+  /// Throws TooManyColours and what the graph throws.
+  void run() {
+    for_each_part([&](std::size_t p) { colour_blindly(p); });
+    for_each_part([&](std::size_t p) {
+      const Window part = window(p);
+      Word* const words = colours_.words().data();
+      const std::vector<Word>& own = parts_[p].words;
+      if (p > 0) std::copy(&own[part.begin], own.data() + part.end, words + part.begin);
+      parts_[p].greatest = *std::max_element(words + part.begin, words + part.end);
+    });
+    UnsetVector<std::uint32_t> unsure;
+    for (const Part& part : parts_)
+      unsure.insert(unsure.end(), part.unsure.begin(), part.unsure.end());
+    std::vector<std::uint64_t> stale(n_ / 64 + 1);  // bits of vertices to be looked at again
+    for (const std::uint32_t v : unsure) mark(stale, v);
+    if (executor_.deterministic() || !takes_few_colours(std::move(unsure), stale)) repair(stale);
+  }
+
+ private:
+  static constexpr std::uint32_t newest_mark = 0, elsewhere_mark = 1;
+  struct alignas(128) Part {
+    std::vector<Word> words;            // [vertex], as its thread sees them; of the first, none
+    std::vector<std::uint32_t> unsure;  // have neighbours in earlier parts
+    Word greatest = 0;
+  };
+
+  template <class Body>
+  void for_each_part(Body body) {
+    parallel_for(executor_, parts_.size(), body, {.grain = 1});
+  }
+
+  Window window(std::uint64_t part) const {
+    const auto border = [&](std::uint64_t p) {
+      return static_cast<std::uint32_t>(n_ * p / parts_.size());
+    };
+    return {border(part), border(part + 1)};
+  }
+
+  void colour_blindly(std::size_t p) {
+    const Window part = window(p);
+    std::vector<Word>& words = parts_[p].words;
+    if (p > 0) {
+      words.assign(n_, Colours<Width>::none);
+      std::fill_n(words.begin(), part.begin, Colours<Width>::mark(elsewhere_mark));
+    }
+    const Colours<Width> colours = p > 0 ? Colours<Width>(words) : colours_;
+    first_fit_in_order<true>(graph_, colours, part, Painter{newest_mark, newest_mark},
+                             [&](std::uint32_t v) { note(parts_[p].unsure, v); });
+  }
+  [[gnu::noinline]] static void note(std::vector<std::uint32_t>& list, std::uint32_t v) {
+    list.push_back(v);
+  }
+
+  static void mark(std::vector<std::uint64_t>& bits, std::uint32_t v) {
+    bits[v / 64] |= std::uint64_t{1} << (v % 64);
+  }
+
+  /// Gives others to those whose colours clash. If that does not do, says who is stale then.
+  bool takes_few_colours(UnsetVector<std::uint32_t> unsure, std::vector<std::uint64_t>& stale) {
+    recolour_clashing<Recolouring::at_once>(executor_, graph_, unsure, colours_);
+    const Word few = parts_[0].greatest + 1;
+    const bool does =
+        std::all_of(parts_.begin(), parts_.end(),
+                    [&](const Part& p) { return p.greatest <= few; }) &&
+        std::all_of(unsure.begin(), unsure.end(), [&](auto v) { return colours_[v] <= few; });
+    if (!does)
+      for (const std::uint32_t v : unsure) mark_later(stale, v);
+    return does;
+  }
+
+  void mark_later(std::vector<std::uint64_t>& stale, std::uint32_t v) const {
+    graph_.for_each_neighbour(v, [&](std::uint32_t u) {
+      if (u > v) mark(stale, u);
+    });
+  }
+
+  /// Looks at one after the other, until so many are stale that to colour the rest is faster.
+  void repair(std::vector<std::uint64_t>& stale) {
+    const std::uint32_t begin = window(0).end;
+    std::size_t looks = 0;
+    for (std::size_t word = begin / 64; word < stale.size(); ++word)
+      for (; stale[word] != 0; stale[word] &= stale[word] - 1) {
+        const auto v = static_cast<std::uint32_t>(64 * word) +
+                       static_cast<std::uint32_t>(std::countr_zero(stale[word]));
+        if (++looks > n_ / 64 + (v - begin) / 5 * 2) return colour_rest(v);
+        const Word colour = colour_in_order(v);
+        if (colours_[v] == colour) continue;
+        colours_.set(v, colour);
+        mark_later(stale, v);
+      }
+  }
+
+  Word colour_in_order(std::uint32_t v) const {
+    const BeforeVertex before(colours_, v);
+    TakenColours<BeforeVertex<Width>> seen;
+    graph_.for_each_neighbour(v, [&](std::uint32_t u) { seen.add(before[u]); });
+    return least_free(graph_, v, before, seen);
+  }
+
+  void colour_rest(std::uint32_t begin) {
+    colours_.fill(begin, n_, Colours<Width>::none);
+    first_fit_in_order<true>(graph_, colours_, Window{begin, static_cast<std::uint32_t>(n_)},
+                             Painter{Width::marks, newest_mark}, [](std::uint32_t) {});
+  }
+
+  const Executor& executor_;
+  const G& graph_;
+  Colours<Width> colours_;
+  std::uint64_t n_ = graph_.vertex_count();
+  std::vector<Part> parts_;
+};
+
+}  // namespace ductile::runtime::detail

@@ -1,0 +1,112 @@
+/// @file
+/// Together: the colours of first-fit in order, on many threads. How the order lies in the graph
+/// decides by what means, from a sample of vertices: in short windows where neighbours are far
+/// apart, in rows where it is a grid in natural order, in parts where they are near each other. In
+/// any other order vertices would wait for each other in a chain, and one thread does it alone.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "ductile/runtime/colouring/detail/parts_in_order.hpp"
+#include "ductile/runtime/colouring/detail/windows_in_order.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::runtime::detail {
+
+/// What a colouring in order is shared out as.
+struct Shares {
+  enum Kind { none, windows, parts } kind = none;
+  std::uint32_t window = 0;  ///< vertices in each
+};
+
+/// A look at the order of a graph that is not small.
+template <Graph G>
+class OrderOfGraph {
+ public:
+  OrderOfGraph(const G& graph, std::size_t threads)
+      : graph_(graph), n_(graph.vertex_count()), threads_(threads) {
+    for (std::size_t i = 0; i < sampled; ++i) sample(n_ * (2 * i + 1) / (2 * sampled));
+  }
+
+  Shares shares() const {
+    if (entries_of_hubs_ > entries_ / 8) return {};
+    if (chained_ <= sampled / 8) return {Shares::windows, short_window};
+    if (const std::size_t row = row_of_grid(); row > 0)
+      return row >= least_row && row * 4 * threads_ <= n_
+                 ? Shares{Shares::windows, static_cast<std::uint32_t>(row)}
+                 : Shares{};
+    return crossing_ <= sampled / 16 ? Shares{Shares::parts} : Shares{};
+  }
+
+ private:
+  static constexpr std::size_t sampled = 256, least_row = 512;
+
+  void sample(std::size_t v) {
+    std::size_t degree = 0;
+    bool crosses = false;
+    each(v, [&](std::size_t u) {
+      ++degree;
+      crosses = crosses || part_of(u) != part_of(v);
+    });
+    entries_ += degree;
+    if (degree >= many_neighbours) entries_of_hubs_ += degree;
+    if (crosses) ++crossing_;
+    if (gap_before(v) <= threads_ * short_window) ++chained_;
+  }
+
+  template <class Visit>
+  void each(std::size_t v, Visit visit) const {
+    graph_.for_each_neighbour(static_cast<std::uint32_t>(v),
+                              [&](std::uint32_t u) { visit(std::size_t{u}); });
+  }
+  std::size_t part_of(std::size_t v) const { return v * threads_ / n_; }
+
+  /// How far before v the nearest earlier neighbour is; more than all if there is none.
+  std::size_t gap_before(std::size_t v) const {
+    std::size_t gap = n_ + 1;
+    each(v, [&](std::size_t u) {
+      if (u < v) gap = std::min(gap, v - u);
+    });
+    return gap;
+  }
+
+  /// The vertices in a row of a grid, or in a plane, whichever is more; 0 if it is no grid. Where
+  /// one begins, the vertex before is no neighbour; nor are, where a plane does, those since the
+  /// row before.
+  std::size_t row_of_grid() const {
+    std::size_t row = 1;
+    for (std::size_t v = row; v <= n_ / 16; v += row)
+      if (gap_before(v) > row) row = v;
+    if (row == 1) return 0;
+    for (std::size_t i = 1; i <= sampled; ++i)
+      if (const std::size_t v = n_ / row * i / (sampled + 1) * row; v > 0)
+        if (gap_before(v) <= row / 2) return 0;
+    return row;
+  }
+
+  const G& graph_;
+  std::size_t n_, threads_;
+  std::size_t entries_ = 0, entries_of_hubs_ = 0;  // of the sample's rows
+  std::size_t chained_ = 0;                        // wait for one just before
+  std::size_t crossing_ = 0;                       // have neighbours in another thread's part
+};
+
+struct Together {
+  static constexpr std::uint32_t marks = 2 * window_marks;
+
+  template <class Width, Graph G>
+  static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
+    const auto threads = static_cast<std::size_t>(executor.threads());
+    const Shares shares = OrderOfGraph<G>(graph, threads).shares();
+    if (shares.kind == Shares::windows) {
+      WindowsRun<Width, G>(executor, graph, colours, shares.window).run();
+    } else {
+      PartsRun<Width, G>(executor, graph, colours).run();
+    }
+  }
+};
+
+}  // namespace ductile::runtime::detail

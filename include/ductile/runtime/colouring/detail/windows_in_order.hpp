@@ -1,0 +1,176 @@
+/// @file
+/// First-fit in order on many threads, with the colours that one thread gives: threads take windows
+/// of vertices one after the other, and a vertex waits for neighbours before it that are still to
+/// be coloured, in windows of other threads. A window is marked before the next one can be taken,
+/// so that a look at a vertex's neighbours shows whether it has to wait; see Words.
+/// In a random order hardly any vertex waits for one in a short window. In the rows of a grid a
+/// window is a row: its thread stays some vertices behind the one that has the row before.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <thread>
+
+#include "ductile/runtime/colouring/detail/first_fit.hpp"
+#include "ductile/runtime/colouring/detail/fronts.hpp"
+#include "ductile/runtime/colouring/detail/in_order.hpp"
+#include "ductile/runtime/colouring/graph.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::runtime::detail {
+
+/// A window is taken when the one so many before it is done. There are twice as many marks, so that
+/// those of earlier windows are not those of later ones.
+constexpr std::uint32_t open_windows = 8;
+constexpr std::uint32_t window_marks = 2 * open_windows;
+
+constexpr std::uint32_t short_window = 256;
+
+/// Colours all vertices of the graph in windows of this many.
+template <class Width, Graph G>
+class WindowsRun {
+ public:
+  using Word = typename Width::Word;
+  static_assert(Width::marks == 2 * window_marks);
+
+  WindowsRun(const Executor& executor, const G& graph, Colours<Width> colours, std::uint32_t size)
+      : executor_(executor), graph_(graph), colours_(colours), size_(size) {}
+
+  /// Throws TooManyColours and what the graph throws.
+  void run() {
+    parallel_for(executor_, static_cast<std::size_t>(executor_.threads()),
+                 [&](std::size_t) {
+                   try {
+                     for (auto number = take(); number < count_; number = take()) colour(number);
+                   } catch (const WaitsInVain&) {
+                   } catch (...) {
+                     failed_.store(true);
+                     throw;
+                   }
+                 },
+                 {.grain = 1});
+  }
+
+ private:
+  /// For what will never be coloured, as its thread has failed.
+  struct WaitsInVain {};
+
+  Window window(std::uint32_t number) const {
+    const std::uint32_t begin = number * size_;
+    return {begin, begin + std::min(size_, n_ - begin)};
+  }
+
+  /// The number of the next window, which is marked then; `count_` if there is none.
+  std::uint32_t take() {
+    constexpr std::uint64_t being_marked = 1;
+    std::uint64_t next = next_.load(std::memory_order_relaxed);
+    // Pairs with the store below: whoever takes a window sees the marks of all before it.
+    while ((next & being_marked) != 0 ||
+           !next_.compare_exchange_weak(next, next | being_marked, std::memory_order_acquire)) {
+      if (failed_.load(std::memory_order_relaxed)) return count_;
+      next = next_.load(std::memory_order_relaxed);
+    }
+    const auto number = static_cast<std::uint32_t>(next / 2);
+    if (number < count_) {
+      if (number >= open_windows) wait_for(window(number - open_windows).end - 1);
+      const Window taken = window(number);
+      colours_.fill(taken.begin, taken.end, Colours<Width>::mark(number % window_marks));
+    }
+    next_.store(number < count_ ? next + 2 : next, std::memory_order_release);
+    return number;
+  }
+
+  /// In pieces, before each of which it asks for the colours of the row before, which another core
+  /// has just written.
+  void colour(std::uint32_t number) {
+    using Seen = TakenColours<Colours<Width>>;
+    const std::uint32_t mark = number % window_marks;
+    std::uint64_t earlier = 0;
+    for (std::uint32_t i = 1; i < open_windows; ++i)
+      earlier |= Seen::bit_of_mark((number - i) % window_marks) |
+                 Seen::bit_of_mark((number - i) % window_marks + window_marks);
+    const auto colour_late = [this](std::uint32_t v) { return this->colour_late(v); };
+    const Window all = window(number);
+    for (std::uint32_t begin = all.begin; begin < all.end; begin += short_window) {
+      const Window piece{begin, std::min(begin + short_window, all.end)};
+      if (size_ > short_window && number > 0) prefetch_colours(piece.end - size_);
+      first_fit_in_order<true>(graph_, colours_, piece,
+                               HeedingPainter{{{mark, window_marks + mark}, after(piece)}, earlier},
+                               colour_late);
+    }
+  }
+
+  /// Where the thread is likely to be when it is done with a piece.
+  std::uint32_t after(const Window& piece) const {
+    constexpr std::uint32_t near = 64;
+    const auto threads = static_cast<std::uint32_t>(executor_.threads());
+    const std::uint32_t ahead = size_ > short_window ? near : threads * size_;
+    return piece.begin + std::min(ahead, n_ - piece.begin);
+  }
+
+  void prefetch_colours(std::uint32_t begin) const {
+    constexpr std::uint32_t line = 64 / sizeof(Word);
+    const Word* const words = colours_.words().data();
+    for (std::uint32_t v = begin; v < begin + short_window && v < n_; v += line)
+      __builtin_prefetch(words + v);
+  }
+
+  /// Colours v when all neighbours before it have colours, and returns its own.
+  [[gnu::noinline]] Word colour_late(std::uint32_t v) {
+    if constexpr (RowGraph<G> && has_many_colours<Colours<Width>>)
+      if (graph_.row(v).size() >= many_neighbours) {
+        Fit<Word> fit = first_fit_of_many(graph_, v, colours_, Width::marks);
+        if (fit.sees_others != 0) {
+          wait_for_earlier(v);
+          fit = first_fit_of_many(graph_, v, colours_, Width::marks);
+        }
+        colours_.set(v, fit.colour);
+        return fit.colour;
+      }
+    wait_for_earlier(v);
+    const Word colour = least_free(graph_, v, colours_);
+    colours_.set(v, colour);
+    return colour;
+  }
+
+  /// Who waits in a row lets the one before go far ahead, so as not to wait for each of its
+  /// vertices. It looks at the first word of a line, as looks slow down whoever writes to one.
+  void wait_for_earlier(std::uint32_t v) const {
+    graph_.for_each_neighbour(v, [&](std::uint32_t u) {
+      if (u >= v || has_colour(u)) return;
+      const std::uint32_t ahead = size_ > short_window ? std::min(size_ / 2, 2 * short_window) : 0;
+      if (ahead > 0) wait_for(std::min(begin_of_line(u + ahead), window(u / size_).end - 1));
+      wait_for(u);
+    });
+  }
+
+  std::uint32_t begin_of_line(std::uint32_t v) const {
+    constexpr std::size_t line = 64;
+    const auto address = reinterpret_cast<std::uintptr_t>(colours_.words().data() + v);
+    return v - static_cast<std::uint32_t>(address % line / sizeof(Word));
+  }
+
+  bool has_colour(std::uint32_t v) const { return colours_[v] <= Width::most; }
+
+  [[gnu::noinline]] void wait_for(std::uint32_t v) const {
+    constexpr int few = 200;
+    for (int look = 0; !has_colour(v); ++look) {
+      if (failed_.load(std::memory_order_relaxed)) throw WaitsInVain{};
+      if (look > few) std::this_thread::yield();
+    }
+  }
+
+  const Executor& executor_;
+  const G& graph_;
+  Colours<Width> colours_;
+  std::uint32_t size_;
+  std::uint32_t n_ = static_cast<std::uint32_t>(graph_.vertex_count());
+  std::uint32_t count_ = n_ / size_ + (n_ % size_ != 0 ? 1 : 0);
+  alignas(128) std::atomic<std::uint64_t> next_{0};  // twice the number, and being_marked
+  std::atomic<bool> failed_{false};
+};
+
+}  // namespace ductile::runtime::detail
