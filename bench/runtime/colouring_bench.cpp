@@ -44,11 +44,12 @@ void add_floor() {
           });
 }
 
-void add_ductile(const std::string& name, ColouringMethod method) {
+void add_ductile(const std::string& name, ColouringMethod method, bool deterministic = true) {
   const bool serial = method == ColouringMethod::serial;
   add_colourings("ductile." + name, serial ? std::vector{1} : thread_counts(),
-                 [method](const Rows& graph, int threads) {
-                   return [&graph, method, executor = Executor({.threads = threads})] {
+                 [method, deterministic](const Rows& graph, int threads) {
+                   const Executor executor({.threads = threads, .deterministic = deterministic});
+                   return [&graph, method, executor] {
                      return colour(executor, graph.view(), method);
                    };
                  });
@@ -96,7 +97,8 @@ void add_recolouring(const GraphCase& graph_case, std::uint32_t per_mille) {
 void add_all() {
   add_floor();
   add_ductile("serial", ColouringMethod::serial);
-  add_ductile("blocked", ColouringMethod::blocked);
+  add_ductile("automatic", ColouringMethod::automatic);
+  add_ductile("automatic_racing", ColouringMethod::automatic, false);
   add_ductile("detect_again", ColouringMethod::detect_again);
   add_ductile("two_phase", ColouringMethod::two_phase);
   add_ductile("by_priority", ColouringMethod::by_priority);

@@ -24,15 +24,14 @@ std::uint32_t greatest(const Executor& executor, std::size_t n, GreatestIn great
 }  // namespace
 
 ColouringMethod choose(const Executor& executor, ColouringMethod method, std::size_t vertex_count) {
-  const bool by_degree =
-      method == ColouringMethod::largest_first || method == ColouringMethod::largest_log_first;
   // A team of one has nobody to share with, and no clashes to look for.
   const bool alone = executor.threads() == 1 && (method == ColouringMethod::automatic ||
                                                  method == ColouringMethod::detect_again ||
                                                  method == ColouringMethod::two_phase);
   const bool few =
       vertex_count < (method == ColouringMethod::automatic ? many_vertices : few_vertices);
-  return alone || (few && !by_degree) ? ColouringMethod::serial : method;
+  return alone || (few && method != ColouringMethod::largest_first) ? ColouringMethod::serial
+                                                                    : method;
 }
 
 std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,

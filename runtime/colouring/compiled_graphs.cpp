@@ -1,17 +1,13 @@
 #include "ductile/runtime/colouring/detail/compiled_graphs.hpp"
 
 #include <algorithm>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
-#include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime {
 

@@ -81,7 +81,7 @@ TEST(ReportMarks, LibrariesThatMeetHaveColoursOfTheirOwn) {
       {{"buffers",
         {"arrays.read_back", "atomic.fetch_add", "ductile.deferred", "mutex.one", "mutex.striped",
          "prefix_sum.two_passes", "tbb.concurrent_vector"}},
-       {"colouring", {"boost.sequential", "ductile.serial", "ductile.blocked", "kokkos.vb"}},
+       {"colouring", {"boost.sequential", "ductile.serial", "ductile.automatic", "kokkos.vb"}},
        {"loops",
         {"ductile.atomics", "ductile.automatic", "ductile.omp_dynamic", "ductile.omp_guided",
          "ductile.omp_static", "ductile.signal", "ductile.team", "gomp.static", "libomp.static",

@@ -54,8 +54,8 @@ TEST(AnyGraph, HasTheColoursOfTheGraphItShows) {
   });
   const Executor executor({.threads = 2});
   for (const ColouringMethod method :
-       {ColouringMethod::serial, ColouringMethod::blocked, ColouringMethod::by_priority,
-        ColouringMethod::largest_first, ColouringMethod::largest_log_first}) {
+       {ColouringMethod::serial, ColouringMethod::automatic, ColouringMethod::by_priority,
+        ColouringMethod::largest_first}) {
     for (const auto& graph : graphs())
       EXPECT_EQ(colour(executor, AnyGraph(graph.view()), method).colour_of,
                 colour(executor, graph.view(), method).colour_of)

@@ -18,9 +18,8 @@ namespace ductile::runtime::colouring_test {
 namespace {
 
 constexpr ColouringMethod methods[] = {
-    ColouringMethod::automatic,     ColouringMethod::serial,           ColouringMethod::by_priority,
-    ColouringMethod::blocked,       ColouringMethod::detect_again,     ColouringMethod::two_phase,
-    ColouringMethod::largest_first, ColouringMethod::largest_log_first};
+    ColouringMethod::automatic,    ColouringMethod::serial,    ColouringMethod::by_priority,
+    ColouringMethod::detect_again, ColouringMethod::two_phase, ColouringMethod::largest_first};
 
 std::uint32_t greatest_degree(const test::TestGraph& graph) {
   std::uint32_t greatest = 0;
@@ -46,7 +45,7 @@ TEST(Colouring, IsTheSameAtAnyThreadCountUnlessItSpeculates) {
   for (const auto& graph : test::test_graphs())
     for (const ColouringMethod method :
          {ColouringMethod::automatic, ColouringMethod::serial, ColouringMethod::by_priority,
-          ColouringMethod::largest_first, ColouringMethod::largest_log_first}) {
+          ColouringMethod::largest_first}) {
       const Colouring first = colour(Executor({.threads = 1}), graph.view(), method);
       for (int threads : {2, 3, 4, 8})
         EXPECT_EQ(colour(Executor({.threads = threads}), graph.view(), method).colour_of,
@@ -76,14 +75,6 @@ TEST(Colouring, LetsNeighboursBeRepeatedOnOneSideOnly) {
       recolour(executor, graph, some, colouring);
       EXPECT_TRUE(is_proper(executor, graph, colouring)) << static_cast<int>(method);
     }
-}
-
-TEST(Colouring, IsTheSameInEveryRun) {
-  const auto graph = test::shuffled(test::mesh_graph(90), 6);
-  const Executor executor({.threads = 4});
-  const Colouring first = colour(executor, graph.view(), ColouringMethod::blocked);
-  for (int run = 0; run < 20; ++run)
-    EXPECT_EQ(colour(executor, graph.view(), ColouringMethod::blocked).colour_of, first.colour_of);
 }
 
 TEST(Colouring, NeedsFewColoursOnAMesh) {
@@ -227,66 +218,6 @@ TEST(Colouring, TakesNoMoreColoursWhereVerticesAreTheirOwnNeighbours) {
     }
 }
 
-/// Many vertices hide their colours here, and clash: a sixteenth of the neighbours are coloured at
-/// the same time, at 31 colours and above with wide words.
-TEST(Colouring, OfBlocksWithManyClashesIsTheSameAtAnyThreadCount) {
-  for (const auto& graph : {test::random_graph(33000, 500000, 11), test::rmat_graph(15, 600000, 12),
-                            test::shuffled(test::mesh_graph(182), 13)}) {
-    const Colouring first = colour(Executor({.threads = 1}), graph.view());
-    EXPECT_TRUE(is_proper(Executor({.threads = 1}), graph.view(), first)) << graph.name;
-    for (int threads : {2, 3, 8, 40})
-      EXPECT_EQ(colour(Executor({.threads = threads}), graph.view()).colour_of, first.colour_of)
-          << graph.name << ", threads " << threads;
-  }
-}
-
-/// What blocks give before any clash is repaired: first-fit by step and id, blind to neighbours in
-/// other blocks of the same step.
-std::vector<std::uint32_t> colours_by_blocks(const test::TestGraph& graph) {
-  const auto rows = graph.view();
-  const auto layout = detail::marked_rows(rows.vertex_count());
-  const auto is_blind = [&](std::uint32_t v, std::uint32_t u) {
-    return layout.step_of(u) == layout.step_of(v) && !layout.same_block(u, v);
-  };
-  std::vector<std::uint32_t> order(rows.vertex_count()), colour_of(order.size(), Colouring::none);
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t u, std::uint32_t v) {
-    return layout.step_of(u) < layout.step_of(v);
-  });
-  for (const std::uint32_t v : order) {
-    std::vector<bool> taken(rows.row(v).size() + 1);
-    for (const std::uint32_t u : rows.row(v))
-      if (!is_blind(v, u) && colour_of[u] < taken.size()) taken[colour_of[u]] = true;
-    const auto free = std::find(taken.begin(), taken.end(), false);
-    colour_of[v] = static_cast<std::uint32_t>(free - taken.begin());
-  }
-  return colour_of;
-}
-
-TEST(Colouring, OfBlocksIsThatOfItsDefinitionButForClashes) {
-  const auto random = test::random_graph(20'000, 60'000, 6);
-  const auto dense = test::random_graph(9'000, 900'000, 7);
-  const auto mesh = test::mesh_graph(150);
-  for (const auto* graph : {&random, &dense, &mesh}) {
-    const std::vector<std::uint32_t> expected = colours_by_blocks(*graph);
-    const auto rows = graph->view();
-    const auto loses = [&](std::uint32_t v) {
-      const auto row = rows.row(v);
-      return std::any_of(row.begin(), row.end(), [&](std::uint32_t u) {
-        return expected[u] == expected[v] && detail::outranks(u, v);
-      });
-    };
-    for (int threads : {1, 2, 3, 8}) {
-      const Colouring colouring =
-          colour(Executor({.threads = threads}), rows, ColouringMethod::blocked);
-      std::size_t others = 0;
-      for (std::uint32_t v = 0; v < expected.size(); ++v)
-        if (colouring.colour_of[v] != expected[v] && !loses(v)) ++others;
-      EXPECT_EQ(others, 0U) << graph->name << ", threads " << threads;
-    }
-  }
-}
-
 /// In the second graph there are too many colours for short words, and vertices of many neighbours.
 TEST(Colouring, OfACallbackIsThatOfItsRows) {
   for (const auto& graph :
@@ -296,8 +227,7 @@ TEST(Colouring, OfACallbackIsThatOfItsRows) {
       rows.for_each_neighbour(v, visit);
     });
     const Executor executor({.threads = 2});
-    for (const ColouringMethod method :
-         {ColouringMethod::serial, ColouringMethod::blocked, ColouringMethod::by_priority})
+    for (const ColouringMethod method : {ColouringMethod::serial, ColouringMethod::by_priority})
       EXPECT_EQ(colour(executor, callback, method).colour_of,
                 colour(executor, rows, method).colour_of)
           << graph.name;

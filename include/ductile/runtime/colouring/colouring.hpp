@@ -33,17 +33,16 @@
 namespace ductile::runtime {
 
 enum class ColouringMethod {
-  automatic,          ///< the colours of `serial`, on all threads where that is faster; an executor
-                      ///< that is not deterministic may take one colour more
-  serial,             ///< first-fit in vertex order on the calling thread
-  by_priority,        ///< hashed priority decides who waits for whom; deterministic, a yardstick
-                      ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
-  largest_first,      ///< by_priority, but greater degrees go first: fewer colours, longer chains
-  largest_log_first,  ///< by_priority, greater logarithms of degrees first: a compromise
-  detect_again,       ///< speculate; detect and recolour at once, one barrier a round
-                      ///< (Rokos, Gorman, Kelly, Euro-Par 2015)
-  two_phase,          ///< speculate; colour, then detect, a barrier after each
-                      ///< (Catalyurek et al., Parallel Computing 38, 2012)
+  automatic,      ///< the colours of `serial`, on all threads where that is faster; an executor
+                  ///< that is not deterministic may take one colour more
+  serial,         ///< first-fit in vertex order on the calling thread
+  by_priority,    ///< hashed priority decides who waits for whom; deterministic, a yardstick
+                  ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
+  largest_first,  ///< by_priority, but greater degrees go first: fewer colours, longer chains
+  detect_again,   ///< speculate; detect and recolour at once, one barrier a round
+                  ///< (Rokos, Gorman, Kelly, Euro-Par 2015)
+  two_phase,      ///< speculate; colour, then detect, a barrier after each
+                  ///< (Catalyurek et al., Parallel Computing 38, 2012)
 };
 
 struct Colouring {
@@ -80,9 +79,7 @@ bool with_class_of(ColouringMethod chosen, Use&& use) {
     case ColouringMethod::by_priority:
       return use(ByPriority());
     case ColouringMethod::largest_first:
-      return use(ByDegree<Degree::itself>());
-    case ColouringMethod::largest_log_first:
-      return use(ByDegree<Degree::logarithm>());
+      return use(ByDegree());
     case ColouringMethod::detect_again:
       return use(DetectAgain());
     case ColouringMethod::two_phase:

@@ -88,8 +88,7 @@ struct InOrder {
 template <Graph G>
 Colouring first_fit_in(const Executor& executor, const G& graph,
                        std::span<const std::uint32_t> order) {
-  Colouring colouring;
-  colouring.colour_of.resize(order.size());
+  Colouring colouring{std::vector<std::uint32_t>(order.size(), Colouring::none)};
   const VertexSet vertices{order.size(), order.data()};
   std::vector<std::uint8_t> bytes(order.size(), Colours<OneByte<>>::none);
   if (colour_in_bytes<InOrder>(executor, graph, bytes, vertices)) {
@@ -97,7 +96,6 @@ Colouring first_fit_in(const Executor& executor, const G& graph,
     return colouring;
   }
   const Colours<FourBytes<>> words(colouring.colour_of);
-  std::fill(colouring.colour_of.begin(), colouring.colour_of.end(), Colouring::none);
   InOrder::run(executor, graph, vertices, words);
   colouring.count = colour_count(executor, colouring.colour_of);
   return colouring;

@@ -35,7 +35,11 @@ class BeforeVertex {
   static constexpr std::uint32_t marks = Width::marks;
 
   BeforeVertex(Colours<Width> colours, std::uint32_t v) : colours_(colours), v_(v) {}
-  Word operator[](std::uint32_t u) const { return u < v_ ? colours_[u] : Colours<Width>::none; }
+  /// Without a branch, which would be hard to predict.
+  Word operator[](std::uint32_t u) const {
+    const auto is_later = static_cast<Word>(u >= v_);
+    return static_cast<Word>(colours_[u] | (is_later * Colours<Width>::none));
+  }
 
  private:
   Colours<Width> colours_;
@@ -62,7 +66,9 @@ class PartsRun {
       Word* const words = colours_.words().data();
       const std::vector<Word>& own = parts_[p].words;
       if (p > 0) std::copy(&own[part.begin], own.data() + part.end, words + part.begin);
-      parts_[p].greatest = *std::max_element(words + part.begin, words + part.end);
+      Word greatest = 0;
+      for (std::uint32_t v = part.begin; v < part.end; ++v) greatest = std::max(greatest, words[v]);
+      parts_[p].greatest = greatest;
     });
     UnsetVector<std::uint32_t> unsure;
     for (const Part& part : parts_)
@@ -107,8 +113,8 @@ class PartsRun {
     list.push_back(v);
   }
 
-  static void mark(std::vector<std::uint64_t>& bits, std::uint32_t v) {
-    bits[v / 64] |= std::uint64_t{1} << (v % 64);
+  static void mark(std::vector<std::uint64_t>& bits, std::uint32_t v, bool is_marked = true) {
+    bits[v / 64] |= std::uint64_t{is_marked} << (v % 64);
   }
 
   /// Gives others to those whose colours clash. If that does not do, says who is stale then.
@@ -125,9 +131,7 @@ class PartsRun {
   }
 
   void mark_later(std::vector<std::uint64_t>& stale, std::uint32_t v) const {
-    graph_.for_each_neighbour(v, [&](std::uint32_t u) {
-      if (u > v) mark(stale, u);
-    });
+    graph_.for_each_neighbour(v, [&](std::uint32_t u) { mark(stale, u, u > v); });
   }
 
   /// Looks at one after the other, until so many are stale that to colour the rest is faster.

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -176,37 +175,7 @@ struct ByPriority {
   }
 };
 
-/// Greater sizes first, ties by hash.
-struct Greater {
-  const std::uint32_t* size_of;  // [vertex]
-
-  bool operator()(std::uint32_t u, std::uint32_t v) const {
-    return size_of[u] != size_of[v] ? size_of[u] > size_of[v] : outranks(u, v);
-  }
-};
-
-/// What vertices are taken by the size of.
-enum class Degree { itself, logarithm };
-
-template <class Width, Graph G>
-void colour_by_degree(const Executor& executor, const G& graph, VertexSet vertices,
-                      Colours<Width> colours, Degree size) {
-  std::vector<std::uint32_t> size_of(colours.vertex_count());
-  parallel_for(executor, vertices.count,
-               [&](std::size_t i) {
-                 std::uint32_t degree = 0;
-                 graph.for_each_neighbour(vertices[i], [&](std::uint32_t) { ++degree; });
-                 size_of[vertices[i]] = size == Degree::itself
-                                            ? degree
-                                            : static_cast<std::uint32_t>(std::bit_width(degree));
-               },
-               {.grain = 256, .serial_below = 1024});
-  colour_by_priority(executor, graph, listed(vertices), colours, Greater{size_of.data()});
-}
-
-/// Greater degrees first, or greater binary logarithms of them, which makes shorter chains of
-/// vertices that wait for each other (Hasenplaugh et al., SPAA 2014). Ties by hash.
-template <Degree size>
+/// Greater degrees first, ties by hash.
 struct ByDegree {
   static constexpr std::uint32_t marks = 0;
   static constexpr bool bound_by_memory = true;
@@ -214,7 +183,18 @@ struct ByDegree {
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,
                   Colours<Width> colours) {
-    colour_by_degree(executor, graph, vertices, colours, size);
+    std::vector<std::uint32_t> degree_of(colours.vertex_count());
+    parallel_for(executor, vertices.count,
+                 [&](std::size_t i) {
+                   std::uint32_t degree = 0;
+                   graph.for_each_neighbour(vertices[i], [&](std::uint32_t) { ++degree; });
+                   degree_of[vertices[i]] = degree;
+                 },
+                 {.grain = 256, .serial_below = 1024});
+    const auto before = [&](std::uint32_t u, std::uint32_t v) {
+      return degree_of[u] != degree_of[v] ? degree_of[u] > degree_of[v] : outranks(u, v);
+    };
+    colour_by_priority(executor, graph, listed(vertices), colours, before);
   }
 };
 

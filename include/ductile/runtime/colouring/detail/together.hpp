@@ -81,10 +81,20 @@ class OrderOfGraph {
     for (std::size_t v = row; v <= n_ / 16; v += row)
       if (gap_before(v) > row) row = v;
     if (row == 1) return 0;
-    for (std::size_t i = 1; i <= sampled; ++i)
-      if (const std::size_t v = n_ / row * i / (sampled + 1) * row; v > 0)
-        if (gap_before(v) <= row / 2) return 0;
+    for (std::size_t i = 0; i < sampled; ++i) {
+      const std::size_t v = n_ * (2 * i + 1) / (2 * sampled);
+      if (!follows_row_before(v, row) || !follows_row_before(v / row * row, row)) return 0;
+    }
     return row;
+  }
+
+  /// Whether v's earlier neighbours are in its own row or nearly all of a row before it.
+  bool follows_row_before(std::size_t v, std::size_t row) const {
+    bool follows = true;
+    each(v, [&](std::size_t u) {
+      follows = follows && (u >= v || u / row == v / row || v - u >= row - row / 4);
+    });
+    return follows;
   }
 
   const G& graph_;
