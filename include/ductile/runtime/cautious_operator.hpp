@@ -53,6 +53,7 @@ struct AnyReach {
 template <class Item>
 struct AnyCommit {
   void wake(const Item& item);
+  void postpone(const Item& item);
   std::uint32_t fresh(std::size_t kind = 0);
 };
 
@@ -71,7 +72,8 @@ struct AnyCommit {
 ///                            false, it returns false at once. It has reached for something before
 ///                            it returns true, and for the same thing first each time
 ///   apply(item, plan, commit)  carries the plan out: writes what was reached, and what is its own
-///                            by commit.fresh(kind). commit.wake(item) adds an item to the work
+///                            by commit.fresh(kind). commit.wake(item) adds an item to the work,
+///                            and so does commit.postpone(item), see ConflictingOperator
 ///
 /// `reach` and `commit` are of types that depend on the strategy: take them by `auto&`. All members
 /// are called by many threads.
@@ -90,10 +92,11 @@ concept CautiousOperator = requires(const Op& reader, Op& op, const typename Op:
 /// visits all others that it may reach, of which each may reach it, too; repetition is allowed. An
 /// item runs beside any with which it has no conflict. What two such both write, as a mark of a
 /// common neighbour (atomic.hpp) or its list under a lock, comes out the same in any order.
-/// An item wakes only itself and those that it conflicts with. If applying gives conflicts to
-/// others, one of each pair is woken: until its round is over, an item has the conflicts that it
-/// had at first, and whoever is woken leaves the round. An operator that never changes conflicts
-/// may say so by a static member `keeps_conflicts`, which saves time in tiles.
+/// An item wakes only itself and those that it conflicts with; one that still waits for its turn in
+/// the round has it there. Until its round is over, an item has the conflicts that it had at first:
+/// if applying gives conflicts to others, one of each pair is postponed, that is, leaves the round
+/// and comes back in the next. An operator that never changes conflicts may say so by a static
+/// member `keeps_conflicts`, which saves time in tiles.
 template <class Op>
 concept ConflictingOperator = CautiousOperator<Op> &&
     std::same_as<typename Op::Item, std::uint32_t> && requires(const Op& op, std::uint32_t item) {

@@ -106,10 +106,15 @@ class CautiousCheck {
     CautiousCheck& check;
     const Numbered& item;
     std::array<std::size_t, kinds> next{}, end{};
-    std::vector<Item> woken{};
+    std::vector<Item> postponed{};
+    bool has_woken = false;
     void wake(const Item& also) {
-      woken.push_back(also);
+      has_woken = true;
       check.add(also);
+    }
+    void postpone(const Item& also) {
+      postponed.push_back(also);
+      wake(also);
     }
     std::uint32_t fresh(std::size_t kind = 0) requires(kinds > 0) {
       if (next[kind] == end[kind])
@@ -255,8 +260,8 @@ class CautiousCheck {
     std::sort(decision.reached.begin(), decision.reached.end());
     for (const Watched& other : others) expect_unchanged(other, item, decision.reached);
     if constexpr (ConflictingOperator<Op>)
-      for (const Watched& other : others) expect_woken(other, item, commit.woken);
-    if (in_order_ && !commit.woken.empty())
+      for (const Watched& other : others) expect_postponed(other, item, commit.postponed);
+    if (in_order_ && commit.has_woken)
       refuse(ContractRule::nobody_woken, item,
              "it wakes an item, but in strategy in_order only the work itself has an order");
   }
@@ -290,24 +295,24 @@ class CautiousCheck {
     return others;
   }
 
-  /// Of two that wait and have got a new conflict by what was applied, has one been woken?
-  void expect_woken(const Watched& other, const Numbered& applied,
-                    const std::vector<Item>& woken) const {
-    const auto is_woken = [&](std::uint32_t item) {
-      return std::find(woken.begin(), woken.end(), item) != woken.end();
+  /// Of two that wait and have got a new conflict by what was applied, has one been postponed?
+  void expect_postponed(const Watched& other, const Numbered& applied,
+                        const std::vector<Item>& postponed) const {
+    const auto is_postponed = [&](std::uint32_t item) {
+      return std::find(postponed.begin(), postponed.end(), item) != postponed.end();
     };
     if constexpr (requires { Op::keeps_conflicts; })
       if (conflicts_of(other.item.item) != other.conflicts)
-        refuse(ContractRule::woken_if_in_conflict, other.item,
+        refuse(ContractRule::new_conflict_told, other.item,
                "its conflicts changed when item " + name_of(applied) +
                    " was applied, though the operator has a member keeps_conflicts");
-    if (is_woken(other.item.item)) return;
+    if (is_postponed(other.item.item)) return;
     for (const std::uint32_t with : conflicts_of(other.item.item))
-      if (with != other.item.item && waits_of_[with] > 0 && !is_woken(with) &&
+      if (with != other.item.item && waits_of_[with] > 0 && !is_postponed(with) &&
           !std::binary_search(other.conflicts.begin(), other.conflicts.end(), with))
-        refuse(ContractRule::woken_if_in_conflict, other.item,
+        refuse(ContractRule::new_conflict_told, other.item,
                "it got a conflict with item " + std::to_string(with) + " when item " +
-                   name_of(applied) + " was applied, which has woken neither");
+                   name_of(applied) + " was applied, which has postponed neither");
   }
 
   /// `reached` is ascending: what the item that was applied had reached.

@@ -83,6 +83,7 @@ class LockRounds {
   struct PartCommit {
     Part& part;
     void wake(const Item& item) { part.stack.push_back(item); }
+    void postpone(const Item& item) { wake(item); }
     std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
       return part.pools[kind].take();
     }

@@ -24,6 +24,7 @@ struct OrderedCommit {
     throw std::logic_error(
         "strategy in_order: an item was woken, but only the work itself has an order");
   }
+  void postpone(const Item& item) const { wake(item); }
 };
 
 /// What runs a part of the work on several threads.

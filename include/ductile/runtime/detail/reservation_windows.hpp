@@ -87,6 +87,7 @@ class ReservationWindows {
   struct SlotCommit {
     Slot& slot;
     void wake(const Item& item) { slot.woken.push_back(item); }
+    void postpone(const Item& item) { wake(item); }
     std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
       if (slot.next[kind] == slot.end[kind]) [[unlikely]]
         throw std::logic_error("apply() takes more fresh numbers than demand() asked for");
