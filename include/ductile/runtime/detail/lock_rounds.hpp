@@ -12,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
 
-template <CautiousOperator Op>
+template <Operator Op>
 class LockRounds {
  public:
   using Item = typename Op::Item;

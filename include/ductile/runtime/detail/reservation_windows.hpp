@@ -15,16 +15,16 @@
 #include <vector>
 
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime::detail {
 
-template <CautiousOperator Op>
+template <Operator Op>
 class ReservationWindows {
  public:
   using Item = typename Op::Item;

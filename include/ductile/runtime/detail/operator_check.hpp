@@ -1,5 +1,5 @@
 /// @file
-/// CautiousCheck: runs a CautiousOperator on one thread, one item at a time, and throws
+/// OperatorCheck: runs an Operator on one thread, one item at a time, and throws
 /// ContractBroken where it does something that would be wrong, or would depend on timing, on many.
 #pragma once
 
@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/contract.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -34,14 +34,14 @@ std::string item_name(const Item& item, std::size_t place) {
   }
 }
 
-template <CautiousOperator Op>
-class CautiousCheck {
+template <Operator Op>
+class OperatorCheck {
  public:
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
 
   /// Nobody may be woken if `in_order`.
-  CautiousCheck(Op& op, bool in_order) : op_(op), in_order_(in_order) {
+  OperatorCheck(Op& op, bool in_order) : op_(op), in_order_(in_order) {
     if constexpr (kinds > 0) {
       const auto counts = op.counts();
       std::copy(counts.begin(), counts.end(), top_.begin());
@@ -103,7 +103,7 @@ class CautiousCheck {
     }
   };
   struct CheckedCommit {
-    CautiousCheck& check;
+    OperatorCheck& check;
     const Numbered& item;
     std::array<std::size_t, kinds> next{}, end{};
     std::vector<Item> postponed{};
