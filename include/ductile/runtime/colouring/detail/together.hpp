@@ -42,7 +42,7 @@ class OrderOfGraph {
   }
 
  private:
-  static constexpr std::size_t sampled = 256, least_row = 512;
+  static constexpr std::size_t sampled = 256, least_row = 512, most_looks = 8192;
 
   void sample(std::size_t v) {
     std::size_t degree = 0;
@@ -78,7 +78,7 @@ class OrderOfGraph {
   /// row before.
   std::size_t row_of_grid() const {
     std::size_t row = 1;
-    for (std::size_t v = row; v <= n_ / 16; v += row)
+    for (std::size_t v = row, looks = 0; v <= n_ / 16 && looks < most_looks; v += row, ++looks)
       if (gap_before(v) > row) row = v;
     if (row == 1) return 0;
     for (std::size_t i = 0; i < sampled; ++i) {
