@@ -151,7 +151,7 @@ TEST(Together, AutomaticTakesAtMostOneColourMoreWhereTimingMayDecide) {
 TEST(Together, IsSharedOutByHowTheOrderLiesInTheGraph) {
   const auto kind_of = [](const test::TestGraph& graph, std::uint32_t window = 0) {
     const CsrGraph<> rows = graph.view();
-    const detail::Shares shares = detail::OrderOfGraph(rows, 2).shares();
+    const detail::Shares shares = detail::OrderOfGraph(Executor({.threads = 2}), rows).shares();
     EXPECT_EQ(shares.window, window) << graph.name;
     return shares.kind;
   };

@@ -65,8 +65,7 @@ template <Graph G>
 ColouringMethod choose(const Executor& executor, ColouringMethod method, const G& graph) {
   method = choose(executor, method, graph.vertex_count());
   if (method != ColouringMethod::automatic) return method;
-  const auto threads = static_cast<std::size_t>(executor.threads());
-  const bool is_shared = OrderOfGraph<G>(graph, threads).shares().kind != Shares::none;
+  const bool is_shared = OrderOfGraph<G>(executor, graph).shares().kind != Shares::none;
   return is_shared ? method : ColouringMethod::serial;
 }
 

@@ -106,11 +106,9 @@ class PartsRun {
       std::fill_n(words.begin(), part.begin, Colours<Width>::mark(elsewhere_mark));
     }
     const Colours<Width> colours = p > 0 ? Colours<Width>(words) : colours_;
-    first_fit_in_order<true>(graph_, colours, part, Painter{newest_mark, newest_mark},
-                             [&](std::uint32_t v) { note(parts_[p].unsure, v); });
-  }
-  [[gnu::noinline]] static void note(std::vector<std::uint32_t>& list, std::uint32_t v) {
-    list.push_back(v);
+    std::vector<std::uint32_t>& unsure = parts_[p].unsure;
+    const auto note = [&](std::uint32_t v) __attribute__((noinline)) { unsure.push_back(v); };
+    first_fit_in_order<true>(graph_, colours, part, Painter{newest_mark, newest_mark}, note);
   }
 
   static void mark(std::vector<std::uint64_t>& bits, std::uint32_t v, bool is_marked = true) {

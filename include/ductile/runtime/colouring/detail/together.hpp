@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -13,6 +14,7 @@
 #include "ductile/runtime/colouring/detail/windows_in_order.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/hash.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -26,9 +28,10 @@ struct Shares {
 template <Graph G>
 class OrderOfGraph {
  public:
-  OrderOfGraph(const G& graph, std::size_t threads)
-      : graph_(graph), n_(graph.vertex_count()), threads_(threads) {
-    for (std::size_t i = 0; i < sampled; ++i) sample(n_ * (2 * i + 1) / (2 * sampled));
+  OrderOfGraph(const Executor& executor, const G& graph)
+      : executor_(executor), graph_(graph), n_(graph.vertex_count()) {
+    for (std::size_t& v : sample_) v = mix64(static_cast<std::uint64_t>(&v - sample_.data())) % n_;
+    for (const std::size_t v : sample_) look_at(v);
   }
 
   Shares shares() const {
@@ -38,18 +41,20 @@ class OrderOfGraph {
       return row >= least_row && row * 4 * threads_ <= n_
                  ? Shares{Shares::windows, static_cast<std::uint32_t>(row)}
                  : Shares{};
-    return crossing_ <= sampled / 16 ? Shares{Shares::parts} : Shares{};
+    // Repair in order takes longer than clashes do.
+    const std::size_t share = executor_.deterministic() ? 64 : 16;
+    return crossing_ <= sampled / share ? Shares{Shares::parts} : Shares{};
   }
 
  private:
-  static constexpr std::size_t sampled = 256, least_row = 512, most_looks = 8192;
+  static constexpr std::size_t sampled = 512, least_row = 512, most_looks = 16384;
 
-  void sample(std::size_t v) {
+  void look_at(std::size_t v) {
     std::size_t degree = 0;
     bool crosses = false;
     each(v, [&](std::size_t u) {
       ++degree;
-      crosses = crosses || part_of(u) != part_of(v);
+      crosses = crosses || u * threads_ / n_ != v * threads_ / n_;
     });
     entries_ += degree;
     if (degree >= many_neighbours) entries_of_hubs_ += degree;
@@ -62,7 +67,6 @@ class OrderOfGraph {
     graph_.for_each_neighbour(static_cast<std::uint32_t>(v),
                               [&](std::uint32_t u) { visit(std::size_t{u}); });
   }
-  std::size_t part_of(std::size_t v) const { return v * threads_ / n_; }
 
   /// How far before v the nearest earlier neighbour is; more than all if there is none.
   std::size_t gap_before(std::size_t v) const {
@@ -73,19 +77,29 @@ class OrderOfGraph {
     return gap;
   }
 
+  /// How far before v the farthest earlier neighbour is.
+  std::size_t reach_before(std::size_t v) const {
+    std::size_t reach = 0;
+    each(v, [&](std::size_t u) { reach = std::max(reach, u < v ? v - u : 0); });
+    return reach;
+  }
+
   /// The vertices in a row of a grid, or in a plane, whichever is more; 0 if it is no grid. Where
   /// one begins, the vertex before is no neighbour; nor are, where a plane does, those since the
-  /// row before.
+  /// row before. Neighbours reach as far everywhere, and farther than a row.
   std::size_t row_of_grid() const {
+    std::array<std::size_t, sampled> reach_of;
+    std::transform(sample_.begin(), sample_.end(), reach_of.begin(),
+                   [&](std::size_t v) { return reach_before(v); });
+    const std::size_t reach = *std::max_element(reach_of.begin(), reach_of.end());
+    if (std::count(reach_of.begin(), reach_of.end(), reach) < long{sampled} / 2) return 0;
     std::size_t row = 1;
-    for (std::size_t v = row, looks = 0; v <= n_ / 16 && looks < most_looks; v += row, ++looks)
+    for (std::size_t v = row; v <= reach && v <= most_looks * row; v += row)
       if (gap_before(v) > row) row = v;
-    if (row == 1) return 0;
-    for (std::size_t i = 0; i < sampled; ++i) {
-      const std::size_t v = n_ * (2 * i + 1) / (2 * sampled);
-      if (!follows_row_before(v, row) || !follows_row_before(v / row * row, row)) return 0;
-    }
-    return row;
+    const bool is_grid = std::all_of(sample_.begin(), sample_.end(), [&](std::size_t v) {
+      return follows_row_before(v, row) && follows_row_before(v / row * row, row);
+    });
+    return row > 1 && is_grid ? row : 0;
   }
 
   /// Whether v's earlier neighbours are in its own row or nearly all of a row before it.
@@ -97,8 +111,10 @@ class OrderOfGraph {
     return follows;
   }
 
+  const Executor& executor_;
   const G& graph_;
-  std::size_t n_, threads_;
+  std::size_t n_, threads_ = static_cast<std::size_t>(executor_.threads());
+  std::array<std::size_t, sampled> sample_{};      // vertices
   std::size_t entries_ = 0, entries_of_hubs_ = 0;  // of the sample's rows
   std::size_t chained_ = 0;                        // wait for one just before
   std::size_t crossing_ = 0;                       // have neighbours in another thread's part
@@ -109,8 +125,7 @@ struct Together {
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> colours) {
-    const auto threads = static_cast<std::size_t>(executor.threads());
-    const Shares shares = OrderOfGraph<G>(graph, threads).shares();
+    const Shares shares = OrderOfGraph<G>(executor, graph).shares();
     if (shares.kind == Shares::windows) {
       WindowsRun<Width, G>(executor, graph, colours, shares.window).run();
     } else {

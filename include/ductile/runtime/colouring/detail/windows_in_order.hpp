@@ -96,7 +96,7 @@ class WindowsRun {
     const Window all = window(number);
     for (std::uint32_t begin = all.begin; begin < all.end; begin += short_window) {
       const Window piece{begin, std::min(begin + short_window, all.end)};
-      if (size_ > short_window && number > 0) prefetch_colours(piece.end - size_);
+      if (size_ > short_window && number > 0) prefetch_colours(piece.begin - size_);
       first_fit_in_order<true>(graph_, colours_, piece,
                                HeedingPainter{{{mark, window_marks + mark}, after(piece)}, earlier},
                                colour_late);
@@ -120,16 +120,6 @@ class WindowsRun {
 
   /// Colours v when all neighbours before it have colours, and returns its own.
   [[gnu::noinline]] Word colour_late(std::uint32_t v) {
-    if constexpr (RowGraph<G> && has_many_colours<Colours<Width>>)
-      if (graph_.row(v).size() >= many_neighbours) {
-        Fit<Word> fit = first_fit_of_many(graph_, v, colours_, Width::marks);
-        if (fit.sees_others != 0) {
-          wait_for_earlier(v);
-          fit = first_fit_of_many(graph_, v, colours_, Width::marks);
-        }
-        colours_.set(v, fit.colour);
-        return fit.colour;
-      }
     wait_for_earlier(v);
     const Word colour = least_free(graph_, v, colours_);
     colours_.set(v, colour);
@@ -141,7 +131,7 @@ class WindowsRun {
   void wait_for_earlier(std::uint32_t v) const {
     graph_.for_each_neighbour(v, [&](std::uint32_t u) {
       if (u >= v || has_colour(u)) return;
-      const std::uint32_t ahead = size_ > short_window ? std::min(size_ / 2, 2 * short_window) : 0;
+      const std::uint32_t ahead = size_ > short_window ? size_ / 2 : 0;
       if (ahead > 0) wait_for(std::min(begin_of_line(u + ahead), window(u / size_).end - 1));
       wait_for(u);
     });
