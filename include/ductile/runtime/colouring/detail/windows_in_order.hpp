@@ -131,7 +131,8 @@ class WindowsRun {
   void wait_for_earlier(std::uint32_t v) const {
     graph_.for_each_neighbour(v, [&](std::uint32_t u) {
       if (u >= v || has_colour(u)) return;
-      const std::uint32_t ahead = size_ > short_window ? size_ / 2 : 0;
+      const auto threads = static_cast<std::uint32_t>(executor_.threads());
+      const std::uint32_t ahead = size_ > short_window ? size_ / threads : 0;
       if (ahead > 0) wait_for(std::min(begin_of_line(u + ahead), window(u / size_).end - 1));
       wait_for(u);
     });
