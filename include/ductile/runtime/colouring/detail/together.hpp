@@ -30,8 +30,7 @@ class OrderOfGraph {
  public:
   OrderOfGraph(const Executor& executor, const G& graph)
       : executor_(executor), graph_(graph), n_(graph.vertex_count()) {
-    for (std::size_t& v : sample_) v = mix64(static_cast<std::uint64_t>(&v - sample_.data())) % n_;
-    for (const std::size_t v : sample_) look_at(v);
+    for (std::size_t i = 0; i < sampled; ++i) look_at(sample_[i] = mix64(i + 1) % n_);
   }
 
   Shares shares() const {
@@ -50,11 +49,13 @@ class OrderOfGraph {
   static constexpr std::size_t sampled = 512, least_row = 512, most_looks = 16384;
 
   void look_at(std::size_t v) {
+    const std::size_t part = v * threads_ / n_;
+    const std::size_t begin = n_ * part / threads_, end = n_ * (part + 1) / threads_;
     std::size_t degree = 0;
     bool crosses = false;
     each(v, [&](std::size_t u) {
       ++degree;
-      crosses = crosses || u * threads_ / n_ != v * threads_ / n_;
+      crosses = crosses || u < begin || u >= end;
     });
     entries_ += degree;
     if (degree >= many_neighbours) entries_of_hubs_ += degree;

@@ -26,7 +26,6 @@ namespace ductile::runtime::detail {
 /// those of earlier windows are not those of later ones.
 constexpr std::uint32_t open_windows = 8;
 constexpr std::uint32_t window_marks = 2 * open_windows;
-
 constexpr std::uint32_t short_window = 256;
 
 /// Colours all vertices of the graph in windows of this many.
