@@ -28,13 +28,12 @@ class WokenItems {
       // Relaxed: whoever reads it waits for this one, or does not conflict with the item.
       std::uint32_t& round = woken->woken_in_[known(item, woken->woken_in_.size())];
       std::atomic_ref(round).store(woken->round_, std::memory_order_relaxed);
-      woken->items_.append(item);
+      woken->items_.mine().append(item);
     }
   };
 
   WokenItems(const Executor& executor, std::size_t resource_count)
-      : items_(executor, {.order = WorkOrder::by_item, .unique = true}),
-        woken_in_(make_filled<std::uint32_t>(executor, resource_count)) {}
+      : items_(executor), woken_in_(make_filled<std::uint32_t>(executor, resource_count)) {}
 
   void begin_round() { ++round_; }
 
@@ -49,11 +48,11 @@ class WokenItems {
 
   /// An item that comes back in the next round though nobody has woken it. Thread safety: any
   /// thread.
-  void postpone(Item item) { items_.append(item); }
+  void postpone(Item item) { items_.mine().append(item); }
 
   /// All of them, each once, in order: the next round's work.
   UnsetVector<Item> take() {
-    items_.collect();
+    items_.collect_unique();
     return items_.take();
   }
 
