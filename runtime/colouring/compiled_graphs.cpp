@@ -12,6 +12,7 @@
 #include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::runtime {
 

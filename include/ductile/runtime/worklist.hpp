@@ -205,4 +205,20 @@ void Worklist<T>::collect_unique() requires requires(const T& a) {
   collected_.erase(collected_.begin() + static_cast<std::ptrdiff_t>(kept), collected_.end());
 }
 
+/// What a loop finds: calls find(i, append) for i in [0, n); append(item) adds an item to the
+/// result, in which items of a lower i come first. Fewer than `serial_below` indices are looked at
+/// by the caller alone. Thread safety: one caller; runs on the executor.
+template <WorkItem Item, class Find>
+UnsetVector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find,
+                                   std::size_t serial_below = 0) {
+  Worklist<Item> found(executor);
+  parallel_for(executor, n, with(found),
+               [&](std::size_t i, const Appender<Item>& mine) {
+                 find(i, [&mine](Item item) { mine.append(std::move(item)); });
+               },
+               {.serial_below = serial_below});
+  found.collect();
+  return found.take();
+}
+
 }  // namespace ductile::runtime
