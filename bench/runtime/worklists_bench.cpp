@@ -81,7 +81,7 @@ using List = runtime::Worklist<std::uint32_t>;
 
 void fill(List& list, const Executor& executor, const Case& c) {
   list.clear();
-  parallel_for(executor, c.count, runtime::with(list), [&c](std::size_t i, const auto& mine) {
+  parallel_for(executor, c.count, runtime::with(list), [&c](std::size_t i, auto& mine) {
     if (c.finds(i)) mine.append(Case::item(i));
   });
 }

@@ -52,7 +52,7 @@ constexpr int thread_counts[] = {1, 2, 3, 4, 8};
 
 /// Item i is appended item(i) % 4 times.
 void append_items(Worklist<std::uint32_t>& list, const Executor& executor, std::size_t n) {
-  parallel_for(executor, n, with(list), [](std::size_t i, const auto& mine) {
+  parallel_for(executor, n, with(list), [](std::size_t i, auto& mine) {
     for (std::uint32_t k = 0; k < item(i) % 4; ++k) mine.append(item(i));
   });
 }
@@ -112,15 +112,15 @@ TEST(Worklist, HasTheSameOrderInEveryFormOfLoop) {
     const Executor executor({.threads = threads});
     Worklist<std::uint32_t> by_ranges(executor), one_by_one(executor), nested(executor);
     parallel_for_ranges(executor, n, [&](std::size_t begin, std::size_t end) {
-      const auto mine = by_ranges.mine();
+      auto mine = by_ranges.mine();
       for (std::size_t i = begin; i < end; ++i)
         for (std::uint32_t k = 0; k < item(i) % 4; ++k) mine.append(item(i));
     });
     parallel_for(executor, n, [&](std::size_t i) {
       for (std::uint32_t k = 0; k < item(i) % 4; ++k) one_by_one.mine().append(item(i));
     });
-    parallel_for(executor, n / inner, with(nested), [&](std::size_t i, const auto&) {
-      parallel_for(executor, inner, with(nested), [&](std::size_t k, const auto& mine) {
+    parallel_for(executor, n / inner, [&](std::size_t i) {
+      parallel_for(executor, inner, with(nested), [&](std::size_t k, auto& mine) {
         const std::size_t place = inner * i + k;
         for (std::uint32_t times = item(place) % 4; times > 0; --times) mine.append(item(place));
       });
@@ -148,7 +148,7 @@ TEST(Worklist, RefusesALoopOfAnotherExecutor) {
   for (int threads : thread_counts) {
     const Executor executor({.threads = threads}), other({.threads = threads + 1});
     Worklist<std::uint32_t> list(executor);
-    const auto append = [](std::size_t, const auto& mine) { mine.append(1); };
+    const auto append = [](std::size_t, auto& mine) { mine.append(1); };
     EXPECT_THROW(parallel_for(other, 1000, with(list), append), std::invalid_argument);
     EXPECT_THROW(parallel_for(other, 1, with(list), append), std::invalid_argument);
     EXPECT_THROW(parallel_for(executor, 1000,
@@ -159,11 +159,19 @@ TEST(Worklist, RefusesALoopOfAnotherExecutor) {
   }
 }
 
+TEST(Worklist, LendsAThreadOneAppenderAtATime) {
+  const Executor executor({.threads = 2});
+  Worklist<std::uint32_t> list(executor);
+  const auto append_twice = [&](std::size_t, auto& mine) { mine.append(1), list.mine().append(2); };
+  EXPECT_THROW(parallel_for(executor, 100, with(list), append_twice), std::logic_error);
+  append_items(list, executor, 100);
+}
+
 TEST(Worklist, CanBeClearedAfterALoopThatThrew) {
   for (int threads : thread_counts) {
     const Executor executor({.threads = threads});
     Worklist<std::uint32_t> list(executor);
-    const auto append = [](std::size_t i, const auto& mine) {
+    const auto append = [](std::size_t i, auto& mine) {
       if (i == 7000) throw std::runtime_error("stop");
       mine.append(item(i));
     };
@@ -225,7 +233,7 @@ TEST(Worklist, HoldsLargeOverAlignedItems) {
     Worklist<Large> list(executor);
     for (const bool unique : {false, true}) {
       parallel_for(executor, n, with(list),
-                   [](std::size_t i, const auto& mine) { mine.append(Large(item(i) % (n / 2))); });
+                   [](std::size_t i, auto& mine) { mine.append(Large(item(i) % (n / 2))); });
       unique ? list.collect_unique() : list.collect();
       const auto items = list.items();
       EXPECT_TRUE(
@@ -250,7 +258,7 @@ TEST(Worklist, LosesNothingWhenThereIsNoMemory) {
     Worklist<Large> list(executor);
     const auto fill = [&] {
       parallel_for(executor, 3000, with(list),
-                   [](std::size_t i, const auto& mine) { mine.append(Large(item(i))); });
+                   [](std::size_t i, auto& mine) { mine.append(Large(item(i))); });
     };
     most_bytes = 200 * sizeof(Large);
     EXPECT_THROW(fill(), std::bad_alloc);
@@ -278,9 +286,8 @@ TEST(Worklist, HoldsItemsThatCanOnlyBeMoved) {
   for (int threads : thread_counts) {
     const Executor executor({.threads = threads});
     Worklist<std::unique_ptr<std::size_t>> list(executor);
-    parallel_for(executor, n, with(list), [](std::size_t i, const auto& mine) {
-      mine.append(std::make_unique<std::size_t>(i));
-    });
+    parallel_for(executor, n, with(list),
+                 [](std::size_t i, auto& mine) { mine.append(std::make_unique<std::size_t>(i)); });
     list.collect();
     const auto all = list.take();
     ASSERT_EQ(all.size(), n) << threads;

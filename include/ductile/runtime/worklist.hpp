@@ -1,8 +1,8 @@
 /// @file
 /// Worklist: a bag of items that the threads of loops fill and one thread reads back afterwards, in
-/// the order in which one thread alone would have found them, or sorted and each once. A thread
-/// appends to an array of its own and notes from which item on it went through which range of
-/// iterations; collect() sorts the notes and copies each stretch of items to its place.
+/// the order in which one thread alone would have found them, or sorted and each once. collect()
+/// sorts the stretches of items that threads have appended, each in an array of its own, and copies
+/// each to its place.
 #pragma once
 
 #include <algorithm>
@@ -10,69 +10,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/detail/appender.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime {
-
-/// Moved where nothing may fail. Items need not be copyable.
-template <class T>
-concept WorkItem = std::movable<T> && std::is_nothrow_move_constructible_v<T>;
-
-namespace detail {
-
-/// Items from `first` on were appended in iterations [begin, end) of a loop, in order.
-struct Stretch {
-  std::uint64_t loop;
-  std::size_t begin, end;  // iterations
-  std::size_t first;       // item
-};
-
-template <class T>
-struct WorkLane {
-  UnsetVector<T> items;
-  std::vector<Stretch> stretches;
-
-  /// What is appended from now on comes from where the calling thread is. Throws std::bad_alloc.
-  void note_place() {
-    const LoopPlace& place = loop_place;
-    if (!stretches.empty()) {
-      Stretch& last = stretches.back();
-      const bool same_loop = last.loop == place.loop;
-      if (same_loop && last.begin <= place.begin && place.end <= last.end) return;
-      if (same_loop && last.end == place.begin) {  // where the last range ended
-        last.end = place.end;
-        return;
-      }
-      if (last.first == items.size()) stretches.pop_back();
-    }
-    stretches.push_back({place.loop, place.begin, place.end, items.size()});
-  }
-};
-
-}  // namespace detail
-
-/// One thread's way into a Worklist, from Worklist::mine(). Thread safety: that thread, while it
-/// runs the range of iterations for which it asked.
-template <WorkItem T>
-class Appender {
- public:
-  explicit Appender(detail::WorkLane<T>& lane) : items_(&lane.items) {}
-
-  /// Throws std::bad_alloc, or what copying the item throws; it is not appended then.
-  template <class U = T>
-  requires std::constructible_from<T, U>
-  void append(U&& item) const { items_->emplace_back(std::forward<U>(item)); }
-
- private:
-  UnsetVector<T>* items_;
-};
 
 /// An object serves one loop of its executor at a time.
 template <WorkItem T>
@@ -81,13 +30,16 @@ class Worklist {
   explicit Worklist(const Executor& executor) : executor_(executor), lanes_(executor) {}
 
   /// The calling thread's way in. parallel_for() asks for it by with(); otherwise ask once for a
-  /// range of iterations, or for an item, which takes longer. Throws std::bad_alloc, and
-  /// std::invalid_argument in a loop of an executor with another number of threads.
+  /// range of iterations, or for an item, which takes longer. Throws std::bad_alloc,
+  /// std::invalid_argument in a loop of an executor with another number of threads, and
+  /// std::logic_error while the thread has one already.
   /// Thread safety: any thread of a loop of the executor, or the caller outside of loops.
   Appender<T> mine() {
     detail::expect_loop_of(executor_, "a worklist");
-    lanes_.mine().note_place();
-    return Appender<T>(lanes_.mine());
+    detail::WorkLane<T>& lane = lanes_.mine();
+    if (lane.lent) throw std::logic_error("a worklist: the thread has an appender already");
+    lane.note_place();
+    return Appender<T>(lane);
   }
 
   /// Puts what was appended behind what was collected, in the order of iterations, those of one
@@ -123,14 +75,19 @@ class Worklist {
     std::size_t count, to;
   };
 
+  void take_all_of(detail::WorkLane<T>& lane) {
+    collected_.swap(lane.items);
+    if constexpr (detail::WorkLane<T>::has_rest) {
+      collected_.resize(lane.used);
+      lane.items.resize(lane.items.capacity());
+    }
+  }
+
   std::vector<Run> runs_in_order();
   void copy(const std::vector<Run>& runs, T* to);
 
   void clear_lanes() {
-    for (std::size_t t = 0; t < lanes_.size(); ++t) {
-      lanes_[t].items.clear();
-      lanes_[t].stretches.clear();
-    }
+    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].clear();
   }
 
   Executor executor_;
@@ -142,7 +99,7 @@ template <WorkItem T>
 auto Worklist<T>::runs_in_order() -> std::vector<Run> {
   std::vector<Run> runs;
   for (std::size_t t = 0; t < lanes_.size(); ++t) {
-    std::size_t end = lanes_[t].items.size();
+    std::size_t end = lanes_[t].used;
     for (auto s = lanes_[t].stretches.rbegin(); s != lanes_[t].stretches.rend(); ++s) {
       runs.push_back({*s, lanes_[t].items.data() + s->first, end - s->first, 0});
       end = s->first;
@@ -179,7 +136,7 @@ void Worklist<T>::collect() {
   const std::size_t before = collected_.size(), all = before + runs.back().to + runs.back().count;
   if (runs.size() == 1 && before == 0) {
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      if (!lanes_[t].items.empty()) collected_.swap(lanes_[t].items);
+      if (!lanes_[t].stretches.empty()) take_all_of(lanes_[t]);
   } else {
     collected_.reserve(all);
     detail::touch_pages(executor_, collected_.data(), all * sizeof(T));
@@ -213,7 +170,7 @@ UnsetVector<Item> parallel_collect(const Executor& executor, std::size_t n, Find
                                    std::size_t serial_below = 0) {
   Worklist<Item> found(executor);
   parallel_for(executor, n, with(found),
-               [&](std::size_t i, const Appender<Item>& mine) {
+               [&](std::size_t i, Appender<Item>& mine) {
                  find(i, [&mine](Item item) { mine.append(std::move(item)); });
                },
                {.serial_below = serial_below});
