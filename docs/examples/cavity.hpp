@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "plane.hpp"
 
 namespace example {

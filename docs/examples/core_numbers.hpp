@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "graphs.hpp"
 

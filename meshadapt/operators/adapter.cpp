@@ -8,7 +8,7 @@
 
 #include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "metric/demand.hpp"

@@ -10,7 +10,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/background.hpp"
 #include "ductile/meshadapt/mesh.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "operators/edge_range.hpp"
 #include "operators/edges.hpp"
 #include "operators/smooth.hpp"

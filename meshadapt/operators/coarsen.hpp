@@ -48,12 +48,12 @@ class Coarsen {
   std::size_t resource_count() const { return mesh_.vertex_slots(); }
   void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
-  // ---- Apply: stretch or remove own elements, hold and change lists, wake whom it concerns. All
-  // that get new neighbours are neighbours of the one that is kept. ----
+  // ---- Apply: stretch or remove own elements, hold and change lists, wake whom it concerns. Who
+  // gets new neighbours gets the one that is kept, so that one is postponed. ----
   void apply(VertexId, const Plan& plan, auto& commit) {
     collapse(plan);
     for (const VertexId v : plan.crowded) commit.wake(v);
-    if (mesh_.kind_of[plan.kept].freedom != 0) commit.wake(plan.kept);
+    if (mesh_.kind_of[plan.kept].freedom != 0) commit.postpone(plan.kept);
   }
 
  private:

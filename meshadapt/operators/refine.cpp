@@ -8,8 +8,8 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
 

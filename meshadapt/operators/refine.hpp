@@ -13,7 +13,7 @@
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edges.hpp"
 #include "operators/marked_set.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "operators/refine.hpp"
 

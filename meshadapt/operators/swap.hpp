@@ -13,8 +13,8 @@
 
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_range.hpp"
 

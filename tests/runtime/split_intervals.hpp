@@ -1,5 +1,5 @@
 /// @file
-/// SplitIntervals: a CautiousOperator for tests, whose faults can be switched on. A row of
+/// SplitIntervals: an Operator for tests, whose faults can be switched on. A row of
 /// intervals covers [0, 1); each is halved until it is short enough. Makes intervals and points.
 #pragma once
 
@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::test {
 

@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
-#include "ductile/runtime/detail/cautious_check.hpp"
-#include "ductile/runtime/detail/cautious_rounds.hpp"
 #include "ductile/runtime/detail/contract.hpp"
+#include "ductile/runtime/detail/operator_check.hpp"
+#include "ductile/runtime/detail/strategies.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime {
 
@@ -30,7 +30,7 @@ RoundsReport run_rounds_checked(const Executor& executor, Op& op, Work work,
                                 const RoundsOptions& options = {}) {
   detail::expect_whole_operator<Op>();
   const bool in_order = detail::strategy_of<Op>(executor, options) == Strategy::in_order;
-  return detail::CautiousCheck<Op>(op, in_order)
+  return detail::OperatorCheck<Op>(op, in_order)
       .run(detail::to_vector<typename Op::Item>(std::move(work)));
 }
 

@@ -1,7 +1,7 @@
 /// @file
 /// run_rounds: applies an operator to a set of items, and to those that it wakes, until none is
-/// left. A CautiousOperator reaches for what it reads and writes, and is run by one of several
-/// strategies (cautious_operator.hpp).
+/// left. An Operator reaches for what it reads and writes, and is run by one of several
+/// strategies (operator.hpp).
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
-#include "ductile/runtime/detail/cautious_rounds.hpp"
+#include "ductile/runtime/detail/strategies.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime {
 
-/// Applies `op`, a CautiousOperator, to `work`, and to whatever it wakes, until nothing is left, or
+/// Applies `op`, an Operator, to `work`, and to whatever it wakes, until nothing is left, or
 /// for most_rounds. The work is a vector of items, or whatever has size() and items by [i], see
 /// AllNumbers; where there are conflicts() it has each item once. With a deterministic executor the
 /// result does not depend on threads or timing, provided that the operator keeps its contract.
@@ -26,7 +26,7 @@ template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds(const Executor& executor, Op& op, Work work,
                         const RoundsOptions& options = {}) {
   detail::expect_whole_operator<Op>();
-  return detail::run_cautious_rounds(executor, op, std::move(work), options);
+  return detail::run_by_options(executor, op, std::move(work), options);
 }
 
 /// The same by a strategy that the compiler knows, which compiles no other. options.strategy does
@@ -41,10 +41,10 @@ requires(S != Strategy::automatic) RoundsReport
                    [&] { return detail::run_by<S>(executor, op, std::move(work), most_rounds); });
 }
 
-/// Runs a cautious operator by Strategy::in_order and returns the items that were applied, in the
+/// Runs an operator by Strategy::in_order and returns the items that were applied, in the
 /// order of the work, see run_rounds(). Fills in a report if there is one. Throws and
 /// thread safety as of run_rounds().
-template <CautiousOperator Op, class Work>
+template <Operator Op, class Work>
 std::vector<typename Op::Item> applied_in_order(const Executor& executor, Op& op, const Work& work,
                                                 RoundsReport* report = nullptr) {
   static_assert(detail::kinds_made<Op> == 0,

@@ -2,9 +2,9 @@
 /// parallel_sort, parallel_unique: sort by operator<, and drop repetitions, on all threads of an
 /// executor. The result does not depend on threads or timing as long as items of which neither is
 /// less are identical.
-/// Unsigned integers by radix or, by many threads, by samples; other types by sorted blocks merged
-/// pairwise, each merge cut into pieces of equal length ("merge path"). What is large, or can only
-/// be moved, stays where it is until its order is known.
+/// Integers of 32 and 64 bits without a sign are sorted by radix or, by many threads, by samples;
+/// other types by sorted blocks merged pairwise, each merge cut into pieces of equal length ("merge
+/// path"). What is large, or can only be moved, stays where it is until its order is known.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,12 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/detail/radix_sort.hpp"
-#include "ductile/runtime/detail/sample_sort.hpp"
-#include "ductile/runtime/detail/slots.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
@@ -30,28 +26,23 @@ namespace ductile::runtime {
 
 namespace sort_detail {
 
-/// Stable: sorts by value >> low. Few values are sorted soonest by one thread; of many, two or
-/// three threads share the passes of a radix sort as well as the buckets of a sample sort.
-template <std::unsigned_integral T>
-void sort_integers(const Executor& executor, std::span<T> values, unsigned low) {
-  const auto threads = static_cast<std::size_t>(executor.threads());
-  const std::size_t few = std::max<std::size_t>(4096, 16384 / threads);
-  const std::size_t most_sampled =
-      threads < 4 ? 300'000 : std::numeric_limits<std::uint32_t>::max();
-  if (threads == 1 || values.size() < few) {
-    radix_sort(Executor({.threads = 1}), values, low);
-  } else if (values.size() <= most_sampled) {
-    with_team(executor, [&] { sample_sort(executor, values, low); });
-  } else {
-    with_team(executor, [&] { radix_sort(executor, values, low); });
-  }
-}
+/// Integers that are sorted by their digits.
+template <class T>
+concept SortedByDigits = std::same_as<T, std::uint32_t> || std::same_as<T, std::uint64_t>;
 
-// Of items of most programs: compiled once.
-extern template void sort_integers(const Executor& executor, std::span<std::uint32_t> values,
-                                   unsigned low);
-extern template void sort_integers(const Executor& executor, std::span<std::uint64_t> values,
-                                   unsigned low);
+/// Stable: sorts by value >> low. Throws std::bad_alloc; no value is lost then.
+void sort_integers(const Executor& executor, std::span<std::uint32_t> values, unsigned low);
+void sort_integers(const Executor& executor, std::span<std::uint64_t> values, unsigned low);
+
+template <class T>
+void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
+  parallel_for_ranges(executor, from.size(),
+                      [&](std::size_t begin, std::size_t end) {
+                        const std::span part = from.subspan(begin, end - begin);
+                        std::copy(part.begin(), part.end(), to.data() + begin);
+                      },
+                      {.grain = 8192});
+}
 
 /// Of blocks that are sorted, merged or copied at once: enough of them for many threads.
 inline std::size_t block_size_of(std::size_t n) {
@@ -151,18 +142,11 @@ void sort_by_reference(const Executor& executor, std::span<T> values) {
   parallel_for(
       executor, order.size(), [&](std::size_t i) { order[i] = {&values[i]}; }, copying);
   sort_in_place(executor, order);
-  detail::Slots<T> sorted;
-  sorted.provide(executor, values.size());
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const Reference<T>& reference : order) sorted.push_back(std::move(*reference.value));
   parallel_for(
-      executor, order.size(), [&](std::size_t i) { sorted[i].emplace(std::move(*order[i].value)); },
-      copying);
-  parallel_for(
-      executor, order.size(),
-      [&](std::size_t i) {
-        values[i] = std::move(*sorted[i]);
-        sorted[i].reset();
-      },
-      copying);
+      executor, order.size(), [&](std::size_t i) { values[i] = std::move(sorted[i]); }, copying);
 }
 
 }  // namespace sort_detail
@@ -172,8 +156,7 @@ void sort_by_reference(const Executor& executor, std::span<T> values) {
 template <std::movable T>
 void parallel_sort(const Executor& executor, std::span<T> values) {
   if (sort_detail::is_sorted<T>(executor, values)) return;
-  // Not bool and characters, of which there is no bit_width.
-  if constexpr (std::unsigned_integral<T> && requires(T value) { std::bit_width(value); }) {
+  if constexpr (sort_detail::SortedByDigits<T>) {
     if (values.size() >= 1024) return sort_detail::sort_integers(executor, values, 0);
     std::sort(values.begin(), values.end());
   } else if constexpr (sort_detail::cheap_to_move<T>) {
@@ -183,9 +166,9 @@ void parallel_sort(const Executor& executor, std::span<T> values) {
   }
 }
 
-/// Sorts unsigned integers by value >> low; where that is the same they stay in order. Throws
+/// Sorts integers by value >> low; where that is the same they stay in order. Throws
 /// std::bad_alloc; no value is lost then. Thread safety: one thread.
-template <std::unsigned_integral T>
+template <sort_detail::SortedByDigits T>
 void parallel_sort_above(const Executor& executor, std::span<T> values, unsigned low) {
   if (!sort_detail::is_sorted<T>(executor, values))
     sort_detail::sort_integers(executor, values, low);

@@ -1,7 +1,7 @@
 /// @file
 /// ColourRounds: the strategy `colours`. Each round colours the conflict graph of its work, and
-/// runs the items of one colour at once, class after class. Whoever is woken leaves the round, and
-/// is the next round's work.
+/// runs the items of one colour at once, class after class. Items that were woken after their turn
+/// or postponed are the next round's work.
 #pragma once
 
 #include <atomic>
@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
@@ -41,18 +41,18 @@ class ColourRounds {
       : executor_(executor),
         op_(op),
         woken_(executor, op.resource_count()),
-        place_of_(make_filled<std::uint32_t>(executor, op.resource_count(), absent)) {}
+        turn_of_(woken_.turns()) {}
 
   /// Work has size() and items by [i].
   RoundsReport run(const auto& work, std::size_t most_rounds) {
-    UnsetVector<Item> next = known_items(executor_, work, place_of_.size());
+    UnsetVector<Item> next = known_items(executor_, work, turn_of_.size());
     while (!next.empty() && report_.rounds < most_rounds) next = run_round(next);
     report_.left = next.size();
     return report_;
   }
 
  private:
-  static constexpr std::uint32_t absent = 0xffffffffU;
+  static constexpr std::uint32_t absent = WokenItems::absent;
   /// What a thread needs for a class.
   struct Lane {
     typename Op::Plan plan{};
@@ -63,22 +63,37 @@ class ColourRounds {
     ++report_.rounds;
     woken_.begin_round();
     const ConflictClasses classes = classes_of(work);
-    for (std::size_t c = 0; c + 1 < classes.begin.size(); ++c)
-      run_class(work, std::span(classes.places)
-                          .subspan(classes.begin[c], classes.begin[c + 1] - classes.begin[c]));
+    const auto places_of = [&](std::size_t c) {
+      return std::span(classes.places)
+          .subspan(classes.begin[c], classes.begin[c + 1] - classes.begin[c]);
+    };
+    const std::size_t count = classes.begin.size() - 1;
+    for (std::size_t c = 0; c < count; ++c)
+      set_turns(work, places_of(c), static_cast<std::uint32_t>(c));
+    for (std::size_t c = 0; c < count; ++c)
+      run_class(work, places_of(c), static_cast<std::uint32_t>(c));
     const PhaseTimer timer(report_.wake_seconds);
+    set_turns(work, classes.places, absent);
     return woken_.take();
   }
 
+  void set_turns(std::span<const Item> work, std::span<const std::uint32_t> places,
+                 std::uint32_t turn) {
+    parallel_for(
+        executor_, places.size(), [&](std::size_t i) { turn_of_[work[places[i]]] = turn; },
+        few_nanoseconds);
+  }
+
+  /// Uses turn_of_ for the places of the items.
   ConflictClasses classes_of(std::span<const Item> work) {
     const PhaseTimer timer(report_.conflict_seconds);
     parallel_for(executor_, work.size(), [&](std::size_t i) {
-      std::atomic_ref(place_of_[work[i]])
+      std::atomic_ref(turn_of_[work[i]])
           .store(static_cast<std::uint32_t>(i), std::memory_order_relaxed);
     });
     std::vector<std::uint64_t> begin(work.size() + 1);
     parallel_for(executor_, work.size(), [&](std::size_t i) {
-      if (place_of_[work[i]] != i) throw_twice(work[i]);
+      if (turn_of_[work[i]] != i) throw_twice(work[i]);
       visit_places(work[i], [&](std::uint32_t) { ++begin[i + 1]; });
     });
     for (std::size_t i = 0; i < work.size(); ++i) begin[i + 1] += begin[i];
@@ -87,31 +102,30 @@ class ColourRounds {
       std::size_t at = begin[i];
       visit_places(work[i], [&](std::uint32_t place) { neighbours[at++] = place; });
     });
-    parallel_for(
-        executor_, work.size(), [&](std::size_t i) { place_of_[work[i]] = absent; },
-        few_nanoseconds);
     return classes_of_conflicts(executor_, begin, neighbours);
   }
 
   /// Of the conflicts that are in the work.
   void visit_places(Item item, auto&& visit) const {
     op_.conflicts(item, [&](Item other) {
-      if (place_of_[other] != absent) visit(place_of_[other]);
+      if (turn_of_[other] != absent) visit(turn_of_[other]);
     });
   }
 
-  void run_class(std::span<const Item> work, std::span<const std::uint32_t> places) {
+  void run_class(std::span<const Item> work, std::span<const std::uint32_t> places,
+                 std::uint32_t turn) {
     const PhaseTimer timer(report_.apply_seconds);
     ++report_.batches;
     PerThread<Lane> lanes(executor_);
     const auto run_item = [&](std::size_t i) {
       const Item item = work[places[i]];
-      if (woken_.has(item)) return;
+      if (woken_.is_postponed(item)) return;
       Lane& lane = lanes.mine();
       ReachAll reach;
       ++lane.planned;
       if (!std::as_const(op_).plan(item, lane.plan, reach)) return;
       auto commit = woken_.commit();
+      commit.turn = turn;
       op_.apply(item, lane.plan, commit);
       ++lane.applied;
     };
@@ -127,7 +141,7 @@ class ColourRounds {
   const Executor& executor_;
   Op& op_;
   WokenItems woken_;
-  UnsetVector<std::uint32_t> place_of_;  // [item], in the round's work, or absent
+  UnsetVector<std::uint32_t>& turn_of_;  // [item], its class
   RoundsReport report_;
 };
 

@@ -11,17 +11,17 @@
 namespace ductile::runtime {
 
 enum class ContractRule : std::uint8_t {
-  plan_only_reads,       ///< plan() twice gives the same
-  numbers_in_range,      ///< what is reached, conflicts() and items with conflicts() are below
-                         ///< resource_count()
-  conflicts_symmetric,   ///< whom an item conflicts with conflicts with it
-  touches_announced,     ///< what an item reads and writes it has reached for
-  fresh_demanded,        ///< apply() takes no more fresh numbers than demand() asked for
-  woken_if_in_conflict,  ///< of two that wait and get a new conflict one is woken
-  woken_if_plannable,    ///< who had its turn and can plan again is woken
-  gives_up_if_denied,    ///< plan() returns false once reach() has
-  nobody_woken,          ///< in strategy in_order
-  order_kept,            ///< in order, or in a level, what others do gives an item nothing new
+  plan_only_reads,      ///< plan() twice gives the same
+  numbers_in_range,     ///< what is reached, conflicts() and items with conflicts() are below
+                        ///< resource_count()
+  conflicts_symmetric,  ///< whom an item conflicts with conflicts with it
+  touches_announced,    ///< what an item reads and writes it has reached for
+  fresh_demanded,       ///< apply() takes no more fresh numbers than demand() asked for
+  new_conflict_told,    ///< of two that wait and get a new conflict one is postponed
+  woken_if_plannable,   ///< who had its turn and can plan again is woken
+  gives_up_if_denied,   ///< plan() returns false once reach() has
+  nobody_woken,         ///< in strategy in_order
+  order_kept,           ///< in order, or in a level, what others do gives an item nothing new
 };
 
 class ContractBroken : public std::logic_error {

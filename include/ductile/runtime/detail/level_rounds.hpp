@@ -16,10 +16,10 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/ordered_windows.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -12,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
 
-template <CautiousOperator Op>
+template <Operator Op>
 class LockRounds {
  public:
   using Item = typename Op::Item;
@@ -83,6 +83,7 @@ class LockRounds {
   struct PartCommit {
     Part& part;
     void wake(const Item& item) { part.stack.push_back(item); }
+    void postpone(const Item& item) { wake(item); }
     std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
       return part.pools[kind].take();
     }

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 

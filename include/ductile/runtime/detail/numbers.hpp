@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 

@@ -9,11 +9,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/ordered_stream.hpp"
 #include "ductile/runtime/detail/ordered_windows.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -24,6 +24,7 @@ struct OrderedCommit {
     throw std::logic_error(
         "strategy in_order: an item was woken, but only the work itself has an order");
   }
+  void postpone(const Item& item) const { wake(item); }
 };
 
 /// What runs a part of the work on several threads.
@@ -37,7 +38,7 @@ struct AtOnceOf<Op, Work> {
 };
 
 /// One run. Work has size() and items by [i].
-template <CautiousOperator Op, class Work>
+template <Operator Op, class Work>
 class OrderedRun {
  public:
   using Item = typename Op::Item;
@@ -106,7 +107,7 @@ class OrderedRun {
 
 /// Work has size() and items by [i]. applied(item) is told of each that was applied, in the order
 /// of the work.
-template <CautiousOperator Op, class Work>
+template <Operator Op, class Work>
 RoundsReport run_in_order(const Executor& executor, Op& op, const Work& work, auto&& applied) {
   return OrderedRun<Op, Work>(executor, op, work).run(applied);
 }

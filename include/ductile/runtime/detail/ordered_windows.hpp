@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
@@ -32,7 +32,7 @@ WindowSteps(Apply, Applied, Wake) -> WindowSteps<Apply, Applied, Wake>;
 
 /// One run. Work has size() and items by [i]. An item that has no plan leaves at once: those
 /// before it in its window give it none.
-template <CautiousOperator Op, class Work>
+template <Operator Op, class Work>
 class OrderedWindows {
  public:
   using Item = typename Op::Item;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 

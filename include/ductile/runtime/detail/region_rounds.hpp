@@ -17,11 +17,11 @@
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/detail/region_map.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
@@ -92,6 +92,7 @@ class RegionRounds {
     Map& map;
     RegionNumber number;
     void wake(const Item& item) { region.stack.push_back(item); }
+    void postpone(const Item& item) { wake(item); }
     std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
       const std::uint32_t taken = region.pools[kind].take();
       if (kind == 0) map.set_owner(taken, number);
@@ -101,6 +102,7 @@ class RegionRounds {
   struct OneByOneCommit {
     Region& region;
     void wake(const Item& item) { region.stack.push_back(item); }
+    void postpone(const Item& item) { wake(item); }
     std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
       return region.pools[kind].take();
     }

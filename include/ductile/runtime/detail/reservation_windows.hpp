@@ -15,16 +15,16 @@
 #include <vector>
 
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime::detail {
 
-template <CautiousOperator Op>
+template <Operator Op>
 class ReservationWindows {
  public:
   using Item = typename Op::Item;
@@ -87,6 +87,7 @@ class ReservationWindows {
   struct SlotCommit {
     Slot& slot;
     void wake(const Item& item) { slot.woken.push_back(item); }
+    void postpone(const Item& item) { wake(item); }
     std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
       if (slot.next[kind] == slot.end[kind]) [[unlikely]]
         throw std::logic_error("apply() takes more fresh numbers than demand() asked for");

@@ -1,6 +1,6 @@
 /// @file
-/// TileRounds: the strategy `tiles`. Each round runs its work in tiles (tiles.hpp). Whoever is
-/// woken leaves the round, and is the next round's work, with those that were late.
+/// TileRounds: the strategy `tiles`. Each round runs its work in tiles (tiles.hpp). Items that were
+/// woken after their turn, postponed or late are the next round's work.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 #include <span>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/tiles.hpp"
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
@@ -24,14 +24,11 @@ class TileRounds {
   using Item = std::uint32_t;
 
   TileRounds(const Executor& executor, Op& op)
-      : executor_(executor),
-        op_(op),
-        woken_(executor, op.resource_count()),
-        turn_of_(make_filled<std::uint32_t>(executor, op.resource_count(), Turns::absent)) {}
+      : executor_(executor), op_(op), woken_(executor, op.resource_count()) {}
 
   /// Work has size() and items by [i].
   RoundsReport run(const auto& work, std::size_t most_rounds) {
-    UnsetVector<Item> next = known_items(executor_, work, turn_of_.size());
+    UnsetVector<Item> next = known_items(executor_, work, woken_.turns().size());
     while (!next.empty() && report_.rounds < most_rounds) next = run_round(next);
     report_.left = next.size();
     return report_;
@@ -46,21 +43,20 @@ class TileRounds {
     run_tiles(work);
     const PhaseTimer timer(report_.wake_seconds);
     parallel_for(
-        executor_, work.size(), [&](std::size_t i) { turn_of_[work[i]] = Turns::absent; },
+        executor_, work.size(), [&](std::size_t i) { woken_.turns()[work[i]] = woken_.absent; },
         few_nanoseconds);
-    for (const Item item : all.subspan(work.size())) woken_.postpone(item);
+    for (const Item item : all.subspan(work.size())) woken_.bring_back(item);
     return woken_.take();
   }
 
   void run_tiles(std::span<const Item> work) {
-    std::optional<Tiles<Op, WokenItems::Commit>> tiles;
+    std::optional<Tiles<Op>> tiles;
     {
       const PhaseTimer timer(report_.conflict_seconds);
-      tiles.emplace(executor_, op_, work, turn_of_.data());
+      tiles.emplace(executor_, op_, work, woken_);
     }
     const PhaseTimer timer(report_.apply_seconds);
-    tiles->run([&] { return woken_.commit(); }, [&](Item item) { return !woken_.has(item); },
-               [&](Item item) { woken_.postpone(item); });
+    tiles->run();
     const auto [planned, applied] = tiles->counts();
     report_.planned += planned;
     report_.applied += applied;
@@ -70,7 +66,6 @@ class TileRounds {
   const Executor& executor_;
   Op& op_;
   WokenItems woken_;
-  UnsetVector<std::uint32_t> turn_of_;  // [item], in the round, see Turns
   RoundsReport report_;
 };
 

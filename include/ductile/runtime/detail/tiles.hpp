@@ -20,12 +20,12 @@
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/block_layout.hpp"
 #include "ductile/runtime/detail/ranked_blocks.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
@@ -35,7 +35,6 @@ namespace ductile::runtime::detail {
 struct Turns {
   static constexpr unsigned rank_bits = 5, place_bits = 32 - rank_bits;
   static constexpr std::uint32_t most_items = (1U << place_bits) - 1;
-  static constexpr std::uint32_t absent = 0xffffffffU;  ///< of an item that is not in the work
 
   static std::uint32_t at(std::uint32_t rank, std::size_t place) {
     return rank << place_bits | static_cast<std::uint32_t>(place);
@@ -43,19 +42,18 @@ struct Turns {
   static std::uint32_t place_of(std::uint32_t turn) { return turn & most_items; }
 };
 
-/// Commit is what apply() is handed.
-template <ConflictingOperator Op, class Commit>
+template <ConflictingOperator Op>
 class Tiles {
  public:
   using Item = std::uint32_t;
 
-  /// Looks at the conflicts of at most Turns::most_items items. turn_of is [item]; it is to be
-  /// Turns::absent for all, and has the turns of the work then. All of these outlive this. Throws
-  /// std::invalid_argument if an item is in the work twice.
-  Tiles(const Executor& executor, Op& op, std::span<const Item> work, std::uint32_t* turn_of)
+  /// Looks at the conflicts of at most Turns::most_items items, and sets their turns. All of these
+  /// outlive this. Throws std::invalid_argument if an item is in the work twice.
+  Tiles(const Executor& executor, Op& op, std::span<const Item> work, WokenItems& woken)
       : op_(op),
         work_(work),
-        turn_of_(turn_of),
+        woken_(woken),
+        turn_of_(woken.turns().data()),
         layout_(layout_of(work.size())),
         tiles_(executor, tile_count(), [&](std::size_t tile) { return rank_of(tile); }),
         is_late_(std::make_unique_for_overwrite<bool[]>(work.size())),
@@ -73,17 +71,16 @@ class Tiles {
                    {.grain = 1, .serial_below = few_to_survey >> layout_.block_bits});
   }
 
-  /// Plans and applies the items for which is_here(item) holds when they have their turn, each with
-  /// a commit of its tile; calls leaving_out(item) for those that are late.
-  void run(auto&& new_commit, auto&& is_here, auto&& leaving_out) {
+  /// Plans and applies the items, those that are late or postponed excepted; late ones come back.
+  void run() {
     const auto advance = [&](Begun& begun) {
       const std::size_t before = first_before(begun);
-      if (before == none) run_items(begun, is_here, leaving_out);
+      if (before == none) run_items(begun.tile);
       return before;
     };
     const auto begin = [&](std::size_t tile) {
       if (conflicts_stay) survey(tile);
-      return Begun{tile, new_commit()};
+      return Begun{tile};
     };
     tiles_.run(begin, advance);
   }
@@ -104,7 +101,6 @@ class Tiles {
   /// A tile that a thread has begun, and how many of those it waits for were seen to be done.
   struct Begun {
     std::size_t tile;
-    Commit commit;
     std::size_t seen = 0;
   };
   using Ranked = RankedBlocks<Begun>;
@@ -146,7 +142,7 @@ class Tiles {
   void survey(std::size_t tile) {
     const std::span<const Item> items = items_of(tile);
     Met& met = met_.mine();
-    met.last_of.resize(tile_count(), Turns::absent);
+    met.last_of.resize(tile_count(), WokenItems::absent);
     const auto begin = static_cast<std::uint32_t>(met.tiles.size());
     for (std::size_t i = 0; i < items.size() + 2 * ahead; ++i) {
       if (i < items.size()) prefetch_item(op_, items[i], 2);
@@ -203,15 +199,16 @@ class Tiles {
 
   /// Asks ahead only for items that run: others may change at the same time what belongs to one
   /// that has left the round.
-  void run_items(Begun& begun, auto&& is_here, auto&& leaving_out) {
-    const std::span<const Item> items = items_of(begun.tile);
-    const bool* const late = is_late_.get() + first_place(begun.tile);
+  void run_items(std::size_t tile) {
+    const std::span<const Item> items = items_of(tile);
+    const bool* const late = is_late_.get() + first_place(tile);
     const auto runs = [&](std::size_t i) {
-      return i < items.size() && !late[i] && is_here(items[i]);
+      return i < items.size() && !late[i] && !woken_.is_postponed(items[i]);
     };
     typename Op::Plan plan{};
     ReachAll reach;
-    Counts& counts = counts_of_[begun.tile];
+    auto commit = woken_.commit();
+    Counts& counts = counts_of_[tile];
     for (std::size_t i = 0; i < items.size() + 3 * ahead; ++i) {
       for (const int stage : {2, 1, 0}) {
         const std::size_t asked = i - static_cast<std::size_t>(2 - stage) * ahead;
@@ -219,17 +216,19 @@ class Tiles {
       }
       const std::size_t now = i - 3 * ahead;
       if (now >= items.size()) continue;
-      if (late[now]) leaving_out(items[now]);
+      if (late[now]) woken_.bring_back(items[now]);
       if (!runs(now)) continue;
       ++counts.planned;
       if (!std::as_const(op_).plan(items[now], plan, reach)) continue;
       ++counts.applied;
-      op_.apply(items[now], plan, begun.commit);
+      commit.turn = turn_at(first_place(tile) + now);
+      op_.apply(items[now], plan, commit);
     }
   }
 
   Op& op_;
   std::span<const Item> work_;
+  WokenItems& woken_;
   std::uint32_t* turn_of_;  // [item]
   BlockLayout layout_;
   Ranked tiles_;

@@ -1,5 +1,6 @@
 /// @file
-/// WokenItems: which items were woken in a round, for the strategies in which those leave it.
+/// WokenItems: which items were woken or postponed in a round, for the strategies of items with
+/// conflicts, in which each has its turn at a time that is known when the round begins.
 #pragma once
 
 #include <atomic>
@@ -21,34 +22,47 @@ class WokenItems {
  public:
   using Item = std::uint32_t;
 
+  static constexpr std::uint32_t absent = 0xffffffffU;  ///< the turn of what is not in the work
+
   /// What apply() is handed.
   struct Commit {
-    WokenItems* woken;
-    void wake(Item item) {
+    WokenItems& woken;
+    std::uint32_t turn = 0;  ///< of the item that is applied
+
+    void wake(Item item) const {
+      const std::uint32_t own = woken.turn_of_[known(item, woken.turn_of_.size())];
+      if (own == absent || own <= turn) woken.items_.mine().append(item);
+    }
+    void postpone(Item item) const {
       // Relaxed: whoever reads it waits for this one, or does not conflict with the item.
-      std::uint32_t& round = woken->woken_in_[known(item, woken->woken_in_.size())];
-      std::atomic_ref(round).store(woken->round_, std::memory_order_relaxed);
-      woken->items_.mine().append(item);
+      std::uint32_t& round = woken.postponed_in_[known(item, woken.turn_of_.size())];
+      std::atomic_ref(round).store(woken.round_, std::memory_order_relaxed);
+      woken.bring_back(item);
     }
   };
 
   WokenItems(const Executor& executor, std::size_t resource_count)
-      : items_(executor), woken_in_(make_filled<std::uint32_t>(executor, resource_count)) {}
+      : items_(executor),
+        postponed_in_(make_filled<std::uint32_t>(executor, resource_count)),
+        turn_of_(make_filled<std::uint32_t>(executor, resource_count, absent)) {}
 
   void begin_round() { ++round_; }
 
+  /// [item], when each has its turn: a lower number before a higher one where two conflict. Set for
+  /// a round's work and reset to `absent` afterwards by whoever runs it.
+  UnsetVector<std::uint32_t>& turns() { return turn_of_; }
+
   /// Thread safety: any thread. Also asked ahead of an item that another thread plans meanwhile:
   /// what it reads is either of two that say the same.
-  bool has(Item item) {
-    return std::atomic_ref(woken_in_[item]).load(std::memory_order_relaxed) == round_;
+  bool is_postponed(Item item) {
+    return std::atomic_ref(postponed_in_[item]).load(std::memory_order_relaxed) == round_;
   }
 
   /// Thread safety: any thread.
-  Commit commit() { return {this}; }
+  Commit commit() { return {*this}; }
 
-  /// An item that comes back in the next round though nobody has woken it. Thread safety: any
-  /// thread.
-  void postpone(Item item) { items_.mine().append(item); }
+  /// For the next round. Thread safety: any thread.
+  void bring_back(Item item) { items_.mine().append(item); }
 
   /// All of them, each once, in order: the next round's work.
   UnsetVector<Item> take() {
@@ -58,7 +72,8 @@ class WokenItems {
 
  private:
   Worklist<Item> items_;
-  UnsetVector<std::uint32_t> woken_in_;  // [item], the last round
+  UnsetVector<std::uint32_t> postponed_in_;  // [item], the last round
+  UnsetVector<std::uint32_t> turn_of_;
   std::uint32_t round_ = 0;
 };
 

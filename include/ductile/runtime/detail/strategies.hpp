@@ -1,5 +1,5 @@
 /// @file
-/// run_cautious_rounds: which strategy runs a CautiousOperator.
+/// run_by_options: which strategy runs an Operator.
 #pragma once
 
 // The headers of the strategies:
@@ -20,7 +20,6 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/colour_rounds.hpp"
 #include "ductile/runtime/detail/level_rounds.hpp"
 #include "ductile/runtime/detail/lock_rounds.hpp"
@@ -29,6 +28,7 @@
 #include "ductile/runtime/detail/reservation_windows.hpp"
 #include "ductile/runtime/detail/tile_rounds.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -36,13 +36,13 @@ namespace ductile::runtime::detail {
 /// used.
 template <class Op>
 constexpr void expect_whole_operator() {
-  static_assert(CautiousOperator<Op>,
+  static_assert(Operator<Op>,
                 "an operator has bool plan(const Item&, Plan&, auto& reach) const, "
                 "apply(const Item&, Plan&, auto& commit) and resource_count() const");
   constexpr bool makes_things = requires { &Op::demand; }
   || requires { &Op::counts; }
   || requires { &Op::grow; };
-  static_assert(!makes_things || GrowingCautiousOperator<Op>,
+  static_assert(!makes_things || GrowingOperator<Op>,
                 "an operator that makes things has demand(const Plan&) const, counts() const, "
                 "grow(room) and renumber(kind, std::span<const Renumbered>, count), of arrays of "
                 "one size");
@@ -59,7 +59,7 @@ constexpr void expect_whole_operator() {
 }
 
 /// Throws std::invalid_argument if the operator or the executor lacks what the strategy needs.
-template <CautiousOperator Op>
+template <Operator Op>
 void expect_possible(const Executor& executor, Strategy strategy) {
   constexpr bool makes_things = kinds_made<Op> != 0;
   const auto expect = [&](bool holds, const char* message) {
@@ -92,7 +92,7 @@ void expect_possible(const Executor& executor, Strategy strategy) {
 }
 
 /// The strategy that options and operator ask for. Throws as expect_possible().
-template <CautiousOperator Op>
+template <Operator Op>
 Strategy strategy_of(const Executor& executor, const RoundsOptions& options) {
   if constexpr (LevelledOperator<Op>) {
     if (options.strategy == Strategy::automatic || options.strategy == Strategy::reservations)
@@ -120,7 +120,7 @@ std::vector<Item> to_vector(const auto& work) {
 }
 
 /// Runs by a strategy that is possible. Work has size() and items by [i].
-template <Strategy S, CautiousOperator Op, class Work>
+template <Strategy S, Operator Op, class Work>
 RoundsReport run_by(const Executor& executor, Op& op, Work work, std::size_t most_rounds) {
   using Item = typename Op::Item;
   const auto items = [&] { return to_vector<Item>(std::move(work)); };
@@ -137,9 +137,9 @@ RoundsReport run_by(const Executor& executor, Op& op, Work work, std::size_t mos
   if constexpr (S == Strategy::locks) return LockRounds<Op>(executor, op).run(items(), most_rounds);
 }
 
-template <CautiousOperator Op, class Work>
-RoundsReport run_cautious_rounds(const Executor& executor, Op& op, Work work,
-                                 const RoundsOptions& options) {
+template <Operator Op, class Work>
+RoundsReport run_by_options(const Executor& executor, Op& op, Work work,
+                            const RoundsOptions& options) {
   const Strategy strategy = strategy_of<Op>(executor, options);
   const auto most_rounds = static_cast<std::size_t>(options.most_rounds);
   const auto run = [&]<Strategy S>() {

@@ -1,5 +1,5 @@
 /// @file
-/// CautiousCheck: runs a CautiousOperator on one thread, one item at a time, and throws
+/// OperatorCheck: runs an Operator on one thread, one item at a time, and throws
 /// ContractBroken where it does something that would be wrong, or would depend on timing, on many.
 #pragma once
 
@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/runtime/cautious_operator.hpp"
 #include "ductile/runtime/detail/contract.hpp"
 #include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/numbers.hpp"
 #include "ductile/runtime/hash.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime::detail {
 
@@ -34,14 +34,14 @@ std::string item_name(const Item& item, std::size_t place) {
   }
 }
 
-template <CautiousOperator Op>
-class CautiousCheck {
+template <Operator Op>
+class OperatorCheck {
  public:
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
 
   /// Nobody may be woken if `in_order`.
-  CautiousCheck(Op& op, bool in_order) : op_(op), in_order_(in_order) {
+  OperatorCheck(Op& op, bool in_order) : op_(op), in_order_(in_order) {
     if constexpr (kinds > 0) {
       const auto counts = op.counts();
       std::copy(counts.begin(), counts.end(), top_.begin());
@@ -103,13 +103,18 @@ class CautiousCheck {
     }
   };
   struct CheckedCommit {
-    CautiousCheck& check;
+    OperatorCheck& check;
     const Numbered& item;
     std::array<std::size_t, kinds> next{}, end{};
-    std::vector<Item> woken{};
+    std::vector<Item> postponed{};
+    bool has_woken = false;
     void wake(const Item& also) {
-      woken.push_back(also);
+      has_woken = true;
       check.add(also);
+    }
+    void postpone(const Item& also) {
+      postponed.push_back(also);
+      wake(also);
     }
     std::uint32_t fresh(std::size_t kind = 0) requires(kinds > 0) {
       if (next[kind] == end[kind])
@@ -255,8 +260,8 @@ class CautiousCheck {
     std::sort(decision.reached.begin(), decision.reached.end());
     for (const Watched& other : others) expect_unchanged(other, item, decision.reached);
     if constexpr (ConflictingOperator<Op>)
-      for (const Watched& other : others) expect_woken(other, item, commit.woken);
-    if (in_order_ && !commit.woken.empty())
+      for (const Watched& other : others) expect_postponed(other, item, commit.postponed);
+    if (in_order_ && commit.has_woken)
       refuse(ContractRule::nobody_woken, item,
              "it wakes an item, but in strategy in_order only the work itself has an order");
   }
@@ -290,24 +295,24 @@ class CautiousCheck {
     return others;
   }
 
-  /// Of two that wait and have got a new conflict by what was applied, has one been woken?
-  void expect_woken(const Watched& other, const Numbered& applied,
-                    const std::vector<Item>& woken) const {
-    const auto is_woken = [&](std::uint32_t item) {
-      return std::find(woken.begin(), woken.end(), item) != woken.end();
+  /// Of two that wait and have got a new conflict by what was applied, has one been postponed?
+  void expect_postponed(const Watched& other, const Numbered& applied,
+                        const std::vector<Item>& postponed) const {
+    const auto is_postponed = [&](std::uint32_t item) {
+      return std::find(postponed.begin(), postponed.end(), item) != postponed.end();
     };
     if constexpr (requires { Op::keeps_conflicts; })
       if (conflicts_of(other.item.item) != other.conflicts)
-        refuse(ContractRule::woken_if_in_conflict, other.item,
+        refuse(ContractRule::new_conflict_told, other.item,
                "its conflicts changed when item " + name_of(applied) +
                    " was applied, though the operator has a member keeps_conflicts");
-    if (is_woken(other.item.item)) return;
+    if (is_postponed(other.item.item)) return;
     for (const std::uint32_t with : conflicts_of(other.item.item))
-      if (with != other.item.item && waits_of_[with] > 0 && !is_woken(with) &&
+      if (with != other.item.item && waits_of_[with] > 0 && !is_postponed(with) &&
           !std::binary_search(other.conflicts.begin(), other.conflicts.end(), with))
-        refuse(ContractRule::woken_if_in_conflict, other.item,
+        refuse(ContractRule::new_conflict_told, other.item,
                "it got a conflict with item " + std::to_string(with) + " when item " +
-                   name_of(applied) + " was applied, which has woken neither");
+                   name_of(applied) + " was applied, which has postponed neither");
   }
 
   /// `reached` is ascending: what the item that was applied had reached.

@@ -17,22 +17,13 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/sort.hpp"
 
 namespace ductile::runtime::sort_detail {
 
 constexpr unsigned digit_bits = 11;
 constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
 using DigitCounts = std::array<std::size_t, digit_count>;
-
-template <class T>
-void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
-  parallel_for_ranges(executor, from.size(),
-                      [&](std::size_t begin, std::size_t end) {
-                        const std::span part = from.subspan(begin, end - begin);
-                        std::copy(part.begin(), part.end(), to.data() + begin);
-                      },
-                      {.grain = 8192});
-}
 
 /// One pass over the digit at `shift`, in blocks of `block` values.
 struct DigitPass {

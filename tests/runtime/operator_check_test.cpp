@@ -24,7 +24,7 @@ void expect_caught(ContractRule rule, Op op, std::vector<typename Op::Item> work
   }
 }
 
-TEST(CautiousCheck, FindsEachFaultOfAnOperatorThatMakesThings) {
+TEST(OperatorCheck, FindsEachFaultOfAnOperatorThatMakesThings) {
   struct Case {
     IntervalFaults faults;
     ContractRule rule;
@@ -43,7 +43,7 @@ TEST(CautiousCheck, FindsEachFaultOfAnOperatorThatMakesThings) {
   }
 }
 
-TEST(CautiousCheck, LetsASoundOperatorPass) {
+TEST(OperatorCheck, LetsASoundOperatorPass) {
   for (const std::size_t count : {1, 5, 300}) {
     SplitIntervals<3> op(count, 7e-4);
     const RoundsReport report = run_rounds_checked(Executor({.threads = 2}), op, op.all_items());
@@ -93,7 +93,7 @@ class Sums {
   SumFaults faults_;
 };
 
-TEST(CautiousCheck, FindsEachFaultOfAnOperatorInOrder) {
+TEST(OperatorCheck, FindsEachFaultOfAnOperatorInOrder) {
   const auto work = all_items(100);
   expect_caught(ContractRule::touches_announced, Sums({.hides_next = true}), work);
   expect_caught(ContractRule::conflicts_symmetric, Sums({.is_one_sided = true}), work);
@@ -132,7 +132,7 @@ class Probing {
   bool reaches_ahead_;
 };
 
-TEST(CautiousCheck, FindsWhatDependsOnMoreThanEarlierItems) {
+TEST(OperatorCheck, FindsWhatDependsOnMoreThanEarlierItems) {
   expect_caught(ContractRule::order_kept, Probing(false), all_items(150), Strategy::in_order);
   Probing checked(true), run(true);
   run_rounds_checked(Executor({.threads = 2}), checked, all_items(150),
@@ -156,7 +156,7 @@ class Countdown {
   }
 };
 
-TEST(CautiousCheck, FindsWhoWasNotWoken) {
+TEST(OperatorCheck, FindsWhoWasNotWoken) {
   Countdown op;
   expect_caught(ContractRule::woken_if_plannable, op, all_items(3));
   // In order nobody is woken, so that it counts down once.
@@ -168,7 +168,7 @@ TEST(CautiousCheck, FindsWhoWasNotWoken) {
 }
 
 /// An item that is none, and leads out of its array.
-TEST(CautiousCheck, NamesTheItemThatReachesForWhatIsNot) {
+TEST(OperatorCheck, NamesTheItemThatReachesForWhatIsNot) {
   Countdown op;
   try {
     run_rounds_checked(Executor(), op, {0, 4000000000U});

@@ -1,5 +1,5 @@
 /// @file
-/// CautiousOperator: what an algorithm tells run_rounds about its items, and nothing about threads.
+/// Operator: what an algorithm tells run_rounds about its items, and nothing about threads.
 /// It is cautious: it reaches for whatever it reads before it writes anything, and gives up where
 /// it is told to. So every strategy can run it: only what reach() says differs. Options and report
 /// of a run are here, too.
@@ -17,7 +17,7 @@
 
 namespace ductile::runtime {
 
-/// How a CautiousOperator is run. All but `locks` give the same result at any number of threads.
+/// How an Operator is run. All but `locks` give the same result at any number of threads.
 enum class Strategy : std::uint8_t {
   automatic,     ///< reservations if the operator has level(), locks if the executor need not be
                  ///< deterministic; otherwise regions if it has place_of(), in_order if it has
@@ -53,6 +53,7 @@ struct AnyReach {
 template <class Item>
 struct AnyCommit {
   void wake(const Item& item);
+  void postpone(const Item& item);
   std::uint32_t fresh(std::size_t kind = 0);
 };
 
@@ -71,14 +72,15 @@ struct AnyCommit {
 ///                            false, it returns false at once. It has reached for something before
 ///                            it returns true, and for the same thing first each time
 ///   apply(item, plan, commit)  carries the plan out: writes what was reached, and what is its own
-///                            by commit.fresh(kind). commit.wake(item) adds an item to the work
+///                            by commit.fresh(kind). commit.wake(item) adds an item to the work,
+///                            and so does commit.postpone(item), see ConflictingOperator
 ///
 /// `reach` and `commit` are of types that depend on the strategy: take them by `auto&`. All members
 /// are called by many threads.
 template <class Op>
-concept CautiousOperator = requires(const Op& reader, Op& op, const typename Op::Item& item,
-                                    typename Op::Plan& plan, detail::AnyReach& reach,
-                                    detail::AnyCommit<typename Op::Item>& commit) {
+concept Operator = requires(const Op& reader, Op& op, const typename Op::Item& item,
+                            typename Op::Plan& plan, detail::AnyReach& reach,
+                            detail::AnyCommit<typename Op::Item>& commit) {
   requires std::copyable<typename Op::Item> && std::default_initializable<typename Op::Item>;
   requires std::default_initializable<typename Op::Plan>;
   { reader.plan(item, plan, reach) } -> std::same_as<bool>;
@@ -90,21 +92,21 @@ concept CautiousOperator = requires(const Op& reader, Op& op, const typename Op:
 /// visits all others that it may reach, of which each may reach it, too; repetition is allowed. An
 /// item runs beside any with which it has no conflict. What two such both write, as a mark of a
 /// common neighbour (atomic.hpp) or its list under a lock, comes out the same in any order.
-/// An item wakes only itself and those that it conflicts with. If applying gives conflicts to
-/// others, one of each pair is woken: until its round is over, an item has the conflicts that it
-/// had at first, and whoever is woken leaves the round. An operator that never changes conflicts
-/// may say so by a static member `keeps_conflicts`, which saves time in tiles.
+/// An item wakes only itself and those that it conflicts with; one that still waits for its turn in
+/// the round has it there. Until its round is over, an item has the conflicts that it had at first:
+/// if applying gives conflicts to others, one of each pair is postponed, that is, leaves the round
+/// and comes back in the next. An operator that never changes conflicts may say so by a static
+/// member `keeps_conflicts`, which saves time in tiles.
 template <class Op>
-concept ConflictingOperator = CautiousOperator<Op> &&
-    std::same_as<typename Op::Item, std::uint32_t> && requires(const Op& op, std::uint32_t item) {
+concept ConflictingOperator = Operator<Op> && std::same_as<typename Op::Item, std::uint32_t> &&
+    requires(const Op& op, std::uint32_t item) {
   op.conflicts(item, [](std::uint32_t) {});
 };
 
 /// Where reservations meet, the lower priority(item) wins. Items are then taken in the order of the
 /// work, window by window, so the priority counts among those that are near in it.
 template <class Op>
-concept RankedOperator = CautiousOperator<Op> &&
-    requires(const Op& op, const typename Op::Item& item) {
+concept RankedOperator = Operator<Op> && requires(const Op& op, const typename Op::Item& item) {
   { op.priority(item) } -> std::same_as<std::uint32_t>;
 };
 
@@ -113,7 +115,7 @@ concept RankedOperator = CautiousOperator<Op> &&
 /// stage can follow what the one before has brought; now and then a stage is left out. Const, and
 /// it only reads.
 template <class Op>
-concept PrefetchingOperator = CautiousOperator<Op> &&
+concept PrefetchingOperator = Operator<Op> &&
     requires(const Op& op, const typename Op::Item& item) {
   op.prefetch(item, 2);
 };
@@ -121,7 +123,7 @@ concept PrefetchingOperator = CautiousOperator<Op> &&
 /// place_of(resource) is where a resource lies, in a plane or in space: what is reached together
 /// lies together. It is asked for between phases, of the resources that are there.
 template <class Op>
-concept PlacedOperator = CautiousOperator<Op> &&(
+concept PlacedOperator = Operator<Op> &&(
     requires(const Op& op, std::uint32_t resource) {
       { op.place_of(resource) } -> std::same_as<std::array<double, 2>>;
     } ||
@@ -137,8 +139,7 @@ concept PlacedOperator = CautiousOperator<Op> &&(
 /// what it has reached may only be a minimum that several may lower (atomic.hpp): whoever waits
 /// may lose its plan by that, and the end is the same whether it does in time or not.
 template <class Op>
-concept LevelledOperator = CautiousOperator<Op> &&
-    requires(const Op& op, const typename Op::Item& item) {
+concept LevelledOperator = Operator<Op> && requires(const Op& op, const typename Op::Item& item) {
   { op.level(item) } -> std::same_as<std::uint32_t>;
 };
 
@@ -152,7 +153,7 @@ concept LevelledOperator = CautiousOperator<Op> &&
 ///                  becomes `to`, and numbers are below `count` again. Wherever a number is written
 ///                  down it must be changed
 template <class Op>
-concept GrowingCautiousOperator = CautiousOperator<Op> &&
+concept GrowingOperator = Operator<Op> &&
     requires(const Op& reader, Op& op, const typename Op::Plan& plan, std::size_t count,
              std::span<const Renumbered> moved) {
   reader.demand(plan)[0] + 0U;
@@ -166,7 +167,7 @@ namespace detail {
 /// How many kinds of things an operator makes.
 template <class Op>
 inline constexpr std::size_t kinds_made = 0;
-template <GrowingCautiousOperator Op>
+template <GrowingOperator Op>
 inline constexpr std::size_t kinds_made<Op> =
     std::tuple_size_v<decltype(std::declval<const Op&>().counts())>;
 

@@ -17,13 +17,13 @@ namespace ductile::runtime::test {
 namespace {
 
 template <class T>
-class CautiousRounds : public testing::Test {};
+class Strategies : public testing::Test {};
 using Dims =
     testing::Types<std::integral_constant<std::size_t, 2>, std::integral_constant<std::size_t, 3>>;
-TYPED_TEST_SUITE(CautiousRounds, Dims);
+TYPED_TEST_SUITE(Strategies, Dims);
 
 /// From few and from many, to few and to many: one by one, in regions, and both.
-TYPED_TEST(CautiousRounds, SplitTheSameAtAnyNumberOfThreads) {
+TYPED_TEST(Strategies, SplitTheSameAtAnyNumberOfThreads) {
   for (const auto& [count, length] :
        {std::pair<std::size_t, double>{1, 1e-3}, {7, 0.4}, {50, 2.5e-5}, {40000, 3e-5}})
     for (const Strategy strategy : {Strategy::automatic, Strategy::reservations}) {
@@ -42,7 +42,7 @@ TYPED_TEST(CautiousRounds, SplitTheSameAtAnyNumberOfThreads) {
     }
 }
 
-TYPED_TEST(CautiousRounds, RaceByLocks) {
+TYPED_TEST(Strategies, RaceByLocks) {
   for (const int threads : thread_counts) {
     SplitIntervals<TypeParam::value> op(3000, 2e-5);
     run_rounds(Executor({.threads = threads, .deterministic = false}), op, op.all_items());
@@ -51,7 +51,7 @@ TYPED_TEST(CautiousRounds, RaceByLocks) {
 }
 
 /// Plans demand three points and take one.
-TEST(CautiousRounds, LeaveNoHoles) {
+TEST(Strategies, LeaveNoHoles) {
   for (const Strategy strategy : {Strategy::regions, Strategy::reservations, Strategy::locks})
     for (const std::size_t count : {10, 40000}) {
       SplitIntervals<2> op(count, 2e-5, {.demanded = 3});
@@ -61,14 +61,14 @@ TEST(CautiousRounds, LeaveNoHoles) {
     }
 }
 
-TEST(CautiousRounds, SayWhereMoreNumbersAreTakenThanDemanded) {
+TEST(Strategies, SayWhereMoreNumbersAreTakenThanDemanded) {
   SplitIntervals<2> op(4000, 2e-5, {.takes_too_many = true});
   EXPECT_THROW(run_rounds(Executor({.threads = 3}), op, op.all_items(),
                           {.strategy = Strategy::reservations}),
                std::logic_error);
 }
 
-TEST(CautiousRounds, StopWhereRoundsAreLimited) {
+TEST(Strategies, StopWhereRoundsAreLimited) {
   for (const Strategy strategy : {Strategy::regions, Strategy::reservations}) {
     SplitIntervals<2> op(100000, 4e-6);
     const RoundsReport report = run_rounds(Executor({.threads = 2}), op, op.all_items(),
@@ -79,7 +79,7 @@ TEST(CautiousRounds, StopWhereRoundsAreLimited) {
   }
 }
 
-TEST(CautiousRounds, EndIfPlansDemandMoreNumbersThanPartsGet) {
+TEST(Strategies, EndIfPlansDemandMoreNumbersThanPartsGet) {
   for (const bool deterministic : {true, false}) {
     SplitIntervals<2> op(50000, 1.5e-5, {.demanded = 200000});
     const RoundsReport report =
@@ -89,7 +89,7 @@ TEST(CautiousRounds, EndIfPlansDemandMoreNumbersThanPartsGet) {
   }
 }
 
-TEST(CautiousRounds, RunInsideALoopAndWithoutWork) {
+TEST(Strategies, RunInsideALoopAndWithoutWork) {
   const Executor executor({.threads = 3});
   std::vector<std::uint64_t> hash(4);
   parallel_for(executor, hash.size(), [&](std::size_t i) {
@@ -295,7 +295,7 @@ TEST(InOrder, GivesWhatAPlainLoopGivesWithoutConflicts) {
 
 // ---- Errors ----
 
-TEST(CautiousRounds, SayWhatAnOperatorLacks) {
+TEST(Strategies, SayWhatAnOperatorLacks) {
   const Executor executor({.threads = 2});
   Pairing pairing(10, 10);
   EXPECT_THROW(run_rounds(executor, pairing, all_items(10), {.strategy = Strategy::regions}),
@@ -307,7 +307,7 @@ TEST(CautiousRounds, SayWhatAnOperatorLacks) {
                std::invalid_argument);
 }
 
-TEST(CautiousRounds, PassOnWhatOperatorsThrow) {
+TEST(Strategies, PassOnWhatOperatorsThrow) {
   const CsrRows rows = graphs()[1];
   for (const int threads : thread_counts) {
     const Executor executor({.threads = threads});
@@ -369,7 +369,7 @@ TEST(Numbers, AreDealtOutOnceAndClosedUp) {
   }
 }
 
-TYPED_TEST(CautiousRounds, MapRegionsOfEqualSizes) {
+TYPED_TEST(Strategies, MapRegionsOfEqualSizes) {
   constexpr std::size_t n = 60000, regions = 7;
   constexpr std::size_t dim = TypeParam::value;
   const auto place_of = [](std::uint32_t r) {

@@ -1,4 +1,4 @@
-#include "ductile/runtime/cautious_operator.hpp"
+#include "ductile/runtime/operator.hpp"
 
 namespace ductile::runtime {
 
