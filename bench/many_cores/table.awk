@@ -9,7 +9,7 @@ function row(    i, count, line, last) {
   last = counts[n]
   print line (n > 1 && last in of && 1 in of ? sprintf(" %.2f |", of[1] / of[last] / last) : " - |")
 }
-function shown(seconds) { return sprintf(seconds < 0.1 ? "%.4f" : "%.3f", seconds) }
+function shown(seconds) { return sprintf("%.3g", seconds) }
 BEGIN {
   FS = "\t"
   n = split(threads, counts, ",")
