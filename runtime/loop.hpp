@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <utility>
 
 #include "binding.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -52,6 +53,7 @@ struct Loop {
   /// Runs the body over [begin, end); false if the loop is to stop. Thread safety: any thread.
   bool run(std::size_t begin, std::size_t end) noexcept {
     if (error.thrown()) return false;
+    detail::loop_place.begin = begin, detail::loop_place.end = end;
     try {
       body(context, begin, end);
     } catch (...) {
@@ -61,22 +63,21 @@ struct Loop {
   }
 };
 
-/// Makes the calling thread number `thread` of a loop until destruction: for this_thread(), and so
-/// that loops inside run on it alone.
+/// Puts the calling thread into a loop until destruction: loops inside run on it alone.
 class TeamMember {
  public:
-  explicit TeamMember(int thread) noexcept;
-  ~TeamMember();
+  explicit TeamMember(const detail::LoopPlace& place) noexcept
+      : before_(std::exchange(detail::loop_place, place)) {}
+  ~TeamMember() { detail::loop_place = before_; }
   TeamMember(const TeamMember&) = delete;
   TeamMember& operator=(const TeamMember&) = delete;
 
  private:
-  int thread_before_;
-  bool inside_before_;
+  detail::LoopPlace before_;
 };
 
 /// Whether the calling thread runs iterations of a loop.
-bool inside_a_loop() noexcept;
+inline bool inside_a_loop() noexcept { return detail::loop_place.threads != 0; }
 
 inline std::size_t everyone_of(const Executor& executor) {
   return static_cast<std::size_t>(executor.threads());
@@ -87,8 +88,8 @@ inline std::size_t everyone_of(const Executor& executor) {
 /// does not follow the loop's: OpenMP runtimes end and create threads when it changes.
 template <class Work>
 void run_team(const Executor& executor, Turnout turnout, std::size_t wanted, Work&& work) {
-  auto as_member = [&](int thread) {
-    const TeamMember member(thread);
+  auto as_member = [&, loop = detail::loop_place.loop](int thread) {
+    const TeamMember member({thread, executor.threads(), loop});
     work(thread);
   };
   if (Team* const team = Team::of(executor)) {

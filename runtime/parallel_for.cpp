@@ -1,19 +1,27 @@
 #include "ductile/runtime/parallel_for.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <stdexcept>
+#include <string>
 
 #include "loop.hpp"
 
 namespace ductile::runtime {
 
 namespace detail {
-constinit thread_local int current_thread = 0;
+
+constinit thread_local LoopPlace loop_place;
+
+void expect_loop_of(const Executor& executor, const char* what) {
+  if (loop_place.threads != 0 && loop_place.threads != executor.threads())
+    throw std::invalid_argument(std::string(what) + " for " + std::to_string(executor.threads()) +
+                                " threads is used in a loop of an executor with " +
+                                std::to_string(loop_place.threads));
 }
 
-namespace {
+}  // namespace detail
 
-thread_local bool inside_loop = false;
+namespace {
 
 /// Long enough to hide the cost of taking a chunk, short enough to balance the load to a percent.
 std::size_t chosen_grain(std::size_t n, int threads) {
@@ -23,29 +31,22 @@ std::size_t chosen_grain(std::size_t n, int threads) {
 /// A loop inside another one, or too short to share. It keeps the number of the thread, so that
 /// per-thread data of the outer loop stay this thread's, unless its executor has no such thread.
 void run_alone(const Executor& executor, std::size_t n, RangeBody body, void* context) {
-  const int thread = detail::current_thread;
-  const TeamMember member(thread < executor.threads() ? thread : 0);
+  detail::LoopPlace place = detail::loop_place;
+  if (!inside_a_loop()) place.begin = 0, place.end = n;
+  place.threads = executor.threads();
+  if (place.thread >= place.threads) place.thread = 0;
+  const TeamMember member(place);
   body(context, 0, n);
 }
 
 }  // namespace
 
-bool inside_a_loop() noexcept { return inside_loop; }
-
-TeamMember::TeamMember(int thread) noexcept
-    : thread_before_(std::exchange(detail::current_thread, thread)),
-      inside_before_(std::exchange(inside_loop, true)) {}
-
-TeamMember::~TeamMember() {
-  detail::current_thread = thread_before_;
-  inside_loop = inside_before_;
-}
-
 void run_loop(const Executor& executor, std::size_t n, RangeBody body, void* context,
               const LoopOptions& options) {
   if (n == 0) return;
+  if (!inside_a_loop()) ++detail::loop_place.loop;
   const std::size_t grain = options.grain ? options.grain : chosen_grain(n, executor.threads());
-  if (executor.threads() == 1 || n <= grain || n < options.serial_below || inside_loop) {
+  if (executor.threads() == 1 || n <= grain || n < options.serial_below || inside_a_loop()) {
     run_alone(executor, n, body, context);
     return;
   }

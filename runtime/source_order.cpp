@@ -4,8 +4,6 @@
 
 namespace ductile::runtime::detail {
 
-template class RunSort<std::uint64_t, void*>;
-
 namespace {
 
 /// Heaps of the standard library have the greatest element first.

@@ -35,25 +35,23 @@ struct Update {
 
 struct Case {
   std::string name;
-  std::uint32_t count;                      // of updates, and of owners
-  std::uint32_t (*owner)(std::uint32_t i);  // to be taken modulo the owners
+  std::uint32_t count;  // of updates, and of owners
+  std::uint32_t reach;  // owners are so near by
 
   Update update(std::size_t i) const {
     const auto item = static_cast<std::uint32_t>(i);
-    std::uint32_t owners = count;
-    asm("" : "+r"(owners));  // in a register: see docs/benchmarks.md on divisions
-    return {owner(item) % owners, item};
+    std::uint64_t hash = mix32(item);
+    asm("" : "+r"(hash));  // or compilers would make several at once of the floor's
+    const auto owner = item + static_cast<std::uint32_t>(hash * reach >> 32U);
+    return {owner < count ? owner : owner - count, item};
   }
 };
 
 std::vector<Case> cases() {
-  // Near by as on a renumbered mesh, or anywhere.
-  constexpr auto near = [](std::uint32_t i) { return i + mix32(i) % 64; };
-  constexpr auto anywhere = [](std::uint32_t i) { return mix32(i); };
+  constexpr std::uint32_t near = 64;  // as on a renumbered mesh
   const auto many = by_extent<std::uint32_t>(10000, 1000000, 10000000);
   const std::string size = by_extent("1e4", "1e6", "1e7");
-  return {
-      {"near_" + size, many, near}, {"anywhere_" + size, many, anywhere}, {"few_300", 300, near}};
+  return {{"near_" + size, many, near}, {"anywhere_" + size, many, many}, {"few_300", 300, near}};
 }
 
 std::string title(std::string subject, const Case& c, const std::string& candidate) {
@@ -158,45 +156,43 @@ class ArraysForThreads {
   runtime::PerThread<Lane> lanes_;
 };
 
-using Deferred = runtime::DeferredUpdate<std::uint32_t>;
+template <CommitOrder order>
+using Deferred = runtime::DeferredUpdate<std::uint32_t, order>;
 
 /// How a loop defers.
 enum class Way {
-  each,  ///< DeferredUpdate::defer() for every update
-  run,   ///< a Deferrer for every run of iterations that a thread gets, as run_rounds has it
+  each,   ///< asks for a Deferrer for every update
+  range,  ///< parallel_for() asks for one for every range of iterations that a thread gets
 };
 
 std::string name_of(Way way) {
-  return way == Way::each ? "ductile.deferred" : "ductile.deferred_in_runs";
+  return way == Way::range ? "ductile.deferred" : "ductile.one_by_one";
 }
 
 /// Of a subject: in order, updates are kept with their sources, which are as many bytes again.
-std::string suffix(CommitOrder order) { return order == CommitOrder::any ? "" : "_by_source"; }
+std::string suffix(CommitOrder order) { return order == CommitOrder::any ? "" : "_by_loop"; }
 
-void defer_all(const Executor& executor, const Case& c, Deferred& deferred, Way way) {
+template <CommitOrder order>
+void defer_all(const Executor& executor, const Case& c, Deferred<order>& deferred, Way way) {
   if (way == Way::each) {
     parallel_for(executor, c.count, [&](std::size_t i) {
       const Update update = c.update(i);
-      deferred.defer(update.owner, i, update.value);
+      deferred.mine().defer(update.owner, update.value);
     });
   } else {
-    runtime::parallel_for_ranges(executor, c.count, [&](std::size_t begin, std::size_t end) {
-      const auto deferrer = deferred.deferrer();
-      for (std::size_t i = begin; i < end; ++i) {
-        const Update update = c.update(i);
-        deferrer.defer(update.owner, i, update.value);
-      }
+    parallel_for(executor, c.count, runtime::with(deferred), [&](std::size_t i, const auto& mine) {
+      const Update update = c.update(i);
+      mine.defer(update.owner, update.value);
     });
   }
 }
 
-void add_deferred(CommitOrder order, Way way) {
+template <CommitOrder order>
+void add_deferred(Way way) {
   add_buffers(
-      "buffers" + suffix(order), name_of(way),
-      [order, way](const Executor& executor, const Case& c) {
+      "buffers" + suffix(order), name_of(way), [way](const Executor& executor, const Case& c) {
         return [&executor, &c, way,
-                deferred = std::make_unique<Deferred>(
-                    executor, runtime::DeferredUpdateOptions{.order = order})](Sums& sums) {
+                deferred = std::make_unique<Deferred<order>>(executor)](Sums& sums) {
           defer_all(executor, c, *deferred, way);
           deferred->commit([&](std::uint32_t owner, std::uint32_t value) { sums[owner] += value; });
         };
@@ -204,12 +200,13 @@ void add_deferred(CommitOrder order, Way way) {
 }
 
 /// Without the commit: what a loop pays for an update that it defers.
-void add_deferring(CommitOrder order, Way way) {
+template <CommitOrder order>
+void add_deferring(Way way) {
   for (const Case& c : cases())
     add(title("deferring" + suffix(order), c, name_of(way)), thread_counts(),
-        [c, order, way](benchmark::State& state, int threads) {
+        [c, way](benchmark::State& state, int threads) {
           const Executor executor({.threads = threads});
-          Deferred deferred(executor, {.order = order});
+          Deferred<order> deferred(executor);
           defer_all(executor, c, deferred, way);  // its memory is there from now on
           for (auto _ : state) {
             deferred.clear();
@@ -309,14 +306,14 @@ class TwoPasses {
 };
 
 /// What commits in this order, of which Kept is kept.
-template <class Kept>
-void add_keepers(CommitOrder order) {
+template <class Kept, CommitOrder order>
+void add_keepers() {
   const std::string buffers = "buffers" + suffix(order), deferring = "deferring" + suffix(order);
   add_floor<Kept>(buffers);
   add_floor<Kept>(deferring);
-  for (const Way way : {Way::each, Way::run}) {
-    add_deferred(order, way);
-    add_deferring(order, way);
+  for (const Way way : {Way::each, Way::range}) {
+    add_deferred<order>(way);
+    add_deferring<order>(way);
   }
   add_buffers(buffers, "arrays.read_back", [](const Executor& executor, const Case& c) {
     return ArraysForThreads<Kept>(executor, c);
@@ -326,8 +323,8 @@ void add_keepers(CommitOrder order) {
 }
 
 void add_all() {
-  add_keepers<Plain>(CommitOrder::any);
-  add_keepers<Sourced>(CommitOrder::by_source);
+  add_keepers<Plain, CommitOrder::any>();
+  add_keepers<Sourced, CommitOrder::by_loop>();
   add_atomic();
   add_mutexes("mutex.one", 1);
   add_mutexes("mutex.striped", 1024);

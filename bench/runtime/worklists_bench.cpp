@@ -23,7 +23,6 @@ namespace ductile::bench {
 namespace {
 
 using runtime::Executor;
-using runtime::WorkOrder;
 
 /// A loop that looks at `count` places and finds an item in one of `one_in`, at random.
 struct Case {
@@ -31,9 +30,9 @@ struct Case {
   std::uint32_t count, one_in;
 
   bool finds(std::size_t i) const {
-    std::uint32_t divisor = one_in;
-    asm("" : "+r"(divisor));  // in a register: see docs/benchmarks.md on divisions
-    return runtime::mix32(static_cast<std::uint32_t>(i)) % divisor == 0;
+    std::uint64_t bound = (std::uint64_t{1} << 32U) / one_in;
+    asm("" : "+r"(bound));  // or compilers would know that a loop finds all
+    return runtime::mix32(static_cast<std::uint32_t>(i)) < bound;
   }
   static std::uint32_t item(std::size_t i) { return static_cast<std::uint32_t>(i) ^ 1U; }
 };
@@ -78,15 +77,29 @@ void add_floor() {
         });
 }
 
-void add_worklist(const std::string& name, WorkOrder order) {
-  add_worklists(name, thread_counts(), [order](const Executor& executor, const Case& c) {
-    using List = runtime::Worklist<std::uint32_t>;
-    return [&, list = std::make_shared<List>(executor, runtime::WorklistOptions{.order = order})] {
-      list->clear();
-      parallel_for(executor, c.count, [&](std::size_t i) {
-        if (c.finds(i)) list->append(Case::item(i));
-      });
-      list->collect();
+using List = runtime::Worklist<std::uint32_t>;
+
+void fill(List& list, const Executor& executor, const Case& c) {
+  list.clear();
+  parallel_for(executor, c.count, runtime::with(list), [&c](std::size_t i, auto& mine) {
+    if (c.finds(i)) mine.append(Case::item(i));
+  });
+}
+
+/// Asks for the way in for every item.
+void fill_one_by_one(List& list, const Executor& executor, const Case& c) {
+  list.clear();
+  parallel_for(executor, c.count, [&](std::size_t i) {
+    if (c.finds(i)) list.mine().append(Case::item(i));
+  });
+}
+
+template <class Fill>
+void add_worklist(const std::string& name, Fill fill, void (List::*collect)()) {
+  add_worklists(name, thread_counts(), [=](const Executor& executor, const Case& c) {
+    return [=, &executor, &c, list = std::make_shared<List>(executor)] {
+      fill(*list, executor, c);
+      (*list.*collect)();
       return list->items();
     };
   });
@@ -210,8 +223,9 @@ class TwoPasses {
 
 void add_all() {
   add_floor();
-  add_worklist("ductile.arrival", WorkOrder::arrival);
-  add_worklist("ductile.by_item", WorkOrder::by_item);
+  add_worklist("ductile.worklist", fill, &List::collect);
+  add_worklist("ductile.one_by_one", fill_one_by_one, &List::collect);
+  add_worklist("ductile.unique", fill, &List::collect_unique);
   add_collect();
   add_push_back();
   add_locked_and_concurrent();

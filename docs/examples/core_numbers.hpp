@@ -30,7 +30,7 @@ class Peeling {
         graph_(graph),
         degree_of_(graph.vertex_count()),
         losses_(executor),
-        fallen_(executor, {.order = runtime::WorkOrder::arrival}) {
+        fallen_(executor) {
     runtime::parallel_for(executor, degree_of_.size(), [&](std::size_t v) {
       degree_of_[v] = graph.offset[v + 1] - graph.offset[v];
     });
@@ -69,14 +69,15 @@ class Peeling {
   /// Takes vertices of degree k away. Degrees are read while they are taken, and change only when
   /// losses are committed; they stop at k, so a vertex falls to it once.
   void peel(std::span<const Vertex> shell, std::uint32_t k) {
-    runtime::parallel_for(executor_, shell.size(), [&](std::size_t i) {
+    const auto take_away = [&](std::size_t i, auto& losses) {
       core_of[shell[i]] = k;
       graph_.for_each_neighbour(shell[i], [&](Vertex other) {
-        if (degree_of_[other] > k) losses_.defer(other, shell[i], {});
+        if (degree_of_[other] > k) losses.defer(other, {});
       });
-    });
+    };
+    runtime::parallel_for(executor_, shell.size(), runtime::with(losses_), take_away);
     losses_.commit([&](Vertex vertex, Loss) {
-      if (degree_of_[vertex] > k && --degree_of_[vertex] == k) fallen_.append(vertex);
+      if (degree_of_[vertex] > k && --degree_of_[vertex] == k) fallen_.mine().append(vertex);
     });
   }
 

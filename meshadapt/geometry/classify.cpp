@@ -13,6 +13,7 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "geometry/faced.hpp"
 #include "geometry/facet_sides.hpp"
 #include "geometry/rough_parts.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "geometry/crossing_facets.hpp"
 
 namespace ductile::meshadapt {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::meshadapt {
 

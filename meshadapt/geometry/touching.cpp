@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "geometry/box_index.hpp"
 #include "geometry/distance.hpp"
 

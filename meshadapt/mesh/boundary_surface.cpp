@@ -7,6 +7,7 @@
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::meshadapt {
 

@@ -13,6 +13,7 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "mesh/facet_key.hpp"
 #include "mesh/grouping.hpp"
 #include "mesh/problems.hpp"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/statistics.hpp"
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::meshadapt {
 

@@ -12,6 +12,7 @@
 #include "ductile/meshadapt/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "geometry/classify.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/facet_key.hpp"

@@ -14,6 +14,7 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/first_bad.hpp"

@@ -8,6 +8,7 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "mesh/grouping.hpp"
 #include "mesh/hilbert.hpp"
 

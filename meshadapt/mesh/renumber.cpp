@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/numbering.hpp"
 

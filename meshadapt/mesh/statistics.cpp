@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/quality.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/grouping.hpp"

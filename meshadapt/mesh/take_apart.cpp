@@ -12,6 +12,7 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/growing_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "mesh/numbering.hpp"
 #include "metric/metric_range.hpp"
 

@@ -10,6 +10,7 @@
 #include "ductile/runtime/disjoint_sets.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::meshadapt {
 

@@ -13,6 +13,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "mesh/first_bad.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"

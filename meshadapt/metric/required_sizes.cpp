@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "ductile/meshadapt/simplex.hpp"
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "metric/metric_range.hpp"
 #include "metric/required_entities.hpp"
 #include "metric/vertex_neighbours.hpp"

@@ -30,7 +30,7 @@ template <class AMesh>
 class VertexNeighbours {
  public:
   VertexNeighbours(const runtime::Executor& executor, const AMesh& mesh)
-      : executor_(executor), mesh_(mesh), found_(executor), wake_(executor, {.unique = true}) {}
+      : executor_(executor), mesh_(mesh), found_(executor), wake_(executor) {}
 
   /// In the order of their numbers; valid until the thread asks again. Thread safety: threads of
   /// the executor.
@@ -46,13 +46,12 @@ class VertexNeighbours {
 
   /// Those of any of these, each once. Thread safety: one caller; runs on the executor.
   runtime::UnsetVector<VertexId> of_all(std::span<const VertexId> vertices) {
-    runtime::parallel_for(executor_, vertices.size(),
-                          [&](std::size_t i) {
-                            for (const VertexId neighbour : of(vertices[i]))
-                              wake_.append(neighbour);
-                          },
+    const auto wake_around = [&](std::size_t i, auto& wake) {
+      for (const VertexId neighbour : of(vertices[i])) wake.append(neighbour);
+    };
+    runtime::parallel_for(executor_, vertices.size(), runtime::with(wake_), wake_around,
                           {.serial_below = 256});
-    wake_.collect();
+    wake_.collect_unique();
     return wake_.take();
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "operators/edges.hpp"
 
 namespace ductile::meshadapt {

@@ -12,6 +12,7 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edge_survey.hpp"
 

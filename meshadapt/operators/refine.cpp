@@ -11,6 +11,7 @@
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::meshadapt {
 

@@ -17,6 +17,7 @@ using runtime::few_nanoseconds;
 using runtime::make_filled;
 using runtime::parallel_for;
 using runtime::PhaseTimer;
+using runtime::with;
 
 /// With more edges to split than this share of the number of elements, lists are left stale.
 constexpr double many = 0.05;
@@ -60,23 +61,26 @@ void Refine<Dim>::grow() {
   lists_are_stale_ =
       static_cast<double>(report_.applied) > many * static_cast<double>(first_element_);
   runtime::DeferredUpdate<ListChange> deferred(executor_);
-  const auto defer = [&](VertexId owner, const ListChange& change) {
-    if (!lists_are_stale_ || change.curve != 0) deferred.defer(owner, 0, change);
+  const auto defer_to = [&](const auto& mine) {
+    return [&](VertexId owner, const ListChange& change) {
+      if (!lists_are_stale_ || change.curve != 0) mine.defer(owner, change);
+    };
   };
   {
     const PhaseTimer timer(report_.apply_seconds);
     const std::size_t end_of_vertices = first_vertex_ + report_.applied;
     mesh_.grow(executor_, end_of_vertices, first_element_);
-    const auto write = [&](std::size_t i) {
+    const auto write = [&](std::size_t i, const auto& mine) {
       const auto number = static_cast<std::uint32_t>(i);
       if (!is_split(number)) return;
       write_vertex(number);
-      if constexpr (Dim == 3) write_links(number, defer);
+      if constexpr (Dim == 3) write_links(number, defer_to(mine));
     };
-    parallel_for(executor_, edges_.size(), write, {.serial_below = 64});
+    parallel_for(executor_, edges_.size(), with(deferred), write, {.serial_below = 64});
     splits_.release(executor_);  // before elements take their memory
     mesh_.grow(executor_, end_of_vertices, end_of_elements_);
-    parallel_for(executor_, elements_.size(), [&](std::size_t i) { write_pieces(i, defer); });
+    parallel_for(executor_, elements_.size(), with(deferred),
+                 [&](std::size_t i, const auto& mine) { write_pieces(i, defer_to(mine)); });
   }
   const PhaseTimer timer(report_.commit_seconds);
   report_.committed = deferred.commit(

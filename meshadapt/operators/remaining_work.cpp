@@ -6,6 +6,7 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/edges.hpp"
 #include "operators/refine.hpp"

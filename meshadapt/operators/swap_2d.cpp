@@ -2,6 +2,7 @@
 #include <array>
 
 #include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "operators/swap.hpp"
 
 namespace ductile::meshadapt {

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "operators/base.hpp"
 #include "operators/cut_off.hpp"
 #include "operators/ring.hpp"

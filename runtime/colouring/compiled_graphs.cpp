@@ -8,6 +8,8 @@
 
 #include "ductile/runtime/colouring/colouring.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
+#include "ductile/runtime/sort.hpp"
+#include "ductile/runtime/worklist.hpp"
 
 namespace ductile::runtime {
 

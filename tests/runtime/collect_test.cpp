@@ -1,4 +1,4 @@
-#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/worklist.hpp"
 
 #include <gtest/gtest.h>
 

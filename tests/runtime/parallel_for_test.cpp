@@ -179,6 +179,19 @@ TEST_P(ParallelFor, ServesSeveralCallersAtOnce) {
   EXPECT_EQ(good, 40);
 }
 
+TEST_P(ParallelFor, LendsEachThreadItsOwn) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads, .schedule = GetParam()});
+    PerThread<std::size_t> sums(executor), counts(executor);
+    parallel_for(executor, 10007, with(sums, counts),
+                 [](std::size_t i, std::size_t& sum, std::size_t& count) { sum += i, ++count; });
+    std::size_t sum = 0, count = 0;
+    for (std::size_t t = 0; t < sums.size(); ++t) sum += sums[t], count += counts[t];
+    EXPECT_EQ(sum, 10006U * 10007U / 2) << described(GetParam(), threads);
+    EXPECT_EQ(count, 10007U);
+  }
+}
+
 TEST(StealBySignal, GivesItsSignalBackAndLeavesHandlersOfOthersAlone) {
   static std::atomic<int> heard;
   heard = 0;

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "ductile/runtime/detail/source_order.hpp"
 #include "ductile/runtime/hash.hpp"
 
 namespace ductile::runtime::sort_test {
@@ -125,21 +124,6 @@ TEST(ParallelUnique, AgreesWithTheStandardOne) {
         EXPECT_EQ(unique, expected) << n << " values, " << threads << " threads";
       }
     }
-}
-
-TEST(RunSort, IsStable) {
-  detail::RunSort<std::uint32_t, std::uint32_t> order;
-  for (std::uint32_t n : {0U, 1U, 2U, 3U, 1000U, 1001U}) {
-    for (std::uint32_t run : {1U, 7U, 1000U}) {
-      order.clear();
-      for (std::uint32_t i = 0; i < n; ++i) order.append(i % run + mix32(i / run) % 10, i);
-      const auto sorted = order.sorted();
-      ASSERT_EQ(sorted.size(), n);
-      for (std::uint32_t i = 0; i + 1 < n; ++i)
-        EXPECT_LT(std::pair(sorted[i].key, sorted[i].value),
-                  std::pair(sorted[i + 1].key, sorted[i + 1].value));
-    }
-  }
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/hash.hpp"
 
 // The thread sanitizer has these functions itself and lets nobody replace them.
@@ -47,81 +48,158 @@ namespace {
 
 std::uint32_t item(std::size_t i) { return mix32(static_cast<std::uint32_t>(i)) % 50000; }
 
-std::vector<std::uint32_t> filled(Worklist<std::uint32_t>& list, const Executor& executor,
-                                  std::size_t n) {
-  parallel_for(executor, n, [&](std::size_t i) {
-    list.append(item(i));
-    if (i % 97 == 0) list.publish();
+constexpr int thread_counts[] = {1, 2, 3, 4, 8};
+
+/// Item i is appended item(i) % 4 times.
+void append_items(Worklist<std::uint32_t>& list, const Executor& executor, std::size_t n) {
+  parallel_for(executor, n, with(list), [](std::size_t i, auto& mine) {
+    for (std::uint32_t k = 0; k < item(i) % 4; ++k) mine.append(item(i));
   });
-  list.collect();
-  return {list.items().begin(), list.items().end()};
 }
 
-TEST(Worklist, HoldsWhatWasAppendedInAnyOrder) {
-  for (std::size_t n : {0, 1, 100, 30000}) {
-    std::multiset<std::uint32_t> expected;
-    for (std::size_t i = 0; i < n; ++i) expected.insert(item(i));
-    for (int threads : {1, 2, 3, 4, 8}) {
-      const Executor executor({.threads = threads});
-      Worklist<std::uint32_t> list(executor, {.order = WorkOrder::arrival});
-      for (int round = 0; round < 3; ++round) {
-        const auto items = filled(list, executor, n);
-        EXPECT_EQ(std::multiset(items.begin(), items.end()), expected) << threads;
-        list.clear();
+std::vector<std::uint32_t> items_in_order(std::size_t n) {
+  std::vector<std::uint32_t> items;
+  for (std::size_t i = 0; i < n; ++i) items.insert(items.end(), item(i) % 4, item(i));
+  return items;
+}
+
+void expect_items(const Worklist<std::uint32_t>& list, const std::vector<std::uint32_t>& expected) {
+  EXPECT_TRUE(std::ranges::equal(list.items(), expected));
+}
+
+TEST(Worklist, HasItemsInTheOrderOfTheLoop) {
+  for (const Schedule schedule : {Schedule::automatic, Schedule::omp_dynamic, Schedule::omp_guided,
+                                  Schedule::steal_by_signal})
+    for (std::size_t n : {0, 1, 100, 30000, 200000})
+      for (int threads : thread_counts) {
+        const Executor executor({.threads = threads, .schedule = schedule});
+        Worklist<std::uint32_t> list(executor);
+        for (int round = 0; round < 2; ++round) {
+          append_items(list, executor, n);
+          list.collect();
+          expect_items(list, items_in_order(n));
+          list.clear();
+        }
       }
+}
+
+TEST(Worklist, HasItemsOfOneLoopBeforeThoseOfTheNext) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads});
+    Worklist<std::uint32_t> list(executor);
+    std::vector<std::uint32_t> expected;
+    const auto expect_more = [&](const std::vector<std::uint32_t>& more) {
+      expected.insert(expected.end(), more.begin(), more.end());
+    };
+    list.mine().append(7), expect_more({7});
+    append_items(list, executor, 20000), expect_more(items_in_order(20000));
+    list.mine().append(8), expect_more({8});
+    append_items(list, executor, 3), expect_more(items_in_order(3));
+    append_items(list, executor, 10000), expect_more(items_in_order(10000));
+    list.collect();
+    expect_items(list, expected);
+    append_items(list, executor, 5000), expect_more(items_in_order(5000));
+    list.collect();
+    expect_items(list, expected);
+    EXPECT_TRUE(std::ranges::equal(list.take(), expected));
+    EXPECT_TRUE(list.empty());
+  }
+}
+
+TEST(Worklist, HasTheSameOrderInEveryFormOfLoop) {
+  constexpr std::size_t n = 20000, inner = 10;
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads});
+    Worklist<std::uint32_t> by_ranges(executor), one_by_one(executor), nested(executor);
+    parallel_for_ranges(executor, n, [&](std::size_t begin, std::size_t end) {
+      auto mine = by_ranges.mine();
+      for (std::size_t i = begin; i < end; ++i)
+        for (std::uint32_t k = 0; k < item(i) % 4; ++k) mine.append(item(i));
+    });
+    parallel_for(executor, n, [&](std::size_t i) {
+      for (std::uint32_t k = 0; k < item(i) % 4; ++k) one_by_one.mine().append(item(i));
+    });
+    parallel_for(executor, n / inner, [&](std::size_t i) {
+      parallel_for(executor, inner, with(nested), [&](std::size_t k, auto& mine) {
+        const std::size_t place = inner * i + k;
+        for (std::uint32_t times = item(place) % 4; times > 0; --times) mine.append(item(place));
+      });
+    });
+    for (auto* list : {&by_ranges, &one_by_one, &nested}) {
+      list->collect();
+      expect_items(*list, items_in_order(n));
     }
+  }
+}
+
+TEST(Worklist, BelongsToTheThreadOfALoopAroundIt) {
+  const Executor executor({.threads = 4}), alone({.threads = 1});
+  parallel_for(executor, 64, [&](std::size_t n) {
+    for (const Executor* inner : {&executor, &alone}) {
+      Worklist<std::uint32_t> list(*inner);
+      append_items(list, *inner, n);
+      list.collect();
+      expect_items(list, items_in_order(n));
+    }
+  });
+}
+
+TEST(Worklist, RefusesALoopOfAnotherExecutor) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads}), other({.threads = threads + 1});
+    Worklist<std::uint32_t> list(executor);
+    const auto append = [](std::size_t, auto& mine) { mine.append(1); };
+    EXPECT_THROW(parallel_for(other, 1000, with(list), append), std::invalid_argument);
+    EXPECT_THROW(parallel_for(other, 1, with(list), append), std::invalid_argument);
+    EXPECT_THROW(parallel_for(executor, 1000,
+                              [&](std::size_t) { parallel_for(other, 2, with(list), append); }),
+                 std::invalid_argument);
+    list.collect();
+    EXPECT_TRUE(list.empty());
+  }
+}
+
+TEST(Worklist, LendsAThreadOneAppenderAtATime) {
+  const Executor executor({.threads = 2});
+  Worklist<std::uint32_t> list(executor);
+  const auto append_twice = [&](std::size_t, auto& mine) { mine.append(1), list.mine().append(2); };
+  EXPECT_THROW(parallel_for(executor, 100, with(list), append_twice), std::logic_error);
+  append_items(list, executor, 100);
+}
+
+TEST(Worklist, CanBeClearedAfterALoopThatThrew) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads});
+    Worklist<std::uint32_t> list(executor);
+    const auto append = [](std::size_t i, auto& mine) {
+      if (i == 7000) throw std::runtime_error("stop");
+      mine.append(item(i));
+    };
+    EXPECT_THROW(parallel_for(executor, 10000, with(list), append), std::runtime_error);
+    list.collect();
+    EXPECT_LT(list.size(), 10000U);
+    list.clear();
+    append_items(list, executor, 1000);
+    list.collect();
+    expect_items(list, items_in_order(1000));
   }
 }
 
 TEST(Worklist, IsSortedAndWithoutDuplicatesOnRequest) {
   for (std::size_t n : {0, 1, 100, 100000}) {
-    std::vector<std::uint32_t> sorted(n);
-    for (std::size_t i = 0; i < n; ++i) sorted[i] = item(i);
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<std::uint32_t> unique = sorted;
-    unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
-    for (int threads : {1, 2, 3, 4, 8}) {
+    const std::vector<std::uint32_t> items = items_in_order(n);
+    const std::set<std::uint32_t> unique(items.begin(), items.end());
+    for (int threads : thread_counts) {
       const Executor executor({.threads = threads});
-      Worklist<std::uint32_t> by_item(executor), once(executor, {.unique = true});
-      EXPECT_EQ(filled(by_item, executor, n), sorted) << threads;
-      EXPECT_EQ(filled(once, executor, n), unique) << threads;
-      EXPECT_TRUE(std::ranges::equal(once.take(), unique));
-      EXPECT_TRUE(once.empty());
+      Worklist<std::uint32_t> list(executor);
+      append_items(list, executor, n);
+      list.collect_unique();
+      EXPECT_TRUE(std::ranges::equal(list.items(), unique));
+      list.mine().append(60000);
+      list.mine().append(60000);
+      list.collect_unique();
+      EXPECT_EQ(list.size(), unique.size() + 1);
     }
-  }
-}
-
-TEST(Worklist, TakesMoreAfterCollecting) {
-  const Executor executor({.threads = 2});
-  Worklist<std::uint32_t> list(executor, {.unique = true, .batch = 3});
-  for (std::uint32_t i = 0; i < 5000; ++i) list.append(i / 2);
-  list.collect();
-  EXPECT_EQ(list.size(), 2500U);
-  for (std::uint32_t i = 0; i < 5000; ++i) list.append(i);
-  list.collect();
-  EXPECT_EQ(list.size(), 5000U);
-  list.release();
-  list.append(3);
-  list.collect();
-  EXPECT_EQ(list.take(), UnsetVector<std::uint32_t>{3});
-}
-
-TEST(Worklist, SortsItemsThatAreNotNumbers) {
-  struct Edge {
-    std::uint32_t a, b;
-    bool operator<(const Edge& other) const {
-      return std::pair(a, b) < std::pair(other.a, other.b);
-    }
-  };
-  for (int threads : {1, 2, 8}) {
-    const Executor executor({.threads = threads});
-    Worklist<Edge> list(executor);
-    parallel_for(executor, 100000, [&](std::size_t i) {
-      list.append({item(i), static_cast<std::uint32_t>(i)});
-    });
-    list.collect();
-    EXPECT_EQ(list.size(), 100000U);
-    EXPECT_TRUE(std::is_sorted(list.items().begin(), list.items().end()));
   }
 }
 
@@ -150,116 +228,72 @@ struct alignas(128) Large {
 
 TEST(Worklist, HoldsLargeOverAlignedItems) {
   constexpr std::uint32_t n = 3000;
-  for (int threads : {1, 2, 3, 8}) {
+  for (int threads : thread_counts) {
+    const Executor executor({.threads = threads});
+    Worklist<Large> list(executor);
     for (const bool unique : {false, true}) {
-      const Executor executor({.threads = threads});
-      Worklist<Large> list(executor, {.unique = unique});
-      for (int round = 0; round < 2; ++round) {
-        parallel_for(executor, n, [&](std::size_t i) {
-          list.append(Large(item(i) % (n / 2)));
-          if (i % 97 == 0) list.publish();
-        });
-        list.collect();
-        const auto items = list.items();
-        EXPECT_TRUE(
-            std::all_of(items.begin(), items.end(), [](const Large& l) { return l.whole(); }));
-        EXPECT_TRUE(std::is_sorted(items.begin(), items.end()));
-        std::multiset<std::uint32_t> expected;
-        for (std::uint32_t i = 0; i < n; ++i) expected.insert(item(i) % (n / 2));
-        const std::set<std::uint32_t> once(expected.begin(), expected.end());
-        EXPECT_EQ(items.size(), unique ? once.size() : expected.size()) << threads;
-        EXPECT_EQ(Large::alive, static_cast<int>(items.size()));
-        list.clear();
-        EXPECT_EQ(Large::alive, 0);
+      parallel_for(executor, n, with(list),
+                   [](std::size_t i, auto& mine) { mine.append(Large(item(i) % (n / 2))); });
+      unique ? list.collect_unique() : list.collect();
+      const auto items = list.items();
+      EXPECT_TRUE(
+          std::all_of(items.begin(), items.end(), [](const Large& l) { return l.whole(); }));
+      std::set<std::uint32_t> once;
+      for (std::uint32_t i = 0; i < n; ++i) {
+        once.insert(item(i) % (n / 2));
+        EXPECT_TRUE(unique || items[i].number == item(i) % (n / 2));
       }
+      EXPECT_EQ(items.size(), unique ? once.size() : n) << threads;
+      EXPECT_EQ(Large::alive, static_cast<int>(items.size()));
+      list.clear();
+      EXPECT_EQ(Large::alive, 0);
     }
   }
 }
 
 #ifdef DUCTILE_REPLACES_NEW
-TEST(Worklist, LosesNoMemoryWhenThereIsNone) {
+TEST(Worklist, LosesNothingWhenThereIsNoMemory) {
   for (int threads : {1, 2, 8}) {
     const Executor executor({.threads = threads});
-    Worklist<Large> list(executor, {.order = WorkOrder::arrival});
+    Worklist<Large> list(executor);
     const auto fill = [&] {
-      parallel_for(executor, 3000, [&](std::size_t i) { list.append(Large(item(i))); });
-      list.collect();
+      parallel_for(executor, 3000, with(list),
+                   [](std::size_t i, auto& mine) { mine.append(Large(item(i))); });
     };
     most_bytes = 200 * sizeof(Large);
     EXPECT_THROW(fill(), std::bad_alloc);
-    EXPECT_GT(Large::alive, 0);
-    EXPECT_THROW(list.collect(), std::bad_alloc);
     list.clear();
     EXPECT_EQ(Large::alive, 0);
     most_bytes = SIZE_MAX;
     fill();
-    EXPECT_EQ(list.size(), 3000U);
-    most_bytes = 3500 * sizeof(Large);
-    EXPECT_THROW(fill(), std::bad_alloc);  // 6000 of them
+    list.mine().append(Large(1));
+    list.collect();
+    EXPECT_EQ(list.size(), 3001U);
+    fill();
+    most_bytes = 4000 * sizeof(Large);
+    EXPECT_THROW(list.collect(), std::bad_alloc);
+    EXPECT_EQ(list.size(), 3001U);
     most_bytes = SIZE_MAX;
-    list.release();
-    EXPECT_EQ(Large::alive, 0);
+    list.collect();
+    EXPECT_EQ(list.size(), 6001U);
   }
+  EXPECT_EQ(Large::alive, 0);
 }
 #endif
 
 TEST(Worklist, HoldsItemsThatCanOnlyBeMoved) {
   constexpr std::size_t n = 20000;
-  for (int threads : {1, 2, 3, 8}) {
+  for (int threads : thread_counts) {
     const Executor executor({.threads = threads});
-    Worklist<std::unique_ptr<std::size_t>> list(executor, {.order = WorkOrder::arrival});
-    UnsetVector<std::unique_ptr<std::size_t>> all;
-    for (int round = 0; round < 2; ++round) {
-      parallel_for(executor, n,
-                   [&](std::size_t i) { list.append(std::make_unique<std::size_t>(i)); });
-      list.collect();
-      all = list.take();
-      EXPECT_TRUE(list.empty());
-      std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return *a < *b; });
-      ASSERT_EQ(all.size(), n) << threads;
-      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(*all[i], i);
-      list.append(std::move(all[3]));
-      list.collect();
-      list.append(std::move(all[4]));
-      list.clear();
-    }
-    list.append(std::move(all[5]));
-    list.release();
-    EXPECT_TRUE(list.empty());
-    list.append(std::move(all[6]));  // never collected: must not leak
-  }
-}
-
-TEST(Worklist, SortsItemsThatCanOnlyBeMoved) {
-  struct Task {
-    explicit Task(std::uint32_t n) : number(std::make_unique<std::uint32_t>(n)) {}
-    bool operator<(const Task& other) const { return *number < *other.number; }
-    std::unique_ptr<std::uint32_t> number;
-  };
-  std::set<std::uint32_t> numbers;
-  for (std::size_t i = 0; i < 30000; ++i) numbers.insert(item(i));
-  const std::vector<std::uint32_t> expected(numbers.begin(), numbers.end());
-  for (int threads : {1, 2, 3, 8}) {
-    const Executor executor({.threads = threads});
-    Worklist<Task> list(executor, {.unique = true});
-    parallel_for(executor, 30000, [&](std::size_t i) { list.append(Task(item(i))); });
+    Worklist<std::unique_ptr<std::size_t>> list(executor);
+    parallel_for(executor, n, with(list),
+                 [](std::size_t i, auto& mine) { mine.append(std::make_unique<std::size_t>(i)); });
     list.collect();
-    std::vector<std::uint32_t> got;
-    for (const Task& task : list.items()) got.push_back(*task.number);
-    EXPECT_EQ(got, expected) << threads;
+    const auto all = list.take();
+    ASSERT_EQ(all.size(), n) << threads;
+    for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(*all[i], i);
+    list.mine().append(std::make_unique<std::size_t>(6));  // never collected: must not leak
   }
-}
-
-TEST(Worklist, SaysThatItCannotSortWhatHasNoOrder) {
-  struct Thing {
-    int value;
-  };
-  const Executor executor({.threads = 2});
-  EXPECT_THROW(Worklist<Thing>{executor}, std::invalid_argument);
-  Worklist<Thing> list(executor, {.order = WorkOrder::arrival});
-  list.append({3});
-  list.collect();
-  EXPECT_EQ(list.items().front().value, 3);
 }
 
 }  // namespace

@@ -16,60 +16,43 @@
 #include <vector>
 
 #include "ductile/runtime/detail/deferrer.hpp"
+#include "ductile/runtime/detail/source_order.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime {
 
-/// In which order an owner's updates are committed.
-enum class CommitOrder {
-  any,        ///< whatever is fastest
-  by_source,  ///< by (source, order in which that source deferred): the same at any thread count
-};
-
-struct DeferredUpdateOptions {
-  CommitOrder order = CommitOrder::any;
-};
-
 /// Updates stay where defer() put them, of whatever size and alignment T is. Between construction
 /// and destruction an object serves one loop or commit() at a time, on the executor it was made
 /// with.
-template <class T>
+template <class T, CommitOrder Order = CommitOrder::any>
 requires std::move_constructible<T>
 class DeferredUpdate {
  public:
-  explicit DeferredUpdate(const Executor& executor, DeferredUpdateOptions options = {})
-      : executor_(executor), by_source_(options.order == CommitOrder::by_source), lanes_(executor) {
+  explicit DeferredUpdate(const Executor& executor) : executor_(executor), lanes_(executor) {
     const auto threads = static_cast<unsigned>(executor.threads());
     is_touched_.resize(std::clamp(std::bit_ceil(8U * threads), 16U, 1024U));
     // As many owners in a row as have their data in cache; fewer where a window of a mesh, whose
     // owners are near by, should be in enough buckets for all threads.
     const unsigned neighbour_bits = threads == 1 ? 16 : threads < 8 ? 8 : 7;
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      lanes_[t].set_up(is_touched_, neighbour_bits, by_source_);
+      lanes_[t].lane.set_up(is_touched_, neighbour_bits);
   }
 
-  /// Keeps `update` for `owner`. `source` is who defers it, for instance the item being applied;
-  /// under by_source one source defers from one thread only between two commits.
+  /// The calling thread's way in. parallel_for() asks for it by with(); otherwise ask once for a
+  /// range of iterations, or for an update, which takes longer. Throws std::bad_alloc, and
+  /// std::invalid_argument in a loop of an executor with another number of threads.
   /// Thread safety: any thread of a loop of the executor, or the caller outside of loops.
-  /// Throws std::bad_alloc, or what copying an update throws; it is not kept then.
-  void defer(std::uint32_t owner, std::uint64_t source, T&& update) {
-    lanes_.mine().deferrer().defer(owner, source, std::move(update));
+  Deferrer<T, Order> mine() {
+    detail::expect_loop_of(executor_, "a deferred update");
+    return lanes_.mine().lane.deferrer(Order == CommitOrder::by_loop ? source() : 0);
   }
-  void defer(std::uint32_t owner, std::uint64_t source,
-             const T& update) requires std::copy_constructible<T> {
-    lanes_.mine().deferrer().defer(owner, source, update);
-  }
-
-  /// Defers for the calling thread, without looking up each time which one that is: for who defers
-  /// many updates in a row. Valid until release(). Throws std::bad_alloc. Thread safety: as
-  /// defer().
-  Deferrer<T> deferrer() { return lanes_.mine().ready_deferrer(); }
 
   /// Calls f(owner, update) for every update kept, each owner's on one thread, and forgets them.
   /// Returns how many there were. f may move from an update, and append to a Worklist of the same
-  /// executor, as commit() is a loop; it must not defer to this object. An exception thrown by f
-  /// reaches the caller; the updates that were not committed by then are dropped.
+  /// executor, because commit() is a loop; the order of that list depends on the number of threads,
+  /// unless it is collected by collect_unique(). f must not defer to this object. An exception
+  /// thrown by f reaches the caller; the updates that were not committed by then are dropped.
   /// Thread safety: one thread, no loop running.
   template <class F>
   std::size_t commit(F&& f) {
@@ -78,8 +61,7 @@ class DeferredUpdate {
     std::atomic<std::size_t> updates = 0;
     const auto commit_one = [&](std::size_t b) {
       const std::uint32_t number = touched_[b];
-      updates.fetch_add(by_source_ ? commit_by_source(number, f) : commit_in_any_order(number, f),
-                        std::memory_order_relaxed);
+      updates.fetch_add(commit_bucket(number, f), std::memory_order_relaxed);
       clear(number);
     };
     const ClearedAtEnd cleared{*this};  // if f throws
@@ -100,50 +82,48 @@ class DeferredUpdate {
   void clear() {
     for (std::uint32_t b = 0; b < is_touched_.size(); ++b)
       if (is_touched_[b] != 0) clear(b);
-  }
-
-  /// Drops all updates and gives all buffers back. Thread safety: one thread, no loop running.
-  void release() {
-    clear();
-    for (std::size_t t = 0; t < lanes_.size(); ++t) lanes_[t].release();
-    std::vector<std::uint32_t>().swap(touched_);
+    first_loop_ = detail::loop_place.loop;
   }
 
  private:
-  using Lane = detail::DeferLane<T>;
-  using Lists = typename Lane::Lists;
-  using Plain = detail::PlainUpdate<T>;
-  using Sourced = detail::SourcedUpdate<T>;
+  using Lists = typename detail::DeferLane<T, Order>::Lists;
+  using Kept = detail::KeptUpdate<T, Order>;
+  struct PerLane {
+    detail::DeferLane<T, Order> lane;
+    detail::SourceOrder<Kept> order;  // scratch of commits
+  };
   struct ClearedAtEnd {
     DeferredUpdate& self;
     ~ClearedAtEnd() { self.clear(); }
   };
 
-  /// The functions for one bucket of all lanes return how many updates it has. Thread safety: one
-  /// thread at a time for each bucket.
-  template <class F>
-  std::size_t commit_in_any_order(std::uint32_t number, F& f) {
-    std::size_t updates = 0;
-    const auto commit_chunk = [&](Plain* begin, Plain* end) {
-      for (Plain* entry = begin; entry != end; ++entry) f(entry->owner, entry->update);
-      updates += static_cast<std::size_t>(end - begin);
-    };
-    for_each_lists([&](const Lists& lists) { lists.plain.for_each_chunk(number, commit_chunk); });
-    return updates;
+  /// Where in which loop the calling thread is, as a number that grows from each place to those
+  /// that come after it.
+  std::uint64_t source() const {
+    constexpr unsigned bits = 40;  // of an iteration
+    const detail::LoopPlace& place = detail::loop_place;
+    return (place.loop - first_loop_) << bits |
+           std::min<std::uint64_t>(place.begin, (std::uint64_t{1} << bits) - 1);
   }
 
-  /// Ordering a bucket by source alone is enough: it puts each of its owners' updates in order.
+  /// Returns how many updates the bucket has. Ordering it by source is enough: it puts each of its
+  /// owners' updates in order. Thread safety: one thread at a time for each bucket.
   template <class F>
-  std::size_t commit_by_source(std::uint32_t number, F& f) {
-    detail::SourceOrder<Sourced>& order = lanes_.mine().order();
-    order.clear();
+  std::size_t commit_bucket(std::uint32_t number, F& f) {
     std::size_t updates = 0;
-    const auto add_chunk = [&](Sourced* begin, Sourced* end) {
-      order.add(begin, end);
+    detail::SourceOrder<Kept>& order = lanes_.mine().order;
+    if constexpr (Order == CommitOrder::by_loop) order.clear();
+    const auto commit_chunk = [&](Kept* begin, Kept* end) {
       updates += static_cast<std::size_t>(end - begin);
+      if constexpr (Order == CommitOrder::by_loop) {
+        order.add(begin, end);
+      } else {
+        for (Kept* kept = begin; kept != end; ++kept) f(kept->owner, kept->update);
+      }
     };
-    for_each_lists([&](const Lists& lists) { lists.sourced.for_each_chunk(number, add_chunk); });
-    order.for_each([&](Sourced& entry) { f(entry.owner, entry.update); });
+    for_each_lists([&](const Lists& lists) { lists.for_each_chunk(number, commit_chunk); });
+    if constexpr (Order == CommitOrder::by_loop)
+      order.for_each([&](Kept& kept) { f(kept.owner, kept.update); });
     return updates;
   }
 
@@ -161,7 +141,7 @@ class DeferredUpdate {
   /// Of the threads that have deferred something.
   void for_each_lists(auto&& visit) const {
     for (std::size_t t = 0; t < lanes_.size(); ++t)
-      if (auto* const lists = lanes_[t].lists()) visit(*lists);
+      if (auto* const lists = lanes_[t].lane.lists()) visit(*lists);
   }
 
   /// Sets touched_ to the buckets with updates of any thread.
@@ -181,8 +161,8 @@ class DeferredUpdate {
   }
 
   Executor executor_;
-  bool by_source_;
-  PerThread<Lane> lanes_;
+  PerThread<PerLane> lanes_;
+  std::uint64_t first_loop_ = detail::loop_place.loop;  // of the updates that wait
   std::vector<std::uint8_t> is_touched_;  // [bucket], whether any thread may have updates there
   std::vector<std::uint32_t> touched_;    // scratch of commit(): such buckets
 };

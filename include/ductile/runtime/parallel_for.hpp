@@ -13,9 +13,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numeric>
 #include <span>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -36,14 +38,28 @@ struct LoopOptions {
 constexpr LoopOptions few_nanoseconds{.grain = 128, .serial_below = 512};
 
 namespace detail {
-extern constinit thread_local int current_thread;  // see this_thread()
-}
+
+/// Which iterations of which loop the calling thread runs. In a loop inside another one loop and
+/// range are the outer loop's, whose order decides what comes first.
+struct LoopPlace {
+  int thread = 0;                                    // see this_thread()
+  int threads = 0;                                   // of the loop's executor; 0 outside of loops
+  std::uint64_t loop = 0;                            // how many its starter had started, with it
+  std::size_t begin = ~std::size_t{0}, end = begin;  // outside of loops: after the last one's
+};
+extern constinit thread_local LoopPlace loop_place;
+
+/// Throws std::invalid_argument if the calling thread is in a loop of an executor with another
+/// number of threads: what is there for each thread would not be there for this one.
+void expect_loop_of(const Executor& executor, const char* what);
+
+}  // namespace detail
 
 /// Index of the calling thread in the running loop, in [0, executor.threads()); 0 outside of one.
 /// In a loop inside another one it is that of the outer loop, also if the inner loop has another
 /// executor, or 0 if that has no such thread: several threads may then be 0 of that executor at
 /// once, and may not share what is PerThread by it.
-inline int this_thread() noexcept { return detail::current_thread; }
+inline int this_thread() noexcept { return detail::loop_place.thread; }
 
 /// A loop body without its type: called with disjoint ranges that together cover [0, n).
 using RangeBody = void (*)(void* context, std::size_t begin, std::size_t end);
@@ -65,15 +81,24 @@ void parallel_for_ranges(const Executor& executor, std::size_t n, Body&& body,
       const_cast<std::remove_const_t<Plain>*>(&body), options);
 }
 
+/// What a loop lends its bodies, see parallel_for(): objects with mine(), which is the calling
+/// thread's.
+template <class... Lender>
+using Lent = std::tuple<Lender&...>;
+template <class... Lender>
+Lent<Lender...> with(Lender&... lender) {
+  return {lender...};
+}
+
 namespace detail {
 /// What a loop calls for each iteration: of a small body that is a temporary, a copy. Compilers
 /// keep what that refers to in registers, as nothing that an iteration writes can change it.
-template <class Body>
+template <class Body, class... Mine>
 decltype(auto) own_copy(std::remove_reference_t<Body>& body) {
   // False of references, that is, of bodies that are not temporaries.
   constexpr bool is_small = std::is_trivially_copyable_v<Body> &&
                             std::is_copy_constructible_v<Body> && sizeof(Body) <= 64;
-  if constexpr (is_small && std::is_invocable_v<const Body&, std::size_t>) {
+  if constexpr (is_small && std::is_invocable_v<const Body&, std::size_t, Mine&...>) {
     return Body(body);
   } else {
     return (body);
@@ -81,17 +106,29 @@ decltype(auto) own_copy(std::remove_reference_t<Body>& body) {
 }
 }  // namespace detail
 
+/// Calls body(i, mine...) once for every i in [0, n), where `mine` are what the lenders' mine()
+/// return. They are asked once for each range of iterations that a thread gets:
+/// parallel_for(executor, n, with(found), [&](std::size_t i, auto& mine) { mine.append(i); })
+template <class... Lender, class Body>
+void parallel_for(const Executor& executor, std::size_t n, Lent<Lender...> lent, Body&& body,
+                  const LoopOptions& options = {}) {
+  parallel_for_ranges(
+      executor, n,
+      [&body, lent](std::size_t begin, std::size_t end) {
+        const auto run = [&]<class... Mine>(Mine&&... mine) {
+          auto&& own_body = detail::own_copy<Body, Mine...>(body);
+          for (std::size_t i = begin; i < end; ++i) own_body(i, mine...);
+        };
+        std::apply([&](auto&... lender) { run(lender.mine()...); }, lent);
+      },
+      options);
+}
+
 /// Calls body(i) once for every i in [0, n).
 template <class Body>
 void parallel_for(const Executor& executor, std::size_t n, Body&& body,
                   const LoopOptions& options = {}) {
-  parallel_for_ranges(
-      executor, n,
-      [&body](std::size_t begin, std::size_t end) {
-        auto&& own_body = detail::own_copy<Body>(body);
-        for (std::size_t i = begin; i < end; ++i) own_body(i);
-      },
-      options);
+  parallel_for(executor, n, Lent<>(), std::forward<Body>(body), options);
 }
 
 /// Calls body(block, begin, end) once for each block of `block_size` iterations of [0, n). Blocks

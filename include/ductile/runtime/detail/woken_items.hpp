@@ -31,7 +31,7 @@ class WokenItems {
 
     void wake(Item item) const {
       const std::uint32_t own = woken.turn_of_[known(item, woken.turn_of_.size())];
-      if (own == absent || own <= turn) woken.items_.append(item);
+      if (own == absent || own <= turn) woken.items_.mine().append(item);
     }
     void postpone(Item item) const {
       // Relaxed: whoever reads it waits for this one, or does not conflict with the item.
@@ -42,7 +42,7 @@ class WokenItems {
   };
 
   WokenItems(const Executor& executor, std::size_t resource_count)
-      : items_(executor, {.order = WorkOrder::by_item, .unique = true}),
+      : items_(executor),
         postponed_in_(make_filled<std::uint32_t>(executor, resource_count)),
         turn_of_(make_filled<std::uint32_t>(executor, resource_count, absent)) {}
 
@@ -62,11 +62,11 @@ class WokenItems {
   Commit commit() { return {*this}; }
 
   /// For the next round. Thread safety: any thread.
-  void bring_back(Item item) { items_.append(item); }
+  void bring_back(Item item) { items_.mine().append(item); }
 
   /// All of them, each once, in order: the next round's work.
   UnsetVector<Item> take() {
-    items_.collect();
+    items_.collect_unique();
     return items_.take();
   }
 

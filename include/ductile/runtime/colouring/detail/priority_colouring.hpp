@@ -73,7 +73,7 @@ class PriorityRun {
         colours_(colours),
         before_(before),
         awaited_(colours.vertex_count(), vertices),
-        free_(executor, {.order = WorkOrder::arrival}) {}
+        free_(executor) {}
 
   void run() {
     for_each(vertices_, [&](std::uint32_t v) {
@@ -82,7 +82,7 @@ class PriorityRun {
     });
     for_each(vertices_, [&](std::uint32_t v) { colour_or_announce(v); });
     for_each(vertices_, [&](std::uint32_t v) {
-      if (colours_[v] == Colours<Width>::waiting && awaited_[v] == 0) free_.append(v);
+      if (colours_[v] == Colours<Width>::waiting && awaited_[v] == 0) free_.mine().append(v);
     });
     for (free_.collect(); !free_.empty(); free_.collect()) {
       const UnsetVector<std::uint32_t> now = free_.take();
@@ -130,7 +130,7 @@ class PriorityRun {
         if (size < stack.size()) {
           stack[size++] = u;
         } else {
-          free_.append(u);
+          free_.mine().append(u);
         }
       });
     }

@@ -45,10 +45,7 @@ class FirstRound {
   using Long = LongOf<Width>;
 
   FirstRound(const Executor& executor, const G& graph, Colours<Width> colours)
-      : executor_(executor),
-        graph_(graph),
-        colours_(colours),
-        suspects_(executor, {.order = WorkOrder::arrival}) {}
+      : executor_(executor), graph_(graph), colours_(colours), suspects_(executor) {}
 
   /// Returns vertices in any order; of any two that clash, one at least is among them.
   UnsetVector<std::uint32_t> run() {
@@ -103,7 +100,7 @@ class FirstRound {
     }
   }
 
-  [[gnu::noinline]] void suspect(std::uint32_t v) { suspects_.append(v); }
+  [[gnu::noinline]] void suspect(std::uint32_t v) { suspects_.mine().append(v); }
 
   static std::uint32_t number() {
     return static_cast<std::uint32_t>(this_thread()) % speculative_marks;
@@ -146,15 +143,15 @@ enum class Recolouring { at_once, when_all_are_found };
 template <Recolouring when, class Width, Graph G>
 void recolour_clashing(const Executor& executor, const G& graph, UnsetVector<std::uint32_t> list,
                        const Colours<Width>& colours) {
-  Worklist<std::uint32_t> clashing(executor, {.order = WorkOrder::arrival});
+  Worklist<std::uint32_t> clashing(executor);
   for (Rivals rivals = Rivals::all; !list.empty(); rivals = Rivals::lower) {
-    const auto look_at = [&](std::size_t i) {
+    const auto look_at = [&](std::size_t i, auto& mine) {
       prefetch_after(graph, {list.size(), list.data()}, i);
       if (!clashes(graph, list[i], colours, rivals)) return;
       if (when == Recolouring::at_once) colour_again(graph, list[i], colours);
-      clashing.append(list[i]);
+      mine.append(list[i]);
     };
-    parallel_for(executor, list.size(), look_at, speculative_loop);
+    parallel_for(executor, list.size(), with(clashing), look_at, speculative_loop);
     clashing.collect();
     list = clashing.take();
     if (when == Recolouring::at_once) continue;
