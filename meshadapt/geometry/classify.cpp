@@ -246,7 +246,11 @@ class Classifier {
       joined[std::max(p, q)] = std::min(p, q);
       mesh_.patches[p].smooth = mesh_.patches[q].smooth = true;
     }
-    for (TaggedFacet<Dim>& facet : facets_) facet.patch = find(facet.patch);
+    plane_of_.reserve(facets_.size());
+    for (TaggedFacet<Dim>& facet : facets_) {
+      plane_of_.push_back(facet.patch);
+      facet.patch = find(facet.patch);
+    }
   }
 
   /// Does a smooth patch have an edge here, or in 2D a corner, that fades out elsewhere?
@@ -262,27 +266,11 @@ class Classifier {
 
   /// Keeps what smooth patches and curves are like, and what their facets must not come close to.
   void keep_surface() {
-    const auto is_smooth = [](const auto& patch) { return patch.smooth; };
-    if (std::none_of(mesh_.patches.begin(), mesh_.patches.end(), is_smooth) &&
-        std::none_of(mesh_.curves.begin(), mesh_.curves.end(), is_smooth))
-      return;
-    const auto points = [&](const auto& corners) {
-      std::array<Vector<Dim>, std::tuple_size_v<std::decay_t<decltype(corners)>>> result;
-      for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = mesh_.site_of[corners[i]].position;
-      return result;
-    };
-    std::vector<typename Sheets<Dim, Dim>::Part> facets;
-    facets.reserve(facets_.size());
-    for (const TaggedFacet<Dim>& f : facets_)  // outwards, however the file has them
-      facets.push_back(
-          {points(facet_of<Dim>(mesh_.corners_of[f.element], f.facet)), f.patch, f.other != none});
-    std::vector<typename Sheets<Dim, 2>::Part> edges;
-    for (const CurveEdge& e : curve_edges_)
-      if (mesh_.curves[e.curve].smooth)
-        edges.push_back({points(std::array{e.a, e.b}), e.curve, true});
-    mesh_.surface = std::make_shared<const Surface<Dim>>(std::move(facets), std::move(edges),
-                                                         surface_tolerance_);
+    std::vector<SurfaceEdge> edges;
+    edges.reserve(curve_edges_.size());
+    for (const CurveEdge& e : curve_edges_) edges.push_back({e.a, e.b, e.curve});
+    mesh_.surface = make_surface<Dim>(executor_, mesh_, facets_, plane_of_, edges,
+                                      {surface_tolerance_, tolerance_, least_turn_});
   }
 
   void store_patches() {
@@ -566,6 +554,7 @@ class Classifier {
   runtime::UnsetVector<Others> across_;             // [facet][side], the other facet or none
   std::unordered_map<SideKey, ListedEdge> listed_;  // 3D
   std::vector<std::uint8_t> kept_;  // [vertex], whether facets there keep their shape
+  std::vector<PatchId> plane_of_;   // [facet], its patch before flat ones were joined
   std::vector<CurveEdge> curve_edges_;
   std::unordered_map<VertexId, std::vector<std::uint32_t>> edges_at_;
 };

@@ -17,14 +17,23 @@ class Prism {
  public:
   using Points = std::array<Vector<Dim>, Corners>;
 
-  /// A point by its weights: those of the simplex's corners after the first in the point below.
+  /// A point by the weights of the simplex's corners after the first in the point below, and by
+  /// where it is across the simplex, a length in each direction there is. Not set by itself: there
+  /// are many.
   struct Place {
-    Vector<Dim> point;
     std::array<double, Corners - 1> weight;
+    std::array<double, Dim - Corners + 1> across;
+
+    /// How far it is from where the simplex goes on to.
+    double aside() const {
+      if constexpr (Dim == Corners) return std::abs(across[0]);
+      return std::hypot(across.front(), across.back());
+    }
   };
   /// The corners of a part of a simplex, convex but for rounding.
   class Part {
    public:
+    Part() : size_(0) {}
     void push_back(const Place& place) { places_[size_++] = place; }
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
@@ -33,8 +42,8 @@ class Prism {
     const Place* end() const { return places_.data() + size_; }
 
    private:
-    std::array<Place, 3 * Corners> places_{};  // each side adds half as many at most
-    std::size_t size_ = 0;
+    std::array<Place, 3 * Corners> places_;  // each side adds half as many at most
+    std::size_t size_;
   };
 
   /// Over one that is flat there is nothing.
@@ -42,11 +51,22 @@ class Prism {
     const Vector<Dim> u = simplex[1] - simplex[0];
     if constexpr (Corners == 2) {
       gradient_[0] = (1 / dot(u, u)) * u;
+      if constexpr (Dim == 2) {
+        across_[0] = unit({{-u[1], u[0]}});
+      } else {
+        const int least = std::abs(u[0]) < std::abs(u[1]) ? 0 : 1;
+        Vector<3> axis;
+        axis[std::abs(u[2]) < std::abs(u[least]) ? 2 : least] = 1;
+        across_[0] = unit(cross(u, axis));
+        across_[1] = unit(cross(u, across_[0]));
+      }
     } else {
       const Vector<Dim> v = simplex[2] - simplex[0], normal = cross(u, v);
       const double scale = 1 / dot(normal, normal);
       gradient_ = {scale * cross(v, normal), scale * cross(normal, u)};
+      across_[0] = unit(normal);
     }
+    for (std::size_t i = 0; i < gradient_.size(); ++i) size_[i] = norm(gradient_[i]);
   }
 
   /// What of this simplex lies over the prism's: cut by one side after another (Sutherland and
@@ -54,8 +74,26 @@ class Prism {
   Part inside(const Points& simplex) const {
     Part part;
     for (const Vector<Dim>& point : simplex) part.push_back(place(point));
-    for (std::size_t side = 0; side < Corners && !part.empty(); ++side) part = cut(part, side);
+    for (std::size_t side = 0; side < Corners; ++side) {
+      std::size_t inside = 0;
+      for (const Place& place : part) inside += weight(place, side) >= 0 ? 1 : 0;
+      if (inside == 0) return {};
+      if (inside != part.size()) part = cut(part, side);
+    }
     return part;
+  }
+
+  /// Is it certain that nothing of a sphere lies over the simplex?
+  bool is_beside(const Vector<Dim>& centre, double radius) const {
+    const Vector<Dim> offset = centre - corner_[0];
+    double rest = 1, rests_size = 0;
+    for (std::size_t i = 0; i < gradient_.size(); ++i) {
+      const double weight = dot(offset, gradient_[i]);
+      if (weight < -radius * size_[i]) return true;
+      rest -= weight;
+      rests_size += size_[i];
+    }
+    return rest < -radius * rests_size;
   }
 
   /// How much of the simplex is below a part, 1 being all.
@@ -70,7 +108,7 @@ class Prism {
       sum = std::max(0.0, high - low);
     } else {
       for (std::size_t i = 0; i < part.size(); ++i) {
-        const auto &a = part[i].weight, &b = part[(i + 1) % part.size()].weight;
+        const auto &a = part[i].weight, &b = part[i + 1 == part.size() ? 0 : i + 1].weight;
         sum += a[0] * b[1] - a[1] * b[0];
       }
     }
@@ -86,10 +124,13 @@ class Prism {
   }
 
  private:
+  static Vector<Dim> unit(const Vector<Dim>& v) { return (1 / norm(v)) * v; }
+
   Place place(const Vector<Dim>& point) const {
-    Place result{point, {}};
-    for (std::size_t i = 0; i + 1 < Corners; ++i)
-      result.weight[i] = dot(point - corner_[0], gradient_[i]);
+    Place result;
+    const Vector<Dim> offset = point - corner_[0];
+    for (std::size_t i = 0; i < gradient_.size(); ++i) result.weight[i] = dot(offset, gradient_[i]);
+    for (std::size_t i = 0; i < across_.size(); ++i) result.across[i] = dot(offset, across_[i]);
     return result;
   }
 
@@ -103,22 +144,31 @@ class Prism {
 
   static Part cut(const Part& part, std::size_t side) {
     Part result;
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const Place &here = part[i], &next = part[(i + 1) % part.size()];
-      const double a = weight(here, side), b = weight(next, side);
-      if (a >= 0) result.push_back(here);
-      if ((a < 0) == (b < 0)) continue;
-      const double t = a / (a - b);
-      Place between{here.point + t * (next.point - here.point), {}};
-      for (std::size_t k = 0; k + 1 < Corners; ++k)
-        between.weight[k] = here.weight[k] + t * (next.weight[k] - here.weight[k]);
-      result.push_back(between);
+    const Place* here = part.end() - 1;
+    double a = weight(*here, side);
+    for (const Place& next : part) {
+      const double b = weight(next, side);
+      if ((a < 0) != (b < 0)) result.push_back(between(*here, next, a / (a - b)));
+      if (b >= 0) result.push_back(next);
+      here = &next;
+      a = b;
     }
+    return result;
+  }
+
+  static Place between(const Place& a, const Place& b, double t) {
+    Place result;
+    for (std::size_t k = 0; k < a.weight.size(); ++k)
+      result.weight[k] = a.weight[k] + t * (b.weight[k] - a.weight[k]);
+    for (std::size_t k = 0; k < a.across.size(); ++k)
+      result.across[k] = a.across[k] + t * (b.across[k] - a.across[k]);
     return result;
   }
 
   Points corner_;
   std::array<Vector<Dim>, Corners - 1> gradient_;
+  std::array<double, Corners - 1> size_;  // of the gradients
+  std::array<Vector<Dim>, Dim - Corners + 1> across_;
 };
 
 }  // namespace ductile::meshadapt

@@ -54,6 +54,28 @@ Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners>& corner) {
   return length > 0 ? (1 / length) * direction : Vector<Dim>{};
 }
 
+/// The weights of the corners in a point of the simplex.
+template <int Dim>
+std::array<double, 2> weights_of(const std::array<Vector<Dim>, 2>& p, const Vector<Dim>& point) {
+  const Vector<Dim> along = p[1] - p[0];
+  const double length2 = dot(along, along);
+  const double t = length2 > 0 ? std::clamp(dot(point - p[0], along) / length2, 0.0, 1.0) : 0;
+  return {1 - t, t};
+}
+std::array<double, 3> weights_of(const std::array<Vector<3>, 3>& p, const Vector<3>& point) {
+  const Vector<3> normal = facet_normal(p);
+  const double area2 = dot(normal, normal);
+  if (!(area2 > 0)) return {1, 0, 0};
+  std::array<double, 3> weight{};
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector<3> part = facet_normal({point, p[(i + 1) % 3], p[(i + 2) % 3]});
+    sum += weight[i] = std::max(0.0, dot(part, normal) / area2);
+  }
+  for (double& w : weight) w /= sum;
+  return weight;
+}
+
 /// The halves of an edge, the quarters of a triangle.
 template <int Dim>
 auto divided(const std::array<Vector<Dim>, 2>& p) {
@@ -68,15 +90,25 @@ auto divided(const std::array<Vector<3>, 3>& p) {
 
 }  // namespace
 
+/// Of the facets: their parts are looked at one by one.
 template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Tree : BoxIndex<Dim> {
   using BoxIndex<Dim>::BoxIndex;
 };
 
+/// Calls visit(part) for each part whose box has a point in common with this one.
+template <int Dim, std::size_t Corners>
+void Sheets<Dim, Corners>::each_meeting(const Box<Dim>& box, auto&& visit) const {
+  tree_->each_meeting(box, [&](std::uint32_t facet) {
+    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part)
+      if (meet(box, box_of_[part])) visit(part);
+  });
+}
+
 /// Some parts, among which the closest to a point is looked for: first where it is likely, then
 /// wherever it may be.
 template <int Dim, std::size_t Corners>
-struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t, 96> {
+struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t, 192> {
   Closest closest(const Sheets& sheets, const Vector<Dim>& point) const {
     Closest best;
     const auto square = [&](std::uint32_t part) {
@@ -136,17 +168,17 @@ struct Sheets<Dim, Corners>::Search {
            std::abs(dot(gap, sheets.shape_of_[here.part].direction)) > 0.1 * width;
   }
 
-  /// Does the part share a corner with one of the others?
+  /// Does the facet that the part is of share a corner with that of one of the others?
   bool has_corner_of(std::uint32_t part, const Near& others) const {
     const auto has = [&](const Points& corners, const Vector<Dim>& point) {
       return std::any_of(corners.begin(), corners.end(),
                          [&](const Vector<Dim>& corner) { return corner.x == point.x; });
     };
+    const Points own = sheets.facet_of(part);
     return std::any_of(others.begin(), others.end(), [&](std::uint32_t other) {
-      const Points& corners = sheets.parts_[other].corner;
-      return std::any_of(corners.begin(), corners.end(), [&](const Vector<Dim>& corner) {
-        return has(sheets.parts_[part].corner, corner);
-      });
+      const Points corners = sheets.facet_of(other);
+      return std::any_of(corners.begin(), corners.end(),
+                         [&](const Vector<Dim>& corner) { return has(own, corner); });
     });
   }
 
@@ -154,7 +186,7 @@ struct Sheets<Dim, Corners>::Search {
   Near inside(const Box<Dim>& box, const Near& parts) const {
     Near near;
     for (const std::uint32_t part : parts)
-      if (meet(box, sheets.shape_of_[part].box)) near.push_back(part);
+      if (meet(box, sheets.box_of_[part])) near.push_back(part);
     return near;
   }
   Around inside(const Box<Dim>& box, const Around& around) const {
@@ -202,23 +234,32 @@ struct Sheets<Dim, Corners>::Search {
   }
 
   /// Whether each point of the simplex has one of the parts above or below; if so how far away at
-  /// most, and where that is so.
+  /// most, and where that is so. Or whether the parts are too far from there anyway.
   struct Graph {
     bool whole;
     double most_aside;
     Vector<Dim> where;
+    bool too_far = false;
   };
   Graph graph_over(const Points& simplex, const Near& parts) const {
+    constexpr double far = 1.5;  // more than what is turned by 45 degrees may have
     const Prism<Dim, Corners> prism(simplex);
     Graph graph{false, 0, simplex[0]};
     double share = 0;
+    bool looked = false;
     for (const std::uint32_t part : parts) {
+      const Shape& shape = sheets.shape_of_[part];
+      if (prism.is_beside(shape.centre, shape.radius)) continue;
       const auto inside = prism.inside(sheets.parts_[part].corner);
       share += prism.share(inside);
       for (const auto& place : inside) {
-        const double here = aside(simplex, place.point);
+        const double here = place.aside();
         if (here > graph.most_aside) graph = {false, here, prism.below(place)};
       }
+      if (looked || !(graph.most_aside > far * tolerance)) continue;
+      looked = true;
+      graph.too_far = parts.closest(sheets, graph.where).distance > tolerance;
+      if (graph.too_far) return graph;
     }
     graph.whole = std::abs(share - 1) < 1e-9;
     return graph;
@@ -247,6 +288,7 @@ struct Sheets<Dim, Corners>::Search {
   /// so, but not always if not.
   bool covered(const Points& simplex, const Graph& graph, const Around& around, int depth) const {
     constexpr int deepest = 3;
+    if (graph.too_far) return false;
     const Near facing = close_to(simplex, reach(graph), around.facing);
     if (graph.whole && graph.most_aside <= tolerance && facing.empty()) return true;
     const Near& covering = around.covering;
@@ -277,19 +319,78 @@ struct Sheets<Dim, Corners>::Search {
 };
 
 template <int Dim, std::size_t Corners>
-Sheets<Dim, Corners>::Sheets(std::vector<Part> parts, double tolerance)
-    : parts_(std::move(parts)), tolerance_(tolerance) {
+Sheets<Dim, Corners>::Sheets(const std::vector<Part>& parts, double tolerance,
+                             const std::vector<std::optional<Curved>>& curved)
+    : tolerance_(tolerance) {
+  divide(parts, curved);
   shape_of_.reserve(parts_.size());
+  box_of_.reserve(parts_.size());
   for (const Part& part : parts_) {
     const auto [centre, radius] = sphere_around(part.corner);
-    shape_of_.push_back(
-        {box_around(part.corner), centre, direction_of(part.corner), radius * (1 + 1e-9)});
+    box_of_.push_back(box_around(part.corner));
+    shape_of_.push_back({centre, direction_of(part.corner), radius * (1 + 1e-9)});
   }
-  tree_ = std::make_unique<Tree>(parts_.size(), [&](std::size_t i) { return shape_of_[i].box; });
+  tree_ = std::make_unique<Tree>(first_part_.size() - 1, [&](std::size_t facet) {
+    auto box = Box<Dim>::empty();
+    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part)
+      box = join(box, box_of_[part]);
+    return box;
+  });
 }
 
 template <int Dim, std::size_t Corners>
 Sheets<Dim, Corners>::~Sheets() = default;
+
+/// Makes flat parts that are within a share of the tolerance.
+template <int Dim, std::size_t Corners>
+void Sheets<Dim, Corners>::divide(const std::vector<Part>& parts,
+                                  const std::vector<std::optional<Curved>>& curved) {
+  constexpr double share = 1.0 / 8;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    first_part_.push_back(static_cast<std::uint32_t>(parts_.size()));
+    if (curved.empty() || !curved[p]) {
+      parts_.push_back(parts[p]);
+      origin_of_.push_back({none, {}});
+      continue;
+    }
+    const auto number = static_cast<std::uint32_t>(curved_.size());
+    curved_.push_back(*curved[p]);
+    Divider<Dim, Corners>(*curved[p], share * tolerance_).each([&](const auto& part) {
+      parts_.push_back({part.corner, parts[p].sheet, parts[p].two_sided});
+      origin_of_.push_back({number, part.weight});
+    });
+  }
+  first_part_.push_back(static_cast<std::uint32_t>(parts_.size()));
+}
+
+/// The corners of what a flat part is of.
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::facet_of(std::uint32_t part) const -> Points {
+  if (origin_of_[part].curved == none) return parts_[part].corner;
+  Points corners;
+  for (std::size_t i = 0; i < Corners; ++i) corners[i] = curved_[origin_of_[part].curved].corner(i);
+  return corners;
+}
+
+/// The point of the model near the closest one of its flat parts.
+template <int Dim, std::size_t Corners>
+Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Closest& closest) const {
+  if (origin_of_[closest.part].curved == none) return closest.point;
+  constexpr int steps = 3;
+  const Origin& origin = origin_of_[closest.part];
+  const Curved& curved = curved_[origin.curved];
+  const auto share = weights_of(parts_[closest.part].corner, closest.point);
+  typename Curved::Weights weights{};
+  for (std::size_t i = 0; i < Corners; ++i)
+    for (std::size_t k = 0; k < Corners; ++k)
+      weights[k] += share[i] * origin.weight[i][k] / most_divisions;
+  for (int step = 0; step < steps; ++step) {
+    const auto closer = curved.closer(weights, point);
+    if (!closer) break;
+    weights = *closer;
+  }
+  return curved.at(weights);
+}
 
 template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) const {
@@ -298,7 +399,7 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   // What is farther away than that is turned by more somewhere.
   const Search search{*this, direction_of(simplex), std::min(tolerance_, 0.5 * sphere.radius)};
   Around around;
-  tree_->each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
+  each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);
     if (parts_[part].sheet == sheet && turn > 0)
       (turn >= least_turn ? around.covering : around.steep).push_back(part);
@@ -306,6 +407,7 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   });
   if (around.covering.empty()) return false;
   const auto graph = search.graph_over(simplex, around.covering);
+  if (graph.too_far) return false;
   // What is inside has elements on both sides, which keep it apart.
   if (parts_[around.covering.front()].two_sided) around.facing.clear();
   Near& facing = around.facing = search.close_to(simplex, search.reach(graph), around.facing);
@@ -326,11 +428,11 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
     last = !(reach > 0 && reach < most);
     const double within = last ? most : reach;
     Near near;
-    tree_->each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
+    each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
       if (parts_[part].sheet == sheet) near.push_back(part);
     });
     const Closest best = near.closest(*this, point);
-    if (best.distance <= within) return best.point;
+    if (best.distance <= within) return on_model(point, best);
   }
   return {};
 }

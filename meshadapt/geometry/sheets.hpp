@@ -1,6 +1,7 @@
 /// @file
-/// Sheets: what curved patches, or curves, of a mesh looked like before it was adapted. Tells of a
-/// facet, or an edge, that stands for a part of one whether it is close enough to it all over.
+/// Sheets: a model of the curved patches, or curves, of a mesh before it was adapted. Tells of a
+/// facet, or an edge, that stands for a part of one whether it is close enough to it all over. What
+/// is curved is divided into flat parts for that.
 #pragma once
 
 #include <array>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/vector.hpp"
+#include "geometry/divided.hpp"
 #include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
@@ -20,6 +22,7 @@ template <int Dim, std::size_t Corners>
 class Sheets {
  public:
   using Points = std::array<Vector<Dim>, Corners>;
+  using Curved = CurvedSimplex<Dim, Corners>;
   /// A part of a sheet.
   struct Part {
     Points corner;
@@ -29,11 +32,15 @@ class Sheets {
     bool two_sided;
   };
 
+  /// `curved` is what parts are curved into, nothing where they are flat; or empty if all are.
   /// Throws std::bad_alloc. Linear in the parts but for a logarithm.
-  Sheets(std::vector<Part> parts, double tolerance);
+  Sheets(const std::vector<Part>& parts, double tolerance,
+         const std::vector<std::optional<Curved>>& curved = {});
   ~Sheets();
   Sheets(const Sheets&) = delete;
   Sheets& operator=(const Sheets&) = delete;
+
+  double tolerance() const { return tolerance_; }
 
   /// Is every point of this simplex within the tolerance of the sheet, and half the radius of the
   /// simplex, where it is turned by less than 45 degrees against it? And is none that close to what
@@ -43,9 +50,9 @@ class Sheets {
   /// Thread safety: any thread.
   bool cover(const Points& simplex, std::uint32_t sheet) const;
 
-  /// The point of the sheet closest to a point, if there is one within this distance and the
-  /// tolerance.
-  /// Thread safety: any thread.
+  /// The point of the sheet closest to a point, nearly, if there is one within this distance and
+  /// the tolerance. Where the sheet is curved it is on the curve, not on its flat parts; that of
+  /// such a point is the point itself, but for rounding. Thread safety: any thread.
   std::optional<Vector<Dim>> closest(const Vector<Dim>& point, std::uint32_t sheet,
                                      double reach) const;
 
@@ -55,7 +62,6 @@ class Sheets {
   struct Around;
   struct Search;
   struct Shape {
-    Box<Dim> box;
     Vector<Dim> centre;
     Vector<Dim> direction;  // unit normal of a facet, else along the edge
     double radius;          // of a sphere around the centre
@@ -66,8 +72,25 @@ class Sheets {
     std::uint32_t part = 0;
   };
 
+  /// Where in a curved simplex a flat part comes from.
+  struct Origin {
+    std::uint32_t curved;  // its number, or none
+    decltype(DividedPart<Dim, Corners>::weight) weight;
+  };
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+
+  void divide(const std::vector<Part>& parts, const std::vector<std::optional<Curved>>& curved);
+  Points facet_of(std::uint32_t part) const;
+  Vector<Dim> on_model(const Vector<Dim>& point, const Closest& closest) const;
+
+  void each_meeting(const Box<Dim>& box, auto&& visit) const;
+
   std::vector<Part> parts_;
-  std::vector<Shape> shape_of_;  // [part]
+  std::vector<std::uint32_t> first_part_;  // [facet], and their number
+  std::vector<Origin> origin_of_;          // [part]
+  std::vector<Curved> curved_;
+  std::vector<Shape> shape_of_;   // [part]
+  std::vector<Box<Dim>> box_of_;  // [part], read by itself most of the time
   double tolerance_;
   std::unique_ptr<const Tree> tree_;
 };

@@ -11,10 +11,18 @@
 
 namespace ductile::meshadapt {
 
+namespace {
+
+/// Of a barycentric weight: where a walk ends a point is there but for rounding, which is seen in
+/// thin elements; or, where curved boundaries may move, it is near enough.
+constexpr double rounding = 1e-5, close_outside = 0.25;
+
+}  // namespace
+
 template <int Dim>
 Background<Dim>::Background(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                             Neighbours<Dim> neighbours)
-    : neighbours_(std::move(neighbours)) {
+    : neighbours_(std::move(neighbours)), slack_(mesh.surface ? close_outside : rounding) {
   runtime::FreshMemory fresh;
   corners_of_.resize_for_overwrite(mesh.element_slots(), fresh);
   position_of_.resize_for_overwrite(mesh.vertex_slots(), fresh);
@@ -53,13 +61,12 @@ ClosestPoint<Dim> Background<Dim>::closest(const Vector<Dim>& point) const {
 
 template <int Dim>
 auto Background<Dim>::sample(const Vector<Dim>& point, ElementId near) const -> Sample {
-  constexpr double rounding = 1e-5;  // of a barycentric weight, seen in thin elements
   if (near >= corners_of_.size()) near = 0;
   const WalkEnd<Dim> end = walk<Dim>({{corners_of_, position_of_}, neighbours_}, point, near);
   ElementId host = end.element;
   Weights<Dim> weight = end.weight;
   // Not so either if they are no numbers, as of an element that is flat but for rounding.
-  const auto is_near = [&](double w) { return w >= -rounding; };
+  const auto is_near = [&](double w) { return w >= -slack_; };
   if (!end.inside && !std::all_of(weight.begin(), weight.end(), is_near)) {
     const ClosestPoint<Dim> found = closest(point);
     host = found.element;

@@ -311,6 +311,7 @@ void Adapter<Dim>::rearrange() {
 /// Raises quality without aiming at lengths.
 template <int Dim>
 void Adapter<Dim>::polish() {
+  settle(0);
   for (int pass = 0; pass < care_of<Dim>(options_).polishes; ++pass) {
     smooth(3, 0.5, true);
     swap(4, Tuning<Dim>::swap_below);
@@ -395,6 +396,7 @@ std::size_t Adapter<Dim>::refine() {
   if (std::isinf(limit)) return 0;
   const Splits splits = split_edges_above(limit);
   if (splits.left_lists_stale) renumber_mesh(splits.first_vertex);
+  if (splits.count != 0) settle(mesh_.epoch - 1);
   tell("refine", splits.count);
   return splits.count;
 }
@@ -457,6 +459,22 @@ std::size_t Adapter<Dim>::smooth(int sweeps, double optimise_below, bool laplaci
   if (changes != 0) survey_.forget();
   tell("smooth", changes);
   return changes;
+}
+
+/// Brings vertices of curved boundaries that were made on chords, next to what has changed after an
+/// epoch, to the model of the surface.
+template <int Dim>
+void Adapter<Dim>::settle(std::uint32_t after) {
+  if (!options_.move || !mesh_.surface) return;
+  const runtime::PhaseTimer timer(report_.smooth.seconds);
+  SmoothOptions options = smoothing(0, false);
+  options.to_surface = true;
+  options.range = {};  // what gets a little too long by that is for the next splits
+  Smooth<Dim> op(mesh_, background_, options);
+  const RoundsReport rounds =
+      run_by_conflicts(op, Smooth<Dim>::vertices_on_surface(executor_, mesh_, after));
+  add(report_.smooth, rounds);
+  if (rounds.applied != 0) survey_.forget();
 }
 
 template <int Dim>

@@ -63,6 +63,7 @@ class Adapter {
   Splits split_edges_above(double limit);
   std::size_t swap(int sweeps, double below);
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
+  void settle(std::uint32_t after);
   template <class Op>
   runtime::RoundsReport run_by_conflicts(Op& op, const runtime::UnsetVector<VertexId>& work) const;
 

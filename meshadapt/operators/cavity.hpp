@@ -202,6 +202,12 @@ bool on_smooth_curve(const Mesh<Dim>& mesh, VertexId vertex) {
          mesh.curves[mesh.entity_of[vertex]].smooth;
 }
 
+/// May the vertex only move in a patch that bends?
+template <int Dim>
+bool on_smooth_patch(const Mesh<Dim>& mesh, VertexId vertex) {
+  return mesh.kind_of[vertex].freedom == Dim - 1 && mesh.patches[mesh.entity_of[vertex]].smooth;
+}
+
 /// Do the element's facets on smooth patches, and those that end at a smooth curve, stay close to
 /// what was there in the input if one of its corners moves?
 template <int Dim>

@@ -66,9 +66,27 @@ runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices_of_poor(
 }
 
 template <int Dim>
+runtime::UnsetVector<VertexId> Smooth<Dim>::vertices_on_surface(const runtime::Executor& executor,
+                                                                const Mesh<Dim>& mesh,
+                                                                std::uint32_t after) {
+  const auto marked = mark_changed(executor, mesh, after);
+  const auto find = [&](std::size_t v, auto&& append) {
+    const auto vertex = static_cast<VertexId>(v);
+    if (marked[v] != 0 && (on_smooth_patch(mesh, vertex) || on_smooth_curve(mesh, vertex)))
+      append(vertex);
+  };
+  return runtime::parallel_collect<VertexId>(executor, marked.size(), find,
+                                             runtime::few_nanoseconds.serial_below);
+}
+
+template <int Dim>
 bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
   const auto elements = mesh_.elements_of.of(vertex);
   if (elements.empty() || elements.size() > mesh_.largest_ball) return false;
+  if (options_.to_surface) {
+    Place best;
+    return settle(vertex, best) && follow(vertex, best, plan);
+  }
   constexpr double sound = 1e-6;  // the inverse of a shape tells something
   const double good_enough = shape_of_mean_ratio<Dim>(options_.optimise_below);
   const auto is_good = [&](ElementId e) { return mesh_.shape_of[e] >= good_enough; };
@@ -84,11 +102,34 @@ bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
         best.score.worst > sound && best.score.sum < poor * static_cast<double>(ball.size());
     moved = optimise(vertex, ball, all_poor ? Aim::mean : Aim::worst, best) || moved;
   }
-  if (!moved) return false;
+  return moved && follow(vertex, best, plan);
+}
+
+/// Plans to go there.
+template <int Dim>
+bool Smooth<Dim>::follow(VertexId vertex, const Place& best, Plan& plan) const {
   const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
   const bool far = squared_length(best.site.metric, step) > options_.far * options_.far;
   plan = {best.host, best.site, best.shapes, far};
   return true;
+}
+
+/// Goes to the closest point of the surface's model, or towards it, unless it is there.
+template <int Dim>
+bool Smooth<Dim>::settle(VertexId vertex, Place& best) const {
+  constexpr double close = 0.01;  // of the tolerance
+  constexpr double kept = 0.7;    // of the worst shape
+  const Vector<Dim> from = mesh_.site_of[vertex].position;
+  const auto target = stepped(vertex, from, {});
+  if (!target) return false;
+  const Vector<Dim> step = *target - from;
+  if (norm(step) <= close * mesh_.surface->facets.tolerance()) return false;
+  background_.prefetch_corners(mesh_.host_of[vertex]);
+  const Ball<Dim> ball(mesh_, vertex);
+  const Place here{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present()};
+  for (const double fraction : {1.0, 0.5, 0.25})
+    if (place(ball, from + fraction * step, here, {kept * here.score.worst, 0}, best)) return true;
+  return false;
 }
 
 /// Is it certain that every element around the vertex has a positive volume if it moves there, and
@@ -108,7 +149,8 @@ bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) co
   return true;
 }
 
-/// Do smooth patches and curves stay close to what they were if the vertex moves there?
+/// Do smooth patches and curves stay close to what they were if the vertex moves there? On its way
+/// to the model of the surface it may leave facets that are not close as they are.
 template <int Dim>
 bool Smooth<Dim>::keeps_surface(VertexId vertex, const Vector<Dim>& position) const {
   if (!mesh_.surface) return true;
@@ -118,7 +160,10 @@ bool Smooth<Dim>::keeps_surface(VertexId vertex, const Vector<Dim>& position) co
         return false;
   const auto elements = mesh_.elements_of.of(vertex);
   return std::all_of(elements.begin(), elements.end(), [&](ElementId e) {
-    return meshadapt::keeps_surface(mesh_, e, vertex, position);
+    const auto keeps = [&](const Vector<Dim>& at) {
+      return meshadapt::keeps_surface(mesh_, e, vertex, at);
+    };
+    return keeps(position) || (options_.to_surface && !keeps(mesh_.site_of[vertex].position));
   });
 }
 
@@ -207,17 +252,15 @@ Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) cons
   return displacement - dot(displacement, across) * across;
 }
 
-/// Where a step ends: if it follows a smooth patch or curve, at the closest point of what that was
-/// in the input.
+/// Where a step ends: if it follows a smooth patch or curve, at the closest point of the model of
+/// what that was in the input.
 template <int Dim>
 std::optional<Vector<Dim>> Smooth<Dim>::stepped(VertexId vertex, const Vector<Dim>& from,
                                                 const Vector<Dim>& step) const {
   const Vector<Dim> to = from + step;
-  const int freedom = mesh_.kind_of[vertex].freedom;
   const std::uint32_t entity = mesh_.entity_of[vertex];
   if (on_smooth_curve(mesh_, vertex)) return mesh_.surface->edges.closest(to, entity, norm(step));
-  if (freedom == Dim - 1 && mesh_.patches[entity].smooth)
-    return mesh_.surface->facets.closest(to, entity, norm(step));
+  if (on_smooth_patch(mesh_, vertex)) return mesh_.surface->facets.closest(to, entity, norm(step));
   return to;
 }
 

@@ -31,6 +31,7 @@ struct SmoothOptions {
                                 ///< though the worst may get worse
   double far = 0.08;            ///< metric length of a move that neighbours take notice of
   EdgeRange range = {};         ///< which no move leads edges out of, or farther out of
+  bool to_surface = false;      ///< only bring vertices closer to the model of the surface
 };
 
 template <int Dim>
@@ -55,6 +56,11 @@ class Smooth {
                                                                  const Mesh<Dim>& mesh,
                                                                  double mean_ratio,
                                                                  std::uint32_t after);
+
+  /// All vertices of smooth patches and curves next to elements changed after an epoch.
+  static runtime::UnsetVector<VertexId> vertices_on_surface(const runtime::Executor& executor,
+                                                            const Mesh<Dim>& mesh,
+                                                            std::uint32_t after);
 
   // ---- Plan: a better place, if there is one. Reads only. ----
   bool plan(VertexId vertex, Plan& plan, auto& reach) const {
@@ -85,6 +91,7 @@ class Smooth {
     BallShapes<Dim> shapes{};
   };
   void move(VertexId vertex, const Plan& plan);
+  bool follow(VertexId vertex, const Place& best, Plan& plan) const;
   bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
   bool keeps_surface(VertexId vertex, const Vector<Dim>& position) const;
   bool keeps_lengths(VertexId vertex, const Site<Dim>& site) const;
@@ -95,6 +102,7 @@ class Smooth {
   Vector<Dim> normal(VertexId vertex) const;
   std::optional<Vector<Dim>> stepped(VertexId vertex, const Vector<Dim>& from,
                                      const Vector<Dim>& step) const;
+  bool settle(VertexId vertex, Place& best) const;
   bool relax(VertexId vertex, const Ball<Dim>& ball, const Place& from, Place& to) const;
   bool optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const;
   Vector<Dim> ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim, const Place& at) const;

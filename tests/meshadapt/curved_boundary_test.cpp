@@ -208,7 +208,55 @@ TEST_P(CurvedBoundary, DoesNotCrossANarrowGap) {
     options.make.surface_tolerance = tolerance;
     const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 0.4), options);
     EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
-    EXPECT_LT(radii(result.mesh, 22)[1], radii(result.mesh, 21)[0]);
+    EXPECT_EQ(test::joined(check_boundary(executor, result.mesh)), "");
+  }
+}
+
+/// Largest distance of the vertices of facets with a reference from a radius.
+template <int Dim>
+double vertices_off(const AnyMesh& mesh, std::int32_t reference, double radius) {
+  const auto& facets = test::facets<Dim>(mesh);
+  double most = 0;
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    for (const std::uint32_t v : facets.vertices[f]) {
+      const Vector<Dim> p = test::point<Dim>(mesh, v);
+      if (facets.reference[f] == reference)
+        most = std::max(most, std::abs(std::hypot(p[0], p[1]) - radius));
+    }
+  return most;
+}
+
+/// Each call has what the one before left, and sizes that are small elsewhere.
+TEST_P(CurvedBoundary, StaysWhereItIsInManyCalls) {
+  constexpr double tolerance = 4e-3;
+  constexpr int calls = 10;
+  const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 40 : 14, 1.5);
+  const auto at_first = std::array{radii(mesh, 1), radii(mesh, 2)};
+  const Executor executor({.threads = 2});
+  AdaptOptions options;
+  options.make.surface_tolerance = tolerance;
+  AnyMesh now = mesh;
+  for (int call = 0; call < calls; ++call) {
+    AnyField metric = constant_metric(now, 1);
+    const auto stride = static_cast<std::size_t>(dimension());
+    const std::size_t components = metric.values.size() / now.vertex_count();
+    for (std::size_t v = 0; v < now.vertex_count(); ++v) {
+      const double angle = std::atan2(now.coordinates[v * stride + 1], now.coordinates[v * stride]);
+      const double away = std::abs(angle - 1.5 * call / (calls - 1));
+      const double size = 0.06 + 0.2 * std::min(1.0, away);
+      for (std::size_t i = 0; i < components; ++i) metric.values[v * components + i] /= size * size;
+    }
+    now = adapt(executor, now, metric, options).mesh;
+    EXPECT_EQ(test::joined(check_mesh(executor, now)), "");
+  }
+  for (const int reference : {1, 2}) {
+    const double radius = at_first[static_cast<std::size_t>(reference - 1)][1];
+    EXPECT_LT(dimension() == 2 ? vertices_off<2>(now, reference, radius)
+                               : vertices_off<3>(now, reference, radius),
+              0.3 * tolerance);
+    const auto after = radii(now, reference);
+    EXPECT_GT(after[0], radius - 1.3 * tolerance);
+    EXPECT_LT(after[1], radius + 0.3 * tolerance);
   }
 }
 

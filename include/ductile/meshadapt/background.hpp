@@ -37,7 +37,8 @@ class Background {
   };
 
   /// The metric at a point, found by walking from the element `near`. Of a point outside, the
-  /// metric is that of the closest point of the mesh, and so is the host. If `near` is no element,
+  /// metric is that of the closest point of the mesh, and so is the host, or, if the mesh has curved
+  /// boundaries, those of an element that is close to it. If `near` is no element,
   /// the walk starts at the first. Of a point that is no number the host is an element, but its
   /// metric is no number either. Thread safety: any thread.
   Sample sample(const Vector<Dim>& point, ElementId near) const;
@@ -82,6 +83,7 @@ class Background {
   GrowingArray<Metric<Dim>> log_metric_of_;  // [vertex]
   // Seldom needed: few walks end at a hole or outside.
   mutable runtime::Lazy<std::unique_ptr<BoxTree<Dim>>> tree_;
+  double slack_;  // by how much weights may be negative where a walk ends outside
 };
 
 extern template class Background<2>;

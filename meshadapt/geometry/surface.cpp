@@ -1,0 +1,170 @@
+#include "geometry/surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <tuple>
+
+#include "geometry/box_index.hpp"
+#include "geometry/distance.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+template <int Dim>
+class SurfaceMaker {
+ public:
+  SurfaceMaker(const Mesh<Dim>& mesh, std::span<const TaggedFacet<Dim>> facets,
+               std::span<const SurfaceEdge> edges, const SurfaceOptions& options)
+      : mesh_(mesh), facets_(facets), edges_(edges), options_(options) {}
+
+  std::shared_ptr<const Surface<Dim>> make(const runtime::Executor& executor,
+                                           std::span<const PatchId> plane_of) const {
+    ModelInput<Dim> input = input_of(plane_of);
+    SmoothModel<Dim> model(executor, input);
+    if (hold_facing(model, input)) model = SmoothModel<Dim>(executor, input);
+    std::vector<typename Sheets<Dim, Dim>::Part> facet_parts;
+    facet_parts.reserve(facets_.size());
+    for (const TaggedFacet<Dim>& f : facets_)
+      facet_parts.push_back({points(corners(f)), f.patch, f.other != none});
+    std::vector<typename Sheets<Dim, 2>::Part> edge_parts;
+    typename SmoothModel<Dim>::template Pieces<2> edge_pieces;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (!mesh_.curves[edges_[e].curve].smooth) continue;
+      edge_parts.push_back({points(std::array{edges_[e].a, edges_[e].b}), edges_[e].curve, true});
+      edge_pieces.push_back(model.edges[e]);
+    }
+    return std::shared_ptr<const Surface<Dim>>(
+        new Surface<Dim>{{facet_parts, options_.tolerance, model.facets},
+                         {edge_parts, options_.tolerance, edge_pieces}});
+  }
+
+ private:
+  /// Outwards, however the file has them.
+  Facet<Dim> corners(const TaggedFacet<Dim>& facet) const {
+    return facet_of<Dim>(mesh_.corners_of[facet.element], facet.facet);
+  }
+
+  template <std::size_t N>
+  std::array<Vector<Dim>, N> points(const std::array<VertexId, N>& vertices) const {
+    std::array<Vector<Dim>, N> result;
+    for (std::size_t i = 0; i < N; ++i) result[i] = mesh_.site_of[vertices[i]].position;
+    return result;
+  }
+
+  ModelInput<Dim> input_of(std::span<const PatchId> plane_of) const {
+    ModelInput<Dim> input;
+    std::tie(input.tolerance, input.flat, input.least_turn) =
+        std::tie(options_.tolerance, options_.flat, options_.least_turn);
+    std::vector<std::uint32_t> number_of(mesh_.vertex_slots(), none);
+    const auto number = [&](VertexId v) {
+      if (number_of[v] == none) {
+        number_of[v] = static_cast<std::uint32_t>(input.points.size());
+        input.points.push_back(mesh_.site_of[v].position);
+        input.ends.push_back(mesh_.kind_of[v].corner ? 1 : 0);
+      }
+      return number_of[v];
+    };
+    input.facets.reserve(facets_.size());
+    for (std::size_t f = 0; f < facets_.size(); ++f) {
+      ModelFacet<Dim> facet{corners(facets_[f]), facets_[f].patch, plane_of[f],
+                            mesh_.patches[facets_[f].patch].smooth};
+      for (std::uint32_t& corner : facet.corner) corner = number(corner);
+      input.facets.push_back(facet);
+    }
+    for (const SurfaceEdge& edge : edges_)
+      input.edges.push_back({{number(edge.a), number(edge.b)}, mesh_.curves[edge.curve].smooth});
+    return input;
+  }
+
+  /// Holds facets of which the model might come close to what they face, across a gap or a thin
+  /// part of the domain: at least half of the way there is shall remain. Does it hold any?
+  bool hold_facing(const SmoothModel<Dim>& model, ModelInput<Dim>& input) const {
+    const auto box_of = [&](std::size_t f) { return box_around(points(corners(facets_[f]))); };
+    const BoxIndex<Dim> index(facets_.size(), box_of);
+    std::vector<std::uint8_t> held(facets_.size());
+    for (std::size_t f = 0; f < facets_.size(); ++f) {
+      if (!model.facets[f] || facets_[f].other != none) continue;
+      const double reach = 4 * bend(*model.facets[f]);
+      Box<Dim> box = box_of(f);
+      for (int i = 0; i < Dim; ++i) {
+        box.low[i] -= reach;
+        box.high[i] += reach;
+      }
+      index.each_meeting(
+          box, [&](std::uint32_t g) { held[f] = held[f] != 0 || is_facing(f, g, reach); });
+    }
+    for (std::size_t f = 0; f < held.size(); ++f) input.facets[f].held = held[f] != 0;
+    return std::any_of(held.begin(), held.end(), [](std::uint8_t is) { return is != 0; });
+  }
+
+  /// The model is no farther than that from the facet.
+  static double bend(const CurvedSimplex<Dim, Dim>& piece) {
+    double most = 0;
+    for (std::size_t i = 0; i < Dim; ++i)
+      for (std::size_t j = 0; j < i; ++j) most = std::max(most, piece.bend(i, j));
+    return most;
+  }
+
+  /// Is another facet turned the other way, not joined to this one, and within reach of it?
+  bool is_facing(std::size_t facet, std::uint32_t other, double reach) const {
+    if (facets_[other].other != none) return false;
+    const Facet<Dim> own = corners(facets_[facet]), others = corners(facets_[other]);
+    for (const VertexId v : own)
+      if (contains(others, v)) return false;
+    const auto p = points(own), q = points(others);
+    const Vector<Dim> u = facet_normal(p), v = facet_normal(q);
+    const bool is_turned = dot(u, v) < -0.01 * norm(u) * norm(v);
+    return is_turned && (comes_near(p, q, reach) || comes_near(q, p, reach));
+  }
+
+  /// Are corners, the middle of a side, or the centre of a facet within reach of another?
+  static bool comes_near(const std::array<Vector<Dim>, Dim>& from,
+                         const std::array<Vector<Dim>, Dim>& to, double reach) {
+    const auto is_near = [&](const Vector<Dim>& p) {
+      return norm(closest_point(to, p) - p) <= reach;
+    };
+    Vector<Dim> centre;
+    bool near = false;
+    for (std::size_t i = 0; i < Dim; ++i) {
+      centre += (1.0 / Dim) * from[i];
+      near = near || is_near(from[i]) || is_near(0.5 * (from[i] + from[(i + 1) % Dim]));
+    }
+    return near || is_near(centre);
+  }
+
+  const Mesh<Dim>& mesh_;
+  std::span<const TaggedFacet<Dim>> facets_;
+  std::span<const SurfaceEdge> edges_;
+  const SurfaceOptions& options_;
+};
+
+}  // namespace
+
+template <int Dim>
+std::shared_ptr<const Surface<Dim>> make_surface(const runtime::Executor& executor,
+                                                 const Mesh<Dim>& mesh,
+                                                 std::span<const TaggedFacet<Dim>> facets,
+                                                 std::span<const PatchId> plane_of,
+                                                 std::span<const SurfaceEdge> edges,
+                                                 const SurfaceOptions& options) {
+  const auto is_smooth = [](const auto& of) { return of.smooth; };
+  if (std::none_of(mesh.patches.begin(), mesh.patches.end(), is_smooth) &&
+      std::none_of(mesh.curves.begin(), mesh.curves.end(), is_smooth))
+    return nullptr;
+  return SurfaceMaker<Dim>(mesh, facets, edges, options).make(executor, plane_of);
+}
+
+template std::shared_ptr<const Surface<2>> make_surface(const runtime::Executor&, const Mesh<2>&,
+                                                        std::span<const TaggedFacet<2>>,
+                                                        std::span<const PatchId>,
+                                                        std::span<const SurfaceEdge>,
+                                                        const SurfaceOptions&);
+template std::shared_ptr<const Surface<3>> make_surface(const runtime::Executor&, const Mesh<3>&,
+                                                        std::span<const TaggedFacet<3>>,
+                                                        std::span<const PatchId>,
+                                                        std::span<const SurfaceEdge>,
+                                                        const SurfaceOptions&);
+
+}  // namespace ductile::meshadapt
