@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,9 +35,10 @@ using meshadapt::AdaptedMesh;
 using meshadapt::AdaptOptions;
 using meshadapt::AnyField;
 using meshadapt::AnyMesh;
+using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 
-constexpr std::array<Option, 30> own_options{{
+constexpr std::array<Option, 31> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
@@ -57,6 +59,8 @@ constexpr std::array<Option, 30> own_options{{
     {"-noinsert", "", "splits and collapses no edge"},
     {"-nosurf", "", "leaves the boundary and interfaces as they are"},
     {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
+    {"-geometry", "FILE",
+     "with -hausd: they are up to X from the boundaries in FILE, a mesh, not from where they were"},
     {"-ar", "DEG",
      "with -hausd, edges that turn by DEG degrees are ridges, which stay (default: 45)"},
     {"-v", "N", "0 says nothing, 1 (default) sums up, 2 says more", "--verbose"},
@@ -85,7 +89,7 @@ constexpr auto options = [] {
 /// All that the command line says, checked before any file is read.
 struct Job {
   fs::path input, output;
-  std::optional<fs::path> metric_in, metric_out, parameters, json, vtu;
+  std::optional<fs::path> metric_in, metric_out, parameters, geometry, json, vtu;
   CarriedFields fields;
   std::string unneeded;  // options of Mmg's
   std::optional<double> size;
@@ -154,6 +158,11 @@ void set_files(Job& job, const Arguments& arguments) {
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
   job.fields = CarriedFields(arguments, job.output);
   job.parameters = arguments.text("-f");
+  job.geometry = arguments.text("-geometry");
+  if (job.geometry && !arguments.has("-hausd"))
+    throw UsageError(
+        "option -geometry: expected -hausd, which says how far from it boundaries may "
+        "be, found none");
   set_sizes(job, arguments);
 }
 
@@ -203,7 +212,8 @@ std::vector<fs::path> outputs_of(const Job& job) {
 void expect_inputs_to_stay(const Job& job) {
   std::vector<fs::path> inputs = {job.input}, fields = job.fields.inputs();
   if (job.metric_in) fields.push_back(*job.metric_in);
-  if (job.parameters) fields.push_back(*job.parameters);
+  for (const auto& path : {job.parameters, job.geometry})
+    if (path) fields.push_back(*path);
   for (const fs::path& path : job.places.inputs()) fields.push_back(path);
   inputs.insert(inputs.end(), fields.begin(), fields.end());
   for (const auto& path : {job.json, job.vtu})
@@ -337,6 +347,18 @@ void warn_of_fields_left(const Job& job, const meshadapt::MeshWithFields& file,
         "; --field takes those at the vertices of a file along, ductile transfer all");
 }
 
+/// Of a mesh that only says what boundaries are like.
+std::shared_ptr<const meshadapt::Geometry> read_geometry(const Executor& executor, const Job& job,
+                                                         meshadapt::Warnings& warnings) {
+  if (!job.geometry) return nullptr;
+  const MakeMeshOptions& make = job.adapt.make;
+  return std::make_shared<const meshadapt::Geometry>(
+      executor, meshadapt::read_mesh(*job.geometry, &warnings),
+      meshadapt::GeometryOptions{.tolerance = make.surface_tolerance,
+                                 .ridge_angle = make.ridge_angle,
+                                 .complete_boundary = make.complete_boundary});
+}
+
 int work(const Executor& executor, Job job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
@@ -350,6 +372,7 @@ int work(const Executor& executor, Job job) {
     bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings),
                   metric, job.adapt);
   const CarriedFields::Values fields = job.fields.read(mesh, warnings);
+  job.adapt.make.geometry = read_geometry(executor, job, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric, sizes);
   adapted.mesh.name = job.output.string();

@@ -16,6 +16,7 @@
 #include "ductile/runtime/worklist.hpp"
 #include "geometry/faced.hpp"
 #include "geometry/facet_sides.hpp"
+#include "geometry/reference_surface.hpp"
 #include "geometry/rough_parts.hpp"
 #include "geometry/rounding.hpp"
 #include "geometry/surface.hpp"
@@ -58,6 +59,8 @@ class Classifier {
         surface_tolerance_(options.surface_tolerance),
         least_turn_(std::cos(options.ridge_angle * std::numbers::pi / 180)),
         sides_(executor, facets_) {
+    if (options.geometry && surface_tolerance_ > 0) reference_ = options.geometry->surface<Dim>();
+    if (reference_ != nullptr) sheet_of_ = reference_->sheets_of(executor, mesh, facets_);
     if constexpr (Dim == 3)
       for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
     find_neighbours();
@@ -201,7 +204,15 @@ class Classifier {
       return std::tuple(t.data.reference, t.data.listed, t.data.required, t.data.ridge,
                         std::min(a, b), std::max(a, b));
     };
-    return traits(facets_[f]) == traits(facets_[g]);
+    return traits(facets_[f]) == traits(facets_[g]) && sheet_of(f) == sheet_of(g);
+  }
+
+  /// The reference's sheet that a facet stands for; none if there is no such or no reference.
+  std::uint32_t sheet_of(std::uint32_t facet) const {
+    return sheet_of_.empty() ? none : sheet_of_[facet];
+  }
+  bool is_on_curved_sheet(std::uint32_t facet) const {
+    return sheet_of(facet) != none && reference_->is_smooth[sheet_of(facet)] != 0;
   }
 
   bool in_plane(const Facet<Dim>& facet, const Vector<Dim>& origin,
@@ -242,7 +253,7 @@ class Classifier {
           keeps_shape(facets_[f]) || keeps_shape(facets_[g]))
         continue;
       const PatchId p = find(facets_[f].patch), q = find(facets_[g].patch);
-      if (p == q || !turns_little(facets_[f].corners, facets_[g].corners, side.key)) continue;
+      if (p == q || !may_join(f, g, side.key)) continue;
       joined[std::max(p, q)] = std::min(p, q);
       mesh_.patches[p].smooth = mesh_.patches[q].smooth = true;
     }
@@ -251,6 +262,17 @@ class Classifier {
       plane_of_.push_back(facet.patch);
       facet.patch = find(facet.patch);
     }
+    for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+      Patch<Dim>& patch = mesh_.patches[facets_[f].patch];
+      patch.sheet = reference_ == nullptr ? facets_[f].patch : sheet_of(f);
+      if (is_on_curved_sheet(f) && !patch.required && !keeps_shape(facets_[f])) patch.smooth = true;
+    }
+  }
+
+  /// Are two facets parts of one smooth patch? With a reference, if it has one there.
+  bool may_join(std::uint32_t f, std::uint32_t g, SideKey side) const {
+    if (reference_ != nullptr) return is_on_curved_sheet(f);  // the same as that of g, see agree()
+    return turns_little(facets_[f].corners, facets_[g].corners, side);
   }
 
   /// Does a smooth patch have an edge here, or in 2D a corner, that fades out elsewhere?
@@ -266,6 +288,10 @@ class Classifier {
 
   /// Keeps what smooth patches and curves are like, and what their facets must not come close to.
   void keep_surface() {
+    if (reference_ != nullptr) {
+      mesh_.surface = reference_->surface;
+      return;
+    }
     std::vector<SurfaceEdge> edges;
     edges.reserve(curve_edges_.size());
     for (const CurveEdge& e : curve_edges_) edges.push_back({e.a, e.b, e.curve});
@@ -289,10 +315,12 @@ class Classifier {
     Curve data;
     std::vector<PatchId> patches;  // sorted
     CurveId curve = 0;
-    bool bends = false;  ///< more than rounding makes it
+    bool bends = false;          ///< more than rounding makes it
+    std::uint32_t sheet = none;  ///< the curve of the reference that it stands for
     bool agrees_with(const CurveEdge& o) const {
-      return std::tie(data.reference, data.listed, data.required, data.ridge, patches) ==
-             std::tie(o.data.reference, o.data.listed, o.data.required, o.data.ridge, o.patches);
+      return std::tie(data.reference, data.listed, data.required, data.ridge, patches, sheet) ==
+             std::tie(o.data.reference, o.data.listed, o.data.required, o.data.ridge, o.patches,
+                      o.sheet);
     }
   };
 
@@ -332,6 +360,10 @@ class Classifier {
       const ListedEdge& listed = found->second;
       edge.data = {{}, listed.reference, true, listed.required, listed.ridge};
     }
+    if constexpr (Dim == 3)
+      if (reference_ != nullptr)
+        edge.sheet = reference_->sheet_of_edge(
+            {mesh_.site_of[edge.a].position, mesh_.site_of[edge.b].position}, edge.data.reference);
     for (const VertexId v : {edge.a, edge.b})
       edges_at_[v].push_back(static_cast<std::uint32_t>(curve_edges_.size()));
     curve_edges_.push_back(std::move(edge));
@@ -354,7 +386,9 @@ class Classifier {
         const bool straight = norm(d - dot(d, direction) * direction) <= tolerance;
         const double along = dot(step, heading);
         if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed])) break;
-        if (surface_tolerance_ > 0 && !edge.data.required) {
+        if (edge.sheet != none && !edge.data.required) {
+          curve.smooth = true;
+        } else if (reference_ == nullptr && surface_tolerance_ > 0 && !edge.data.required) {
           // By no more than 60 degrees in all, so that a closed curve keeps three ends.
           if (!(along > least_turn_ * norm(step)) || !(dot(step, towards) > 0.5 * norm(step)))
             break;
@@ -368,6 +402,8 @@ class Classifier {
       }
     }
     if constexpr (Dim == 3) curve.direction = direction;
+    if (curve_edges_[seed].sheet != none && !curve.required) curve.smooth = true;
+    curve.sheet = reference_ == nullptr ? id : curve_edges_[seed].sheet;
     mesh_.curves.push_back(curve);
   }
 
@@ -550,6 +586,8 @@ class Classifier {
   double surface_tolerance_;  // of what is not flat; 0 if nothing is to be smooth
   double least_turn_;         // cosine of the angle from which on edges are ridges
   FacetSides<Dim> sides_;
+  const ReferenceSurface<Dim>* reference_ = nullptr;  // null where the mesh is its own
+  std::vector<std::uint32_t> sheet_of_;               // [facet], of the reference
   using Others = std::array<std::uint32_t, Dim>;
   runtime::UnsetVector<Others> across_;             // [facet][side], the other facet or none
   std::unordered_map<SideKey, ListedEdge> listed_;  // 3D

@@ -54,6 +54,14 @@ Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners>& corner) {
   return length > 0 ? (1 / length) * direction : Vector<Dim>{};
 }
 
+/// The same from tangents, which span it.
+template <int Dim, std::size_t Corners>
+Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners - 1>& tangents) {
+  std::array<Vector<Dim>, Corners> corner{};
+  for (std::size_t i = 1; i < Corners; ++i) corner[i] = tangents[i - 1];
+  return direction_of(corner);
+}
+
 /// The weights of the corners in a point of the simplex.
 template <int Dim>
 std::array<double, 2> weights_of(const std::array<Vector<Dim>, 2>& p, const Vector<Dim>& point) {
@@ -372,10 +380,11 @@ auto Sheets<Dim, Corners>::facet_of(std::uint32_t part) const -> Points {
   return corners;
 }
 
-/// The point of the model near the closest one of its flat parts.
+/// Of the point of the model near the closest one of its flat parts; none if it is flat there.
 template <int Dim, std::size_t Corners>
-Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Closest& closest) const {
-  if (origin_of_[closest.part].curved == none) return closest.point;
+auto Sheets<Dim, Corners>::weights_at(const Vector<Dim>& point, const Closest& closest) const
+    -> std::optional<typename Curved::Weights> {
+  if (origin_of_[closest.part].curved == none) return {};
   constexpr int steps = 3;
   const Origin& origin = origin_of_[closest.part];
   const Curved& curved = curved_[origin.curved];
@@ -389,7 +398,13 @@ Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Close
     if (!closer) break;
     weights = *closer;
   }
-  return curved.at(weights);
+  return weights;
+}
+
+template <int Dim, std::size_t Corners>
+Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Closest& closest) const {
+  const auto weights = weights_at(point, closest);
+  return weights ? curved_[origin_of_[closest.part].curved].at(*weights) : closest.point;
 }
 
 template <int Dim, std::size_t Corners>
@@ -435,6 +450,50 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
     if (best.distance <= within) return on_model(point, best);
   }
   return {};
+}
+
+/// Of the parts for which is_wanted(part) holds. Looks nearby first, too.
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
+                                      auto&& is_wanted) const -> std::optional<Nearest> {
+  double within = std::min(reach, tolerance_);
+  for (bool last = false; !last; within *= 4) {
+    last = !(within < reach);
+    within = std::min(within, reach);
+    Near near;
+    each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
+      if (is_wanted(part)) near.push_back(part);
+    });
+    const Closest best = near.closest(*this, point);
+    if (!(best.distance <= within)) continue;
+    Nearest nearest{parts_[best.part].sheet, 0, best.point, shape_of_[best.part].direction};
+    if (const auto weights = weights_at(point, best)) {
+      const Curved& curved = curved_[origin_of_[best.part].curved];
+      nearest.point = curved.at(*weights);
+      nearest.direction = direction_of<Dim, Corners>(curved.tangents(*weights));
+    }
+    nearest.distance = norm(nearest.point - point);
+    return nearest;
+  }
+  return {};
+}
+
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, double reach) const
+    -> std::optional<Nearest> {
+  return nearest_of(point, reach, [](std::uint32_t) { return true; });
+}
+
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, const Vector<Dim>& direction,
+                                   std::span<const std::int32_t> reference_of,
+                                   std::int32_t reference, double reach) const
+    -> std::optional<Nearest> {
+  return nearest_of(point, reach, [&](std::uint32_t part) {
+    const double cosine = dot(direction, shape_of_[part].direction);
+    return reference_of[parts_[part].sheet] == reference &&
+           (parts_[part].two_sided ? std::abs(cosine) : cosine) > 0.5;
+  });
 }
 
 template class Sheets<2, 2>;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ductile/meshadapt/vector.hpp"
@@ -56,6 +57,21 @@ class Sheets {
   std::optional<Vector<Dim>> closest(const Vector<Dim>& point, std::uint32_t sheet,
                                      double reach) const;
 
+  /// A point of a sheet, and how far it is from that of which it is the closest.
+  struct Nearest {
+    std::uint32_t sheet;
+    double distance;
+    Vector<Dim> point;
+    Vector<Dim> direction;  ///< there: unit normal of a facet, outwards, or along the edge
+  };
+  /// The closest point of all sheets, nearly, within a distance. Thread safety: any thread.
+  std::optional<Nearest> nearest(const Vector<Dim>& point, double reach) const;
+  /// The same of sheets of one reference, where they are turned by less than 60 degrees against a
+  /// direction of unit length. `reference_of` is [sheet].
+  std::optional<Nearest> nearest(const Vector<Dim>& point, const Vector<Dim>& direction,
+                                 std::span<const std::int32_t> reference_of, std::int32_t reference,
+                                 double reach) const;
+
  private:
   struct Tree;
   struct Near;
@@ -81,7 +97,10 @@ class Sheets {
 
   void divide(const std::vector<Part>& parts, const std::vector<std::optional<Curved>>& curved);
   Points facet_of(std::uint32_t part) const;
+  std::optional<typename Curved::Weights> weights_at(const Vector<Dim>& point,
+                                                     const Closest& closest) const;
   Vector<Dim> on_model(const Vector<Dim>& point, const Closest& closest) const;
+  std::optional<Nearest> nearest_of(const Vector<Dim>& point, double reach, auto&& is_wanted) const;
 
   void each_meeting(const Box<Dim>& box, auto&& visit) const;
 

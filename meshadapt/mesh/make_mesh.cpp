@@ -61,12 +61,25 @@ class MeshMaker {
     if (!(angle > 0 && angle < 90))
       throw InputError("ridge_angle: expected an angle between 0 and 90 degrees, found " +
                        number(angle));
+    check_geometry();
     const auto& kept = options_.keep_facets_at;
     for (std::size_t i = 0; i < kept.size(); ++i)
       if (kept[i] >= any_.vertex_count())
         throw InputError("keep_facets_at[" + std::to_string(i) + "]: expected a vertex below " +
                          std::to_string(any_.vertex_count()) + ", found " +
                          std::to_string(kept[i]));
+  }
+
+  void check_geometry() const {
+    if (!options_.geometry) return;
+    const double tolerance = options_.surface_tolerance;
+    if (options_.geometry->dimension() != Dim)
+      throw InputError("geometry: expected one of dimension " + std::to_string(Dim) +
+                       ", as the mesh is, found dimension " +
+                       std::to_string(options_.geometry->dimension()));
+    if (tolerance != 0 && tolerance != options_.geometry->tolerance())
+      throw InputError("surface_tolerance: expected that of the geometry, " +
+                       number(options_.geometry->tolerance()) + ", found " + number(tolerance));
   }
 
   [[noreturn]] void fail(const Wording& what) const { refuse(name_of(any_) + ": " + what); }

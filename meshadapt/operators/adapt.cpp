@@ -63,6 +63,9 @@ void expect_options(const AdaptOptions& options) {
   expect_gradation(options.gradation);
   expect_gradation(options.required_gradation);
   expect_rules(options.rules);
+  if (options.make.geometry && !(options.make.surface_tolerance > 0))
+    throw InputError("geometry: expected a surface_tolerance with it, " +
+                     number(options.make.geometry->tolerance()) + ", found none");
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "mesh/first_bad.hpp"
@@ -73,6 +75,19 @@ Sizes lasting(const AnyMesh& mesh, const Sizes& sizes) {
   return result;
 }
 
+/// Options for what was adapted already: distances are measured from the first mesh.
+MakeMeshOptions with_geometry_of(const Executor& executor, const AnyMesh& mesh,
+                                 MakeMeshOptions options) {
+  options.keep_facets_at.clear();  // of vertices of the first mesh
+  if (options.surface_tolerance > 0 && !options.geometry)
+    options.geometry = std::make_shared<const Geometry>(
+        executor, mesh,
+        GeometryOptions{.tolerance = options.surface_tolerance,
+                        .ridge_angle = options.ridge_angle,
+                        .complete_boundary = options.complete_boundary});
+  return options;
+}
+
 void add_report_of(const AdaptReport& before, AdaptReport& report) {
   report.total_seconds += before.total_seconds;
   std::vector<std::string> warnings = before.warnings;
@@ -87,17 +102,18 @@ void add_report_of(const AdaptReport& before, AdaptReport& report) {
 AdaptedMesh adapt_to_sizes(const Executor& executor, const AnyMesh& mesh, const Sizes& sizes,
                            const AdaptOptions& options) {
   const SizeBounds bounds{options.smallest_size, options.largest_size};
+  AdaptOptions with_geometry = options;
   const auto adapt_to = [&](const AnyMesh& from, const AnyField& asked) {
-    return adapt(executor, from, metric_of(asked, from, bounds), options);
+    return adapt(executor, from, metric_of(asked, from, bounds), with_geometry);
   };
   AdaptedMesh adapted = adapt_to(mesh, size_field(executor, mesh, sizes));
-  if (options.make.surface_tolerance > 0) return adapted;
   const Sizes same = lasting(mesh, sizes);
   for (int times = 1; times < most_times; ++times) {
     const AnyField asked = size_field(executor, adapted.mesh, same);
     if (mesh.dimension == 2 ? has_sizes<2>(executor, adapted, asked.values, options.smallest_size)
                             : has_sizes<3>(executor, adapted, asked.values, options.smallest_size))
       return adapted;
+    if (times == 1) with_geometry.make = with_geometry_of(executor, mesh, options.make);
     AdaptedMesh again = adapt_to(adapted.mesh, asked);
     add_report_of(adapted.report, again.report);
     adapted = std::move(again);

@@ -223,7 +223,7 @@ bool keeps_surface(const Mesh<Dim>& mesh, ElementId element, VertexId vertex,
     std::array<Vector<Dim>, Dim> after;
     for (std::size_t k = 0; k < Dim; ++k)
       after[k] = facet[k] == vertex ? position : mesh.site_of[facet[k]].position;
-    if (!mesh.surface->facets.cover(after, patch)) return false;
+    if (!mesh.surface->facets.cover(after, mesh.patches[patch].sheet)) return false;
   }
   return true;
 }
@@ -254,8 +254,8 @@ inline bool convex_in_patch(const Mesh<3>& mesh, const std::array<VertexId, 4>& 
                             PatchId patch) {
   const auto at = [&](std::size_t i) { return mesh.site_of[corners[i]].position; };
   if (mesh.patches[patch].smooth)
-    return mesh.surface->facets.cover({at(0), at(1), at(3)}, patch) &&
-           mesh.surface->facets.cover({at(1), at(2), at(3)}, patch);
+    return mesh.surface->facets.cover({at(0), at(1), at(3)}, mesh.patches[patch].sheet) &&
+           mesh.surface->facets.cover({at(1), at(2), at(3)}, mesh.patches[patch].sheet);
   const Vector<3>& normal = mesh.patches[patch].normal;
   return dot(facet_normal({at(0), at(1), at(3)}), normal) *
              dot(facet_normal({at(1), at(2), at(3)}), normal) >

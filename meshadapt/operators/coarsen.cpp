@@ -167,7 +167,8 @@ bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
   if (on_smooth_curve(mesh_, plan.gone))
     for (const CurveLink& link : mesh_.links_of.of(plan.gone))
       if (link.to != plan.kept &&
-          !mesh_.surface->edges.cover({mesh_.site_of[link.to].position, kept}, link.curve))
+          !mesh_.surface->edges.cover({mesh_.site_of[link.to].position, kept},
+                                      mesh_.curves[link.curve].sheet))
         return false;
   const auto ball = mesh_.elements_of.of(plan.gone);
   return std::all_of(ball.begin(), ball.end(), [&](ElementId e) {

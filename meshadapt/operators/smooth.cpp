@@ -156,7 +156,8 @@ bool Smooth<Dim>::keeps_surface(VertexId vertex, const Vector<Dim>& position) co
   if (!mesh_.surface) return true;
   if (on_smooth_curve(mesh_, vertex))
     for (const CurveLink& link : mesh_.links_of.of(vertex))
-      if (!mesh_.surface->edges.cover({mesh_.site_of[link.to].position, position}, link.curve))
+      if (!mesh_.surface->edges.cover({mesh_.site_of[link.to].position, position},
+                                      mesh_.curves[link.curve].sheet))
         return false;
   const auto elements = mesh_.elements_of.of(vertex);
   return std::all_of(elements.begin(), elements.end(), [&](ElementId e) {
@@ -259,8 +260,10 @@ std::optional<Vector<Dim>> Smooth<Dim>::stepped(VertexId vertex, const Vector<Di
                                                 const Vector<Dim>& step) const {
   const Vector<Dim> to = from + step;
   const std::uint32_t entity = mesh_.entity_of[vertex];
-  if (on_smooth_curve(mesh_, vertex)) return mesh_.surface->edges.closest(to, entity, norm(step));
-  if (on_smooth_patch(mesh_, vertex)) return mesh_.surface->facets.closest(to, entity, norm(step));
+  if (on_smooth_curve(mesh_, vertex))
+    return mesh_.surface->edges.closest(to, mesh_.curves[entity].sheet, norm(step));
+  if (on_smooth_patch(mesh_, vertex))
+    return mesh_.surface->facets.closest(to, mesh_.patches[entity].sheet, norm(step));
   return to;
 }
 

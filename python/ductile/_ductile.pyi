@@ -120,7 +120,16 @@ class Options:
     insert: bool
     lock_boundary: bool
     surface_tolerance: float
+    geometry: Optional[GeometryData]
     ridge_angle: float
+
+class GeometryData:
+    def __init__(self, mesh: MeshData, tolerance: float, ridge_angle: float,
+                 threads: Executor) -> None: ...
+    dimension: int
+    tolerance: float
+    def closest(self, points: _Floats, reach: float,
+                threads: Executor) -> tuple[_Floats, _Floats, _Ints]: ...
 
 class SizeBounds:
     def __init__(self, smallest: float = ..., largest: float = ...,

@@ -11,6 +11,7 @@ from . import _ductile, _html, _interop
 from ._arrays import component_count, field_type, finite, floats, named, number
 from ._build import KINDS, data_of, field, options_of, place_of, warn, with_required
 from ._ductile import InputError
+from ._geometry import Geometry
 from ._metric import MetricLike, as_rows, as_tensors, full, packed
 from ._size import Size
 
@@ -223,7 +224,8 @@ class Mesh:
 
     def remesh(self, metric: Optional[MetricLike] = None, *, hsiz: Optional[float] = None,
                hmin: float = 0, hmax: float = 0, hgrad: float = 0, hgradreq: float = 0,
-               hausd: float = 0, ar: float = 45, iterations: int = 16, thorough: bool = False,
+               hausd: float = 0, geometry: Optional[Geometry] = None, ar: float = 45,
+               iterations: int = 16, thorough: bool = False,
                nomove: bool = False, noswap: bool = False, noinsert: bool = False,
                nosurf: bool = False, required_vertices: Any = None, required_facets: Any = None,
                required_cells: Any = None, memory: int = 0, threads: int = 0,
@@ -233,8 +235,8 @@ class Mesh:
         Parameters
         ----------
         metric : float, Size or array_like, optional
-            A size everywhere; a `Size`, to which the mesh is adapted again, with `hausd` 0, while it
-            asks for more than vertices have seen; a size at each vertex, ``(n,)``; or a metric tensor,
+            A size everywhere; a `Size`, to which the mesh is adapted again while it asks for more
+            than vertices have seen; a size at each vertex, ``(n,)``; or a metric tensor,
             ``(n, 3)`` in 2D and ``(n, 6)`` in 3D (m11 m12 m22 m13 m23 m33, as in files, not in the
             order of Mmg's own functions), or ``(n, d, d)``. By default the sizes that the mesh has,
             within `hmin` and `hmax`.
@@ -249,7 +251,11 @@ class Mesh:
             Sizes at required entities are those that these have, and grow or fall by at most this
             factor from there; Mmg's default is 2.3. 0: as given.
         hausd : float, optional
-            How far curved boundaries may be from where they were; 0: they keep their facets.
+            How far curved boundaries may be from where they were; 0: they keep their facets, or
+            with a `geometry` its own.
+        geometry : Geometry, optional
+            What curved boundaries are like; by default what they are like in this mesh. In a loop,
+            pass that of the first mesh to every call.
         ar : float, optional
             Facets that turn by as many degrees meet at a ridge, which stays.
         iterations : int, optional
@@ -297,12 +303,15 @@ class Mesh:
             if metric is not None:
                 raise InputError("remesh: expected one of metric and hsiz, found both")
             metric = number(hsiz, "hsiz")
+        if not isinstance(geometry, (Geometry, type(None))):
+            raise InputError(f"geometry: expected a ductile.Geometry, found {geometry!r}")
         data = with_required(self._data, vertices=required_vertices, facets=required_facets,
                               cells=required_cells)
         options = options_of(smallest_size=number(hmin, "hmin"), largest_size=number(hmax, "hmax"),
                            gradation=number(hgrad, "hgrad"),
                            required_gradation=number(hgradreq, "hgradreq"),
-                           surface_tolerance=number(hausd, "hausd"), ridge_angle=number(ar, "ar"),
+                           surface_tolerance=number(hausd, "hausd") or (geometry.hausd if geometry else 0),
+                           geometry=geometry and geometry._data, ridge_angle=number(ar, "ar"),
                            iterations=iterations, thorough=thorough, move=not nomove,
                            swap=not noswap, insert=not noinsert, lock_boundary=nosurf,
                            memory_limit=int(number(memory, "memory")) << 20)

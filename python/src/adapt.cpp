@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/adapt_to_sizes.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
 namespace ductile::python {
@@ -117,6 +118,11 @@ void bind_options(py::module_& module) {
       .def_property(
           "surface_tolerance", [](const AdaptOptions& o) { return o.make.surface_tolerance; },
           [](AdaptOptions& o, double tolerance) { o.make.surface_tolerance = tolerance; })
+      .def_property(
+          "geometry", [](const AdaptOptions& o) { return o.make.geometry; },
+          [](AdaptOptions& o, std::shared_ptr<meshadapt::Geometry> geometry) {
+            o.make.geometry = std::move(geometry);
+          })
       .def_property(
           "ridge_angle", [](const AdaptOptions& o) { return o.make.ridge_angle; },
           [](AdaptOptions& o, double angle) { o.make.ridge_angle = angle; });

@@ -27,6 +27,7 @@ using Given = py::array_t<T, py::array::c_style>;
 
 void bind_mesh(py::module_& module);
 void bind_adapt(py::module_& module);
+void bind_geometry(py::module_& module);  // before bind_adapt(), whose options have one
 void bind_metric(py::module_& module);
 void bind_transfer(py::module_& module);
 

@@ -42,6 +42,7 @@ PYBIND11_MODULE(_ductile, module) {
   bind_errors(module);
   bind_executor(module);
   bind_mesh(module);
+  bind_geometry(module);
   bind_adapt(module);
   bind_metric(module);
   bind_transfer(module);

@@ -256,6 +256,26 @@ def test_processes_that_fork_adapt_too(mesh):
             assert same(result, expected)
 
 
+def test_geometry_has_points_and_normals():
+    x = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    rim = np.stack((np.cos(x), np.sin(x)), axis=1)
+    fan = np.stack((np.arange(40), (np.arange(40) + 1) % 40, np.full(40, 40)), axis=1)
+    disk = ductile.Mesh(np.concatenate((rim, [[0, 0]])), fan)
+    geometry = ductile.Geometry(disk, hausd=0.01)
+    assert geometry.dim == 2 and geometry.hausd == 0.01
+    found = geometry.closest([[2, 0], [0, -0.5], [0, 5]], reach=1.5)
+    assert found.points[:2] == pytest.approx(np.array([[1, 0], [0, -1]]), abs=1e-3)
+    assert found.normals[:2] == pytest.approx(np.array([[1, 0], [0, -1]]), abs=1e-3)
+    assert np.isnan(found.points[2]).all() and found.refs[2] == 0
+    for wrong in ({"points": [[0, 0, 0]]}, {"points": [[0, np.nan]]}, {"points": [[0, 0]], "reach": 0}):
+        with pytest.raises(ductile.InputError):
+            geometry.closest(**wrong)
+    with pytest.raises(ductile.InputError, match="tolerance"):
+        ductile.Geometry(disk, hausd=0)
+    with pytest.raises(ductile.InputError, match="geometry: expected a ductile.Geometry"):
+        disk.remesh(0.1, geometry=disk)
+
+
 def test_curved_boundaries_are_followed(dim):
     box = ductile.box((2,) * dim, (8 if dim == 2 else 6,) * dim)
     x = box.points - 1
@@ -267,5 +287,13 @@ def test_curved_boundaries_are_followed(dim):
         assert out.check() == [] and not out.report.warnings
         radius = np.linalg.norm(out.points[np.unique(out.facets)], axis=1)
         assert radius.min() > 0.93 and radius.max() < 1.02
+    geometry = ductile.Geometry(ball, hausd=0.01)
+    out = ball
+    for _ in range(3):
+        out = out.remesh(0.3, geometry=geometry).remesh(0.15, geometry=geometry)
+    radius = np.linalg.norm(out.points[np.unique(out.facets)], axis=1)
+    assert np.abs(radius - 1).max() < 0.005
+    with pytest.raises(ductile.InputError, match="hausd: expected that of the geometry"):
+        ball.remesh(0.15, hausd=0.02, geometry=geometry)
     exact = ball.remesh(0.15)  # without hausd the facets stay
     assert volumes(exact).sum() == pytest.approx(np.abs(volumes(ball)).sum(), rel=1e-9)

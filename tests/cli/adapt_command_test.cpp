@@ -231,7 +231,16 @@ TEST(AdaptCommand, CoarsensACurvedBoundaryIfToldTo) {
   EXPECT_FALSE(contains(coarsened.err, "-ar")) << coarsened.err;
   EXPECT_EQ(meshadapt::read_mesh(folder.path() / "ridges.mesh").edges.size(),
             meshadapt::read_mesh(folder.path() / "arc.o.mesh").edges.size());
-  for (const char* wrong : {"-hausd 0", "-hausd 0.01 -ar 90", "-hausd 0.01 -ar 0"})
+  const Outcome again =
+      folder.run("adapt coarse.mesh -hsiz 0.1 -hausd 0.01 -geometry arc.mesh -o again.mesh");
+  EXPECT_EQ(again.status, 0) << again.err;
+  const Outcome other =
+      folder.run("adapt coarse.mesh -hsiz 0.1 -hausd 0.001 -geometry arc.mesh -o other.mesh");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_TRUE(contains(other.err, "from the geometry")) << other.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "other.mesh"));
+  for (const char* wrong :
+       {"-hausd 0", "-hausd 0.01 -ar 90", "-hausd 0.01 -ar 0", "-geometry arc.mesh"})
     EXPECT_EQ(folder.run(std::string("adapt arc.mesh -hsiz 0.3 ") + wrong).status, 2) << wrong;
 }
 

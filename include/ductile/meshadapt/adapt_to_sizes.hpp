@@ -12,11 +12,10 @@
 namespace ductile::meshadapt {
 
 /// Adapts `mesh` to `sizes`, and the result again while at some vertex of it they ask for less than
-/// two thirds of what it was adapted to there; at most five times in all. With
-/// options.make.surface_tolerance it adapts once, because each time boundaries may move by that
-/// much. The report is that of the last time, with the seconds and warnings of all; progress is
-/// told of all. Throws as size_field() and adapt() do. Thread safety: any thread; runs on the
-/// executor.
+/// two thirds of what it was adapted to there; at most five times in all. Curved boundaries are
+/// measured from options.make.geometry, or from `mesh`, each time. The report is that of the last
+/// time, with the seconds and warnings of all; progress is told of all. Throws as size_field() and
+/// adapt() do. Thread safety: any thread; runs on the executor.
 AdaptedMesh adapt_to_sizes(const runtime::Executor& executor, const AnyMesh& mesh,
                            const Sizes& sizes, const AdaptOptions& options = {});
 

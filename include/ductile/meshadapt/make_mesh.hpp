@@ -5,10 +5,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 
@@ -24,6 +26,9 @@ struct MakeMeshOptions {
   /// Facets, or edges of a curve, that turn by as many degrees where they meet meet at a ridge, or
   /// a corner, which stays. Those that turn by less are curved. More than 0, less than 90.
   double ridge_angle = 45;
+  /// What curved boundaries are like, if not what they are like in the mesh: distances are measured
+  /// from it. With a surface_tolerance, which is the geometry's.
+  std::shared_ptr<const Geometry> geometry = nullptr;
   /// Vertices at which curved boundaries keep the facets they have all the same. Indices, from 0.
   std::vector<std::uint32_t> keep_facets_at = {};
 };

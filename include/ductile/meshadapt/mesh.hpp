@@ -40,6 +40,7 @@ struct Patch {
   bool ridge = false;     ///< 2D: its edges were listed as ridges
   bool smooth = false;
   bool faced = false;  ///< another lies against it between the same rims: a side of a closed crack
+  std::uint32_t sheet = 0;  ///< its number in Mesh::surface
 };
 
 /// A maximal straight chain of edges in 3D: between patches, or listed in the file. A smooth one
@@ -51,6 +52,7 @@ struct Curve {
   bool required = false;
   bool ridge = false;
   bool smooth = false;
+  std::uint32_t sheet = 0;  ///< its number in Mesh::surface, if smooth
 };
 
 /// One neighbour of a vertex along a curve.
@@ -80,7 +82,7 @@ struct Region {
   bool required = false;
 };
 
-/// What smooth patches and curves were like in the input; see geometry/surface.hpp.
+/// What smooth patches and curves are to be like; see geometry/surface.hpp.
 template <int Dim>
 struct Surface;
 

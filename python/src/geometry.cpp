@@ -1,0 +1,70 @@
+/// @file
+/// Geometry: what curved boundaries are like, made once and passed to every adaptation.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bindings.hpp"
+
+#include "ductile/meshadapt/geometry.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::python {
+
+namespace {
+
+using meshadapt::Geometry;
+using meshadapt::GeometryPoint;
+
+std::shared_ptr<Geometry> make_geometry(const meshadapt::AnyMesh& mesh, double tolerance,
+                                        double ridge_angle,
+                                        const runtime::ExecutorOptions& threads) {
+  return work(threads, [&](const runtime::Executor& executor) {
+    return std::make_shared<Geometry>(
+        executor, mesh,
+        meshadapt::GeometryOptions{.tolerance = tolerance, .ridge_angle = ridge_angle});
+  });
+}
+
+/// Positions, normals and references of the closest points; where there is none within reach, NaN
+/// and 0.
+py::tuple closest(const Geometry& geometry, const Given<double>& points, double reach,
+                  const runtime::ExecutorOptions& threads) {
+  const auto d = static_cast<std::size_t>(geometry.dimension());
+  const auto n = static_cast<std::size_t>(points.shape(0));
+  std::vector<double> positions(n * d, std::nan("")), normals(n * d, std::nan(""));
+  std::vector<std::int32_t> references(n);
+  const double* const given = points.data();
+  work(threads, [&](const runtime::Executor& executor) {
+    runtime::parallel_for(executor, n, [&](std::size_t i) {
+      std::array<double, 3> point{};
+      std::copy_n(given + d * i, d, point.begin());
+      const std::optional<GeometryPoint> found = geometry.closest(point, reach);
+      if (!found) return;
+      std::copy_n(found->position.begin(), d, &positions[d * i]);
+      std::copy_n(found->normal.begin(), d, &normals[d * i]);
+      references[i] = found->reference;
+    });
+    return 0;
+  });
+  const Shape shape{signed_size(n), signed_size(d)};
+  return py::make_tuple(take(std::move(positions), shape), take(std::move(normals), shape),
+                        take(std::move(references)));
+}
+
+}  // namespace
+
+void bind_geometry(py::module_& module) {
+  py::class_<Geometry, std::shared_ptr<Geometry>>(module, "GeometryData")
+      .def(py::init(&make_geometry))
+      .def_property_readonly("dimension", &Geometry::dimension)
+      .def_property_readonly("tolerance", &Geometry::tolerance)
+      .def("closest", &closest);
+}
+
+}  // namespace ductile::python

@@ -1,0 +1,219 @@
+#include "ductile/meshadapt/geometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "support/bits.hpp"
+#include "support/meshes.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt::geometry_test {
+namespace {
+
+using runtime::Executor;
+
+constexpr double radius = 0.5;
+
+/// A disk or ball of this radius around the origin, made of a cube's cells. Its boundary is one
+/// piece, or six, or four, each with a reference of its own.
+AnyMesh ball(int dimension, int n, bool in_one_piece) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(dimension, n));
+  const auto d = static_cast<std::size_t>(dimension);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    double* const x = &mesh.coordinates[d * v];
+    double most = 0, square = 0;
+    for (std::size_t i = 0; i < d; ++i) {
+      x[i] = 2 * x[i] - 1;
+      most = std::max(most, std::abs(x[i]));
+      square += x[i] * x[i];
+    }
+    if (square > 0)
+      for (std::size_t i = 0; i < d; ++i) x[i] *= radius * most / std::sqrt(square);
+  }
+  auto& references = dimension == 2 ? mesh.edges.reference : mesh.triangles.reference;
+  if (in_one_piece) std::fill(references.begin(), references.end(), 1);
+  return mesh;
+}
+
+double norm_of(const AnyMesh& mesh, std::size_t vertex) {
+  double square = 0;
+  const auto d = static_cast<std::size_t>(mesh.dimension);
+  for (std::size_t i = 0; i < d; ++i) square += std::pow(mesh.coordinates[d * vertex + i], 2);
+  return std::sqrt(square);
+}
+
+/// How far vertices on the boundary are from the sphere at most.
+double off_sphere(const AnyMesh& mesh) {
+  std::set<std::uint32_t> boundary;
+  const auto add = [&](const auto& facets) {
+    for (const auto& facet : facets.vertices) boundary.insert(facet.begin(), facet.end());
+  };
+  mesh.dimension == 2 ? add(mesh.edges) : add(mesh.triangles);
+  double most = 0;
+  for (const std::uint32_t v : boundary) most = std::max(most, std::abs(norm_of(mesh, v) - radius));
+  return most;
+}
+
+/// Times the dimension's factorial.
+template <int Dim>
+double scaled_volume_in(const AnyMesh& mesh) {
+  double sum = 0;
+  for (const auto& corners : test::elements<Dim>(mesh).vertices) {
+    std::array<Vector<Dim>, Dim + 1> points;
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = test::point<Dim>(mesh, corners[i]);
+    sum += plain_determinant(points);
+  }
+  return sum;
+}
+double volume_of(const AnyMesh& mesh) {
+  return mesh.dimension == 2 ? scaled_volume_in<2>(mesh) : scaled_volume_in<3>(mesh);
+}
+
+/// Sizes of a front that moves from call to call.
+AnyField front(const AnyMesh& mesh, int call) {
+  AnyField sizes{mesh.dimension, mesh.vertex_count(), {AnyField::Type::scalar}, {}, "sizes"};
+  const auto d = static_cast<std::size_t>(mesh.dimension);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    const double away = std::abs(mesh.coordinates[d * v] - 0.5 * std::cos(0.7 * call));
+    sizes.values.push_back(std::min(0.2, 0.07 + 0.4 * away));
+  }
+  return metric_of(sizes, mesh, {});
+}
+
+class GeometryOf : public testing::TestWithParam<int> {
+ protected:
+  int dimension() const { return GetParam(); }
+  static constexpr double tolerance = 0.004;
+  AnyMesh start(bool in_one_piece) const {
+    return ball(dimension(), dimension() == 2 ? 40 : 12, in_one_piece);
+  }
+  AdaptOptions options_on(const AnyMesh& mesh) const {
+    AdaptOptions options;
+    options.make.surface_tolerance = tolerance;
+    options.make.geometry = std::make_shared<const Geometry>(
+        Executor({.threads = 2}), mesh, GeometryOptions{.tolerance = tolerance});
+    return options;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Dimensions, GeometryOf, testing::Values(2, 3),
+                         [](const auto& at) { return std::to_string(at.param) + "D"; });
+
+TEST_P(GeometryOf, ABallKeepsItRoundInTenCalls) {
+  const Executor executor({.threads = 2});
+  for (const bool in_one_piece : {true, false}) {
+    const AnyMesh first = start(in_one_piece);
+    const AdaptOptions options = options_on(first);
+    AnyMesh mesh = first;
+    double at_first = 0;
+    for (int call = 1; call <= 10; ++call) {
+      const AdaptedMesh adapted = adapt(executor, mesh, front(mesh, call), options);
+      EXPECT_EQ(test::joined(check_adapted(executor, mesh, adapted.mesh, tolerance)), "");
+      mesh = adapted.mesh;
+      const double now = volume_of(mesh);
+      if (call == 1) at_first = now;
+      EXPECT_NEAR(now / at_first, 1, dimension() == 2 ? 0.003 : 0.006) << "call " << call;
+    }
+    EXPECT_LT(off_sphere(mesh), 0.1 * tolerance);
+  }
+}
+
+TEST_P(GeometryOf, ABallHasItsPointsAndNormals) {
+  const Geometry geometry(Executor({.threads = 2}), start(true), {.tolerance = tolerance});
+  EXPECT_EQ(geometry.dimension(), dimension());
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 200; ++i) {
+    std::array<double, 3> direction{normal(random), normal(random),
+                                    dimension() == 3 ? normal(random) : 0.0};
+    const double length = std::hypot(direction[0], direction[1], direction[2]);
+    std::array<double, 3> point{};
+    for (std::size_t k = 0; k < 3; ++k) point[k] = 0.52 * (direction[k] /= length);
+    const auto found = geometry.closest(point, 0.1);
+    ASSERT_TRUE(found);
+    const auto& at = found->position;
+    EXPECT_NEAR(std::hypot(at[0], at[1], at[2]), radius, 0.02 * tolerance);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(at[k], radius * direction[k], 0.25 * tolerance);
+      EXPECT_NEAR(found->normal[k], direction[k], 0.02);
+    }
+    EXPECT_EQ(found->reference, 1);
+    EXPECT_FALSE(geometry.closest(point, 0.01));
+  }
+}
+
+TEST_P(GeometryOf, AnotherDomainIsRefused) {
+  const Executor executor({.threads = 2});
+  const AnyMesh mesh = start(true);
+  const AdaptOptions options = options_on(mesh);
+  const auto message = [&](const AnyMesh& other, const AdaptOptions& with) -> std::string {
+    try {
+      adapt(executor, other, constant_metric(other, 0.2), with);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  AnyMesh smaller = mesh;
+  for (double& x : smaller.coordinates) x *= 0.95;
+  EXPECT_NE(message(smaller, options).find("from the geometry"), std::string::npos);
+  for (double& x : smaller.coordinates) x *= 0.1;
+  EXPECT_NE(message(smaller, options).find("geometry of the same domain"), std::string::npos);
+  const AnyMesh flat = ball(5 - dimension(), 8, true);
+  EXPECT_NE(message(flat, options).find("dimension"), std::string::npos);
+  AdaptOptions wider = options;
+  wider.make.surface_tolerance *= 2;
+  EXPECT_NE(message(mesh, wider).find("surface_tolerance"), std::string::npos);
+  wider.make.surface_tolerance = 0;
+  EXPECT_NE(message(mesh, wider).find("surface_tolerance"), std::string::npos);
+}
+
+TEST_P(GeometryOf, TheSameBallGivesTheSameBytesAtAnyNumberOfThreads) {
+  const AnyMesh first = start(false);
+  std::vector<std::uint64_t> expected;
+  for (const int threads : {1, 2, 3, 4, 8}) {
+    const Executor executor({.threads = threads});
+    AdaptOptions options;
+    options.make.surface_tolerance = tolerance;
+    options.make.geometry =
+        std::make_shared<const Geometry>(executor, first, GeometryOptions{.tolerance = tolerance});
+    AnyMesh mesh = first;
+    for (int call = 1; call <= 2; ++call)
+      mesh = adapt(executor, mesh, front(mesh, call), options).mesh;
+    const auto found = test::bits(mesh.coordinates);
+    if (expected.empty()) expected = found;
+    EXPECT_EQ(found, expected) << threads << " threads";
+  }
+}
+
+TEST_P(GeometryOf, ABoxHasNothingThatIsCurved) {
+  const Executor executor({.threads = 2});
+  const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 6));
+  const AdaptOptions options = options_on(mesh);
+  EXPECT_FALSE(options.make.geometry->closest({0.5, 0.5, 0}, 1));
+  AdaptOptions without;
+  without.make.surface_tolerance = tolerance;
+  const AnyField metric = constant_metric(mesh, 0.1);
+  EXPECT_EQ(test::bits(adapt(executor, mesh, metric, options).mesh.coordinates),
+            test::bits(adapt(executor, mesh, metric, without).mesh.coordinates));
+}
+
+TEST(Geometry, RefusesATolerance) {
+  const AnyMesh mesh = ball(2, 8, true);
+  for (const double wrong : {0.0, -1.0, std::nan("")})
+    EXPECT_THROW(Geometry(Executor({.threads = 1}), mesh, {.tolerance = wrong}), InputError);
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt::geometry_test
