@@ -5,27 +5,12 @@
 #include <limits>
 #include <utility>
 
-#include <boost/container/small_vector.hpp>
-
-#include "ductile/meshadapt/simplex.hpp"
-#include "geometry/box_index.hpp"
-#include "geometry/distance.hpp"
 #include "geometry/prism.hpp"
+#include "geometry/sheets_parts.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
-
-/// Of some points, with a margin around them.
-template <int Dim, std::size_t N>
-Box<Dim> box_around(const std::array<Vector<Dim>, N>& points, double margin) {
-  auto box = box_around(points);
-  for (int i = 0; i < Dim; ++i) {
-    box.low[i] -= margin;
-    box.high[i] += margin;
-  }
-  return box;
-}
 
 /// Around all corners, not the least one.
 template <int Dim>
@@ -42,48 +27,6 @@ Sphere<Dim> sphere_around(const std::array<Vector<Dim>, N>& points) {
   return sphere;
 }
 
-/// Unit normal of a facet, or along an edge in 3D; 0 if it is too small to have one.
-template <int Dim, std::size_t Corners>
-Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners>& corner) {
-  Vector<Dim> direction;
-  if constexpr (Corners == Dim)
-    direction = facet_normal(corner);
-  else
-    direction = corner[1] - corner[0];
-  const double length = norm(direction);
-  return length > 0 ? (1 / length) * direction : Vector<Dim>{};
-}
-
-/// The same from tangents, which span it.
-template <int Dim, std::size_t Corners>
-Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners - 1>& tangents) {
-  std::array<Vector<Dim>, Corners> corner{};
-  for (std::size_t i = 1; i < Corners; ++i) corner[i] = tangents[i - 1];
-  return direction_of(corner);
-}
-
-/// The weights of the corners in a point of the simplex.
-template <int Dim>
-std::array<double, 2> weights_of(const std::array<Vector<Dim>, 2>& p, const Vector<Dim>& point) {
-  const Vector<Dim> along = p[1] - p[0];
-  const double length2 = dot(along, along);
-  const double t = length2 > 0 ? std::clamp(dot(point - p[0], along) / length2, 0.0, 1.0) : 0;
-  return {1 - t, t};
-}
-std::array<double, 3> weights_of(const std::array<Vector<3>, 3>& p, const Vector<3>& point) {
-  const Vector<3> normal = facet_normal(p);
-  const double area2 = dot(normal, normal);
-  if (!(area2 > 0)) return {1, 0, 0};
-  std::array<double, 3> weight{};
-  double sum = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector<3> part = facet_normal({point, p[(i + 1) % 3], p[(i + 2) % 3]});
-    sum += weight[i] = std::max(0.0, dot(part, normal) / area2);
-  }
-  for (double& w : weight) w /= sum;
-  return weight;
-}
-
 /// The halves of an edge, the quarters of a triangle.
 template <int Dim>
 auto divided(const std::array<Vector<Dim>, 2>& p) {
@@ -97,48 +40,6 @@ auto divided(const std::array<Vector<3>, 3>& p) {
 }
 
 }  // namespace
-
-/// Of the facets: their parts are looked at one by one.
-template <int Dim, std::size_t Corners>
-struct Sheets<Dim, Corners>::Tree : BoxIndex<Dim> {
-  using BoxIndex<Dim>::BoxIndex;
-};
-
-/// Calls visit(part) for each part whose box has a point in common with this one.
-template <int Dim, std::size_t Corners>
-void Sheets<Dim, Corners>::each_meeting(const Box<Dim>& box, auto&& visit) const {
-  tree_->each_meeting(box, [&](std::uint32_t facet) {
-    for (std::uint32_t part = first_part_[facet]; part < first_part_[facet + 1]; ++part)
-      if (meet(box, box_of_[part])) visit(part);
-  });
-}
-
-/// Some parts, among which the closest to a point is looked for: first where it is likely, then
-/// wherever it may be.
-template <int Dim, std::size_t Corners>
-struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t, 192> {
-  Closest closest(const Sheets& sheets, const Vector<Dim>& point) const {
-    Closest best;
-    const auto square = [&](std::uint32_t part) {
-      const Vector<Dim> aside = sheets.shape_of_[part].centre - point;
-      return dot(aside, aside);
-    };
-    const auto look = [&](std::uint32_t part) {
-      const Vector<Dim> at = closest_point(sheets.parts_[part].corner, point);
-      const double distance = norm(at - point);
-      if (distance < best.distance) best = {distance, at, part};
-    };
-    if (this->empty()) return best;
-    look(*std::min_element(this->begin(), this->end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(square(a), a) < std::pair(square(b), b);
-    }));
-    for (const std::uint32_t part : *this) {
-      const double reach = best.distance + sheets.shape_of_[part].radius;
-      if (square(part) < reach * reach) look(part);
-    }
-    return best;
-  }
-};
 
 /// The parts around a simplex that matter.
 template <int Dim, std::size_t Corners>
@@ -380,33 +281,6 @@ auto Sheets<Dim, Corners>::facet_of(std::uint32_t part) const -> Points {
   return corners;
 }
 
-/// Of the point of the model near the closest one of its flat parts; none if it is flat there.
-template <int Dim, std::size_t Corners>
-auto Sheets<Dim, Corners>::weights_at(const Vector<Dim>& point, const Closest& closest) const
-    -> std::optional<typename Curved::Weights> {
-  if (origin_of_[closest.part].curved == none) return {};
-  constexpr int steps = 3;
-  const Origin& origin = origin_of_[closest.part];
-  const Curved& curved = curved_[origin.curved];
-  const auto share = weights_of(parts_[closest.part].corner, closest.point);
-  typename Curved::Weights weights{};
-  for (std::size_t i = 0; i < Corners; ++i)
-    for (std::size_t k = 0; k < Corners; ++k)
-      weights[k] += share[i] * origin.weight[i][k] / most_divisions;
-  for (int step = 0; step < steps; ++step) {
-    const auto closer = curved.closer(weights, point);
-    if (!closer) break;
-    weights = *closer;
-  }
-  return weights;
-}
-
-template <int Dim, std::size_t Corners>
-Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Closest& closest) const {
-  const auto weights = weights_at(point, closest);
-  return weights ? curved_[origin_of_[closest.part].curved].at(*weights) : closest.point;
-}
-
 template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) const {
   const Sphere<Dim> sphere = sphere_around(simplex);
@@ -432,68 +306,6 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) con
   };
   facing.erase(std::remove_if(facing.begin(), facing.end(), is_joined), facing.end());
   return search.covered(simplex, graph, around, 0);
-}
-
-/// Looks nearby first, as it is likely there and the tolerance may be large.
-template <int Dim, std::size_t Corners>
-std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
-                                                         std::uint32_t sheet, double reach) const {
-  const double most = reach + tolerance_;
-  for (bool last = false; !last; reach *= 4) {
-    last = !(reach > 0 && reach < most);
-    const double within = last ? most : reach;
-    Near near;
-    each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
-      if (parts_[part].sheet == sheet) near.push_back(part);
-    });
-    const Closest best = near.closest(*this, point);
-    if (best.distance <= within) return on_model(point, best);
-  }
-  return {};
-}
-
-/// Of the parts for which is_wanted(part) holds. Looks nearby first, too.
-template <int Dim, std::size_t Corners>
-auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
-                                      auto&& is_wanted) const -> std::optional<Nearest> {
-  double within = std::min(reach, tolerance_);
-  for (bool last = false; !last; within *= 4) {
-    last = !(within < reach);
-    within = std::min(within, reach);
-    Near near;
-    each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
-      if (is_wanted(part)) near.push_back(part);
-    });
-    const Closest best = near.closest(*this, point);
-    if (!(best.distance <= within)) continue;
-    Nearest nearest{parts_[best.part].sheet, 0, best.point, shape_of_[best.part].direction};
-    if (const auto weights = weights_at(point, best)) {
-      const Curved& curved = curved_[origin_of_[best.part].curved];
-      nearest.point = curved.at(*weights);
-      nearest.direction = direction_of<Dim, Corners>(curved.tangents(*weights));
-    }
-    nearest.distance = norm(nearest.point - point);
-    return nearest;
-  }
-  return {};
-}
-
-template <int Dim, std::size_t Corners>
-auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, double reach) const
-    -> std::optional<Nearest> {
-  return nearest_of(point, reach, [](std::uint32_t) { return true; });
-}
-
-template <int Dim, std::size_t Corners>
-auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, const Vector<Dim>& direction,
-                                   std::span<const std::int32_t> reference_of,
-                                   std::int32_t reference, double reach) const
-    -> std::optional<Nearest> {
-  return nearest_of(point, reach, [&](std::uint32_t part) {
-    const double cosine = dot(direction, shape_of_[part].direction);
-    return reference_of[parts_[part].sheet] == reference &&
-           (parts_[part].two_sided ? std::abs(cosine) : cosine) > 0.5;
-  });
 }
 
 template class Sheets<2, 2>;

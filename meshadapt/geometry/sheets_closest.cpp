@@ -1,0 +1,164 @@
+/// @file
+/// Which point of a sheet is the closest to another.
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/sheets_parts.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// Unit normal of what tangents span; of one in 3D, along it.
+template <int Dim, std::size_t Corners>
+Vector<Dim> direction_along(const std::array<Vector<Dim>, Corners - 1>& tangents) {
+  std::array<Vector<Dim>, Corners> corner{};
+  for (std::size_t i = 1; i < Corners; ++i) corner[i] = tangents[i - 1];
+  return direction_of(corner);
+}
+
+/// The weights of the corners in a point of the simplex.
+template <int Dim>
+std::array<double, 2> weights_of(const std::array<Vector<Dim>, 2>& p, const Vector<Dim>& point) {
+  const Vector<Dim> along = p[1] - p[0];
+  const double length2 = dot(along, along);
+  const double t = length2 > 0 ? std::clamp(dot(point - p[0], along) / length2, 0.0, 1.0) : 0;
+  return {1 - t, t};
+}
+std::array<double, 3> weights_of(const std::array<Vector<3>, 3>& p, const Vector<3>& point) {
+  const Vector<3> normal = facet_normal(p);
+  const double area2 = dot(normal, normal);
+  if (!(area2 > 0)) return {1, 0, 0};
+  std::array<double, 3> weight{};
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector<3> part = facet_normal({point, p[(i + 1) % 3], p[(i + 2) % 3]});
+    sum += weight[i] = std::max(0.0, dot(part, normal) / area2);
+  }
+  for (double& w : weight) w /= sum;
+  return weight;
+}
+
+}  // namespace
+
+/// Of the point of the model near the closest one of its flat parts; none if it is flat there.
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::weights_at(const Vector<Dim>& point, const Closest& closest) const
+    -> std::optional<typename Curved::Weights> {
+  if (origin_of_[closest.part].curved == none) return {};
+  constexpr int steps = 3;
+  const Origin& origin = origin_of_[closest.part];
+  const Curved& curved = curved_[origin.curved];
+  const auto share = weights_of(parts_[closest.part].corner, closest.point);
+  typename Curved::Weights weights{};
+  for (std::size_t i = 0; i < Corners; ++i)
+    for (std::size_t k = 0; k < Corners; ++k)
+      weights[k] += share[i] * origin.weight[i][k] / most_divisions;
+  for (int step = 0; step < steps; ++step) {
+    const auto closer = curved.closer(weights, point);
+    if (!closer) break;
+    weights = *closer;
+  }
+  return weights;
+}
+
+template <int Dim, std::size_t Corners>
+Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Closest& closest) const {
+  const auto weights = weights_at(point, closest);
+  return weights ? curved_[origin_of_[closest.part].curved].at(*weights) : closest.point;
+}
+
+/// Looks nearby first, as it is likely there and the tolerance may be large.
+template <int Dim, std::size_t Corners>
+std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
+                                                         std::uint32_t sheet, double reach) const {
+  const double most = reach + tolerance_;
+  for (bool last = false; !last; reach *= 4) {
+    last = !(reach > 0 && reach < most);
+    const double within = last ? most : reach;
+    Near near;
+    each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
+      if (parts_[part].sheet == sheet) near.push_back(part);
+    });
+    const Closest best = near.closest(*this, point);
+    if (best.distance <= within) return on_model(point, best);
+  }
+  return {};
+}
+
+/// Of the parts for which is_wanted(part) holds. Looks nearby first, too.
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
+                                      auto&& is_wanted) const -> std::optional<Nearest> {
+  double within = std::min(reach, tolerance_);
+  for (bool last = false; !last; within *= 4) {
+    last = !(within < reach);
+    within = std::min(within, reach);
+    Near near;
+    each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
+      if (is_wanted(part)) near.push_back(part);
+    });
+    const Closest best = near.closest(*this, point);
+    if (!(best.distance <= within)) continue;
+    Nearest nearest{parts_[best.part].sheet, 0, best.point, shape_of_[best.part].direction};
+    if (const auto weights = weights_at(point, best)) {
+      const Curved& curved = curved_[origin_of_[best.part].curved];
+      nearest.point = curved.at(*weights);
+      nearest.direction = direction_along<Dim, Corners>(curved.tangents(*weights));
+    }
+    nearest.distance = norm(nearest.point - point);
+    return nearest;
+  }
+  return {};
+}
+
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, double reach) const
+    -> std::optional<Nearest> {
+  return nearest_of(point, reach, [](std::uint32_t) { return true; });
+}
+
+template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, const Vector<Dim>& direction,
+                                   std::span<const std::int32_t> reference_of,
+                                   std::int32_t reference, double reach) const
+    -> std::optional<Nearest> {
+  return nearest_of(point, reach, [&](std::uint32_t part) {
+    const double cosine = dot(direction, shape_of_[part].direction);
+    return reference_of[parts_[part].sheet] == reference &&
+           (parts_[part].two_sided ? std::abs(cosine) : cosine) > 0.5;
+  });
+}
+
+template std::optional<Sheets<2, 2>::Curved::Weights> Sheets<2, 2>::weights_at(
+    const Vector<2>&, const Closest&) const;
+template Vector<2> Sheets<2, 2>::on_model(const Vector<2>&, const Closest&) const;
+template std::optional<Vector<2>> Sheets<2, 2>::closest(const Vector<2>&, std::uint32_t,
+                                                        double) const;
+template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest(const Vector<2>&, double) const;
+template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest(const Vector<2>&,
+                                                                    const Vector<2>&,
+                                                                    std::span<const std::int32_t>,
+                                                                    std::int32_t, double) const;
+template std::optional<Sheets<3, 2>::Curved::Weights> Sheets<3, 2>::weights_at(
+    const Vector<3>&, const Closest&) const;
+template Vector<3> Sheets<3, 2>::on_model(const Vector<3>&, const Closest&) const;
+template std::optional<Vector<3>> Sheets<3, 2>::closest(const Vector<3>&, std::uint32_t,
+                                                        double) const;
+template std::optional<Sheets<3, 2>::Nearest> Sheets<3, 2>::nearest(const Vector<3>&, double) const;
+template std::optional<Sheets<3, 2>::Nearest> Sheets<3, 2>::nearest(const Vector<3>&,
+                                                                    const Vector<3>&,
+                                                                    std::span<const std::int32_t>,
+                                                                    std::int32_t, double) const;
+template std::optional<Sheets<3, 3>::Curved::Weights> Sheets<3, 3>::weights_at(
+    const Vector<3>&, const Closest&) const;
+template Vector<3> Sheets<3, 3>::on_model(const Vector<3>&, const Closest&) const;
+template std::optional<Vector<3>> Sheets<3, 3>::closest(const Vector<3>&, std::uint32_t,
+                                                        double) const;
+template std::optional<Sheets<3, 3>::Nearest> Sheets<3, 3>::nearest(const Vector<3>&, double) const;
+template std::optional<Sheets<3, 3>::Nearest> Sheets<3, 3>::nearest(const Vector<3>&,
+                                                                    const Vector<3>&,
+                                                                    std::span<const std::int32_t>,
+                                                                    std::int32_t, double) const;
+
+}  // namespace ductile::meshadapt
