@@ -264,8 +264,9 @@ def test_geometry_has_points_and_normals():
     geometry = ductile.Geometry(disk, hausd=0.01)
     assert geometry.dim == 2 and geometry.hausd == 0.01
     found = geometry.closest([[2, 0], [0, -0.5], [0, 5]], reach=1.5)
-    assert found.points[:2] == pytest.approx(np.array([[1, 0], [0, -1]]), abs=1e-3)
-    assert found.normals[:2] == pytest.approx(np.array([[1, 0], [0, -1]]), abs=1e-3)
+    assert found.points[:2] == pytest.approx(np.array([[1, 0], [0, -1]]), abs=5e-3)
+    assert np.linalg.norm(found.points[:2], axis=1) == pytest.approx(np.ones(2), abs=1e-4)
+    assert found.normals[:2] == pytest.approx(np.array([[1, 0], [0, -1]]), abs=5e-3)
     assert np.isnan(found.points[2]).all() and found.refs[2] == 0
     for wrong in ({"points": [[0, 0, 0]]}, {"points": [[0, np.nan]]}, {"points": [[0, 0]], "reach": 0}):
         with pytest.raises(ductile.InputError):
@@ -287,12 +288,12 @@ def test_curved_boundaries_are_followed(dim):
         assert out.check() == [] and not out.report.warnings
         radius = np.linalg.norm(out.points[np.unique(out.facets)], axis=1)
         assert radius.min() > 0.93 and radius.max() < 1.02
-    geometry = ductile.Geometry(ball, hausd=0.01)
+    geometry = ductile.Geometry(ball, hausd=0.04)  # as far as its chords are off
     out = ball
     for _ in range(3):
         out = out.remesh(0.3, geometry=geometry).remesh(0.15, geometry=geometry)
     radius = np.linalg.norm(out.points[np.unique(out.facets)], axis=1)
-    assert np.abs(radius - 1).max() < 0.005
+    assert np.abs(radius - 1).max() < 0.01
     with pytest.raises(ductile.InputError, match="hausd: expected that of the geometry"):
         ball.remesh(0.15, hausd=0.02, geometry=geometry)
     exact = ball.remesh(0.15)  # without hausd the facets stay

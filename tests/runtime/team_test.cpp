@@ -219,10 +219,10 @@ struct Ring {
 TEST(WithTeam, ColouringsFormOne) {
   const Executor executor({.threads = 3});
   std::atomic<int> outside = 0;
-  const Ring ring{executor, 20000, outside};
-  Colouring colouring = colour(executor, ring);
+  const Ring ring{executor, 200000, outside};
+  Colouring colouring = colour(executor, ring, ColouringMethod::detect_again);
   balance(executor, ring, colouring);
-  std::vector<std::uint32_t> vertices(ring.size / 2);
+  std::vector<std::uint32_t> vertices(ring.size / 20);
   std::iota(vertices.begin(), vertices.end(), 0U);
   recolour(executor, ring, vertices, colouring);
   EXPECT_EQ(outside, 0);
