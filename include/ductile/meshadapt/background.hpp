@@ -37,10 +37,10 @@ class Background {
   };
 
   /// The metric at a point, found by walking from the element `near`. Of a point outside, the
-  /// metric is that of the closest point of the mesh, and so is the host, or, if the mesh has curved
-  /// boundaries, those of an element that is close to it. If `near` is no element,
-  /// the walk starts at the first. Of a point that is no number the host is an element, but its
-  /// metric is no number either. Thread safety: any thread.
+  /// metric is that of the closest point of the mesh, and so is the host, or, if the mesh has
+  /// curved boundaries, those of an element that is close to it. If `near` is no element, the walk
+  /// starts at the first. Of a point that is no number the host is an element, but its metric is no
+  /// number either. Thread safety: any thread.
   Sample sample(const Vector<Dim>& point, ElementId near) const;
 
   /// Starts to bring where a walk begins into the cache. Thread safety: any thread.
