@@ -53,7 +53,7 @@ class Sheets {
 
   /// The point of the sheet closest to a point, nearly, if there is one within this distance and
   /// the tolerance. Where the sheet is curved it is on the curve, not on its flat parts; that of
-  /// such a point is the point itself, but for rounding. Thread safety: any thread.
+  /// such a point is the point itself up to rounding. Thread safety: any thread.
   std::optional<Vector<Dim>> closest(const Vector<Dim>& point, std::uint32_t sheet,
                                      double reach) const;
 

@@ -68,7 +68,7 @@ Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Close
   return weights ? curved_[origin_of_[closest.part].curved].at(*weights) : closest.point;
 }
 
-/// Looks nearby first, as it is likely there and the tolerance may be large.
+/// Looks nearby first, because it is likely there, and the tolerance may be large.
 template <int Dim, std::size_t Corners>
 std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
                                                          std::uint32_t sheet, double reach) const {

@@ -38,7 +38,7 @@ struct SurfaceOptions {
 };
 
 /// Of a mesh whose patches and curves are known; null if none is smooth. `plane_of`, [facet], tells
-/// which facets of a patch are coplanar. Linear but for a logarithm. Throws std::bad_alloc. Thread
+/// which facets of a patch are coplanar. Linear, times a logarithm. Throws std::bad_alloc. Thread
 /// safety: one caller; runs on the executor.
 template <int Dim>
 std::shared_ptr<const Surface<Dim>> make_surface(const runtime::Executor& executor,

@@ -48,8 +48,8 @@ class Coarsen {
   std::size_t resource_count() const { return mesh_.vertex_slots(); }
   void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
-  // ---- Apply: stretch or remove own elements, hold and change lists, wake whom it concerns. Who
-  // gets new neighbours gets the one that is kept, so that one is postponed. ----
+  // ---- Apply: stretch or remove own elements, hold and change lists, wake neighbours with a short
+  // edge. All new conflicts are with the vertex that is kept, so that one is postponed. ----
   void apply(VertexId, const Plan& plan, auto& commit) {
     collapse(plan);
     for (const VertexId v : plan.crowded) commit.wake(v);

@@ -36,7 +36,7 @@ enum class ColouringMethod {
   automatic,      ///< the colours of `serial`, on all threads where that is faster; an executor
                   ///< that is not deterministic may take one colour more
   serial,         ///< first-fit in vertex order on the calling thread
-  by_priority,    ///< hashed priority decides who waits for whom; deterministic, a yardstick
+  by_priority,    ///< a hash decides which neighbour comes first; deterministic, a yardstick
                   ///< (Jones, Plassmann, SIAM J. Sci. Comput. 14, 1993)
   largest_first,  ///< by_priority, but greater degrees go first: fewer colours, longer chains
   detect_again,   ///< speculate; detect and recolour at once, one barrier a round

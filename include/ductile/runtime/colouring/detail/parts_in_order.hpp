@@ -2,8 +2,8 @@
 /// First-fit in order where neighbours have ids near each other, on many threads: each has a part
 /// of the vertices, of which it colours those of later parts as if the earlier were not there. That
 /// is a guess, which errs near the border and less and less away from it, unless the graph is a
-/// grid. Then, in order, who has an earlier neighbour in another part or one that has changed is
-/// looked at again, until all have the colours that one thread gives.
+/// grid. Then each vertex with an earlier neighbour that lies in another part, or has changed, is
+/// coloured again in order, until all have the colours that one thread gives.
 /// Where results may depend on timing, only those whose colours clash get others, by the scheme
 /// with one barrier a round (speculative_colouring.hpp), if that takes no more than one colour more
 /// than the first part, whose colours are those of one thread.
@@ -115,7 +115,7 @@ class PartsRun {
     bits[v / 64] |= std::uint64_t{is_marked} << (v % 64);
   }
 
-  /// Gives others to those whose colours clash. If that does not do, says who is stale then.
+  /// Colours anew what clashes. If that takes too many colours, notes what is stale then.
   bool takes_few_colours(UnsetVector<std::uint32_t> unsure, std::vector<std::uint64_t>& stale) {
     recolour_clashing<Recolouring::at_once>(executor_, graph_, unsure, colours_);
     const Word few = parts_[0].greatest + 1;

@@ -125,8 +125,8 @@ class WindowsRun {
     return colour;
   }
 
-  /// Who waits in a row lets the one before go far ahead, so as not to wait for each of its
-  /// vertices. It looks at the first word of a line, as looks slow down whoever writes to one.
+  /// A thread that waits in a row lets the one before go far ahead, so as not to wait for each of
+  /// its vertices. It looks at the first word of a line, as looks slow down whoever writes to one.
   void wait_for_earlier(std::uint32_t v) const {
     graph_.for_each_neighbour(v, [&](std::uint32_t u) {
       if (u >= v || has_colour(u)) return;
