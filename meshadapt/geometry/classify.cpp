@@ -295,7 +295,7 @@ class Classifier {
     std::vector<SurfaceEdge> edges;
     edges.reserve(curve_edges_.size());
     for (const CurveEdge& e : curve_edges_) edges.push_back({e.a, e.b, e.curve});
-    mesh_.surface = make_surface<Dim>(executor_, mesh_, facets_, plane_of_, edges,
+    mesh_.surface = make_surface<Dim>(executor_, mesh_, {facets_, plane_of_, edges},
                                       {surface_tolerance_, tolerance_, least_turn_});
   }
 

@@ -15,13 +15,16 @@ namespace {
 template <int Dim>
 class SurfaceMaker {
  public:
-  SurfaceMaker(const Mesh<Dim>& mesh, std::span<const TaggedFacet<Dim>> facets,
-               std::span<const SurfaceEdge> edges, const SurfaceOptions& options)
-      : mesh_(mesh), facets_(facets), edges_(edges), options_(options) {}
+  SurfaceMaker(const Mesh<Dim>& mesh, const ClassifiedFacets<Dim>& classified,
+               const SurfaceOptions& options)
+      : mesh_(mesh),
+        facets_(classified.facets),
+        plane_of_(classified.plane_of),
+        edges_(classified.edges),
+        options_(options) {}
 
-  std::shared_ptr<const Surface<Dim>> make(const runtime::Executor& executor,
-                                           std::span<const PatchId> plane_of) const {
-    ModelInput<Dim> input = input_of(plane_of);
+  std::shared_ptr<const Surface<Dim>> make(const runtime::Executor& executor) const {
+    ModelInput<Dim> input = model_input();
     SmoothModel<Dim> model(executor, input);
     if (hold_facing(model, input)) model = SmoothModel<Dim>(executor, input);
     std::vector<typename Sheets<Dim, Dim>::Part> facet_parts;
@@ -53,7 +56,7 @@ class SurfaceMaker {
     return result;
   }
 
-  ModelInput<Dim> input_of(std::span<const PatchId> plane_of) const {
+  ModelInput<Dim> model_input() const {
     ModelInput<Dim> input;
     std::tie(input.tolerance, input.flat, input.least_turn) =
         std::tie(options_.tolerance, options_.flat, options_.least_turn);
@@ -68,7 +71,7 @@ class SurfaceMaker {
     };
     input.facets.reserve(facets_.size());
     for (std::size_t f = 0; f < facets_.size(); ++f) {
-      ModelFacet<Dim> facet{corners(facets_[f]), facets_[f].patch, plane_of[f],
+      ModelFacet<Dim> facet{corners(facets_[f]), facets_[f].patch, plane_of_[f],
                             mesh_.patches[facets_[f].patch].smooth};
       for (std::uint32_t& corner : facet.corner) corner = number(corner);
       input.facets.push_back(facet);
@@ -136,6 +139,7 @@ class SurfaceMaker {
 
   const Mesh<Dim>& mesh_;
   std::span<const TaggedFacet<Dim>> facets_;
+  std::span<const PatchId> plane_of_;
   std::span<const SurfaceEdge> edges_;
   const SurfaceOptions& options_;
 };
@@ -145,26 +149,20 @@ class SurfaceMaker {
 template <int Dim>
 std::shared_ptr<const Surface<Dim>> make_surface(const runtime::Executor& executor,
                                                  const Mesh<Dim>& mesh,
-                                                 std::span<const TaggedFacet<Dim>> facets,
-                                                 std::span<const PatchId> plane_of,
-                                                 std::span<const SurfaceEdge> edges,
+                                                 const ClassifiedFacets<Dim>& classified,
                                                  const SurfaceOptions& options) {
   const auto is_smooth = [](const auto& of) { return of.smooth; };
   if (std::none_of(mesh.patches.begin(), mesh.patches.end(), is_smooth) &&
       std::none_of(mesh.curves.begin(), mesh.curves.end(), is_smooth))
     return nullptr;
-  return SurfaceMaker<Dim>(mesh, facets, edges, options).make(executor, plane_of);
+  return SurfaceMaker<Dim>(mesh, classified, options).make(executor);
 }
 
 template std::shared_ptr<const Surface<2>> make_surface(const runtime::Executor&, const Mesh<2>&,
-                                                        std::span<const TaggedFacet<2>>,
-                                                        std::span<const PatchId>,
-                                                        std::span<const SurfaceEdge>,
+                                                        const ClassifiedFacets<2>&,
                                                         const SurfaceOptions&);
 template std::shared_ptr<const Surface<3>> make_surface(const runtime::Executor&, const Mesh<3>&,
-                                                        std::span<const TaggedFacet<3>>,
-                                                        std::span<const PatchId>,
-                                                        std::span<const SurfaceEdge>,
+                                                        const ClassifiedFacets<3>&,
                                                         const SurfaceOptions&);
 
 }  // namespace ductile::meshadapt

@@ -37,22 +37,29 @@ struct SurfaceOptions {
   double least_turn;  ///< cosine of the angle from which on curves have corners
 };
 
-/// Of a mesh whose patches and curves are known; null if none is smooth. `plane_of`, [facet], tells
-/// which facets of a patch are coplanar. Linear, times a logarithm. Throws std::bad_alloc. Thread
-/// safety: one caller; runs on the executor.
+/// The facets and curves of a mesh, all of which have their patches.
+template <int Dim>
+struct ClassifiedFacets {
+  std::span<const TaggedFacet<Dim>> facets;
+  std::span<const PatchId> plane_of;  ///< [facet], the same of those of one patch in one plane
+  std::span<const SurfaceEdge> edges;
+};
+
+/// Null if no patch or curve of the mesh is smooth. Linear, times a logarithm. Throws
+/// std::bad_alloc. Thread safety: one caller; runs on the executor.
 template <int Dim>
 std::shared_ptr<const Surface<Dim>> make_surface(const runtime::Executor& executor,
                                                  const Mesh<Dim>& mesh,
-                                                 std::span<const TaggedFacet<Dim>> facets,
-                                                 std::span<const PatchId> plane_of,
-                                                 std::span<const SurfaceEdge> edges,
+                                                 const ClassifiedFacets<Dim>& classified,
                                                  const SurfaceOptions& options);
 
-extern template std::shared_ptr<const Surface<2>> make_surface(
-    const runtime::Executor&, const Mesh<2>&, std::span<const TaggedFacet<2>>,
-    std::span<const PatchId>, std::span<const SurfaceEdge>, const SurfaceOptions&);
-extern template std::shared_ptr<const Surface<3>> make_surface(
-    const runtime::Executor&, const Mesh<3>&, std::span<const TaggedFacet<3>>,
-    std::span<const PatchId>, std::span<const SurfaceEdge>, const SurfaceOptions&);
+extern template std::shared_ptr<const Surface<2>> make_surface(const runtime::Executor&,
+                                                               const Mesh<2>&,
+                                                               const ClassifiedFacets<2>&,
+                                                               const SurfaceOptions&);
+extern template std::shared_ptr<const Surface<3>> make_surface(const runtime::Executor&,
+                                                               const Mesh<3>&,
+                                                               const ClassifiedFacets<3>&,
+                                                               const SurfaceOptions&);
 
 }  // namespace ductile::meshadapt

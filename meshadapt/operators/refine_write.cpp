@@ -70,7 +70,7 @@ void Refine<Dim>::grow() {
     const PhaseTimer timer(report_.apply_seconds);
     const std::size_t end_of_vertices = first_vertex_ + report_.applied;
     mesh_.grow(executor_, end_of_vertices, first_element_);
-    const auto write = [&](std::size_t i, const auto& mine) {
+    const auto write = [&](std::size_t i, [[maybe_unused]] const auto& mine) {
       const auto number = static_cast<std::uint32_t>(i);
       if (!is_split(number)) return;
       write_vertex(number);

@@ -43,8 +43,8 @@ class TileRounds {
     run_tiles(work);
     const PhaseTimer timer(report_.wake_seconds);
     parallel_for(
-        executor_, work.size(), [&](std::size_t i) { woken_.turns()[work[i]] = woken_.absent; },
-        few_nanoseconds);
+        executor_, work.size(),
+        [&](std::size_t i) { woken_.turns()[work[i]] = WokenItems::absent; }, few_nanoseconds);
     for (const Item item : all.subspan(work.size())) woken_.bring_back(item);
     return woken_.take();
   }
