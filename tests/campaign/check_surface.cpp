@@ -83,7 +83,8 @@ Faults check_surface(const Mesh& before, const Mesh& after, const Promise& promi
   const Mesh a = normalised(before, box), b = normalised(after, box);
   const double exact = 1e-9 + 20 * relative_rounding(box) + 4 * promise.rounding / box.extent();
   const double moved = promise.tolerance / box.extent();
-  expect(farthest(b, a), exact + 1.0001 * moved, "the new boundary is off the old one", faults);
+  // Facets may be as far from a smooth model of the old ones as that may be from these.
+  expect(farthest(b, a), exact + 2.0002 * moved, "the new boundary is off the old one", faults);
   // What is promised is one way; the other way round it holds up to what corners of less than
   // -ar degrees cut off, a few times as much.
   expect(farthest(a, b), exact + 4 * moved, "the old boundary is off the new one", faults);

@@ -216,8 +216,8 @@ TEST_P(Checker, SeesABoundaryThatMoved) {
       bad_.points.begin());
   bad_.points[moved][0] += 0.01;
   EXPECT_TRUE(mentions(check_surface(good_, bad_, {}), "the new boundary is off the old one"));
-  EXPECT_TRUE(mentions(check_surface(good_, bad_, {.tolerance = 0.009}), "the new boundary"));
-  EXPECT_EQ(check_surface(good_, bad_, {.tolerance = 0.011}), Faults{});
+  EXPECT_TRUE(mentions(check_surface(good_, bad_, {.tolerance = 0.0049}), "the new boundary"));
+  EXPECT_EQ(check_surface(good_, bad_, {.tolerance = 0.0051}), Faults{});
   Mesh shorter = good_;
   for (Point& point : shorter.points) point[0] *= 0.9;
   EXPECT_TRUE(mentions(check_surface(good_, shorter, {}), "the old boundary is off the new one"));
