@@ -13,8 +13,8 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// Of a barycentric weight: where a walk ends a point is there but for rounding, which is seen in
-/// thin elements; or, where curved boundaries may move, it is near enough.
+/// How far below 0 a barycentric weight may be for a point to count as inside of the element in
+/// which a walk ends: by rounding, or by more where curved boundaries may move.
 constexpr double rounding = 1e-5, close_outside = 0.25;
 
 }  // namespace
