@@ -12,7 +12,7 @@
 
 namespace ductile::meshadapt {
 
-/// The text with control characters, which names of files may have, written as \n or \x1b: it stays
+/// The text with control characters, which names of files may have, written as `\n` or `\x1b`: it stays
 /// one line and changes nothing in a terminal. Thread safety: any thread.
 std::string printable(std::string_view text);
 
