@@ -35,7 +35,7 @@ typedef struct ductile_options ductile_options;
 typedef struct ductile_sizes ductile_sizes;
 typedef struct ductile_transfer ductile_transfer;
 
-/** "0.1.0". */
+/** The version of the library, such as "0.2.0". */
 const char* ductile_version(void);
 
 /** What the last call on this thread that failed has to say, one line; never NULL. Entries of
