@@ -1,6 +1,6 @@
 /// @file
-/// The metrics to adapt to when the user has none: one size everywhere, or the sizes that the mesh
-/// has already. All give one symmetric tensor per vertex, as metric_of does.
+/// Metrics for users without one: a constant size, or the mesh's implied metric, isotropic or
+/// anisotropic. All give one symmetric tensor per vertex, as metric_of does.
 #pragma once
 
 #include "ductile/meshadapt/any_mesh.hpp"

@@ -12,8 +12,8 @@
 
 namespace ductile::meshadapt {
 
-/// The text with control characters, which names of files may have, written as `\n` or `\x1b`: it stays
-/// one line and changes nothing in a terminal. Thread safety: any thread.
+/// The text with control characters, which names of files may have, written as `\n` or `\x1b`: it
+/// stays one line and changes nothing in a terminal. Thread safety: any thread.
 std::string printable(std::string_view text);
 
 /// Something outside the program failed: the disk is full, memory ran out, a result is not valid.
@@ -21,7 +21,7 @@ class Error : public std::runtime_error {
  public:
   /// The text is made printable.
   explicit Error(std::string_view text) : std::runtime_error(printable(text)) {}
-  ~Error() override;  // defined in one place, as the type then is, whoever throws it
+  ~Error() override;  // defined in one place, so the type is one
 };
 
 /// What the user gave is wrong: a file, a mesh, a metric or an option. Of arrays in memory, what()
@@ -32,7 +32,7 @@ class InputError : public Error {
   InputError(const std::string& what, const std::string& in_file);
   ~InputError() override;
 
-  /// The same for who gave a file that the arrays were read from, and knows no arrays: entities are
+  /// The same for users who gave a file, from which the arrays were read: entities are
   /// counted from 1, "triangle 7".
   const char* in_file() const noexcept;
 

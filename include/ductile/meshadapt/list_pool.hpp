@@ -74,7 +74,8 @@ class ListPool {
     return slot_of_[index].capacity.hold();
   }
 
-  // What follows changes one list. Thread safety: the owner of that list, or who holds it.
+  // What follows changes one list. Thread safety: the owner of that list, or the thread that holds
+  // it.
 
   void insert(std::uint32_t index, const T& value) {
     Slot& slot = slot_of_[index];
@@ -130,7 +131,7 @@ class ListPool {
   }
 
   /// Makes the lists [begin, end) empty ones with room for capacity_of(index) each, side by side:
-  /// one request to the arena, which threads would else wait for each other to make.
+  /// one request to the arena, which threads would otherwise wait for each other to make.
   void reserve_all(std::uint32_t begin, std::uint32_t end, auto&& capacity_of) {
     std::uint32_t total = 0;
     for (std::uint32_t i = begin; i < end; ++i) {

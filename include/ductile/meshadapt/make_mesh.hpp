@@ -16,18 +16,20 @@
 
 namespace ductile::meshadapt {
 
+/// How a Mesh is made from that of a file: what of its boundary may change.
 struct MakeMeshOptions {
   bool complete_boundary =
       false;                   ///< give unlisted boundary facets reference 0, do not refuse them
   bool lock_boundary = false;  ///< treat every boundary and interface facet as required
-  /// How far curved boundaries, interfaces and the curves between them may be from where they were,
-  /// a length; 0: they keep the facets they have.
+  /// Hausdorff tolerance: how far curved boundaries, interfaces and the curves between them may be
+  /// from a smooth model of the input, a length; 0: they keep the facets they have.
   double surface_tolerance = 0;
-  /// Facets, or edges of a curve, that turn by as many degrees where they meet meet at a ridge, or
-  /// a corner, which stays. Those that turn by less are curved. More than 0, less than 90.
+  /// Degrees, more than 0 and less than 90. Two facets whose normals differ by this angle or more
+  /// meet in a ridge, two edges of a curve in a corner; both are kept. What turns by less is
+  /// curved.
   double ridge_angle = 45;
-  /// What curved boundaries are like, if not what they are like in the mesh: distances are measured
-  /// from it. With a surface_tolerance, which is the geometry's.
+  /// Where distances are measured from; null: from a model of this mesh. Wants a surface_tolerance,
+  /// which must be the geometry's.
   std::shared_ptr<const Geometry> geometry = nullptr;
   /// Vertices at which curved boundaries keep the facets they have all the same. Indices, from 0.
   std::vector<std::uint32_t> keep_facets_at = {};
@@ -43,6 +45,7 @@ Mesh<Dim> make_mesh(const runtime::Executor& executor, const AnyMesh& any,
                     const MakeMeshOptions& options, Neighbours<Dim>& neighbours,
                     std::vector<std::string>& warnings);
 
+/// What take_apart() gives.
 struct MeshWithMetric {
   AnyMesh mesh;
   AnyField metric;  ///< at the vertices

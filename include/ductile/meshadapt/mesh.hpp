@@ -66,9 +66,9 @@ struct CurveLink {
 template <int Dim>
 using Neighbours = GrowingArray<std::array<ElementId, Dim + 1>>;
 
-/// What a vertex may do. `freedom` is the dimension of the space it may move in: 0 never moves and
-/// is never removed (corner or required), 1 moves along a curve, 2 in a patch or, in 2D, anywhere,
-/// 3 anywhere.
+/// What a vertex may do. `freedom` is its class dimension, that of the geometric entity in which it
+/// may move: 0 never moves and is never removed (corner or required), 1 moves along a curve, 2 in a
+/// patch or, in 2D, anywhere, 3 anywhere.
 struct VertexKind {
   std::uint8_t freedom = 0;
   bool corner = false;    ///< listed as a corner
@@ -90,14 +90,15 @@ struct Surface;
 template <int Dim>
 struct Rounding;
 
+/// A mesh while it is being adapted; see the top of this file.
 template <int Dim>
 struct Mesh {
   // ---- Elements; one is gone when its first corner is none ----
   GrowingArray<Corners<Dim>> corners_of;                  // [element], positively oriented
   GrowingArray<std::array<PatchId, Dim + 1>> patches_of;  // [element][facet], 0 inside
   GrowingArray<std::uint32_t> region_of;                  // [element], index into regions
-  // [element], see shape(). Rounded in another way by kernels that know it before they act; of
-  // corners exactly as dense, any may have been the judge.
+  // [element]. Cached quality; may differ from shape() in the last bits, because kernels store the
+  // value that they computed while planning.
   GrowingArray<float> shape_of;
   GrowingArray<std::uint32_t> changed_at;  // [element], epoch of its last change
   std::uint32_t epoch = 1;  ///< what changes now is marked with this; a scan ends an epoch
@@ -167,9 +168,9 @@ template <int Dim>
 void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
 /// Removes what is gone and renumbers what is left along a space-filling curve, so that what is
-/// near in space is near in memory. Makes elements_of anew, which may be stale but for which lists
-/// are empty; vertices from `unlisted` on have elements, whatever their lists are. The result does
-/// not depend on the number of threads.
+/// near in space is near in memory. Rebuilds elements_of: on entry lists may be out of date, but an
+/// empty list must still mean a deleted vertex; vertices from `unlisted` on are alive in any case.
+/// The result does not depend on the number of threads.
 template <int Dim>
 void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, VertexId unlisted = none);
 

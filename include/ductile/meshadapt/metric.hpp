@@ -37,7 +37,7 @@ struct Metric {
 };
 
 /// d' M d. Inlined everywhere: loops over it run side by side only then, and a compiler that counts
-/// all code of a source file may else decide otherwise for reasons that lie far away.
+/// all code of a source file may otherwise decide differently for reasons that lie far away.
 [[gnu::always_inline]] inline double squared_length(const Metric<2>& a, const Vector<2>& d) {
   return a.m[0] * d[0] * d[0] + 2 * a.m[1] * d[0] * d[1] + a.m[2] * d[1] * d[1];
 }

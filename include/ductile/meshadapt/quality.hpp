@@ -1,6 +1,7 @@
 /// @file
-/// How good elements and edges are in the metric: 1 is ideal, towards 0 degenerate.
-/// The kernels compare shape(), which needs no cubic root; mean_ratio() is what reports show.
+/// Quality of elements, and lengths of edges, in the metric. A quality of 1 is ideal, towards 0 the
+/// element is degenerate. The kernels compare it as shape(), which needs no cubic root; reports
+/// show mean_ratio(), which orders elements alike.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 
 namespace ductile::meshadapt {
 
-/// What a kernel needs to know of a vertex to judge the elements around it.
+/// Vertex state: what a kernel needs to know of a vertex to judge the elements around it.
 template <int Dim>
 struct Site {
   Vector<Dim> position;
@@ -23,6 +24,7 @@ struct Site {
   friend bool operator==(const Site&, const Site&) = default;
 };
 
+/// The state of a vertex with this position and metric.
 template <int Dim>
 Site<Dim> make_site(const Vector<Dim>& position, const Metric<Dim>& metric) {
   const double product = determinant(metric);
@@ -34,6 +36,7 @@ struct EndSquares {
   double at_a, at_b;
 };
 
+/// Both of the edge from a to b.
 template <int Dim>
 [[gnu::always_inline]] inline EndSquares end_squares(const Site<Dim>& a, const Site<Dim>& b) {
   const Vector<Dim> d = b.position - a.position;
@@ -44,6 +47,7 @@ template <int Dim>
 inline double edge_length(const EndSquares& edge) {
   return mean_length(std::sqrt(edge.at_a), std::sqrt(edge.at_b));
 }
+/// Metric length of the edge from a to b.
 template <int Dim>
 double edge_length(const Site<Dim>& a, const Site<Dim>& b) {
   return edge_length(end_squares(a, b));
@@ -57,6 +61,7 @@ inline bool shorter_than(const EndSquares& edge, double limit) {
   if (std::max(edge.at_a, edge.at_b) < square) return true;
   return edge_length(edge) < limit;
 }
+/// The same of the edge from a to b.
 template <int Dim>
 bool shorter_than(const Site<Dim>& a, const Site<Dim>& b, double limit) {
   return shorter_than(end_squares(a, b), limit);
@@ -148,6 +153,7 @@ double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
 struct VolumeAndSquares {
   double volume = 0, squares = 0;
 };
+/// See VolumeAndSquares.
 template <int Dim>
 [[gnu::always_inline]] inline VolumeAndSquares if_shape_above(
     const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
@@ -169,7 +175,7 @@ bool shape_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar
   return if_shape_above<Dim>(corner, bar).volume > 0;
 }
 
-/// shape(corner) if that is above a bar that is not negative, else 0.
+/// shape(corner) if that is above a bar that is not negative, 0 otherwise.
 template <int Dim>
 double shape_if_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
   const auto [volume, squares] = if_shape_above<Dim>(corner, bar);

@@ -1,25 +1,35 @@
 /// @file
-/// Rules: the thresholds that the operators share. Lengths are metric lengths, shapes see shape().
+/// Rules: the thresholds that the operators share. Lengths are metric lengths, qualities those of
+/// shape().
 #pragma once
 
 namespace ductile::meshadapt {
 
+/// What is too short, too long or too bad, and what a change may make of it.
 struct Rules {
-  double short_edge = 0.70710678118654752;      ///< edges below this are collapsed ...
-  double long_edge = 1.41421356237309505;       ///< edges above this are split
-  double stretched_edge = 1.41421356237309505;  ///< ... if that makes no edge longer than this
-  bool extends_long_edges = true;  ///< ... or than the longest edge there is around, nearly
-  double accepted_shape = 0.1;     ///< a collapse may not make elements worse than this ...
-  double kept_shape = 1;           ///< ... or than this fraction of the worst before, if that is
-                                   ///< less: far from the metric, good shapes are still to come
-  double poor_shape = 0.001;       ///< from elements this bad a split makes none that are worse ...
-  double layer_split_keeps = 0.5;  ///< ... or than this fraction, on the sides of layers that the
-                                   ///< elements span, where the layer is why they are bad
-  double split_keeps = 0.3;        ///< a split may lower the worst shape to this fraction, if
-                                   ///< that is less than accepted_shape ...
-  double overlong_edge = 2;        ///< ... and of edges longer than this, to less by the square of
-                                   ///< how much longer, which may be below poor_shape
-  double shortest_split = 0.5;     ///< a split makes no edge shorter than this
+  /// Edges shorter than this are collapsed.
+  double short_edge = 0.70710678118654752;
+  /// Edges longer than this are split.
+  double long_edge = 1.41421356237309505;
+  /// A collapse is refused if it makes an edge longer than this and, with extends_long_edges,
+  /// longer than nearly the longest edge that there is around already.
+  double stretched_edge = 1.41421356237309505;
+  bool extends_long_edges = true;  ///< see stretched_edge
+  /// A collapse is refused if it makes an element worse than min(accepted_shape, kept_shape * worst
+  /// quality in the old cavity): far from the metric, good elements are still to come.
+  double accepted_shape = 0.1;
+  double kept_shape = 1;  ///< see accepted_shape
+  /// An element worse than this may not be split into worse ones, except on the sides of layers
+  /// that the elements span, where the layer is why they are bad: there each part must keep
+  /// layer_split_keeps of the quality.
+  double poor_shape = 0.001;
+  double layer_split_keeps = 0.5;  ///< see poor_shape
+  /// A split is refused if it makes an element worse than min(accepted_shape, split_keeps * worst
+  /// quality before). For edges longer than overlong_edge that bound falls by the square of how
+  /// much longer they are, also below poor_shape.
+  double split_keeps = 0.3;
+  double overlong_edge = 2;     ///< see split_keeps
+  double shortest_split = 0.5;  ///< a split is refused if it makes an edge shorter than this
 };
 
 }  // namespace ductile::meshadapt

@@ -19,9 +19,11 @@ using ElementId = std::uint32_t;
 /// No vertex, no element.
 inline constexpr std::uint32_t none = 0xffffffffU;
 
+/// Counts and tables of a triangle (2) or a tetrahedron (3).
 template <int Dim>
 struct Simplex;
 
+/// Of a triangle.
 template <>
 struct Simplex<2> {
   static constexpr int corners = 3, edges = 3;
@@ -30,6 +32,7 @@ struct Simplex<2> {
   static constexpr std::array<std::array<int, 2>, 3> facet{{{1, 2}, {2, 0}, {0, 1}}};
 };
 
+/// Of a tetrahedron.
 template <>
 struct Simplex<3> {
   static constexpr int corners = 4, edges = 6;
@@ -70,6 +73,7 @@ inline double certain_determinant(const Vector<3>& a, const Vector<3>& b, const 
   return std::abs(determinant) > bound * permanent ? determinant : 0;
 }
 
+/// The same of the corners of an element.
 template <int Dim>
 double certain_determinant(const std::array<Vector<Dim>, Dim + 1>& p) {
   if constexpr (Dim == 2)
@@ -78,19 +82,21 @@ double certain_determinant(const std::array<Vector<Dim>, Dim + 1>& p) {
     return certain_determinant(p[0], p[1], p[2], p[3]);
 }
 
-/// Twice the signed area, six times the signed volume, as rounding leaves it.
+/// Twice the signed area, as rounding leaves it.
 inline double plain_determinant(const std::array<Vector<2>, 3>& p) {
   const Vector<2> u = p[1] - p[0], v = p[2] - p[0];
   return u[0] * v[1] - u[1] * v[0];
 }
+/// Six times the signed volume, as rounding leaves it.
 inline double plain_determinant(const std::array<Vector<3>, 4>& p) {
   return dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0]));
 }
 
-/// Normal of a facet, as long as the facet is large.
+/// Outward normal; its length is the edge's length in 2D, twice the triangle's area in 3D.
 inline Vector<2> facet_normal(const std::array<Vector<2>, 2>& p) {
   return {{p[1][1] - p[0][1], p[0][0] - p[1][0]}};
 }
+/// The same of a triangle.
 inline Vector<3> facet_normal(const std::array<Vector<3>, 3>& p) {
   return cross(p[1] - p[0], p[2] - p[0]);
 }
@@ -103,6 +109,7 @@ int corner_of(const std::array<VertexId, N>& corners, VertexId vertex) {
   return -1;
 }
 
+/// Whether `vertex` is one of the corners.
 template <std::size_t N>
 bool contains(const std::array<VertexId, N>& corners, VertexId vertex) {
   return corner_of(corners, vertex) >= 0;
@@ -125,8 +132,8 @@ Facet<Dim> facet_of(const Corners<Dim>& corners, int i) {
   return facet;
 }
 
-/// The facet opposite `vertex`, which is one of the corners; without branches, as which one it is
-/// cannot be foreseen.
+/// The facet opposite `vertex`, which is one of the corners; without branches, because which one it
+/// is cannot be foreseen.
 template <int Dim>
 [[gnu::always_inline]] inline Facet<Dim> facet_opposite(const Corners<Dim>& corners,
                                                         VertexId vertex) {

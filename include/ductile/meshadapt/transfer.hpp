@@ -63,8 +63,8 @@ struct ProjectionOptions {
 /// meshes cover the same domain, the integral of each component is kept to rounding, with or
 /// without bounds. Where the new mesh reaches beyond the old one, as on curved boundaries, the
 /// interpolated field counts there, and what lies beyond the new mesh is lost: the report says how
-/// much volume that concerns. Throws as above, and if a value is not finite, as it would spread.
-/// Thread safety: one caller; runs on the executor.
+/// much volume that concerns. Throws as above, and if a value is not finite, because it would
+/// spread. Thread safety: one caller; runs on the executor.
 TransferredField project_field(const runtime::Executor& executor, const FieldOnMesh& from,
                                const AnyMesh& to, const ProjectionOptions& options = {});
 

@@ -2,8 +2,8 @@
 /// Arrays whose memory an executor's threads touch first. The system gives fresh memory, and clears
 /// it, page by page as it is first written, with an interrupt of the program for each: 1.4 us on
 /// one virtual machine, 11 on another, where a page among many takes 0.65. That takes longer than
-/// all else that is done to it once: one thread alone would hold up the others, and have all pages
-/// near itself. So pages are asked for many at a time, by all threads.
+/// everything that is done to it once: one thread alone would hold up the others, and have all
+/// pages near itself. So pages are asked for many at a time, by all threads.
 #pragma once
 
 #include <algorithm>
@@ -92,7 +92,7 @@ struct UnsetAllocator : std::allocator<T> {
   }
 };
 
-/// A vector whose resize() leaves numbers, and all else that can be copied byte by byte, unset. A
+/// A vector whose resize() leaves numbers, and everything that can be copied byte by byte, unset. A
 /// std::vector sets them on one thread, while the others wait to fill them.
 template <class T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;

@@ -80,7 +80,8 @@ class NumberWithLock {
 
   [[nodiscard]] Held hold() { return Held(word_); }
 
-  // Relaxed, and not plain, as others may try to hold it meanwhile, and so write what they find.
+  // Relaxed, and not plain, because others may try to hold it meanwhile, and so write what they
+  // find.
 
   std::uint32_t get() { return std::atomic_ref(word_).load(std::memory_order_relaxed) & ~held; }
   void set(std::uint32_t number) {

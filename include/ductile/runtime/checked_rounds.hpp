@@ -1,5 +1,5 @@
 /// @file
-/// run_rounds_checked: run_rounds for those who write an operator: slow, on one thread, and throws
+/// run_rounds_checked: run_rounds for authors of operators: slow, on one thread, and throws
 /// ContractBroken as soon as the operator does something that would be wrong, or would depend on
 /// timing, on many. It sees where items that have reached for nothing in common change each other's
 /// plans, and whether plan() gives up where it should; not single reads and writes. The more an
@@ -8,7 +8,8 @@
 ///   to_string(Item)        messages name the item, not only its place (numbers name themselves)
 /// Where items lower what others have not reached for, as LevelledOperator allows, the operator has
 /// a member `lowers_minima`: then another item may lose its plan.
-/// An operator that on purpose does not wake all who could plan again has a member `forgoes_wakes`.
+/// An operator that on purpose does not wake all items that could plan again has a member
+/// `forgoes_wakes`.
 #pragma once
 
 #include <utility>

@@ -76,7 +76,7 @@ class DisjointSets {
 
   std::uint32_t parent_of(std::uint32_t i) { return word(i).load(std::memory_order_relaxed); }
 
-  /// Halves the way there for those who come next.
+  /// Halves the way there for those that come next.
   std::uint32_t root(std::uint32_t i) {
     while (true) {
       const std::uint32_t parent = parent_of(i);

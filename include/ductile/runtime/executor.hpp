@@ -75,8 +75,8 @@ int available_cores();
 //
 // Without a team, each loop starts and joins OpenMP's threads, which takes microseconds; in one a
 // thread that has done its part waits for the next loop, and a loop takes a message to each thread
-// and one back. Who runs short loops by the thousand, as adapt() does, gains most; so does every
-// program on a machine that others use too, see loops in parallel_for.hpp. Algorithms of the
+// and one back. Programs that run short loops by the thousand, such as adapt(), gain most; so does
+// every program on a machine that others use too, see loops in parallel_for.hpp. Algorithms of the
 // runtime that run many loops, such as colour() and run_rounds(), form a team by themselves.
 
 /// What with_team() calls, without its type.

@@ -92,7 +92,7 @@ Lent<Lender...> with(Lender&... lender) {
 
 namespace detail {
 /// What a loop calls for each iteration: of a small body that is a temporary, a copy. Compilers
-/// keep what that refers to in registers, as nothing that an iteration writes can change it.
+/// keep what that refers to in registers, because nothing that an iteration writes can change it.
 template <class Body, class... Mine>
 decltype(auto) own_copy(std::remove_reference_t<Body>& body) {
   // False of references, that is, of bodies that are not temporaries.
@@ -153,7 +153,7 @@ template <class T, class Map, class Combine>
 T parallel_reduce(const Executor& executor, std::size_t n, T identity, Map&& map,
                   Combine&& combine) {
   constexpr std::size_t block_size = 2048;
-  struct Part {  // not T, as vectors of bool pack them, which threads may not write side by side
+  struct Part {  // not T: vectors of bool pack them, which threads may not write side by side
     T value;
   };
   std::vector<Part> partial((n + block_size - 1) / block_size, Part{identity});

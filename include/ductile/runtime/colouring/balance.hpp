@@ -2,7 +2,7 @@
 /// balance: evens out the classes of a colouring. Classes that run one after the other keep all
 /// threads busy only if none is tiny, and first-fit gives the first colours to most vertices.
 /// Each class that is too large offers its vertices to classes that are too small. Its vertices are
-/// not neighbours, so they all choose at once; prefix sums over fixed blocks decide who may go.
+/// not neighbours, so they all choose at once; prefix sums over fixed blocks decide which may go.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,8 @@ struct BalanceOptions {
 
 namespace detail {
 
-/// What the classes of a colouring lack or have too much of, and who moves from one to another.
+/// What the classes of a colouring lack or have too much of, and which vertices move from one to
+/// another.
 class ClassSizes {
  public:
   explicit ClassSizes(const ColourClasses& classes);

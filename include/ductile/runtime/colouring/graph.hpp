@@ -3,7 +3,8 @@
 /// of a vertex. Here are the concept, rows in memory, views of callbacks, of squares and of graphs
 /// whose type is forgotten; boost_graph.hpp adapts Boost.Graph.
 /// Edges are symmetric: where u is a neighbour of v, v is one of u. Repeated neighbours and
-/// loops are allowed. Views do not own what they show; visiting is thread-safe, as it only reads.
+/// loops are allowed. Views do not own what they show; visiting is thread-safe, because it only
+/// reads.
 #pragma once
 
 #include <array>

@@ -32,7 +32,7 @@ namespace detail {
 std::vector<std::uint32_t> counting_sort(std::span<const std::uint32_t> key_of, std::size_t keys);
 
 /// The vertices not yet removed, in buckets by degree; a vertex moves between neighbouring buckets
-/// by one exchange, as the buckets lie one after the other.
+/// by one exchange, because the buckets lie one after the other.
 class DegreeBuckets {
  public:
   explicit DegreeBuckets(std::vector<std::uint32_t> degree_of);
@@ -131,7 +131,7 @@ std::vector<std::uint32_t> vertex_order(const Executor& executor, const G& graph
 
 /// First-fit in the given order, which names every vertex once; the colours are those of the serial
 /// algorithm at any thread count. On more than one thread by Jones and Plassmann's scheme, which is
-/// slow where the order runs along the graph, as the natural order of a mesh does.
+/// slow where the order runs along the graph, like the natural order of a mesh does.
 /// Throws std::invalid_argument if the order is another, std::bad_alloc and what the graph throws.
 /// Thread safety: any thread.
 template <Graph G>

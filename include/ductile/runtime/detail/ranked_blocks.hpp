@@ -3,8 +3,8 @@
 /// their ranks, without a barrier between one rank and the next. Threads take blocks as they lie
 /// side by side. One that meets a block of lower rank that is not done does that first, or, if
 /// another thread has begun it, other blocks meanwhile: of no higher rank than the one that waits.
-/// So ranks do not rise from a block to what its thread has begun since, and fall from each block
-/// to the one it waits for: of those begun, one of the lowest rank can always go on.
+/// No deadlock: ranks never increase along a thread's stack, and a block waits only for a lower
+/// rank, so a started block of lowest rank can always proceed.
 #pragma once
 
 #include <algorithm>

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Draws the pictures of the gallery into the folder of this file: for each idea a mesh before and after.
+
+    pip install ./python          or PYTHONPATH=build/release/python after ./dev test
+    python3 docs/gallery/draw.py
+"""
+
+import os
+
+import numpy as np
+
+import ductile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+WIDTH = 400
+
+
+def draw(name, mesh, by=None):
+    ductile.draw(mesh, os.path.join(HERE, name + ".svg"), by, width=WIDTH)
+    print(f"{name}: {len(mesh.cells)} cells, mean quality {mesh.quality().mean():.3f}")
+
+
+def shaken(cells, by, seed=1):
+    """The unit square cut evenly, its inner vertices moved at random by a fraction of a cell."""
+    mesh = ductile.box((1, 1), (cells, cells))
+    points = np.array(mesh.points)
+    inside = np.all((points > 1e-9) & (points < 1 - 1e-9), axis=1)
+    points[inside] += np.random.default_rng(seed).uniform(-by, by, (inside.sum(), 2)) / cells
+    return mesh.replace(points=points)
+
+
+def tensors(angle, along, across):
+    """Metric tensors with the size `along` in the direction of `angle` and `across` at right angles to it."""
+    c, s = np.cos(angle), np.sin(angle)
+    a, b = 1 / along**2, 1 / across**2
+    return np.column_stack([a * c * c + b * s * s, (a - b) * c * s, a * s * s + b * c * c])
+
+
+def kernels():
+    """What each kernel does alone, and all of them."""
+    mesh = shaken(9, 0.4)
+    x, y = mesh.points.T
+    metric = tensors(np.full(len(x), np.pi / 6), np.full(len(x), 0.16), 0.05 + 0.1 * np.abs(y - 0.5))
+    none = {"nomove": True, "noswap": True, "noinsert": True}
+    draw("kernels-before", mesh)
+    for name in ("nomove", "noswap", "noinsert"):
+        draw(f"kernels-{name[2:]}", mesh.remesh(metric, **{**none, name: False}))
+    draw("kernels-all", mesh.remesh(metric))
+
+
+def front(points):
+    return np.tanh(20 * (points[:, 1] - 0.5 - 0.2 * np.sin(6 * points[:, 0])))
+
+
+def solution():
+    """The metric of a solution, made and adapted to three times."""
+    before = mesh = ductile.box((1, 1), (16, 16))
+    for _ in range(3):
+        mesh = mesh.remesh(ductile.metric(mesh, front(mesh.points), elements=600, hgrad=1.5))
+    draw("solution-before", before, front(before.points))
+    draw("solution-after", mesh, front(mesh.points))
+
+
+def transfer():
+    """A field on another mesh of the same domain, its integral kept."""
+    old = ductile.box((1, 1), (16, 16))
+    u = sum(np.exp(-80 * np.sum((old.points - place) ** 2, axis=1)) for place in ((0.3, 0.3), (0.65, 0.7)))
+    new = old.remesh(ductile.metric(old, u, elements=600, hgrad=1.5))
+    draw("transfer-before", old, u)
+    draw("transfer-after", new, new.transfer(u, conservative=True))
+
+
+def places():
+    mesh = ductile.box((1, 1), (6, 6))
+    size = ductile.Size(0.2).near(point=(0.3, 0.3), h=0.015).near(curve=[(0.55, 0.9), (0.9, 0.5)], h=0.03)
+    draw("places-before", mesh)
+    draw("places-after", mesh.remesh(size))
+
+
+def gradation():
+    mesh = shaken(12, 0.2)
+    h = np.where(np.linalg.norm(mesh.points - 0.5, axis=1) < 0.15, 0.02, 0.15)
+    draw("gradation-without", mesh.remesh(h))
+    draw("gradation-with", mesh.remesh(h, hgrad=1.3))
+
+
+def regions():
+    """Two materials: the interface between them is kept, and coarsened within itself."""
+    box = ductile.box((1, 1), (16, 16))
+    centre = box.points[box.cells].mean(axis=1)
+    inside = (np.abs(centre[:, 0] - 0.5) < 0.25) & (np.abs(centre[:, 1] - 0.5) < 0.25)
+    mesh = ductile.Mesh(box.points, box.cells, refs=1 + inside.astype(int))
+    draw("regions-before", mesh)
+    draw("regions-after", mesh.remesh(ductile.Size(0.15).inside(2, h=0.05)))
+
+
+def required():
+    """A frozen side with edges of 0.25 where the metric asks for 0.05."""
+    mesh = ductile.box((1, 1), (4, 4))
+    middle = mesh.points[mesh.facets].mean(axis=1)
+    frozen = middle[:, 1] > 1 - 1e-9
+    for name, options in (("without", {}), ("with", {"hgradreq": 1.5})):
+        draw(f"required-{name}", mesh.remesh(0.05, required_facets=frozen, **options))
+
+
+def curved():
+    """A disc: its boundary is coarsened within a distance of a smooth model."""
+    angle = np.linspace(0, 2 * np.pi, 61)[:-1]
+    rings = np.linspace(0, 1, 9)[1:]
+    points = np.vstack([[0, 0], *(r * np.column_stack([np.cos(angle), np.sin(angle)]) for r in rings)])
+    n = len(angle)
+    i, j = np.arange(n), (np.arange(n) + 1) % n
+    cells = [np.column_stack([np.zeros(n, int), 1 + i, 1 + j])]
+    for k in range(len(rings) - 1):
+        low, high = 1 + k * n, 1 + (k + 1) * n
+        cells += [np.column_stack([low + i, high + i, high + j]), np.column_stack([low + i, high + j, low + j])]
+    mesh = ductile.Mesh(points, np.concatenate(cells))
+    draw("curved-before", mesh)
+    draw("curved-after", mesh.remesh(0.3, hausd=0.01, hgrad=1.3))
+
+
+def space():
+    """Tetrahedra, seen from outside: fine near an edge and a point of the cube."""
+    mesh = ductile.box((1, 1, 1), (4, 4, 4))
+    size = ductile.Size(0.25).near(point=(1, 0, 1), h=0.04, grow=1.4).near(curve=[(0, 0, 0), (1, 0, 0)], h=0.06)
+    draw("space-before", mesh)
+    draw("space-after", mesh.remesh(size))
+
+
+if __name__ == "__main__":
+    for idea in (kernels, solution, transfer, places, gradation, regions, required, curved, space):
+        idea()
