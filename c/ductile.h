@@ -47,7 +47,8 @@ const char* ductile_last_error(void);
 /** An empty mesh of dimension 2 or 3. */
 int ductile_mesh_create(int dimension, ductile_mesh** mesh);
 
-/** Gives it `count` vertices, in place of all that it had except names: coordinates[vertex * dimension
+/** Gives it `count` vertices, in place of all that it had except names: coordinates[vertex *
+ * dimension
  * + axis]; reference[vertex], or NULL for 0. Arrays are copied, here and below. */
 int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* coordinates,
                               const int32_t* reference);
@@ -57,6 +58,7 @@ int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* c
  * interfaces between elements of different references, become facets of reference 0. */
 int ductile_mesh_set_elements(ductile_mesh* mesh, int64_t count, const int32_t* corners,
                               const int32_t* reference);
+/** The same for corners of 64 bits. */
 int ductile_mesh_set_elements_64(ductile_mesh* mesh, int64_t count, const int64_t* corners,
                                  const int32_t* reference);
 
@@ -64,6 +66,7 @@ int ductile_mesh_set_elements_64(ductile_mesh* mesh, int64_t count, const int64_
  * them follow. Forgets which facets are required. reference[facet], or NULL for 0. */
 int ductile_mesh_set_facets(ductile_mesh* mesh, int64_t count, const int32_t* corners,
                             const int32_t* reference);
+/** The same for corners of 64 bits. */
 int ductile_mesh_set_facets_64(ductile_mesh* mesh, int64_t count, const int64_t* corners,
                                const int32_t* reference);
 
@@ -82,9 +85,10 @@ const char* ductile_mesh_name(const ductile_mesh* mesh, int kind, int32_t refere
 const char* ductile_mesh_name_at(const ductile_mesh* mesh, int64_t i, int* kind,
                                  int32_t* reference);
 
-/** From and to a file of any format that `ductile help` lists, by its content and its ending. The
- * metric of an adapted mesh goes into those that hold fields, .vtu, .vtk and .msh. */
+/** Reads a file of any format that `ductile help` lists, which is seen by its content. */
 int ductile_mesh_read(const char* path, ductile_mesh** mesh);
+/** Writes a mesh in the format that the ending of `path` says. The metric of an adapted mesh goes
+ * into those that hold fields, .vtu, .vtk and .msh. */
 int ductile_mesh_write(const ductile_mesh* mesh, const char* path);
 
 /** NULL is fine. */
@@ -109,7 +113,9 @@ const double* ductile_mesh_metric(const ductile_mesh* mesh);
 
 /* ---- Options ---- */
 
+/** Options that are all at their defaults. */
 int ductile_options_create(ductile_options** options);
+/** Gives options back; NULL is none. */
 void ductile_options_destroy(ductile_options* options);
 
 /** Sets one by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hgradreq",
@@ -120,6 +126,7 @@ int ductile_options_set(ductile_options* options, const char* name, double value
 /** Called after each step of the adaptation, on the thread that called ductile_adapt(): the step's
  * name, the iteration and the number of changes. Returns 0 to cancel, anything else to go on. */
 typedef int (*ductile_progress)(const char* step, int iteration, int64_t changes, void* context);
+/** Sets the function that is called after each step; NULL is none. */
 int ductile_options_set_progress(ductile_options* options, ductile_progress progress,
                                  void* context);
 
@@ -127,6 +134,7 @@ int ductile_options_set_progress(ductile_options* options, ductile_progress prog
 
 /** For meshes of dimension 2 or 3. */
 int ductile_sizes_create(int dimension, ductile_sizes** sizes);
+/** Gives sizes back; NULL is none. */
 void ductile_sizes_destroy(ductile_sizes* sizes);
 
 /** Sets a number by its name. "default" is the size where nothing finer is asked for, by default
@@ -136,20 +144,22 @@ void ductile_sizes_destroy(ductile_sizes* sizes);
  * at most, 0 for without end; or evenly to that over "distance", if it is above 0. */
 int ductile_sizes_set(ductile_sizes* sizes, const char* name, double value);
 
-/** Ask for a size at places, which are counted from 0 in errors: in a ball, with the radius 0 at a
- * point; in a box between two opposite corners; along segments from each of `count` points to the
- * next, points[point * dimension + axis]; on `count` triangles, corners[(triangle * 3 + corner) *
- * dimension + axis]. */
+/** Asks for a size in a ball, with the radius 0 at a point. Places are counted from 0 in errors. */
 int ductile_sizes_near_ball(ductile_sizes* sizes, const double* centre, double radius, double size);
+/** The same in a box between two opposite corners. */
 int ductile_sizes_near_box(ductile_sizes* sizes, const double* low, const double* high,
                            double size);
+/** The same along segments from each of `count` points to the next,
+ * points[point * dimension + axis]. */
 int ductile_sizes_near_curve(ductile_sizes* sizes, int64_t count, const double* points,
                              double size);
+/** The same on `count` triangles, corners[(triangle * 3 + corner) * dimension + axis]. */
 int ductile_sizes_near_surface(ductile_sizes* sizes, int64_t count, const double* corners,
                                double size);
-/** The same where entities of a kind carry a reference, or any carry one of this name. In elements
- * the size takes the place of the default, finer or coarser. */
+/** The same where entities of a kind carry a reference. In elements the size takes the place of the
+ * default, finer or coarser. */
 int ductile_sizes_on(ductile_sizes* sizes, int kind, int32_t reference, double size);
+/** The same where entities of any kind carry a reference of this name. */
 int ductile_sizes_on_name(ductile_sizes* sizes, const char* name, double size);
 
 /** The size at each vertex of a mesh, for which `values` has room. */
@@ -187,6 +197,7 @@ const char* ductile_mesh_warning(const ductile_mesh* adapted, int64_t i);
  * changed or destroyed before it is. */
 int ductile_transfer_create(const ductile_mesh* before, const ductile_mesh* after,
                             ductile_transfer** transfer);
+/** Gives a transfer back; NULL is none. */
 void ductile_transfer_destroy(ductile_transfer* transfer);
 
 /** For each vertex, facet or element of `after` the index of what is the same in `before`: a vertex

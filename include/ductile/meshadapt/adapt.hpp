@@ -65,6 +65,7 @@ struct KernelReport {
   double wake_seconds = 0;
 };
 
+/// What adapt() did, how long it took, and what it has to say.
 struct AdaptReport {
   int iterations = 0;
   bool converged = false;

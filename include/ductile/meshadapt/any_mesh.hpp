@@ -39,6 +39,7 @@ struct ReferenceName {
   friend bool operator==(const ReferenceName&, const ReferenceName&) = default;
 };
 
+/// A mesh of dimension 2 or 3 as a file holds it. Cells name vertices, counted from 0.
 struct AnyMesh {
   int dimension = 0;                           ///< 2 or 3
   std::vector<double> coordinates;             ///< [vertex * dimension + axis]
@@ -68,6 +69,7 @@ const Cells<Dim + 1>& elements_in(const AnyMesh& mesh) {
   else
     return mesh.tetrahedra;
 }
+/// The same, to be changed.
 template <int Dim>
 Cells<Dim + 1>& elements_in(AnyMesh& mesh) {
   return const_cast<Cells<Dim + 1>&>(elements_in<Dim>(std::as_const(mesh)));
@@ -81,6 +83,7 @@ const Cells<Dim>& facets_in(const AnyMesh& mesh) {
   else
     return mesh.triangles;
 }
+/// The same, to be changed.
 template <int Dim>
 Cells<Dim>& facets_in(AnyMesh& mesh) {
   return const_cast<Cells<Dim>&>(facets_in<Dim>(std::as_const(mesh)));

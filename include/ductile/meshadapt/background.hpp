@@ -19,6 +19,7 @@ class BoxTree;
 template <int Dim>
 struct ClosestPoint;
 
+/// The input mesh with its metric; see the top of this file.
 template <int Dim>
 class Background {
  public:

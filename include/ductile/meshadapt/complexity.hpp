@@ -23,6 +23,7 @@ double complexity(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,
 /// Regular elements with edges of length 1, which fill no space in 3D, would be 2.31 and 8.49.
 double complexity_of_elements(int dimension, double elements);
 
+/// The complexity to reach, and the bounds on sizes that hold meanwhile.
 struct ComplexityGoal {
   double complexity = 0;
   SizeBounds bounds = {};  ///< the scaled metric keeps within them

@@ -21,6 +21,7 @@ namespace ductile::meshadapt {
 
 // ---- Which formats there are ----
 
+/// A format of files, and what Ductile does with it.
 struct MeshFormat {
   std::string_view ending;  ///< ".msh"
   std::string_view what;    ///< "Gmsh, versions 2.2 and 4.1"
@@ -40,6 +41,7 @@ std::string written_endings();
 
 // ---- Reading ----
 
+/// What a file holds: a mesh, and fields on it.
 struct MeshWithFields {
   AnyMesh mesh;
   std::vector<NamedField> fields;
@@ -60,6 +62,7 @@ AnyMesh read_mesh(const std::filesystem::path& path, Warnings* warnings = nullpt
 MeshWithFields read_mesh_with_fields(const std::filesystem::path& path,
                                      Warnings* warnings = nullptr);
 
+/// How fields are read.
 struct ReadFieldOptions {
   /// Take infinite values, too, as of sizes that metric_of is to bound.
   bool infinite = false;
@@ -72,6 +75,7 @@ AnyField read_field(const std::filesystem::path& path, Warnings* warnings = null
 
 // ---- Writing ----
 
+/// What goes into a file beside the mesh, and how.
 struct WriteOptions {
   /// Fields to go into the file, where the format holds some.
   std::span<const NamedField> fields{};
@@ -103,6 +107,7 @@ void write_field(const std::filesystem::path& path, const AnyField& field,
 /// The same as one of several outputs that appear together.
 void write_mesh(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                 const WriteOptions& options = {});
+/// The same for a field: the file appears with the other outputs.
 void write_field(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyField& field,
                  const WriteOptions& options = {});
 

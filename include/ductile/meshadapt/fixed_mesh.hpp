@@ -15,6 +15,7 @@
 
 namespace ductile::meshadapt {
 
+/// A mesh that is looked at and not changed; see the top of this file.
 template <int Dim>
 struct FixedMesh {
   // ---- Elements ----

@@ -19,6 +19,7 @@ namespace ductile::meshadapt {
 template <int Dim>
 struct ReferenceSurface;
 
+/// How a Geometry is made of a mesh.
 struct GeometryOptions {
   /// How far facets of adapted meshes may be from the geometry, a length above 0; that of
   /// MakeMeshOptions::surface_tolerance wherever the geometry is used.

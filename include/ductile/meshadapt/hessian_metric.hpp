@@ -40,12 +40,14 @@ FittedMetric<Dim> hessian_metric(const runtime::Executor& executor, const FixedM
                                  const std::vector<Metric<Dim>>& hessian_of,
                                  const HessianMetricOptions& options);
 
+/// What the metric of a solution is to reach.
 struct SolutionMetricOptions {
   HessianMetricOptions goal = {};
   double gradation = 0;  ///< as in ComplexityGoal: the complexity is that of the graded metric
   Recovery recovery = Recovery::least_squares;
 };
 
+/// The metric of a solution, and what it asks for.
 struct SolutionMetric {
   AnyField metric;  ///< one symmetric field, as adapt() takes it
   MetricFit fit;

@@ -18,6 +18,7 @@
 
 namespace ductile::meshadapt {
 
+/// Many short lists in one memory; see the top of this file.
 template <class T>
 class ListPool {
  public:

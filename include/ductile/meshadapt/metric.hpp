@@ -41,6 +41,7 @@ struct Metric {
 [[gnu::always_inline]] inline double squared_length(const Metric<2>& a, const Vector<2>& d) {
   return a.m[0] * d[0] * d[0] + 2 * a.m[1] * d[0] * d[1] + a.m[2] * d[1] * d[1];
 }
+/// The same in 3D.
 [[gnu::always_inline]] inline double squared_length(const Metric<3>& a, const Vector<3>& d) {
   return a.m[0] * d[0] * d[0] + a.m[2] * d[1] * d[1] + a.m[5] * d[2] * d[2] +
          2 * (a.m[1] * d[0] * d[1] + a.m[3] * d[0] * d[2] + a.m[4] * d[1] * d[2]);
@@ -55,6 +56,7 @@ Vector<Dim> product(const Metric<Dim>& a, const Vector<Dim>& d) {
   return result;
 }
 
+/// Determinant of a metric in 2D.
 inline double determinant(const Metric<2>& a) { return a.m[0] * a.m[2] - a.m[1] * a.m[1]; }
 /// By the pivots of LDL' elimination: the sum of products of cofactors would cancel all digits of a
 /// metric that is turned and stretched by 1e4 or more.
@@ -65,9 +67,11 @@ inline double determinant(const Metric<3>& a) {
   return xx * second * (zz - xz / xx * xz - rest / second * rest);
 }
 
+/// Inverse of a positive definite metric in 2D.
 inline Metric<2> inverse(const Metric<2>& a) {
   return (1 / determinant(a)) * Metric<2>{{a.m[2], -a.m[1], a.m[0]}};
 }
+/// The same in 3D.
 inline Metric<3> inverse(const Metric<3>& a) {
   const auto& [xx, xy, yy, xz, yz, zz] = a.m;
   return (1 / determinant(a)) *
@@ -111,9 +115,10 @@ Metric<Dim> absolute(const Metric<Dim>& a) {
   return compose(axes);
 }
 
-/// Matrix logarithm of a positive definite tensor, and the exponential that undoes it.
+/// Matrix logarithm of a positive definite tensor. Thread safety: any thread.
 template <int Dim>
 Metric<Dim> logarithm(const Metric<Dim>& a);
+/// The exponential of a symmetric tensor: the inverse of logarithm(). Thread safety: any thread.
 template <int Dim>
 Metric<Dim> exponential(const Metric<Dim>& a);
 

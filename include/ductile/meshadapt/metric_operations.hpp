@@ -46,12 +46,14 @@ template <int Dim>
 void bound_sizes(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds);
 
+/// How fast sizes may grow, see limit_gradation().
 struct GradationOptions {
   double factor = 1.3;  ///< growth of sizes per unit of metric length, at least 1; Mmg's default
   double tolerance = 1e-3;  ///< relative excess of a squared length that is let be
   int sweeps = 1000;        ///< at most this many
 };
 
+/// What limit_gradation() did.
 struct GradationReport {
   int sweeps = 0;
   std::size_t raised = 0;  ///< how often a vertex got a finer metric

@@ -74,6 +74,7 @@ struct SizeGrowth {
   double distance = 0;  ///< instead of `grow`: it grows evenly to `largest` over this distance
 };
 
+/// A place, the size there, and how sizes grow around it.
 struct SizeSource {
   SizePlace place = {};
   double size = 0;
@@ -81,6 +82,7 @@ struct SizeSource {
   std::string name = {};  ///< for messages, which otherwise say sources[7]
 };
 
+/// Sizes by places, without tensors; the finest that any place asks for holds.
 struct Sizes {
   /// Where nothing finer is asked for; 0: the extent of the mesh. In a region that has a size of
   /// its own, that takes the place of this, finer or coarser; at a vertex of several, the finest.

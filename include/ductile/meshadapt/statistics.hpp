@@ -28,6 +28,7 @@ struct Distribution {
   std::size_t below = 0, above = 0;  ///< outside the histogram
 };
 
+/// Lengths of edges and quality of elements of a mesh, see measure().
 struct MeshStatistics {
   bool in_metric = false;  ///< else in plain Euclidean lengths
   Distribution edge_length;

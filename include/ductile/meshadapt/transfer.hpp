@@ -29,6 +29,7 @@ struct TransferReport {
   double volume_left_out = 0;        ///< of the old mesh that is not in the new one
 };
 
+/// A field on the new mesh, and what was found on the way.
 struct TransferredField {
   AnyField field;
   TransferReport report;  ///< of an interpolation, vertices only
@@ -49,6 +50,7 @@ TransferredField interpolate_field(const runtime::Executor& executor, const Fiel
 TransferredField interpolate_at(const runtime::Executor& executor, const FieldOnMesh& from,
                                 std::span<const double> coordinates);
 
+/// How project_field() works.
 struct ProjectionOptions {
   /// No value above or below those of the old elements that touch the new elements around the
   /// vertex, so no overshoot at a front, and 0 to 1 stays 0 to 1. False: the L2 projection as it
@@ -90,6 +92,7 @@ struct NamedFieldsOnMesh {
   std::span<const NamedField> fields;
 };
 
+/// Fields on the new mesh, and what was found on the way.
 struct TransferredFields {
   std::vector<NamedField> fields;  ///< in the order in which they were given
   TransferReport report;  ///< vertices if there are fields on them, volumes if some are carried

@@ -7,6 +7,7 @@
 
 namespace ductile::meshadapt {
 
+/// A point, or a displacement, in Dim dimensions.
 template <int Dim>
 struct Vector {
   std::array<double, Dim> x{};
@@ -33,6 +34,7 @@ struct Vector {
   friend bool operator==(const Vector&, const Vector&) = default;
 };
 
+/// Scalar product.
 template <int Dim>
 double dot(const Vector<Dim>& a, const Vector<Dim>& b) {
   double sum = 0;
@@ -40,11 +42,13 @@ double dot(const Vector<Dim>& a, const Vector<Dim>& b) {
   return sum;
 }
 
+/// Euclidean length.
 template <int Dim>
 double norm(const Vector<Dim>& a) {
   return std::sqrt(dot(a, a));
 }
 
+/// Vector product.
 inline Vector<3> cross(const Vector<3>& a, const Vector<3>& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }

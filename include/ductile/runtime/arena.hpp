@@ -22,6 +22,7 @@
 
 namespace ductile::runtime {
 
+/// Memory in segments that never move; see the top of this file.
 template <class T, unsigned SegmentBits = 18>
 requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <= 28) class Arena {
  public:

@@ -16,6 +16,7 @@
 
 namespace ductile::runtime {
 
+/// Sets of numbers that many threads unite at once; see the top of this file.
 class DisjointSets {
  public:
   /// n sets, of one number each. Throws std::bad_alloc.

@@ -39,6 +39,7 @@ enum class Placement {
   scatter,  ///< packages in turn, for memory bandwidth; physical cores first as well
 };
 
+/// How many threads an Executor has, where they run and how they share out loops.
 struct ExecutorOptions {
   int threads = 0;  ///< 0: as many as the cores this process may use
   Placement placement = Placement::none;

@@ -175,6 +175,7 @@ inline constexpr std::size_t kinds_made<Op> =
 
 // ---- Options and report of a run ----
 
+/// How run_rounds() runs an operator.
 struct RoundsOptions {
   Strategy strategy = Strategy::automatic;
   /// Stop there even if work is left, and report how much. By default a run goes on until nothing

@@ -26,6 +26,7 @@
 
 namespace ductile::runtime {
 
+/// How a loop is cut into what threads take at once.
 struct LoopOptions {
   std::size_t grain = 0;  ///< iterations handed out at once; 0: chosen. Stealing by atomics hands
                           ///< out more while many are left.
@@ -85,6 +86,8 @@ void parallel_for_ranges(const Executor& executor, std::size_t n, Body&& body,
 /// thread's.
 template <class... Lender>
 using Lent = std::tuple<Lender&...>;
+/// Hands to a loop body, beside its index, a way into each of these lists or updates; see
+/// parallel_for().
 template <class... Lender>
 Lent<Lender...> with(Lender&... lender) {
   return {lender...};

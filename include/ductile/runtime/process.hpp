@@ -7,9 +7,10 @@
 
 namespace ductile::runtime {
 
-/// Bytes that this process holds now, or the most it has held so far; 0 where that is not told.
-/// Thread safety: any thread.
+/// Bytes that this process holds now; 0 where that is not told. Thread safety: any thread.
 std::size_t held_memory();
+/// The most bytes that this process has held so far; 0 where that is not told. Thread safety: any
+/// thread.
 std::size_t peak_memory();
 
 /// Bytes that this process may hold: the machine's memory, what it swaps out included, or less

@@ -19,6 +19,7 @@
 
 namespace ductile::runtime {
 
+/// How long balance() goes on.
 struct BalanceOptions {
   int most_passes = 8;  ///< over all classes; it stops earlier where a pass changes nothing
 };

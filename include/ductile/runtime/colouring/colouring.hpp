@@ -45,6 +45,7 @@ enum class ColouringMethod {
                   ///< (Catalyurek et al., Parallel Computing 38, 2012)
 };
 
+/// A colour for each vertex: neighbours have different ones.
 struct Colouring {
   static constexpr std::uint32_t none = ~std::uint32_t{0};  ///< instead of a colour
 
