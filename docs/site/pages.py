@@ -5,7 +5,7 @@
     pages.py filter FILE    prints a page as Doxygen wants it, headings and links by labels, or a header
     pages.py linked         prints the other files of the repository that pages link to
 
-On the site such a file is files/PATH.txt, so that a browser shows its text.
+To be run at the top of the repository. On the site such a file is files/PATH.txt, so that a browser shows its text.
 """
 
 import os
@@ -13,26 +13,21 @@ import re
 import sys
 from collections import Counter
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 LINK = re.compile(r"(!?)\[([^][]*)\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^(#+ )(.*)$", re.MULTILINE)
 CODE = re.compile(r"^[ ]*```.*?^[ ]*```[^\n]*$", re.MULTILINE | re.DOTALL)
 
 
 def pages():
-    """All Markdown pages of the repository, relative to its root."""
-    for folder, folders, files in os.walk(ROOT):
-        folders[:] = sorted(f for f in folders if f[0] != "." and not (folder == ROOT and f.startswith("build")))
-        yield from (os.path.relpath(os.path.join(folder, f), ROOT) for f in sorted(files) if f.endswith(".md"))
+    """All Markdown pages below the current folder, except those that tests have to be broken."""
+    for folder, folders, files in os.walk("."):
+        folders[:] = sorted(f for f in folders if not re.match(r"\.|build|broken$", f))
+        yield from (os.path.normpath(os.path.join(folder, f)) for f in sorted(files) if f.endswith(".md"))
 
 
 def read(page):
-    with open(os.path.join(ROOT, page), encoding="utf-8") as file:
+    with open(page, encoding="utf-8") as file:
         return file.read()
-
-
-def is_file(path):
-    return os.path.isfile(os.path.join(ROOT, path))
 
 
 def blanked(text):
@@ -56,7 +51,7 @@ def target_of(page, link):
     path, _, part = link.partition("#")
     path = os.path.normpath(os.path.join(os.path.dirname(page), path)) if path else page
     readme = os.path.join(path, "README.md")
-    return (readme if is_file(readme) else path), part
+    return (readme if os.path.isfile(readme) else path), part
 
 
 def links():
@@ -72,7 +67,7 @@ def check():
     """Prints the links that lead nowhere; how many there are."""
     bad = 0
     for page, number, path, part in links():
-        if not os.path.exists(os.path.join(ROOT, path)):
+        if not os.path.exists(path):
             why = f"there is no {path}"
         elif part and not (path.endswith(".md") and part in slugs(read(path))):
             why = f"{path} has no heading #{part}"
@@ -104,7 +99,7 @@ def for_doxygen(page):
         text = " ".join(text.split())  # Doxygen wants it in one line
         if found[0].endswith(".md"):
             return f"[{text}](@ref {label(*found)})"
-        return f'<a href="files/{found[0]}.txt">{text.replace("`", "")}</a>' if is_file(found[0]) else text
+        return f'<a href="files/{found[0]}.txt">{text.replace("`", "")}</a>' if os.path.isfile(found[0]) else text
 
     text = read(page)
     names = (label(page, part if i else "") for i, part in enumerate(slugs(text)))
@@ -121,10 +116,10 @@ def main():
     if command == "check":
         return 1 if check() else 0
     if command == "filter":
-        path = os.path.relpath(os.path.abspath(sys.argv[2]), ROOT)
+        path = os.path.relpath(sys.argv[2])
         print((for_doxygen if path.endswith(".md") else header_for_doxygen)(path), end="")
     elif command == "linked":
-        found = {path for _, _, path, _ in links() if is_file(path)}
+        found = {path for _, _, path, _ in links() if os.path.isfile(path)}
         print("\n".join(sorted(path for path in found if not path.endswith((".md", ".png", ".svg")))))
     else:
         print(__doc__, file=sys.stderr)
