@@ -84,6 +84,13 @@ def label(page, part=""):
     return name + ("--" + part if part else "")
 
 
+def is_below(page, other):
+    """Whether another page belongs below this one, the README of its folder or of the folder above."""
+    folder, name = os.path.split(other)
+    owner = os.path.dirname(folder) if name == "README.md" else folder
+    return folder != "" and name.endswith(".md") and page == os.path.join(owner, "README.md") != "README.md"
+
+
 def header_for_doxygen(header):
     """The text of a header without its explicit instantiations, which repeat what is declared above them."""
     return re.sub(r"^extern template[^;]*;", lambda lines: "\n" * lines[0].count("\n"), read(header), flags=re.MULTILINE)
@@ -91,12 +98,17 @@ def header_for_doxygen(header):
 
 def for_doxygen(page):
     """The text of a page with labels at its headings and in its links."""
+    seen = set()
+
     def linked(match):
         picture, text, link = match.groups()
         found = target_of(page, link)
         if not found or picture:
             return match[0]
         text = " ".join(text.split())  # Doxygen wants it in one line
+        if is_below(page, found[0]) and found not in seen:
+            seen.add(found)
+            return f'@subpage {label(*found)} "{text}"'
         if found[0].endswith(".md"):
             return f"[{text}](@ref {label(*found)})"
         return f'<a href="files/{found[0]}.txt">{text.replace("`", "")}</a>' if os.path.isfile(found[0]) else text
