@@ -261,7 +261,7 @@ class Mesh:
         iterations : int, optional
             At most this many rounds.
         thorough : bool, optional
-            Better shapes and lengths for more time.
+            Better quality and lengths for more time.
         nomove, noswap, noinsert : bool, optional
             Do not smooth vertices; swap edges and faces; split and collapse edges.
         nosurf : bool, optional
