@@ -93,7 +93,7 @@ def is_below(page, other):
 
 def header_for_doxygen(header):
     """The text of a header without its explicit instantiations, which repeat what is declared above them."""
-    return re.sub(r"^extern template[^;]*;", lambda lines: "\n" * lines[0].count("\n"), read(header), flags=re.MULTILINE)
+    return re.sub(r"^extern template[^;]*;", lambda lines: "\n" * lines[0].count("\n"), read(header), flags=re.M)
 
 
 def for_doxygen(page):
@@ -106,7 +106,7 @@ def for_doxygen(page):
         if not found or picture:
             return match[0]
         text = " ".join(text.split())  # Doxygen wants it in one line
-        if is_below(page, found[0]) and found not in seen:
+        if not found[1] and is_below(page, found[0]) and found not in seen:
             seen.add(found)
             return f'@subpage {label(*found)} "{text}"'
         if found[0].endswith(".md"):
