@@ -43,7 +43,7 @@ struct AdaptOptions {
   std::size_t memory_limit =
       0;                    ///< bytes that adapt() may take; metrics that ask for more elements
                             ///< than certainly fit are refused before the work; 0: no limit
-  bool thorough = false;    ///< better quality and lengths for more time (docs/performance.md)
+  bool thorough = false;    ///< better shapes and lengths for more time (docs/performance.md)
   bool by_colours = false;  ///< collapses and moves run class by class of a speculative colouring,
                             ///< as published, not in tiles: valid and deterministic too, but slower
   bool move = true;         ///< smooth vertices

@@ -5,8 +5,7 @@
 /// comes first, see ranked_blocks.hpp. Few items have an earlier neighbour in another tile of the
 /// same rank; they are late, lest tiles wait for each other in long chains, and left out.
 /// All conflicts are looked at before any item runs, so they may change while items run; a tile's
-/// own, if they stay, not before it begins. List items that are close in the graph next to each
-/// other in the work.
+/// own, if they stay, not before it begins. Work should list next to each other what lies together.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +31,7 @@
 namespace ductile::runtime::detail {
 
 /// When items of the work have their turn, as a number: the rank of the tile comes first, then the
-/// place in the work. Which of two comes first, in which tile, is told by comparing numbers.
+/// place in the work. So who comes before whom, in which tile, is told by comparing numbers.
 struct Turns {
   static constexpr unsigned rank_bits = 5, place_bits = 32 - rank_bits;
   static constexpr std::uint32_t most_items = (1U << place_bits) - 1;
@@ -156,7 +155,7 @@ class Tiles {
   }
 
   /// Finds out whether the item at this place is late; notes the tiles of lower rank that it meets.
-  /// Without branches for each neighbour, because the answers cannot be foreseen.
+  /// Without branches for each neighbour, as the answers cannot be foreseen.
   void look(std::size_t place, std::size_t tile, Met& met) const {
     const Item item = work_[place];
     if (turn_of_[item] != turn_at(place)) throw_twice(item);
