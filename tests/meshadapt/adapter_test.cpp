@@ -97,9 +97,9 @@ TEST(Adapter, EachKernelLeavesCurvedBoundariesSound) {
       check_after_each_kernel<3>(executor, random);
     const AdaptedMesh result = adapt(executor, random.mesh, random.metric, random.options);
     EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
-    EXPECT_EQ(
-        test::joined(check_domain(random.mesh, result.mesh, random.options.make.surface_tolerance)),
-        "");
+    EXPECT_EQ(test::joined(check_domain(executor, random.mesh, result.mesh,
+                                        random.options.make.surface_tolerance)),
+              "");
     EXPECT_TRUE(!check_boundary(executor, random.mesh).empty() ||
                 check_boundary(executor, result.mesh).empty());
   }

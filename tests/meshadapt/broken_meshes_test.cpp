@@ -134,8 +134,10 @@ std::vector<OfMesh> functions_of_meshes() {
          make_mesh<Dim>(executor, m, {}, neighbours, warnings);
        },
        all_parts},
-      {"check_domain, before", [=](const AnyMesh& m) { check_domain(m, *whole); }, of_domain},
-      {"check_domain, after", [=](const AnyMesh& m) { check_domain(*whole, m, 0.1); }, of_domain},
+      {"check_domain, before", [=](const AnyMesh& m) { check_domain(executor, m, *whole); },
+       of_domain},
+      {"check_domain, after", [=](const AnyMesh& m) { check_domain(executor, *whole, m, 0.1); },
+       of_domain},
       {"check_boundary", [](const AnyMesh& m) { check_boundary(executor, m); }, {Part::vertices}},
       {"measure", [](const AnyMesh& m) { measure(executor, m, nullptr); }, of_geometry},
       {"measure in a metric", [=](const AnyMesh& m) { measure(executor, m, metric.get()); },

@@ -124,7 +124,7 @@ void merge_repeated(unsigned seed) {
   const AnyField metric = constant_metric(clean, 0.3);
   const AdaptedMesh adapted = adapt(executor, dirty, metric);
   EXPECT_TRUE(check_mesh(executor, adapted.mesh).empty());
-  EXPECT_EQ(check_domain(dirty, adapted.mesh), std::vector<std::string>{});
+  EXPECT_EQ(check_domain(executor, dirty, adapted.mesh), std::vector<std::string>{});
   EXPECT_EQ(adapted.mesh, adapt(executor, clean, metric).mesh);
 }
 
@@ -188,7 +188,7 @@ void turn_back(unsigned seed) {
   if (seed % 5 != 0) return;
   const AdaptedMesh adapted = adapt(executor, dirty, constant_metric(dirty, 0.3));
   EXPECT_TRUE(check_mesh(executor, adapted.mesh).empty());
-  EXPECT_EQ(check_domain(dirty, adapted.mesh), std::vector<std::string>{});
+  EXPECT_EQ(check_domain(executor, dirty, adapted.mesh), std::vector<std::string>{});
 }
 
 TEST(RepairedMeshes, TurnElementsBack) {

@@ -30,9 +30,10 @@ std::vector<std::string> check_mesh(const runtime::Executor& executor, const Any
 /// did not. Boundary that `before` does not list counts as of reference 0, if it lists some. Throws
 /// InputError unless both meshes are of one dimension, have all coordinates and references, and
 /// name no vertices beyond those that there are.
-/// Linear in the meshes but for a logarithm in the facets. Thread safety: any thread.
-std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
-                                      double surface_tolerance = 0);
+/// Linear in the meshes but for a logarithm in the facets. Thread safety: one caller; runs on the
+/// executor.
+std::vector<std::string> check_domain(const runtime::Executor& executor, const AnyMesh& before,
+                                      const AnyMesh& after, double surface_tolerance = 0);
 
 /// Which listed facets cross each other: a line that names the first two, empty if none do. Those
 /// that only touch, or lie in one plane, or do so but for rounding, do not cross: so it is if one
