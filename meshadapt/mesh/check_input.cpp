@@ -5,6 +5,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/flatten.hpp"
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/make_mesh_options.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {

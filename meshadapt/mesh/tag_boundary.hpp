@@ -7,7 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/make_mesh_options.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
 
 namespace ductile::meshadapt {

@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
+#include "mesh/take_apart.hpp"
 #include "oracle.hpp"
 
 namespace ductile::fuzz {

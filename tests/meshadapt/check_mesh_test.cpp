@@ -8,6 +8,7 @@
 
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "io_support.hpp"
+#include "mesh/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

@@ -14,6 +14,8 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/check_structure.hpp"
+#include "mesh/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 

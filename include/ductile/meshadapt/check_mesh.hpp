@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/meshadapt/make_mesh_options.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {
@@ -63,14 +63,9 @@ std::vector<std::string> check_topology(const runtime::Executor& executor, const
 std::vector<std::string> check_adapted(const runtime::Executor& executor, const AnyMesh& before,
                                        const AnyMesh& after, double surface_tolerance = 0);
 
-/// As check_mesh() above for a mesh that is being adapted, entities numbered from 0 as in memory.
-/// Checked as well: the lists of vertices agree with the corners of elements, shapes are up to
-/// date, facets carry the same patch on both sides, patches are flat, curves straight, and what
-/// vertices may do fits what they lie on. Slower than the one above; for tests and debugging.
-template <int Dim>
-std::vector<std::string> check_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
-
-extern template std::vector<std::string> check_mesh(const runtime::Executor&, const Mesh<2>&);
-extern template std::vector<std::string> check_mesh(const runtime::Executor&, const Mesh<3>&);
+/// Throws InputError, as adapt() with these options does, unless the mesh can be adapted; returns
+/// what adapt() would warn of. Thread safety: one caller; runs on the executor.
+std::vector<std::string> expect_adaptable(const runtime::Executor& executor, const AnyMesh& mesh,
+                                          const MakeMeshOptions& options = {});
 
 }  // namespace ductile::meshadapt
