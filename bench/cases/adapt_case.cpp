@@ -165,7 +165,7 @@ AdaptCase make_case(const runtime::Executor& given, const std::string& name) {
 bool is_sound(const runtime::Executor& executor, const AdaptCase& adapt_case, const AnyMesh& mesh) {
   const double tolerance = adapt_case.surface_tolerance;
   return check_mesh(executor, mesh).empty() &&
-         check_domain(adapt_case.start, mesh, tolerance).empty() &&
+         check_domain(executor, adapt_case.start, mesh, tolerance).empty() &&
          (tolerance == 0 || check_boundary(executor, mesh).empty());
 }
 

@@ -17,6 +17,7 @@
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"

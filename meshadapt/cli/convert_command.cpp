@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "command.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
 
@@ -67,20 +67,13 @@ void expect_to_stay(const char* what, const fs::path& to, Check&& check, Rounded
                               " no valid " + what + " any more; --version-of-file 2 keeps them");
 }
 
-template <int Dim>
-void make_any_mesh(const meshadapt::AnyMesh& mesh) {
-  meshadapt::Neighbours<Dim> neighbours;
-  meshadapt::Warnings ignored;
-  meshadapt::make_mesh<Dim>(runtime::Executor({.threads = 1}), mesh, {.complete_boundary = true},
-                            neighbours, ignored);
-}
-
 void expect_mesh_to_stay(meshadapt::AnyMesh mesh, const fs::path& to) {
   const std::vector<double> exact = mesh.coordinates;
   expect_to_stay(
       "mesh", to,
       [](const meshadapt::AnyMesh& any) {
-        any.dimension == 2 ? make_any_mesh<2>(any) : make_any_mesh<3>(any);
+        meshadapt::expect_adaptable(runtime::Executor({.threads = 1}), any,
+                                    {.complete_boundary = true});
       },
       [&](bool round) -> const meshadapt::AnyMesh& {
         mesh.coordinates = round ? rounded(exact) : exact;

@@ -8,7 +8,6 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "files.hpp"
 #include "report.hpp"
@@ -35,12 +34,10 @@ struct Validity {
 
 /// As `adapt` does, which takes the sizes that the mesh has where there is no metric. Any metric
 /// was checked as it was read.
-template <int Dim>
-Validity check_in(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
+Validity check(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   Validity validity;
   try {
-    meshadapt::Neighbours<Dim> neighbours;
-    meshadapt::make_mesh<Dim>(executor, mesh, {}, neighbours, validity.warnings);
+    validity.warnings = meshadapt::expect_adaptable(executor, mesh);
     if (metric == nullptr) meshadapt::default_metric(executor, mesh);
     for (const std::string& crossing : meshadapt::check_boundary(executor, mesh))
       validity.warnings.push_back(mesh.name + ": " + crossing +
@@ -49,11 +46,6 @@ Validity check_in(const Executor& executor, const AnyMesh& mesh, const AnyField*
     validity.reason = error.in_file();
   }
   return validity;
-}
-
-Validity check(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
-  return mesh.dimension == 2 ? check_in<2>(executor, mesh, metric)
-                             : check_in<3>(executor, mesh, metric);
 }
 
 /// " (steel)" after the reference; nothing if it has no name.

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"

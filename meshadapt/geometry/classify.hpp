@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/make_mesh_options.hpp"
 #include "ductile/meshadapt/mesh.hpp"
 
 namespace ductile::meshadapt {

@@ -5,15 +5,16 @@
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
+#include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
 
 namespace ductile::meshadapt {
 
-namespace {
+using Marks = runtime::UnsetVector<std::uint8_t>;  // [vertex]
 
-using Marks = runtime::UnsetVector<std::uint8_t>;
+namespace {
 
 /// Marks the vertices of elements of more than one region.
 template <int Dim>
@@ -51,10 +52,19 @@ template <int Dim>
 runtime::UnsetVector<BoundarySide<Dim>> sides_of(const runtime::Executor& executor,
                                                  const AnyMesh& mesh, BoundaryFrom from,
                                                  std::span<const std::uint32_t> region_of) {
+  return sides_among<Dim>(executor, mesh, marked_vertices<Dim>(executor, mesh, from, region_of),
+                          region_of);
+}
+
+/// Facets between two elements of one region cancel each other in a sum of hashes at their lowest
+/// corner, so that hardly any others are left to sort.
+template <int Dim>
+runtime::UnsetVector<BoundarySide<Dim>> sides_among(const runtime::Executor& executor,
+                                                    const AnyMesh& mesh, const Marks& marked,
+                                                    std::span<const std::uint32_t> region_of) {
   using Side = BoundarySide<Dim>;
   const auto& elements = elements_in<Dim>(mesh).vertices;
-  const Marks marked = marked_vertices<Dim>(executor, mesh, from, region_of);
-  const auto find = [&](std::size_t e, auto&& append) {
+  const auto each_side = [&](std::size_t e, auto&& visit) {
     const Corners<Dim>& corners = elements[e];
     int count = 0;
     for (const VertexId v : corners) count += marked[v];
@@ -63,10 +73,23 @@ runtime::UnsetVector<BoundarySide<Dim>> sides_of(const runtime::Executor& execut
       if (count - marked[corners[static_cast<std::size_t>(i)]] < Dim) continue;
       Side side{facet_of<Dim>(corners, i), region_of.empty() ? 0 : region_of[e]};
       std::sort(side.corners.begin(), side.corners.end());
-      append(side);
+      visit(side);
     }
   };
-  auto all = runtime::parallel_collect<Side>(executor, elements.size(), find);
+  auto hashes_at = runtime::make_filled<std::uint64_t>(executor, mesh.vertex_count(), 0);  // lowest
+  runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
+    each_side(e, [&](const Side& side) {
+      std::uint64_t hash = side.region;
+      for (const VertexId v : side.corners) hash = runtime::mix64(hash ^ v);
+      runtime::atomic_flip(hashes_at[side.corners[0]], hash);
+    });
+  });
+  auto all =
+      runtime::parallel_collect<Side>(executor, elements.size(), [&](std::size_t e, auto&& append) {
+        each_side(e, [&](const Side& side) {
+          if (hashes_at[side.corners[0]] != 0) append(side);
+        });
+      });
   runtime::parallel_sort(executor, std::span(all));
   return runtime::parallel_collect<Side>(executor, all.size(), [&](std::size_t i, auto&& append) {
     if ((i == 0 || all[i - 1] != all[i]) && (i + 1 == all.size() || all[i + 1] != all[i]))
@@ -156,6 +179,12 @@ template runtime::UnsetVector<BoundarySide<2>> sides_of(const runtime::Executor&
 template runtime::UnsetVector<BoundarySide<3>> sides_of(const runtime::Executor&, const AnyMesh&,
                                                         BoundaryFrom,
                                                         std::span<const std::uint32_t>);
+template runtime::UnsetVector<BoundarySide<2>> sides_among(const runtime::Executor&, const AnyMesh&,
+                                                           const Marks&,
+                                                           std::span<const std::uint32_t>);
+template runtime::UnsetVector<BoundarySide<3>> sides_among(const runtime::Executor&, const AnyMesh&,
+                                                           const Marks&,
+                                                           std::span<const std::uint32_t>);
 template class BoundarySurface<2>;
 template class BoundarySurface<3>;
 

@@ -51,6 +51,14 @@ runtime::UnsetVector<BoundarySide<Dim>> sides_of(const runtime::Executor& execut
                                                  const AnyMesh& mesh, BoundaryFrom from,
                                                  std::span<const std::uint32_t> region_of = {});
 
+/// As above, of those sides whose corners are all marked: 1 in `marked`, [vertex], where others are
+/// 0.
+template <int Dim>
+runtime::UnsetVector<BoundarySide<Dim>> sides_among(
+    const runtime::Executor& executor, const AnyMesh& mesh,
+    const runtime::UnsetVector<std::uint8_t>& marked,
+    std::span<const std::uint32_t> region_of = {});
+
 template <int Dim>
 class BoundarySurface {
  public:

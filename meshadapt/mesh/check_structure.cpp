@@ -1,11 +1,10 @@
-/// @file
-/// The check of a mesh that is being adapted: each invariant of its data structure by brute force.
+#include "mesh/check_structure.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/orientation.hpp"
 #include "geometry/rounding.hpp"
 #include "mesh/problems.hpp"

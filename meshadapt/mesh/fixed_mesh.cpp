@@ -12,6 +12,7 @@
 #include "mesh/finite_values.hpp"
 #include "mesh/first_bad.hpp"
 #include "mesh/indices.hpp"
+#include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -99,23 +100,16 @@ class FixedMeshMaker {
     });
   }
 
+  /// What a crowded facet has on its other side cannot be told, so it counts as a boundary.
   void find_neighbours() {
     mesh_.neighbour_of.resize(mesh_.element_count());
+    meshadapt::find_neighbours<Dim>(
+        executor_, mesh_.corners_of, mesh_.vertex_count(),
+        [this](VertexId v) { return mesh_.elements_of(v); }, mesh_.neighbour_of);
     parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
-      for (int i = 0; i <= Dim; ++i)
-        mesh_.neighbour_of[e][static_cast<std::size_t>(i)] = across(static_cast<ElementId>(e), i);
+      for (ElementId& other : mesh_.neighbour_of[e])
+        if (other == crowded) other = none;
     });
-  }
-
-  ElementId across(ElementId element, int facet) const {
-    const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
-    for (const ElementId other : mesh_.elements_of(corners[0])) {
-      if (other == element) continue;
-      bool all = true;
-      for (const VertexId corner : corners) all = all && contains(mesh_.corners_of[other], corner);
-      if (all) return other;
-    }
-    return none;
   }
 
   void describe_vertices() {

@@ -1,6 +1,5 @@
-/// @file
-/// A mesh as files hold it. What is to be listed is found on all threads and gathered in the order
-/// of vertices or elements, so that the lists do not depend on their number.
+#include "mesh/take_apart.hpp"
+
 #include <algorithm>
 #include <compare>
 #include <cstddef>
@@ -8,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/growing_array.hpp"
 #include "ductile/runtime/parallel_for.hpp"

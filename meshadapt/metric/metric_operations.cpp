@@ -17,6 +17,7 @@
 #include "mesh/first_bad.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"
+#include "metric/mesh_gradation.hpp"
 #include "metric/metric_range.hpp"
 #include "metric/spectrum.hpp"
 #include "metric/vertex_neighbours.hpp"

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"

@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/metric_operations.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/curvature.hpp"
+#include "mesh/take_apart.hpp"
 #include "metric/demand.hpp"
+#include "metric/mesh_gradation.hpp"
 #include "metric/required_sizes.hpp"
 #include "operators/adapter.hpp"
 #include "operators/held_edges.hpp"

@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
+#include "mesh/take_apart.hpp"
 #include "oracle.hpp"
 
 namespace ductile::fuzz {
@@ -129,7 +130,7 @@ void use(const AnyMesh& mesh) {
   const auto faults = meshadapt::check_mesh(executor(), mesh);
   expect_messages(faults);
   if (faults.empty()) {
-    const auto domain = meshadapt::check_domain(mesh, mesh);
+    const auto domain = meshadapt::check_domain(executor(), mesh, mesh);
     expect(domain.empty() || !is_in_scale(mesh), "a mesh whose domain is not its own");
     expect_messages(meshadapt::check_boundary(executor(), mesh));
   }

@@ -126,7 +126,8 @@ void adapt(Numbers& numbers, const AnyMesh& mesh, const AnyField& metric) {
     if (options.gradation >= 1 && options.gradation < 1.2) return;
     const auto adapted = meshadapt::adapt(executor(), mesh, metric, options);
     expect(meshadapt::check_mesh(executor(), adapted.mesh).empty(), "an adapted mesh is no mesh");
-    expect(meshadapt::check_domain(mesh, adapted.mesh, options.make.surface_tolerance).empty(),
+    expect(meshadapt::check_domain(executor(), mesh, adapted.mesh, options.make.surface_tolerance)
+               .empty(),
            "an adapted mesh has another domain");
     meshadapt::metric_of(adapted.metric, adapted.mesh);
   } catch (const meshadapt::InputError& error) {

@@ -220,7 +220,7 @@ TEST_P(Adapt, LeavesClosedCracksOpen) {
       const AdaptedMesh adapted = run(2);
       SCOPED_TRACE(testing::Message() << size << " " << tolerance);
       EXPECT_EQ(test::joined(check_mesh(Executor({.threads = 1}), adapted.mesh)), "");
-      EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "");
+      EXPECT_EQ(test::joined(check_domain(Executor({.threads = 1}), mesh, adapted.mesh)), "");
       EXPECT_EQ(test::joined(check_boundary(Executor({.threads = 1}), adapted.mesh)), "");
       expect_identical(adapted, run(1));
     }
@@ -232,7 +232,7 @@ TEST_P(Adapt, ComesToAMetricFarFromTheMesh) {
   const AnyField metric = dimension() == 2 ? sheets(mesh, 0.5, 2e-4) : sheets(mesh, 0.7, 0.7 / 200);
   const AdaptedMesh adapted = adapt(Executor({.threads = 1}), mesh, metric);
   EXPECT_EQ(test::joined(check_mesh(Executor({.threads = 1}), adapted.mesh)), "");
-  EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "");
+  EXPECT_EQ(test::joined(check_domain(Executor({.threads = 1}), mesh, adapted.mesh)), "");
   const MeshStatistics found = measure(Executor({.threads = 1}), adapted.mesh, &adapted.metric);
   EXPECT_GT(found.share_in_range(), dimension() == 2 ? 0.9 : 0.75);
   EXPECT_GT(found.quality.mean, dimension() == 2 ? 0.85 : 0.7);
@@ -253,7 +253,7 @@ TEST_P(Adapt, MakesNoDetourByManyElements) {
   AdaptedMesh adapted;
   ASSERT_NO_THROW(adapted =
                       adapt(Executor({.threads = 2}), mesh, constant_metric(mesh, 0.5), options));
-  EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "");
+  EXPECT_EQ(test::joined(check_domain(Executor({.threads = 1}), mesh, adapted.mesh)), "");
 }
 
 /// Sizes at a plane of vertices jump to large ones at the next: the first call may not make many

@@ -8,6 +8,8 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+#include "mesh/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
@@ -97,9 +99,9 @@ TEST(Adapter, EachKernelLeavesCurvedBoundariesSound) {
       check_after_each_kernel<3>(executor, random);
     const AdaptedMesh result = adapt(executor, random.mesh, random.metric, random.options);
     EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
-    EXPECT_EQ(
-        test::joined(check_domain(random.mesh, result.mesh, random.options.make.surface_tolerance)),
-        "");
+    EXPECT_EQ(test::joined(check_domain(executor, random.mesh, result.mesh,
+                                        random.options.make.surface_tolerance)),
+              "");
     EXPECT_TRUE(!check_boundary(executor, random.mesh).empty() ||
                 check_boundary(executor, result.mesh).empty());
   }

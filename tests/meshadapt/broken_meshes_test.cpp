@@ -21,6 +21,7 @@
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/mesh_from_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/origins.hpp"
@@ -134,8 +135,10 @@ std::vector<OfMesh> functions_of_meshes() {
          make_mesh<Dim>(executor, m, {}, neighbours, warnings);
        },
        all_parts},
-      {"check_domain, before", [=](const AnyMesh& m) { check_domain(m, *whole); }, of_domain},
-      {"check_domain, after", [=](const AnyMesh& m) { check_domain(*whole, m, 0.1); }, of_domain},
+      {"check_domain, before", [=](const AnyMesh& m) { check_domain(executor, m, *whole); },
+       of_domain},
+      {"check_domain, after", [=](const AnyMesh& m) { check_domain(executor, *whole, m, 0.1); },
+       of_domain},
       {"check_boundary", [](const AnyMesh& m) { check_boundary(executor, m); }, {Part::vertices}},
       {"measure", [](const AnyMesh& m) { measure(executor, m, nullptr); }, of_geometry},
       {"measure in a metric", [=](const AnyMesh& m) { measure(executor, m, metric.get()); },

@@ -8,6 +8,7 @@
 
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "io_support.hpp"
+#include "mesh/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
@@ -195,14 +196,14 @@ TEST(CheckMesh, FindsWhatIsWrongWithTheDataStructure) {
 TEST(CheckDomain, FindsWhatLeftItsPlace) {
   for (const int dimension : {2, 3}) {
     const AnyMesh before = box(dimension);
-    EXPECT_EQ(test::joined(check_domain(before, before)), "");
+    EXPECT_EQ(test::joined(check_domain(executor, before, before)), "");
     AnyMesh after = before;
     after.coordinates[0] -= 1e-6;  // the corner of the box
-    EXPECT_NE(test::joined(check_domain(before, after)).find("the domain measures"),
+    EXPECT_NE(test::joined(check_domain(executor, before, after)).find("the domain measures"),
               std::string::npos);
     after = before;
     (dimension == 2 ? after.edges.reference : after.triangles.reference)[0] += 100;
-    EXPECT_NE(test::joined(check_domain(before, after)).find("facets of reference"),
+    EXPECT_NE(test::joined(check_domain(executor, before, after)).find("facets of reference"),
               std::string::npos);
   }
 }
@@ -217,13 +218,13 @@ TEST(CheckDomain, FindsRegionsThatChanged) {
       return after;
     };
     const AnyMesh after = swap_reference(0);
-    const std::string found = test::joined(check_domain(before, after));
+    const std::string found = test::joined(check_domain(executor, before, after));
     EXPECT_NE(found.find("elements of reference 1 measure 0.4"), std::string::npos) << found;
     EXPECT_NE(found.find("elements of reference 2 measure 0.5"), std::string::npos) << found;
     // An element is 1/32 of the square, 1/384 of the cube; half of it has a boundary of 3 or 4.
     const double element = dimension == 2 ? 1.0 / 32 : 1.0 / 384, boundary = dimension == 2 ? 3 : 4;
-    EXPECT_NE(test::joined(check_domain(before, after, 0.99 * element / boundary)), "");
-    EXPECT_EQ(test::joined(check_domain(before, after, 1.01 * element / boundary)), "");
+    EXPECT_NE(test::joined(check_domain(executor, before, after, 0.99 * element / boundary)), "");
+    EXPECT_EQ(test::joined(check_domain(executor, before, after, 1.01 * element / boundary)), "");
   }
 }
 
@@ -232,7 +233,7 @@ TEST(CheckDomain, FindsRegionsThatAreGoneOrNew) {
   AnyMesh after = before;
   std::replace(after.triangles.reference.begin(), after.triangles.reference.end(), 2, 7);
   for (const double tolerance : {0.0, 0.1}) {
-    const std::string found = test::joined(check_domain(before, after, tolerance));
+    const std::string found = test::joined(check_domain(executor, before, after, tolerance));
     EXPECT_NE(found.find("elements of reference 2 are gone"), std::string::npos) << found;
     EXPECT_NE(found.find("elements of reference 7 measure 0.5, expected 0"), std::string::npos)
         << found;
@@ -265,11 +266,12 @@ TEST(CheckDomain, ExpectsReference0OfWhatWasNotListed) {
       facets.reference.resize(kept);
     };
     dimension == 2 ? drop_interface(after.edges, 0.5) : drop_interface(after.triangles, 0.5);
-    EXPECT_EQ(test::joined(check_domain(before, after)), "");
+    EXPECT_EQ(test::joined(check_domain(executor, before, after)), "");
     dimension == 2 ? after.edges.vertices.pop_back() : after.triangles.vertices.pop_back();
     reference_of.pop_back();
-    EXPECT_NE(test::joined(check_domain(before, after)).find("facets of reference 0 measure"),
-              std::string::npos);
+    EXPECT_NE(
+        test::joined(check_domain(executor, before, after)).find("facets of reference 0 measure"),
+        std::string::npos);
   }
 }
 
@@ -298,10 +300,10 @@ TEST(CheckDomain, FindsWhereTheBoundaryMeetsItself) {
     for (const double tolerance : {0.0, 0.1}) {
       const AnyMesh apart = two_at_an_edge(dimension, false);
       const AnyMesh joined = two_at_an_edge(dimension, true);
-      EXPECT_EQ(test::joined(check_domain(apart, apart, tolerance)), "");
-      EXPECT_EQ(test::joined(check_domain(joined, joined, tolerance)), "");
-      EXPECT_EQ(test::joined(check_domain(joined, apart, tolerance)), "");
-      EXPECT_EQ(test::joined(check_domain(apart, joined, tolerance)),
+      EXPECT_EQ(test::joined(check_domain(executor, apart, apart, tolerance)), "");
+      EXPECT_EQ(test::joined(check_domain(executor, joined, joined, tolerance)), "");
+      EXPECT_EQ(test::joined(check_domain(executor, joined, apart, tolerance)), "");
+      EXPECT_EQ(test::joined(check_domain(executor, apart, joined, tolerance)),
                 dimension == 2 ? "\n  the boundary meets itself at vertices, 1 in all, expected 0"
                                : "\n  the boundary meets itself along edges, 2 in all, expected 0");
     }
@@ -310,16 +312,16 @@ TEST(CheckDomain, FindsWhereTheBoundaryMeetsItself) {
 TEST(CheckDomain, FindsNothingWhereThereIsNothing) {
   AnyMesh nothing;
   nothing.dimension = 2;
-  EXPECT_EQ(test::joined(check_domain(nothing, nothing)), "");
+  EXPECT_EQ(test::joined(check_domain(executor, nothing, nothing)), "");
 }
 
 TEST(CheckDomain, RefusesArraysThatDoNotFit) {
   AnyMesh mesh = box(2);
   mesh.name = "a.mesh";
   const auto complaint = [&](const AnyMesh& other) {
-    auto at_second = test::complaint([&] { check_domain(mesh, other); });
+    auto at_second = test::complaint([&] { check_domain(executor, mesh, other); });
     if (other.dimension == 2) {
-      EXPECT_EQ(test::complaint([&] { check_domain(other, mesh); }), at_second);
+      EXPECT_EQ(test::complaint([&] { check_domain(executor, other, mesh); }), at_second);
     }
     return at_second;
   };
@@ -349,9 +351,9 @@ TEST(CheckDomain, AllowsForRoundingFarFromTheOriginAndInThinDomains) {
     const double bottom = offset;
     for (std::size_t i = stride - 1; i < after.coordinates.size(); i += 2 * stride)
       if (after.coordinates[i] == bottom) after.coordinates[i] = std::nextafter(bottom, 2 * bottom);
-    EXPECT_EQ(test::joined(check_domain(before, after)), "");
+    EXPECT_EQ(test::joined(check_domain(executor, before, after)), "");
     after.coordinates[stride - 1] += 1e-6;
-    const std::string found = test::joined(check_domain(before, after));
+    const std::string found = test::joined(check_domain(executor, before, after));
     EXPECT_NE(found.find("the domain measures"), std::string::npos);
     EXPECT_NE(found.find(", expected 0.00"), std::string::npos) << found;
   }

@@ -78,7 +78,7 @@ TEST_P(CurvedBoundary, IsCoarsenedWithinTheTolerance) {
     const AnyField metric = constant_metric(mesh, dimension() == 2 ? 0.15 : 0.3);
     const AdaptedMesh result = adapt(executor, mesh, metric, options);
     EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
-    EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, tolerance)), "");
+    EXPECT_EQ(test::joined(check_domain(executor, mesh, result.mesh, tolerance)), "");
     for (const int reference : {1, 2}) {
       const auto before = radii(mesh, reference), after = radii(result.mesh, reference);
       EXPECT_GE(after[0], before[0] - tolerance);
@@ -148,7 +148,7 @@ TEST_P(CurvedBoundary, IsRefinedOnItsFacets) {
   const AnyField metric = constant_metric(mesh, dimension() == 2 ? 0.02 : 0.08);
   const AdaptedMesh result = adapt(executor, mesh, metric, options);
   EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
-  EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, 1e-3)), "");
+  EXPECT_EQ(test::joined(check_domain(executor, mesh, result.mesh, 1e-3)), "");
   const MeshStatistics found = measure(executor, result.mesh, &result.metric);
   EXPECT_GT(found.share_in_range(), 0.9);
 }
@@ -287,7 +287,7 @@ TEST(CurvedBoundaries, ALidSmallerThanTheToleranceStays) {
       options.make.surface_tolerance = 0.05;
       const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 5), options);
       EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
-      EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, 0.05)), "");
+      EXPECT_EQ(test::joined(check_domain(executor, mesh, result.mesh, 0.05)), "");
       EXPECT_LT(result.mesh.triangles.size(), mesh.triangles.size() / 2);
     }
   }

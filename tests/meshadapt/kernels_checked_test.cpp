@@ -10,6 +10,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/checked_rounds.hpp"
+#include "mesh/check_structure.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"

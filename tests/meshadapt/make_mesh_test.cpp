@@ -8,6 +8,8 @@
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "mesh/check_structure.hpp"
+#include "mesh/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

@@ -7,6 +7,8 @@
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
+#include "mesh/check_structure.hpp"
+#include "mesh/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

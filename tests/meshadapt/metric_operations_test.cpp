@@ -13,6 +13,8 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/take_apart.hpp"
+#include "metric/mesh_gradation.hpp"
 
 namespace ductile::meshadapt::metric_operations_test {
 namespace {

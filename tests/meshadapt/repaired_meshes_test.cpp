@@ -14,6 +14,8 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/check_structure.hpp"
+#include "mesh/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 
@@ -124,7 +126,7 @@ void merge_repeated(unsigned seed) {
   const AnyField metric = constant_metric(clean, 0.3);
   const AdaptedMesh adapted = adapt(executor, dirty, metric);
   EXPECT_TRUE(check_mesh(executor, adapted.mesh).empty());
-  EXPECT_EQ(check_domain(dirty, adapted.mesh), std::vector<std::string>{});
+  EXPECT_EQ(check_domain(executor, dirty, adapted.mesh), std::vector<std::string>{});
   EXPECT_EQ(adapted.mesh, adapt(executor, clean, metric).mesh);
 }
 
@@ -188,7 +190,7 @@ void turn_back(unsigned seed) {
   if (seed % 5 != 0) return;
   const AdaptedMesh adapted = adapt(executor, dirty, constant_metric(dirty, 0.3));
   EXPECT_TRUE(check_mesh(executor, adapted.mesh).empty());
-  EXPECT_EQ(check_domain(dirty, adapted.mesh), std::vector<std::string>{});
+  EXPECT_EQ(check_domain(executor, dirty, adapted.mesh), std::vector<std::string>{});
 }
 
 TEST(RepairedMeshes, TurnElementsBack) {

@@ -169,7 +169,7 @@ std::vector<Share> shares(AnyMesh mesh, double size, int calls) {
     const AnyField metric = constant_metric(mesh, size);
     AdaptedMesh adapted = adapt(executor, mesh, metric);
     EXPECT_EQ(test::joined(check_mesh(executor, adapted.mesh)), "");
-    EXPECT_EQ(test::joined(check_domain(mesh, adapted.mesh)), "") << "call " << call;
+    EXPECT_EQ(test::joined(check_domain(executor, mesh, adapted.mesh)), "") << "call " << call;
     result.push_back({measure(executor, adapted.mesh, &adapted.metric).share_in_range(),
                       adapted.mesh.vertex_count()});
     mesh = std::move(adapted.mesh);

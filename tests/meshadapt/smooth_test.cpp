@@ -9,6 +9,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "mesh/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 

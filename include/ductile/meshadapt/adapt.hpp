@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "ductile/meshadapt/make_mesh_options.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/runtime/executor.hpp"

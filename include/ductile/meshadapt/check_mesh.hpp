@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/meshadapt/make_mesh_options.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {
@@ -30,9 +30,10 @@ std::vector<std::string> check_mesh(const runtime::Executor& executor, const Any
 /// did not. Boundary that `before` does not list counts as of reference 0, if it lists some. Throws
 /// InputError unless both meshes are of one dimension, have all coordinates and references, and
 /// name no vertices beyond those that there are.
-/// Linear in the meshes but for a logarithm in the facets. Thread safety: any thread.
-std::vector<std::string> check_domain(const AnyMesh& before, const AnyMesh& after,
-                                      double surface_tolerance = 0);
+/// Linear in the meshes but for a logarithm in the facets. Thread safety: one caller; runs on the
+/// executor.
+std::vector<std::string> check_domain(const runtime::Executor& executor, const AnyMesh& before,
+                                      const AnyMesh& after, double surface_tolerance = 0);
 
 /// Which listed facets cross each other: a line that names the first two, empty if none do. Those
 /// that only touch, or lie in one plane, or do so but for rounding, do not cross: so it is if one
@@ -62,14 +63,9 @@ std::vector<std::string> check_topology(const runtime::Executor& executor, const
 std::vector<std::string> check_adapted(const runtime::Executor& executor, const AnyMesh& before,
                                        const AnyMesh& after, double surface_tolerance = 0);
 
-/// As check_mesh() above for a mesh that is being adapted, entities numbered from 0 as in memory.
-/// Checked as well: the lists of vertices agree with the corners of elements, shapes are up to
-/// date, facets carry the same patch on both sides, patches are flat, curves straight, and what
-/// vertices may do fits what they lie on. Slower than the one above; for tests and debugging.
-template <int Dim>
-std::vector<std::string> check_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
-
-extern template std::vector<std::string> check_mesh(const runtime::Executor&, const Mesh<2>&);
-extern template std::vector<std::string> check_mesh(const runtime::Executor&, const Mesh<3>&);
+/// Throws InputError, as adapt() with these options does, unless the mesh can be adapted; returns
+/// what adapt() would warn of. Thread safety: one caller; runs on the executor.
+std::vector<std::string> expect_adaptable(const runtime::Executor& executor, const AnyMesh& mesh,
+                                          const MakeMeshOptions& options = {});
 
 }  // namespace ductile::meshadapt

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "ductile/meshadapt/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/executor.hpp"
 
@@ -77,11 +76,6 @@ template <int Dim>
 GradationReport limit_gradation(const runtime::Executor& executor,
                                 std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,
                                 const GradationOptions& options = {});
-/// The same on a mesh that is being adapted; whether they are metrics is not checked.
-template <int Dim>
-GradationReport limit_gradation(const runtime::Executor& executor,
-                                std::vector<Metric<Dim>>& metric_of, const Mesh<Dim>& mesh,
-                                const GradationOptions& options = {});
 
 extern template Metric<2> intersect(const Metric<2>&, const Metric<2>&);
 extern template Metric<3> intersect(const Metric<3>&, const Metric<3>&);
@@ -97,9 +91,5 @@ extern template GradationReport limit_gradation(const runtime::Executor&, std::v
                                                 const FixedMesh<2>&, const GradationOptions&);
 extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
                                                 const FixedMesh<3>&, const GradationOptions&);
-extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<2>>&,
-                                                const Mesh<2>&, const GradationOptions&);
-extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
-                                                const Mesh<3>&, const GradationOptions&);
 
 }  // namespace ductile::meshadapt

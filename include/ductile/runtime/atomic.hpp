@@ -1,7 +1,7 @@
 /// @file
-/// What many threads do to one word or value of ordinary data: count into it, mark it, lower it,
-/// hold a lock that lies in it, make it once. In one phase of a loop a word is accessed through
-/// these functions only.
+/// What many threads do to one word or value of ordinary data: count into it, flip bits of it, mark
+/// it, lower it, hold a lock that lies in it, make it once. In one phase of a loop a word is
+/// accessed through these functions only.
 #pragma once
 
 #include <atomic>
@@ -21,6 +21,11 @@ namespace ductile::runtime {
 /// Adds n and returns the value before. Thread safety: any thread.
 inline std::uint32_t atomic_count(std::uint32_t& where, std::uint32_t n = 1) {
   return std::atomic_ref(where).fetch_add(n, std::memory_order_relaxed);
+}
+
+/// Flips the bits that are set in `bits`. Thread safety: any thread.
+inline void atomic_flip(std::uint64_t& where, std::uint64_t bits) {
+  std::atomic_ref(where).fetch_xor(bits, std::memory_order_relaxed);
 }
 
 /// Sets the flag to 1. A flag that is set already is not written, so its cache line stays shared.

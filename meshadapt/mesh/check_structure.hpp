@@ -1,0 +1,23 @@
+/// @file
+/// The check of a mesh that is being adapted: each invariant of its data structure by brute force.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::meshadapt {
+
+/// As check_mesh() of an AnyMesh for a mesh that is being adapted, entities numbered from 0 as in
+/// memory. Checked as well: the lists of vertices agree with the corners of elements, shapes are up
+/// to date, facets carry the same patch on both sides, patches are flat, curves straight, and what
+/// vertices may do fits what they lie on. Slower; for tests and debugging.
+template <int Dim>
+std::vector<std::string> check_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
+
+extern template std::vector<std::string> check_mesh(const runtime::Executor&, const Mesh<2>&);
+extern template std::vector<std::string> check_mesh(const runtime::Executor&, const Mesh<3>&);
+
+}  // namespace ductile::meshadapt

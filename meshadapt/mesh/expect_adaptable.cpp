@@ -1,0 +1,25 @@
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/make_mesh.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+template <int Dim>
+std::vector<std::string> expect_adaptable_in(const runtime::Executor& executor, const AnyMesh& mesh,
+                                             const MakeMeshOptions& options) {
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  make_mesh<Dim>(executor, mesh, options, neighbours, warnings);
+  return warnings;
+}
+
+}  // namespace
+
+std::vector<std::string> expect_adaptable(const runtime::Executor& executor, const AnyMesh& mesh,
+                                          const MakeMeshOptions& options) {
+  return mesh.dimension == 2 ? expect_adaptable_in<2>(executor, mesh, options)
+                             : expect_adaptable_in<3>(executor, mesh, options);
+}
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,108 @@
+/// @file
+/// find_neighbours(): the elements on the other sides of all facets of a mesh.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "mesh/facet_key.hpp"
+
+namespace ductile::meshadapt {
+
+/// Stands for a neighbour where more than two elements have a facet, or two on one side of it.
+inline constexpr ElementId crowded = none - 1;
+
+/// ElementsAt: elements_at(vertex) is a span of the elements around a vertex, ascending.
+template <int Dim, class ElementsAt>
+class NeighbourFinder {
+ public:
+  using Elements = std::span<const Corners<Dim>>;
+  using NeighbourOf = std::span<std::array<ElementId, Dim + 1>>;
+
+  NeighbourFinder(Elements corners_of, ElementsAt elements_at, NeighbourOf neighbour_of)
+      : corners_of_(corners_of),
+        elements_at_(std::move(elements_at)),
+        neighbour_of_(neighbour_of) {}
+
+  void run(const runtime::Executor& executor, std::size_t vertex_count) {
+    runtime::parallel_for(executor, neighbour_of_.size(),
+                          [&](std::size_t e) { neighbour_of_[e].fill(none); });
+    runtime::PerThread<std::vector<Met>> table(executor);
+    runtime::parallel_for(executor, vertex_count,
+                          [&](std::size_t v) { visit(static_cast<VertexId>(v), table.mine()); });
+  }
+
+ private:
+  /// A facet that has been met, and of which element first; by its lowest corner, because a table
+  /// keeps what it has of others.
+  struct Met {
+    std::uint64_t others = 0;
+    VertexId lowest = none;
+    ElementId element = none;
+    std::uint8_t facet = 0;
+    bool odd = false, twice = false;
+  };
+
+  /// Neighbours find each other at the lowest corner of their facet.
+  void visit(VertexId lowest, std::vector<Met>& table) {
+    const std::span<const ElementId> around = elements_at_(lowest);
+    const std::size_t size = facet_table_size(Dim * around.size());
+    table.resize(std::max(table.size(), size));
+    for (const ElementId element : around) {
+      const Corners<Dim>& corners = corners_of_[element];
+      const auto lower = std::count_if(corners.begin(), corners.end(),
+                                       [lowest](VertexId v) { return v < lowest; });
+      for (int i = 0; i <= Dim; ++i) {
+        const VertexId opposite = corners[static_cast<std::size_t>(i)];
+        if (opposite != lowest && lower == (opposite < lowest ? 1 : 0))
+          meet(lowest, element, i, std::span(table).first(size));
+      }
+    }
+  }
+
+  /// Elements come in order, so the first is the lowest. Facets belong to two, one on each side.
+  void meet(VertexId lowest, ElementId element, int facet, std::span<Met> table) {
+    const FacetKey key = key_of<Dim>(facet_of<Dim>(corners_of_[element], facet));
+    const auto is_free = [lowest](const Met& met) { return met.lowest != lowest; };
+    Met& met = facet_place(table, key.others, is_free);
+    if (is_free(met)) {
+      met = {key.others, lowest, element, static_cast<std::uint8_t>(facet), key.odd};
+    } else if (met.twice || met.odd == key.odd) {
+      met.twice = true;
+      neighbour_at(met.element, met.facet) = neighbour_at(element, facet) = crowded;
+    } else {
+      met.twice = true;
+      neighbour_at(met.element, met.facet) = element;
+      neighbour_at(element, facet) = met.element;
+    }
+  }
+
+  ElementId& neighbour_at(ElementId element, int facet) {
+    return neighbour_of_[element][static_cast<std::size_t>(facet)];
+  }
+
+  Elements corners_of_;
+  ElementsAt elements_at_;
+  NeighbourOf neighbour_of_;
+};
+
+/// Sets neighbour_of, [element][facet]: the element across it, `none` if there is none, `crowded`.
+/// elements_at(vertex) is a span of the elements around a vertex, ascending. Nearly linear.
+/// Thread safety: one caller; runs on the executor.
+template <int Dim>
+void find_neighbours(const runtime::Executor& executor, std::span<const Corners<Dim>> corners_of,
+                     std::size_t vertex_count, auto elements_at,
+                     std::span<std::array<ElementId, Dim + 1>> neighbour_of) {
+  NeighbourFinder<Dim, decltype(elements_at)>(corners_of, std::move(elements_at), neighbour_of)
+      .run(executor, vertex_count);
+}
+
+}  // namespace ductile::meshadapt

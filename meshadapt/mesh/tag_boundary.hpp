@@ -1,0 +1,46 @@
+/// @file
+/// What of a new mesh is kept: the facets and edges that are listed, and those between regions and
+/// on the boundary that are not.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/make_mesh_options.hpp"
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "geometry/classify.hpp"
+
+namespace ductile::meshadapt {
+
+/// A mesh while it is made from one as it stands in a file.
+template <int Dim>
+struct MeshInMaking {
+  const runtime::Executor& executor;
+  const AnyMesh& any;
+  const MakeMeshOptions& options;
+  Neighbours<Dim>& neighbours;
+  std::vector<std::string>& warnings;
+  Mesh<Dim> mesh = {};
+};
+
+/// The facets that are listed, each once, and all others that are on the boundary or between
+/// regions. Throws InputError if one is no facet of an element, or if facets of the boundary are
+/// not listed, unless options.complete_boundary is set. Precondition: mesh.elements_of and
+/// neighbours are set. Thread safety: one caller; runs on the executor.
+template <int Dim>
+std::vector<TaggedFacet<Dim>> tag_facets(MeshInMaking<Dim>& making);
+
+/// The edges that are listed, each once; none in 2D. Those that belong to no element, as
+/// construction lines do, are left out. Precondition and thread safety as above.
+template <int Dim>
+std::vector<ListedEdge> tag_edges(MeshInMaking<Dim>& making);
+
+extern template std::vector<TaggedFacet<2>> tag_facets(MeshInMaking<2>&);
+extern template std::vector<TaggedFacet<3>> tag_facets(MeshInMaking<3>&);
+extern template std::vector<ListedEdge> tag_edges(MeshInMaking<2>&);
+extern template std::vector<ListedEdge> tag_edges(MeshInMaking<3>&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,24 @@
+/// @file
+/// limit_gradation() of the metrics of a mesh that is being adapted.
+#pragma once
+
+#include <vector>
+
+#include "ductile/meshadapt/mesh.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
+#include "ductile/runtime/executor.hpp"
+
+namespace ductile::meshadapt {
+
+/// As on a FixedMesh; whether they are metrics is not checked.
+template <int Dim>
+GradationReport limit_gradation(const runtime::Executor& executor,
+                                std::vector<Metric<Dim>>& metric_of, const Mesh<Dim>& mesh,
+                                const GradationOptions& options = {});
+
+extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<2>>&,
+                                                const Mesh<2>&, const GradationOptions&);
+extern template GradationReport limit_gradation(const runtime::Executor&, std::vector<Metric<3>>&,
+                                                const Mesh<3>&, const GradationOptions&);
+
+}  // namespace ductile::meshadapt
