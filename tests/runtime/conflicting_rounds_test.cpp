@@ -265,6 +265,7 @@ class Make {
   struct Plan {
     std::uint32_t count;
   };
+  static constexpr bool forgoes_wakes = true;
 
   Make(const Executor& executor, Vertex vertices) : noted(vertices), deferred_(executor) {}
 
