@@ -117,32 +117,39 @@ class SharedLists {
     if (deferred != nullptr) deferrer_ = deferred->mine();
   }
 
-  void add(VertexId owner, ElementId element) const { change(owner, {Kind::add_element, element}); }
+  void add(VertexId owner, ElementId element) const {
+    if (deferrer_) [[unlikely]]
+      return defer(owner, {Kind::add_element, element});
+    const auto held = mesh_.elements_of.hold(owner);
+    mesh_.elements_of.insert(owner, element);
+  }
   void remove(VertexId owner, ElementId element) const {
-    change(owner, {Kind::remove_element, element});
+    if (deferrer_) [[unlikely]]
+      return defer(owner, {Kind::remove_element, element});
+    const auto held = mesh_.elements_of.hold(owner);
+    mesh_.elements_of.erase(owner, element);
   }
   void replace(VertexId owner, std::span<const ElementId> gone,
                std::span<const ElementId> come) const {
-    if (!deferrer_) {
+    if (!deferrer_) [[likely]] {
       const auto held = mesh_.elements_of.hold(owner);
       return mesh_.elements_of.replace(owner, gone, come);
     }
     for (const ElementId e : gone) remove(owner, e);
     for (const ElementId e : come) add(owner, e);
   }
-  void change(VertexId owner, const ListChange& change) const {
-    if (deferrer_) return deferrer_->defer(owner, change);
-    const bool is_link = change.kind == Kind::add_link || change.kind == Kind::remove_link;
-    if (is_link) {
-      const auto held = mesh_.links_of.hold(owner);
-      change_list(mesh_, owner, change);
-    } else {
-      const auto held = mesh_.elements_of.hold(owner);
-      change_list(mesh_, owner, change);
-    }
+  void change_link(VertexId owner, const ListChange& change) const {
+    if (deferrer_) return defer(owner, change);
+    const auto held = mesh_.links_of.hold(owner);
+    change_list(mesh_, owner, change);
   }
 
  private:
+  /// Not inlined, so that changes at once stay as short as they are.
+  [[gnu::noinline]] void defer(VertexId owner, const ListChange& change) const {
+    deferrer_->defer(owner, change);
+  }
+
   Mesh<Dim>& mesh_;
   std::optional<runtime::Deferrer<ListChange, runtime::CommitOrder::any>> deferrer_;
 };

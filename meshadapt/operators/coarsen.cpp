@@ -306,10 +306,10 @@ template <int Dim>
 void Coarsen<Dim>::join_links(const Plan& plan, const SharedLists<Dim>& lists) {
   using Kind = ListChange::Kind;
   for (const CurveLink& link : mesh_.links_of.of(plan.gone)) {
-    lists.change(link.to, {Kind::remove_link, plan.gone, link.curve});
+    lists.change_link(link.to, {Kind::remove_link, plan.gone, link.curve});
     if (link.to == plan.kept) continue;
-    lists.change(link.to, {Kind::add_link, plan.kept, link.curve});
-    lists.change(plan.kept, {Kind::add_link, link.to, link.curve});
+    lists.change_link(link.to, {Kind::add_link, plan.kept, link.curve});
+    lists.change_link(plan.kept, {Kind::add_link, link.to, link.curve});
   }
   mesh_.links_of.clear(plan.gone);
 }
