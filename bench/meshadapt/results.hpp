@@ -44,7 +44,7 @@ Table mesh_table(std::span<const Summary> summaries);
 Table part_table(std::span<const Summary> summaries);
 /// Seconds of each phase of each kernel on the fewest threads.
 Table phase_table(std::span<const Summary> summaries);
-/// What the published method, by colours, costs.
+/// What the published method, by colours, takes, and each kernel's time over that of ours.
 Table colours_table(std::span<const Summary> summaries);
 /// Time per element of NAME@FACTOR beside NAME's.
 Table growth_table(std::span<const Summary> summaries);

@@ -17,7 +17,7 @@
 
 namespace ductile::bench {
 
-/// How collapses and moves run: AdaptOptions::by_colours.
+/// How kernels run: AdaptOptions::by_colours.
 enum class Mode : std::uint8_t { tiles, colours };
 
 struct RunSettings {

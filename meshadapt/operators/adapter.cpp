@@ -18,6 +18,7 @@
 #include "operators/remaining_work.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"
+#include "operators/swap_by_vertex.hpp"
 #include "operators/tuning.hpp"
 
 namespace ductile::meshadapt {
@@ -380,6 +381,7 @@ std::size_t Adapter<Dim>::coarsen() {
     const auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey_for(long_edge()),
                                                      rules().short_edge, after);
     Coarsen<Dim> op(mesh_, rules());
+    if (options_.by_colours) op.defer_lists(executor_);
     const RoundsReport rounds = run_by_conflicts(op, work);
     add(report_.coarsen, rounds);
     changes += rounds.applied;
@@ -408,6 +410,7 @@ auto Adapter<Dim>::split_edges_above(double limit) -> Splits {
   auto work = long_edges(executor_, mesh_, survey_for(limit), limit, after);
   if (limit > options_.rules.long_edge) seen_by_refine_ = 0;  // shorter ones are for later
   Refine<Dim> refinement(executor_, mesh_, background_, rules());
+  if (options_.by_colours) refinement.defer_all_lists();
   const RoundsReport rounds = refinement.run(std::move(work));
   add(report_.refine, rounds);
   return {rounds.applied, refinement.lists_are_stale(), refinement.first_vertex()};
@@ -421,15 +424,23 @@ std::size_t Adapter<Dim>::swap(int sweeps, double below) {
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     auto work = Swap<Dim>::improvements(executor_, mesh_, end_epoch(seen_by_swap_), below, range());
     if (work.empty()) break;
-    Swap<Dim> op(executor_, mesh_, range());
-    const RoundsReport rounds =
-        run_rounds_by<Strategy::reservations>(executor_, op, std::move(work));
+    const RoundsReport rounds = run_swaps(std::move(work));
     add(report_.swap, rounds);
     changes += rounds.applied;
     if (share(rounds.applied) < (aim_ == Aim::finish ? 5e-5 : 0.015)) break;
   }
   tell("swap", changes);
   return changes;
+}
+
+template <int Dim>
+RoundsReport Adapter<Dim>::run_swaps(runtime::UnsetVector<Swappable> work) {
+  if (options_.by_colours) {
+    SwapByVertex<Dim> op(executor_, mesh_, std::move(work), range());
+    return run_rounds_by<Strategy::colours>(executor_, op, op.vertices());
+  }
+  Swap<Dim> op(executor_, mesh_, range());
+  return run_rounds_by<Strategy::reservations>(executor_, op, std::move(work));
 }
 
 template <int Dim>

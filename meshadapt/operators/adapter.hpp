@@ -15,6 +15,7 @@
 #include "operators/edges.hpp"
 #include "operators/smooth.hpp"
 #include "operators/standing.hpp"
+#include "operators/swap.hpp"
 
 namespace ductile::meshadapt {
 
@@ -62,6 +63,7 @@ class Adapter {
   };
   Splits split_edges_above(double limit);
   std::size_t swap(int sweeps, double below);
+  runtime::RoundsReport run_swaps(runtime::UnsetVector<Swappable> work);
   std::size_t smooth(int sweeps, double optimise_below, bool laplacian);
   void settle(std::uint32_t after);
   template <class Op>

@@ -3,12 +3,14 @@
 /// vertex's neighbourhood, and the replacement of one set of elements by another.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include <boost/container/small_vector.hpp>
 #include <boost/container/static_vector.hpp>
 
 #include "ductile/meshadapt/mesh.hpp"
+#include "ductile/runtime/deferred_update.hpp"
 #include "geometry/surface.hpp"
 
 namespace ductile::meshadapt {
@@ -94,18 +96,63 @@ void update_element(Mesh<Dim>& mesh, ElementId element) {
   mesh.changed_at[element] = mesh.epoch;
 }
 
-/// Changes a list that others may change at the same time: lists are sorted, so that it comes out
-/// the same.
+/// Changes of lists that wait until nobody reads them.
+using DeferredLists = runtime::DeferredUpdate<ListChange>;
+
 template <int Dim>
-void add_to_list(Mesh<Dim>& mesh, VertexId owner, ElementId element) {
-  const auto held = mesh.elements_of.hold(owner);
-  mesh.elements_of.insert(owner, element);
+std::size_t commit_lists(Mesh<Dim>& mesh, DeferredLists& deferred) {
+  return deferred.commit(
+      [&](VertexId owner, const ListChange& change) { change_list(mesh, owner, change); });
 }
+
+/// The lists of vertices, for whoever applies an item while others may change a list, too: changes
+/// are deferred, or made at once under its lock. Lists are sorted, so that they come out the same.
+/// Thread safety: the thread that made it, within one iteration of a loop.
 template <int Dim>
-void remove_from_list(Mesh<Dim>& mesh, VertexId owner, ElementId element) {
-  const auto held = mesh.elements_of.hold(owner);
-  mesh.elements_of.erase(owner, element);
-}
+class SharedLists {
+ public:
+  using Kind = ListChange::Kind;
+
+  explicit SharedLists(Mesh<Dim>& mesh, DeferredLists* deferred = nullptr) : mesh_(mesh) {
+    if (deferred != nullptr) deferrer_ = deferred->mine();
+  }
+
+  void add(VertexId owner, ElementId element) const {
+    if (deferrer_) [[unlikely]]
+      return defer(owner, {Kind::add_element, element});
+    const auto held = mesh_.elements_of.hold(owner);
+    mesh_.elements_of.insert(owner, element);
+  }
+  void remove(VertexId owner, ElementId element) const {
+    if (deferrer_) [[unlikely]]
+      return defer(owner, {Kind::remove_element, element});
+    const auto held = mesh_.elements_of.hold(owner);
+    mesh_.elements_of.erase(owner, element);
+  }
+  void replace(VertexId owner, std::span<const ElementId> gone,
+               std::span<const ElementId> come) const {
+    if (!deferrer_) [[likely]] {
+      const auto held = mesh_.elements_of.hold(owner);
+      return mesh_.elements_of.replace(owner, gone, come);
+    }
+    for (const ElementId e : gone) remove(owner, e);
+    for (const ElementId e : come) add(owner, e);
+  }
+  void change_link(VertexId owner, const ListChange& change) const {
+    if (deferrer_) return defer(owner, change);
+    const auto held = mesh_.links_of.hold(owner);
+    change_list(mesh_, owner, change);
+  }
+
+ private:
+  /// Not inlined, so that changes at once stay as short as they are.
+  [[gnu::noinline]] void defer(VertexId owner, const ListChange& change) const {
+    deferrer_->defer(owner, change);
+  }
+
+  Mesh<Dim>& mesh_;
+  std::optional<runtime::Deferrer<ListChange, runtime::CommitOrder::any>> deferrer_;
+};
 
 /// Do elements close a ring around this vertex, in which each neighbour comes first in the facet
 /// opposite to the vertex of one element?
@@ -162,10 +209,11 @@ VertexBuffer neighbours_of(const Mesh<Dim>& mesh, VertexId vertex) {
 /// Gives an element the number of one that is gone.
 template <int Dim>
 void move_element(Mesh<Dim>& mesh, ElementId from, ElementId to) {
+  const SharedLists<Dim> lists(mesh);
   for (const VertexId v : mesh.corners_of[from]) {
     if (v == none) break;
-    remove_from_list(mesh, v, from);
-    add_to_list(mesh, v, to);
+    lists.remove(v, from);
+    lists.add(v, to);
   }
   mesh.corners_of[to] = mesh.corners_of[from];
   mesh.patches_of[to] = mesh.patches_of[from];
@@ -304,7 +352,8 @@ Buffer<FacetOnPatch<Dim>, 16> tagged_facets(const Mesh<Dim>& mesh, const Replace
 /// that is not there yet. Thread safety: any thread, if nobody reads or writes the elements to go,
 /// or reads the lists of their corners.
 template <int Dim>
-void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, auto&& fresh) {
+void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, const SharedLists<Dim>& lists,
+             auto&& fresh) {
   const auto tagged = tagged_facets(mesh, plan);
   const std::uint32_t region = mesh.region_of[plan.old_elements[0]];
   for (std::size_t n = 0; n < plan.new_elements.size(); ++n) {
@@ -313,9 +362,9 @@ void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, auto&& fresh) {
     before.fill(none);
     if (n < plan.old_elements.size()) before = mesh.corners_of[e];
     for (const VertexId v : before)
-      if (v != none && !contains(plan.new_elements[n], v)) remove_from_list(mesh, v, e);
+      if (v != none && !contains(plan.new_elements[n], v)) lists.remove(v, e);
     for (const VertexId v : plan.new_elements[n])
-      if (!contains(before, v)) add_to_list(mesh, v, e);
+      if (!contains(before, v)) lists.add(v, e);
     mesh.corners_of[e] = plan.new_elements[n];
     mesh.region_of[e] = region;
     update_element(mesh, e);
@@ -328,7 +377,7 @@ void replace(Mesh<Dim>& mesh, const Replacement<Dim>& plan, auto&& fresh) {
   }
   for (std::size_t n = plan.new_elements.size(); n < plan.old_elements.size(); ++n) {
     Corners<Dim>& corners = mesh.corners_of[plan.old_elements[n]];
-    for (const VertexId v : corners) remove_from_list(mesh, v, plan.old_elements[n]);
+    for (const VertexId v : corners) lists.remove(v, plan.old_elements[n]);
     corners.fill(none);
   }
 }

@@ -253,7 +253,7 @@ void Coarsen<Dim>::note_crowded(Plan& plan, const Ring& ring) const {
 }
 
 template <int Dim>
-void Coarsen<Dim>::collapse(const Plan& plan) {
+void Coarsen<Dim>::collapse(const Plan& plan, const SharedLists<Dim>& lists) {
   Buffer<ElementId, 64> removed, stretched;
   for (const ElementId e : mesh_.elements_of.of(plan.gone))
     (contains(mesh_.corners_of[e], plan.kept) ? removed : stretched).push_back(e);
@@ -265,13 +265,10 @@ void Coarsen<Dim>::collapse(const Plan& plan) {
     mesh_.shape_of[e] = plan.shapes[i];
     mesh_.changed_at[e] = mesh_.epoch;
   }
-  for (const ElementId e : removed) remove_element(e, plan);
-  {
-    const auto held = mesh_.elements_of.hold(plan.kept);
-    mesh_.elements_of.replace(plan.kept, std::span(removed.data(), removed.size()),
-                              std::span(stretched.data(), stretched.size()));
-  }
-  if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan);
+  for (const ElementId e : removed) remove_element(e, plan, lists);
+  lists.replace(plan.kept, std::span(removed.data(), removed.size()),
+                std::span(stretched.data(), stretched.size()));
+  if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan, lists);
   mesh_.elements_of.clear(plan.gone);
 }
 
@@ -297,29 +294,22 @@ void Coarsen<Dim>::pass_patch_on(ElementId element, const Plan& plan) {
 
 /// What else has a corner there loses it. Another collapse may take elements from the same vertex.
 template <int Dim>
-void Coarsen<Dim>::remove_element(ElementId element, const Plan& plan) {
-  for (const VertexId v : mesh_.corners_of[element]) {
-    if (v == plan.gone || v == plan.kept) continue;
-    const auto held = mesh_.elements_of.hold(v);
-    mesh_.elements_of.erase(v, element);
-  }
+void Coarsen<Dim>::remove_element(ElementId element, const Plan& plan,
+                                  const SharedLists<Dim>& lists) {
+  for (const VertexId v : mesh_.corners_of[element])
+    if (v != plan.gone && v != plan.kept) lists.remove(v, element);
   mesh_.corners_of[element].fill(none);
 }
 
 /// The curve now goes from `kept` straight to the vertex on the other side of `gone`.
 template <int Dim>
-void Coarsen<Dim>::join_links(const Plan& plan) {
-  const auto change = [&](VertexId vertex, auto&& how) {
-    const auto held = mesh_.links_of.hold(vertex);
-    how();
-  };
+void Coarsen<Dim>::join_links(const Plan& plan, const SharedLists<Dim>& lists) {
+  using Kind = ListChange::Kind;
   for (const CurveLink& link : mesh_.links_of.of(plan.gone)) {
-    change(link.to, [&] {
-      mesh_.links_of.erase(link.to, {plan.gone, link.curve});
-      if (link.to != plan.kept) mesh_.links_of.insert(link.to, {plan.kept, link.curve});
-    });
+    lists.change_link(link.to, {Kind::remove_link, plan.gone, link.curve});
     if (link.to == plan.kept) continue;
-    change(plan.kept, [&] { mesh_.links_of.insert(plan.kept, {link.to, link.curve}); });
+    lists.change_link(link.to, {Kind::add_link, plan.kept, link.curve});
+    lists.change_link(plan.kept, {Kind::add_link, link.to, link.curve});
   }
   mesh_.links_of.clear(plan.gone);
 }

@@ -1,8 +1,10 @@
 /// @file
 /// Coarsen: collapses edges that are too short. A vertex is moved onto a neighbour and disappears,
 /// with the elements on the edge between them; those left around it are stretched to the neighbour.
-/// It runs in tiles: collapses change who conflicts with whom.
+/// It runs in tiles, or by colours: collapses change who conflicts with whom.
 #pragma once
+
+#include <optional>
 
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
@@ -29,6 +31,9 @@ class Coarsen {
 
   Coarsen(Mesh<Dim>& mesh, const Rules& rules);
 
+  /// For the strategy `colours`: lists are not changed at once, but by deferred updates.
+  void defer_lists(const runtime::Executor& executor) { deferred_.emplace(executor); }
+
   /// The vertices with an edge shorter than `short_edge` that could go, next to elements changed
   /// after an epoch.
   static runtime::UnsetVector<VertexId> crowded_vertices(const runtime::Executor& executor,
@@ -51,10 +56,11 @@ class Coarsen {
   // ---- Apply: stretch or remove own elements, hold and change lists, wake neighbours with a short
   // edge. All new conflicts are with the vertex that is kept, so that one is postponed. ----
   void apply(VertexId, const Plan& plan, auto& commit) {
-    collapse(plan);
+    collapse(plan, SharedLists<Dim>(mesh_, deferred_ ? &*deferred_ : nullptr));
     for (const VertexId v : plan.crowded) commit.wake(v);
     if (mesh_.kind_of[plan.kept].freedom != 0) commit.postpone(plan.kept);
   }
+  std::size_t commit() { return deferred_ ? commit_lists(mesh_, *deferred_) : 0; }
 
  private:
   struct Candidate {
@@ -83,14 +89,15 @@ class Coarsen {
 
   void note_crowded(Plan& plan, const Ring& ring) const;
 
-  void collapse(const Plan& plan);
-  void remove_element(ElementId element, const Plan& plan);
+  void collapse(const Plan& plan, const SharedLists<Dim>& lists);
+  void remove_element(ElementId element, const Plan& plan, const SharedLists<Dim>& lists);
   void pass_patch_on(ElementId element, const Plan& plan);
-  void join_links(const Plan& plan);
+  void join_links(const Plan& plan, const SharedLists<Dim>& lists);
 
   Mesh<Dim>& mesh_;
   Rules rules_;
   bool has_required_elements_;
+  std::optional<DeferredLists> deferred_;
 };
 
 }  // namespace ductile::meshadapt

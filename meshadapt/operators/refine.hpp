@@ -2,7 +2,9 @@
 /// Refine: splits edges that are too long, all at once. A new vertex near the middle of each, and
 /// every element is cut in halves along its edges, the longest first. How a facet is cut follows
 /// from its own edges alone, so the elements on both sides agree without asking each other, and no
-/// two splits are in each other's way: it has loops of its own, and no use for run_rounds.
+/// two splits are in each other's way: it has loops of its own, and no use for run_rounds. So it is
+/// in the published method, too (Rokos, Gorman, Jensen, Kelly, arXiv:1505.04694, 2015): nothing to
+/// colour, new vertices and elements in parallel, and lists of vertices by deferred updates.
 #pragma once
 
 #include <array>
@@ -31,12 +33,17 @@ class Refine {
   /// Would this edge be split if it were the only long one? Thread safety: any thread.
   bool splits(const LongEdge& edge) const;
 
+  /// Brings lists up to date by deferred updates however many edges are split, as published. To be
+  /// called before run().
+  void defer_all_lists() { defers_all_lists_ = true; }
+
   /// Splits all of these edges, as if one after the other, the longest first, but those that a rule
   /// refuses. All are of the mesh, none comes twice. New vertices are numbered in their order.
-  /// Where many are split, elements_of is stale afterwards: it is for the caller to make it anew.
-  /// May be called once. Rounds and conflicts of the report are those of refusals.
-  /// Thread safety: one caller; runs on the executor. Throws std::length_error if the mesh would
-  /// get more elements than there are numbers, or if there are more around the edges.
+  /// Where many are split, elements_of is stale afterwards, unless all lists are deferred: it is
+  /// for the caller to make it anew. May be called once. Rounds and conflicts of the report are
+  /// those of refusals. Thread safety: one caller; runs on the executor. Throws std::length_error
+  /// if the mesh would get more elements than there are numbers, or if there are more around the
+  /// edges.
   runtime::RoundsReport run(runtime::UnsetVector<LongEdge> edges);
 
   /// Whether elements_of does not know what run() has made.
@@ -140,7 +147,7 @@ class Refine {
   runtime::UnsetVector<std::uint32_t> first_piece_;  // [place in elements_], among the new pieces
   VertexId first_vertex_ = none;
   ElementId first_element_ = 0, end_of_elements_ = 0;
-  bool lists_are_stale_ = false;
+  bool defers_all_lists_ = false, lists_are_stale_ = false;
 };
 
 }  // namespace ductile::meshadapt

@@ -58,9 +58,9 @@ void Refine<Dim>::expect_countable() const {
 /// there is so much of it that to make all lists anew takes less.
 template <int Dim>
 void Refine<Dim>::grow() {
-  lists_are_stale_ =
-      static_cast<double>(report_.applied) > many * static_cast<double>(first_element_);
-  runtime::DeferredUpdate<ListChange> deferred(executor_);
+  lists_are_stale_ = !defers_all_lists_ && static_cast<double>(report_.applied) >
+                                               many * static_cast<double>(first_element_);
+  DeferredLists deferred(executor_);
   const auto defer_to = [&](const auto& mine) {
     return [&](VertexId owner, const ListChange& change) {
       if (!lists_are_stale_ || change.curve != 0) mine.defer(owner, change);
@@ -83,8 +83,7 @@ void Refine<Dim>::grow() {
                  [&](std::size_t i, const auto& mine) { write_pieces(i, defer_to(mine)); });
   }
   const PhaseTimer timer(report_.commit_seconds);
-  report_.committed = deferred.commit(
-      [&](VertexId owner, const ListChange& change) { change_list(mesh_, owner, change); });
+  report_.committed = commit_lists(mesh_, deferred);
 }
 
 template <int Dim>

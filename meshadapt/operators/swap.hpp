@@ -3,8 +3,9 @@
 /// flips the edge between two triangles. In 3D it removes an edge, with the best triangulation of
 /// the ring around it (3-2, 4-4 and so on up to seven elements, also on flat boundary), or replaces
 /// the face between two tetrahedra by an edge (2-3); below a smooth patch it cuts poor elements off
-/// (cut_off.hpp). It runs by reservations of elements, as few of all edges and
-/// faces act; lists of vertices are read where nobody writes.
+/// (cut_off.hpp). It runs by reservations of elements, because few of all edges
+/// and faces act (or by colours, see swap_by_vertex.hpp); lists of vertices are read where nobody
+/// writes.
 #pragma once
 
 #include <array>
@@ -79,7 +80,7 @@ class Swap {
 
   // ---- Apply: replace the elements, with new ones where they become more ----
   void apply(const Item&, const Plan& plan, auto& commit) {
-    replace(mesh_, plan, [&] { return commit.fresh(); });
+    replace(mesh_, plan, SharedLists<Dim>(mesh_), [&] { return commit.fresh(); });
   }
   std::array<std::uint32_t, 1> demand(const Plan& plan) const {
     const std::size_t gone = plan.old_elements.size(), come = plan.new_elements.size();

@@ -14,6 +14,7 @@
 #include "operators/coarsen.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"
+#include "operators/swap_by_vertex.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"
@@ -93,6 +94,15 @@ TYPED_TEST(KernelsChecked, SwapKeepsItsContract) {
     auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 80 : 60);
     expect_sound(mesh, Swap<Dim>(executor, mesh), Swap<Dim>::improvements(executor, mesh, 0, 1.0),
                  runtime::Strategy::reservations);
+  }
+}
+
+TYPED_TEST(KernelsChecked, SwapByVertexKeepsItsContract) {
+  constexpr int Dim = TypeParam::value;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    auto [mesh, background] = Case<Dim>::make(seed, Dim == 2 ? 80 : 60);
+    SwapByVertex<Dim> op(executor, mesh, Swap<Dim>::improvements(executor, mesh, 0, 1.0));
+    expect_sound(mesh, op, op.vertices(), runtime::Strategy::colours);
   }
 }
 

@@ -3,19 +3,24 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <numeric>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "ductile/runtime/checked_rounds.hpp"
-#include "ductile/runtime/detail/block_layout.hpp"
+#include "ductile/runtime/deferred_update.hpp"
+#include "ductile/runtime/detail/ranked_blocks.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "rounds_support.hpp"
@@ -129,7 +134,7 @@ std::vector<Vertex> run_in_turn(Contract& op, const std::vector<Vertex>& work, s
   const detail::BlockLayout layout{static_cast<unsigned>(bits), 5};
   std::map<Vertex, Turn>& turn_of = woken.turn_of;
   for (std::size_t i = 0; i < work.size(); ++i)
-    turn_of[work[i]] = {detail::rank_of_block(layout, i >> layout.block_bits), i};
+    turn_of[work[i]] = {layout.rank_of(i >> layout.block_bits), i};
   std::vector<Vertex> order;
   for (const Vertex v : work) {
     const Turn own = turn_of[v];
@@ -251,6 +256,76 @@ class Mean {
  private:
   Vertex side_;
 };
+
+/// Each vertex of a row makes up to two things, of which it may have asked for one more, and is
+/// noted by its neighbours.
+class Make {
+ public:
+  using Item = Vertex;
+  struct Plan {
+    std::uint32_t count;
+  };
+  static constexpr bool forgoes_wakes = true;
+
+  Make(const Executor& executor, Vertex vertices) : noted(vertices), deferred_(executor) {}
+
+  bool plan(Vertex v, Plan& plan, auto& reach) const {
+    bool reached = reach(v);
+    conflicts(v, [&](Vertex other) { reached = reached && reach(other); });
+    plan.count = v % 3;
+    return reached;
+  }
+  void conflicts(Vertex v, auto&& visit) const {
+    if (v > 0) visit(v - 1);
+    if (v + 1 < noted.size()) visit(v + 1);
+  }
+  std::size_t resource_count() const { return noted.size(); }
+  void apply(Vertex v, const Plan& plan, auto& commit) {
+    for (std::uint32_t i = 0; i < plan.count; ++i) maker_of[commit.fresh(1)] = v;
+    conflicts(v, [&](Vertex other) { deferred_.mine().defer(other, v); });
+  }
+  std::size_t commit() {
+    return deferred_.commit([&](Vertex owner, Vertex by) { noted[owner].insert(by); });
+  }
+
+  std::array<std::uint32_t, 2> demand(const Plan& plan) const { return {0, plan.count | 1U}; }
+  std::array<std::size_t, 2> counts() const { return {noted.size(), maker_of.size()}; }
+  void grow(const std::array<std::size_t, 2>& room) { maker_of.resize(room[1]); }
+  void renumber(std::size_t kind, std::span<const Renumbered> moved, std::size_t count) {
+    if (kind == 0) return;
+    for (const auto& [from, to] : moved) maker_of[to] = maker_of[from];
+    maker_of.resize(count);
+  }
+
+  std::vector<std::set<Vertex>> noted;  // [vertex], neighbours
+  std::vector<Vertex> maker_of;         // [thing]
+
+ private:
+  DeferredUpdate<Vertex> deferred_;
+};
+
+TEST(Colours, MakeThingsAndCommitWhatIsDeferred) {
+  constexpr Vertex vertices = 50000;  // more than are planned together of a colour
+  std::vector<Vertex> expected;
+  for (const int threads : thread_counts) {
+    const Executor executor({.threads = threads});
+    Make make(executor, vertices);
+    const RoundsReport report =
+        run_rounds(executor, make, all_items(vertices), {.strategy = Strategy::colours});
+    EXPECT_EQ(report.applied, vertices);
+    EXPECT_EQ(report.committed, 2 * (vertices - 1));
+    for (Vertex v = 0; v < vertices; ++v)
+      EXPECT_EQ(make.noted[v].size(), v == 0 || v + 1 == vertices ? 1U : 2U);
+    if (expected.empty()) expected = make.maker_of;
+    EXPECT_EQ(make.maker_of, expected) << threads << " threads";
+    std::vector<Vertex> count_of(vertices);
+    for (const Vertex v : make.maker_of) ++count_of[v];
+    for (Vertex v = 0; v < vertices; ++v) EXPECT_EQ(count_of[v], v % 3);
+  }
+  const Executor executor({.threads = 2});
+  Make make(executor, 300);
+  run_rounds_checked(executor, make, all_items(300), {.strategy = Strategy::colours});
+}
 
 class ByConflicts : public testing::TestWithParam<Strategy> {};
 INSTANTIATE_TEST_SUITE_P(Strategies, ByConflicts,

@@ -44,8 +44,9 @@ struct AdaptOptions {
       0;                    ///< bytes that adapt() may take; metrics that ask for more elements
                             ///< than certainly fit are refused before the work; 0: no limit
   bool thorough = false;    ///< better shapes and lengths for more time (docs/performance.md)
-  bool by_colours = false;  ///< collapses and moves run class by class of a speculative colouring,
-                            ///< as published, not in tiles: valid and deterministic too, but slower
+  bool by_colours = false;  ///< as published: collapses, swaps and moves run class by class of a
+                            ///< colouring of vertices, and they and splits change lists by deferred
+                            ///< updates. Valid and deterministic too, but slower
   bool move = true;         ///< smooth vertices
   bool swap = true;         ///< swap edges and faces
   bool insert = true;       ///< split and collapse edges

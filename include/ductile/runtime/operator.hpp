@@ -34,7 +34,8 @@ enum class Strategy : std::uint8_t {
   tiles,    ///< stretches of the work, each run by one thread; of items with a conflict the one
             ///< whose tile has the lower rank comes first. Nothing is made
   colours,  ///< classes of items without conflicts, found by speculative colouring, one class
-            ///< after the other. Nothing is made
+            ///< after the other; of an operator that makes things, a class is planned before any of
+            ///< it is applied
   locks,    ///< whoever comes first: the result depends on timing. Not if the executor is to
             ///< be deterministic
 };
@@ -101,6 +102,15 @@ template <class Op>
 concept ConflictingOperator = Operator<Op> && std::same_as<typename Op::Item, std::uint32_t> &&
     requires(const Op& op, std::uint32_t item) {
   op.conflicts(item, [](std::uint32_t) {});
+};
+
+/// In the strategy `colours` apply() may put off what it has to write to what several items of a
+/// class share, by a DeferredUpdate of the operator's. commit() carries that out, and returns how
+/// many updates there were; it is called after each class, on the calling thread. No other strategy
+/// calls it.
+template <class Op>
+concept DeferringOperator = ConflictingOperator<Op> && requires(Op& op) {
+  { op.commit() } -> std::convertible_to<std::size_t>;
 };
 
 /// Where reservations meet, the lower priority(item) wins. Items are then taken in the order of the

@@ -159,11 +159,11 @@ TEST(Together, IsSharedOutByHowTheOrderLiesInTheGraph) {
   EXPECT_EQ(kind_of(test::random_graph(40'000, 160'000, 1), detail::short_window), Shares::windows);
   EXPECT_EQ(kind_of(test::shuffled(test::mesh_graph(200), 2), detail::short_window),
             Shares::windows);
-  EXPECT_EQ(kind_of(test::mesh_graph(600), 600), Shares::windows);
   EXPECT_EQ(kind_of(box_graph(33), 33 * 33), Shares::windows);
   EXPECT_EQ(kind_of(curve_graph(8)), Shares::parts);
   EXPECT_EQ(kind_of(test::path_graph(40'000)), Shares::parts);
-  EXPECT_EQ(kind_of(test::mesh_graph(200)), Shares::none);               // its rows are short
+  EXPECT_EQ(kind_of(test::mesh_graph(600)), Shares::none);               // few neighbours
+  EXPECT_EQ(kind_of(box_graph(20)), Shares::none);                       // its planes are small
   EXPECT_EQ(kind_of(test::rmat_graph(16, 1'000'000, 3)), Shares::none);  // has hubs
 }
 
@@ -172,7 +172,8 @@ TEST(Together, HandsOnWhatTheGraphThrows) {
   const auto mesh = test::mesh_graph(600);
   const auto shuffled = test::shuffled(mesh, 1);
   const auto curve = curve_graph(8);
-  for (const auto* graph : {&mesh, &shuffled, &curve}) {
+  const auto box = box_graph(33);
+  for (const auto* graph : {&mesh, &shuffled, &curve, &box}) {
     const CsrGraph<> rows = graph->view();
     const std::uint32_t bad = graph->vertex_count() / 2 + 77;
     const auto throwing = CallbackGraph(rows.vertex_count(), [&](std::uint32_t v, auto&& visit) {

@@ -1,9 +1,10 @@
 /// @file
 /// ColourRounds: the strategy `colours`. Each round colours the conflict graph of its work, and
-/// runs the items of one colour at once, class after class. Items that were woken after their turn
-/// or postponed are the next round's work.
+/// runs the items of one colour at once, class after class; what they defer is committed after
+/// the class. Items that were woken after their turn or postponed are the next round's work.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/detail/made_things.hpp"
 #include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -40,6 +42,7 @@ class ColourRounds {
   ColourRounds(const Executor& executor, Op& op)
       : executor_(executor),
         op_(op),
+        made_(op),
         woken_(executor, op.resource_count()),
         turn_of_(woken_.turns()) {}
 
@@ -48,15 +51,37 @@ class ColourRounds {
     UnsetVector<Item> next = known_items(executor_, work, turn_of_.size());
     while (!next.empty() && report_.rounds < most_rounds) next = run_round(next);
     report_.left = next.size();
+    made_.close_holes();
     return report_;
   }
 
  private:
   static constexpr std::uint32_t absent = WokenItems::absent;
+  static constexpr bool makes_things = kinds_made<Op> != 0;
+  /// Items of a class that are planned before they are applied.
+  static constexpr std::size_t most_planned = 8192;
+  static constexpr LoopOptions grain{.grain = 16};
+  using New = typename MadeThings<Op>::New;
+
   /// What a thread needs for a class.
   struct Lane {
     typename Op::Plan plan{};
+    New nothing;
     std::size_t planned = 0, applied = 0;
+  };
+  /// An item of an operator that makes things.
+  struct Slot {
+    typename Op::Plan plan{};
+    New fresh;
+    bool is_planned = false, acts = false;
+  };
+
+  /// What apply() is handed.
+  struct Commit : WokenItems::Commit {
+    New& numbers;
+    std::uint32_t fresh(std::size_t kind = 0) const requires(makes_things) {
+      return numbers.take(kind);
+    }
   };
 
   UnsetVector<Item> run_round(std::span<const Item> work) {
@@ -114,32 +139,81 @@ class ColourRounds {
 
   void run_class(std::span<const Item> work, std::span<const std::uint32_t> places,
                  std::uint32_t turn) {
-    const PhaseTimer timer(report_.apply_seconds);
     ++report_.batches;
+    {
+      const PhaseTimer timer(report_.apply_seconds);
+      const std::size_t planned_before = report_.planned;
+      if constexpr (makes_things) {
+        for (std::size_t at = 0; at < places.size(); at += most_planned)
+          run_makers(work, places.subspan(at, std::min(most_planned, places.size() - at)), turn);
+      } else {
+        run_items(work, places, turn);
+      }
+      report_.lost += places.size() - (report_.planned - planned_before);
+    }
+    if constexpr (DeferringOperator<Op>) {
+      const PhaseTimer timer(report_.commit_seconds);
+      report_.committed += op_.commit();
+    }
+  }
+
+  void run_items(std::span<const Item> work, std::span<const std::uint32_t> places,
+                 std::uint32_t turn) {
     PerThread<Lane> lanes(executor_);
     const auto run_item = [&](std::size_t i) {
       const Item item = work[places[i]];
       if (woken_.is_postponed(item)) return;
       Lane& lane = lanes.mine();
-      ReachAll reach;
       ++lane.planned;
-      if (!std::as_const(op_).plan(item, lane.plan, reach)) return;
-      auto commit = woken_.commit();
-      commit.turn = turn;
-      op_.apply(item, lane.plan, commit);
+      if (!plan(item, lane.plan)) return;
+      apply(item, lane.plan, turn, lane.nothing);
       ++lane.applied;
     };
-    parallel_for(executor_, places.size(), run_item, {.grain = 16});
-    report_.lost += places.size();
+    parallel_for(executor_, places.size(), run_item, grain);
     for (std::size_t t = 0; t < lanes.size(); ++t) {
       report_.planned += lanes[t].planned;
-      report_.lost -= lanes[t].planned;
       report_.applied += lanes[t].applied;
     }
   }
 
+  /// All of them are planned, get the numbers that they demand, and are applied.
+  void run_makers(std::span<const Item> work, std::span<const std::uint32_t> places,
+                  std::uint32_t turn) {
+    if (slots_.size() < places.size()) slots_.resize(places.size());
+    const auto slots = std::span(slots_).first(places.size());
+    const auto plan_item = [&](std::size_t i) {
+      const Item item = work[places[i]];
+      slots[i].is_planned = !woken_.is_postponed(item);
+      slots[i].acts = slots[i].is_planned && plan(item, slots[i].plan);
+    };
+    parallel_for(executor_, slots.size(), plan_item, grain);
+    made_.number(slots, [](const Slot& slot) { return slot.acts; });
+    woken_.grow(op_.resource_count());
+    const auto apply_item = [&](std::size_t i) {
+      if (slots[i].acts) apply(work[places[i]], slots[i].plan, turn, slots[i].fresh);
+    };
+    parallel_for(executor_, slots.size(), apply_item, grain);
+    for (const Slot& slot : slots) {
+      report_.planned += slot.is_planned;
+      report_.applied += slot.acts;
+      if (slot.acts) made_.take_back(slot.fresh);
+    }
+  }
+
+  bool plan(Item item, typename Op::Plan& plan) const {
+    ReachAll reach;
+    return std::as_const(op_).plan(item, plan, reach);
+  }
+
+  void apply(Item item, typename Op::Plan& plan, std::uint32_t turn, New& numbers) {
+    Commit commit{{woken_, turn}, numbers};
+    op_.apply(item, plan, commit);
+  }
+
   const Executor& executor_;
   Op& op_;
+  MadeThings<Op> made_;
+  std::vector<Slot> slots_;  // [place in what is planned together], if things are made
   WokenItems woken_;
   UnsetVector<std::uint32_t>& turn_of_;  // [item], its class
   RoundsReport report_;

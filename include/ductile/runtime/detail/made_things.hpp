@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "ductile/runtime/detail/numbers.hpp"
@@ -15,12 +17,26 @@
 
 namespace ductile::runtime::detail {
 
+/// The new numbers of one item, [next, end) of each kind.
+template <std::size_t kinds>
+struct NewNumbers {
+  std::array<std::uint32_t, kinds> next{}, end{};
+
+  /// Throws std::logic_error if there is none.
+  std::uint32_t take(std::size_t kind) requires(kinds > 0) {
+    if (next[kind] == end[kind]) [[unlikely]]
+      throw std::logic_error("apply() takes more fresh numbers than demand() asked for");
+    return next[kind]++;
+  }
+};
+
 /// Thread safety: one caller.
 template <class Op>
 class MadeThings {
  public:
   static constexpr std::size_t kinds = kinds_made<Op>;
   using Pools = std::array<NumberPool, kinds>;
+  using New = NewNumbers<kinds>;
 
   explicit MadeThings(Op& op) : op_(op) {
     if constexpr (kinds > 0) {
@@ -52,12 +68,31 @@ class MadeThings {
     }
   }
 
-  /// The first of so many new numbers of each kind, which are taken at once.
-  std::array<std::size_t, kinds> take(const std::array<std::size_t, kinds>& more) {
-    std::array<std::size_t, kinds> first{};
+  /// Gives each slot that acts(slot) new numbers, as many as its plan demands, in their order.
+  template <class Slot>
+  void number(std::span<Slot> slots, auto&& acts) requires(kinds > 0) {
+    std::array<std::size_t, kinds> more{}, first{};
+    for (Slot& slot : slots) {
+      if (!acts(slot)) continue;
+      const auto wanted = op_.demand(slot.plan);
+      for (std::size_t k = 0; k < kinds; ++k) {
+        slot.fresh.next[k] = static_cast<std::uint32_t>(more[k]);
+        more[k] += wanted[k];
+        slot.fresh.end[k] = static_cast<std::uint32_t>(more[k]);
+      }
+    }
     for (std::size_t k = 0; k < kinds; ++k) first[k] = numbers_[k].extend(more[k]);
     make_room();
-    return first;
+    for (Slot& slot : slots)
+      for (std::size_t k = 0; k < kinds; ++k) {
+        slot.fresh.next[k] += static_cast<std::uint32_t>(first[k]);
+        slot.fresh.end[k] += static_cast<std::uint32_t>(first[k]);
+      }
+  }
+
+  /// What one of those has not taken.
+  void take_back(const New& numbers) {
+    for (std::size_t k = 0; k < kinds; ++k) not_taken_[k].add({numbers.next[k], numbers.end[k]});
   }
 
   void take_back(std::size_t parts, auto&& pools_of) {
@@ -74,6 +109,7 @@ class MadeThings {
   void close_holes() {
     if constexpr (kinds > 0)
       for (std::size_t k = 0; k < kinds; ++k) {
+        numbers_[k].take_back({&not_taken_[k], 1});
         const std::vector<Renumbered> moved = numbers_[k].close_holes();
         op_.renumber(k, std::span<const Renumbered>(moved), numbers_[k].top());
       }
@@ -92,6 +128,7 @@ class MadeThings {
   Op& op_;
   std::array<Numbers, kinds> numbers_;
   std::array<std::size_t, kinds> room_{};
+  Pools not_taken_;
   Numbers resources_;  // if none are made
 };
 

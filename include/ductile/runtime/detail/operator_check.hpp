@@ -257,6 +257,7 @@ class OperatorCheck {
     } else {
       op_.apply(item.item, decision.plan, commit);
     }
+    if constexpr (DeferringOperator<Op>) op_.commit();
     std::sort(decision.reached.begin(), decision.reached.end());
     for (const Watched& other : others) expect_unchanged(other, item, decision.reached);
     if constexpr (ConflictingOperator<Op>)

@@ -21,6 +21,21 @@
 
 namespace ductile::runtime::detail {
 
+/// How a sequence is cut into blocks of 2^block_bits, with ranks below 2^rank_bits.
+struct BlockLayout {
+  unsigned block_bits, rank_bits;
+
+  std::size_t block_size() const { return std::size_t{1} << block_bits; }
+  /// Of 2^rank_bits blocks in a row each has another rank, in an order that changes from row to
+  /// row: where the bits of numbers have a meaning, equal low bits would gather related blocks in
+  /// one rank. Blocks next to each other mostly meet. If their ranks followed each other, all
+  /// blocks of a row would wait in a chain, so their ranks are far apart.
+  std::uint8_t rank_of(std::size_t block) const {
+    const std::size_t last = (std::size_t{1} << rank_bits) - 1;
+    return static_cast<std::uint8_t>(7 * (block ^ block >> rank_bits) & last);
+  }
+};
+
 /// One run. Begun is what a thread knows of a block that it has begun.
 template <class Begun>
 class RankedBlocks {

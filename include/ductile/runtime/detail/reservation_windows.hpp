@@ -6,11 +6,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -80,7 +78,7 @@ class ReservationWindows {
     Plan plan{};
     std::vector<std::uint32_t> reached;
     std::vector<Item> woken;
-    std::array<std::uint32_t, MadeThings<Op>::kinds> next{}, end{};  // new numbers
+    typename MadeThings<Op>::New fresh;
     Outcome outcome = Outcome::nothing;
   };
 
@@ -89,9 +87,7 @@ class ReservationWindows {
     void wake(const Item& item) { slot.woken.push_back(item); }
     void postpone(const Item& item) { wake(item); }
     std::uint32_t fresh(std::size_t kind = 0) requires(MadeThings<Op>::kinds > 0) {
-      if (slot.next[kind] == slot.end[kind]) [[unlikely]]
-        throw std::logic_error("apply() takes more fresh numbers than demand() asked for");
-      return slot.next[kind]++;
+      return slot.fresh.take(kind);
     }
   };
 
@@ -112,7 +108,8 @@ class ReservationWindows {
     if constexpr (MadeThings<Op>::kinds > 0) {
       parallel_for(
           executor_, count, [&](std::size_t i) { settle(slots_[i], i); }, grain);
-      number(count);
+      made_.number(std::span(slots_).first(count),
+                   [](const Slot& slot) { return slot.outcome == Outcome::won; });
       parallel_for(
           executor_, count, [&](std::size_t i) { apply(slots_[i]); }, grain);
     } else {
@@ -205,27 +202,6 @@ class ReservationWindows {
     if (slot.outcome == Outcome::won) op_.apply(slot.item, slot.plan, commit);
   }
 
-  /// The winners' new numbers, in the order of the window.
-  void number(std::size_t count) {
-    std::array<std::size_t, MadeThings<Op>::kinds> more{};
-    for (std::size_t i = 0; i < count; ++i) {
-      Slot& slot = slots_[i];
-      if (slot.outcome != Outcome::won) continue;
-      const auto wanted = op_.demand(slot.plan);
-      for (std::size_t k = 0; k < more.size(); ++k) {
-        slot.next[k] = static_cast<std::uint32_t>(more[k]);
-        more[k] += wanted[k];
-        slot.end[k] = static_cast<std::uint32_t>(more[k]);
-      }
-    }
-    const auto first = made_.take(more);
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < more.size(); ++k) {
-        slots_[i].next[k] += static_cast<std::uint32_t>(first[k]);
-        slots_[i].end[k] += static_cast<std::uint32_t>(first[k]);
-      }
-  }
-
   void end_window(std::size_t count) {
     std::size_t won = 0, lost = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -236,8 +212,7 @@ class ReservationWindows {
       } else if (slot.outcome == Outcome::won) {
         ++won;
         woken_.insert(woken_.end(), slot.woken.begin(), slot.woken.end());
-        for (std::size_t k = 0; k < slot.next.size(); ++k)
-          not_taken_[k].add({slot.next[k], slot.end[k]});
+        made_.take_back(slot.fresh);
       }
     }
     report_.planned += count;
@@ -249,8 +224,6 @@ class ReservationWindows {
 
   RoundsReport finish(std::size_t left) {
     report_.left = left;
-    made_.take_back(
-        1, [&](std::size_t) -> auto& { return not_taken_; });
     made_.close_holes();
     return report_;
   }
@@ -269,7 +242,6 @@ class ReservationWindows {
   std::vector<std::uint32_t> rank_of_;      // [place in the window], if there are priorities
   std::size_t window_ = first_window;
   std::vector<Item> lost_, woken_;
-  typename MadeThings<Op>::Pools not_taken_;  // numbers that were demanded
   RoundsReport report_;
 };
 

@@ -11,7 +11,7 @@
 //   reservation_windows    reservations, or
 //     level_rounds         operators with levels
 //   lock_rounds            locks
-//   tile_rounds            tiles, of which there is more in tiles and ranked_blocks
+//   tile_rounds            tiles; ranked_blocks runs them in order
 //   colour_rounds          colours
 // made_things has the numbers of what operators make.
 
@@ -55,6 +55,11 @@ constexpr void expect_whole_operator() {
   constexpr bool has_levels = requires { &Op::level; };
   static_assert(!has_levels || LevelledOperator<Op>,
                 "level(const Item&) const returns std::uint32_t");
+  constexpr bool defers = requires { &Op::commit; };
+  static_assert(
+      !defers || DeferringOperator<Op>,
+      "an operator that defers has conflicts(item, visit) const, and its commit() returns "
+      "how many updates there were");
   static_assert(!has_levels || !makes_things, "an operator with levels makes no things");
 }
 
@@ -82,9 +87,8 @@ void expect_possible(const Executor& executor, Strategy strategy) {
                     "strategy tiles: the operator has no member conflicts(item, visit) const, or "
                     "it makes things");
     case Strategy::colours:
-      return expect(ConflictingOperator<Op> && !makes_things,
-                    "strategy colours: the operator has no member conflicts(item, visit) const, "
-                    "or it makes things");
+      return expect(ConflictingOperator<Op>,
+                    "strategy colours: the operator has no member conflicts(item, visit) const");
     case Strategy::reservations:
     case Strategy::automatic:
       return;
@@ -151,10 +155,10 @@ RoundsReport run_by_options(const Executor& executor, Op& op, Work work,
       if (strategy == Strategy::regions) return run.template operator()<Strategy::regions>();
     if constexpr (kinds_made<Op> == 0)
       if (strategy == Strategy::in_order) return run.template operator()<Strategy::in_order>();
-    if constexpr (ConflictingOperator<Op> && kinds_made<Op> == 0) {
+    if constexpr (ConflictingOperator<Op> && kinds_made<Op> == 0)
       if (strategy == Strategy::tiles) return run.template operator()<Strategy::tiles>();
+    if constexpr (ConflictingOperator<Op>)
       if (strategy == Strategy::colours) return run.template operator()<Strategy::colours>();
-    }
     if (strategy == Strategy::locks) return run.template operator()<Strategy::locks>();
     return run.template operator()<Strategy::reservations>();
   });

@@ -1,22 +1,243 @@
 /// @file
-/// TileRounds: the strategy `tiles`. Each round runs its work in tiles (tiles.hpp). Items that were
-/// woken after their turn, postponed or late are the next round's work.
+/// TileRounds: the strategy `tiles`. Each round runs its work in tiles: stretches of it, in each of
+/// which one thread plans and applies one item after the other while what they touch is in its
+/// cache; no plan is kept. Each tile has one of 32 ranks, and of items that conflict the one whose
+/// tile has the lower rank comes first, see ranked_blocks.hpp. Few items have an earlier neighbour
+/// in another tile of the same rank; they are late, lest tiles wait for each other in long chains.
+/// Late items, and those that were woken after their turn or postponed, are the next round's work.
+/// All conflicts are looked at before any item runs, so they may change while items run; a tile's
+/// own, if they stay, not before it begins. Work should list next to each other what lies together.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/detail/tiles.hpp"
+#include "ductile/runtime/detail/ranked_blocks.hpp"
+#include "ductile/runtime/detail/reach.hpp"
 #include "ductile/runtime/detail/woken_items.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::runtime::detail {
+
+/// When items of the work have their turn, as a number: the rank of the tile comes first, then the
+/// place in the work. So who comes before whom, in which tile, is told by comparing numbers.
+struct Turns {
+  static constexpr unsigned rank_bits = 5, place_bits = 32 - rank_bits;
+  static constexpr std::uint32_t most_items = (1U << place_bits) - 1;
+
+  static std::uint32_t at(std::uint32_t rank, std::size_t place) {
+    return rank << place_bits | static_cast<std::uint32_t>(place);
+  }
+  static std::uint32_t place_of(std::uint32_t turn) { return turn & most_items; }
+};
+
+template <ConflictingOperator Op>
+class Tiles {
+ public:
+  using Item = std::uint32_t;
+
+  /// Looks at the conflicts of at most Turns::most_items items, and sets their turns. All of these
+  /// outlive this. Throws std::invalid_argument if an item is in the work twice.
+  Tiles(const Executor& executor, Op& op, std::span<const Item> work, WokenItems& woken)
+      : op_(op),
+        work_(work),
+        woken_(woken),
+        turn_of_(woken.turns().data()),
+        layout_(layout_of(work.size())),
+        tiles_(executor, tile_count(), [&](std::size_t tile) { return rank_of(tile); }),
+        is_late_(std::make_unique_for_overwrite<bool[]>(work.size())),
+        range_of_(tile_count()),
+        counts_of_(tile_count()),
+        met_(executor) {
+    parallel_for(
+        executor, work.size(),
+        [&](std::size_t place) {
+          std::atomic_ref(turn_of_[work_[place]]).store(turn_at(place), std::memory_order_relaxed);
+        },
+        few_nanoseconds);
+    if (!conflicts_stay)
+      parallel_for(executor, tile_count(), [&](std::size_t tile) { survey(tile); },
+                   {.grain = 1, .serial_below = few_to_survey >> layout_.block_bits});
+  }
+
+  /// Plans and applies the items, those that are late or postponed excepted; late ones come back.
+  void run() {
+    const auto advance = [&](Begun& begun) {
+      const std::size_t before = first_before(begun);
+      if (before == none) run_items(begun.tile);
+      return before;
+    };
+    const auto begin = [&](std::size_t tile) {
+      if (conflicts_stay) survey(tile);
+      return Begun{tile};
+    };
+    tiles_.run(begin, advance);
+  }
+
+  struct Counts {
+    std::size_t planned = 0, applied = 0;
+  };
+  Counts counts() const {
+    Counts sum;
+    for (const Counts& counts : counts_of_)
+      sum = {sum.planned + counts.planned, sum.applied + counts.applied};
+    return sum;
+  }
+
+ private:
+  static constexpr bool conflicts_stay = requires { Op::keeps_conflicts; };
+
+  /// A tile that a thread has begun, and how many of those it waits for were seen to be done.
+  struct Begun {
+    std::size_t tile;
+    std::size_t seen = 0;
+  };
+  using Ranked = RankedBlocks<Begun>;
+  static constexpr std::size_t none = Ranked::none;
+  /// Items between asking for something that an item needs and the next stage of it.
+  static constexpr std::size_t ahead = 3;
+  /// Items whose conflicts are looked at before other threads would have begun.
+  static constexpr std::size_t few_to_survey = 16;
+
+  /// What a thread's tiles wait for, one tile after the other.
+  struct Met {
+    std::vector<std::uint32_t> tiles;
+    std::vector<std::uint32_t> last_of;  // [tile], the last one that it was noted for
+  };
+  struct Range {
+    std::uint32_t thread, begin, end;  // of the thread's tiles
+  };
+
+  /// Half a thousand tiles or more, if there are as many pairs of items: few items in long tiles
+  /// would wait for each other in a chain. Longer ones than 64 would, too.
+  static BlockLayout layout_of(std::size_t items) {
+    const int bits = std::clamp(static_cast<int>(std::bit_width(items)) - 11, 1, 6);
+    return {static_cast<unsigned>(bits), Turns::rank_bits};
+  }
+  std::size_t tile_count() const {
+    return (work_.size() + layout_.block_size() - 1) >> layout_.block_bits;
+  }
+  std::uint8_t rank_of(std::size_t tile) const { return layout_.rank_of(tile); }
+  std::size_t first_place(std::size_t tile) const { return tile << layout_.block_bits; }
+  std::uint32_t turn_at(std::size_t place) const {
+    return Turns::at(rank_of(place >> layout_.block_bits), place);
+  }
+  std::span<const Item> items_of(std::size_t tile) const {
+    const std::size_t begin = first_place(tile);
+    return work_.subspan(begin, std::min(layout_.block_size(), work_.size() - begin));
+  }
+
+  /// Finds which of a tile's items are late, and which tiles of lower rank it meets.
+  void survey(std::size_t tile) {
+    const std::span<const Item> items = items_of(tile);
+    Met& met = met_.mine();
+    met.last_of.resize(tile_count(), WokenItems::absent);
+    const auto begin = static_cast<std::uint32_t>(met.tiles.size());
+    for (std::size_t i = 0; i < items.size() + 2 * ahead; ++i) {
+      if (i < items.size()) prefetch_item(op_, items[i], 2);
+      if (i - ahead < items.size()) prefetch_item(op_, items[i - ahead], 1);
+      if (i >= 2 * ahead) look(first_place(tile) + i - 2 * ahead, tile, met);
+    }
+    counts_of_[tile] = {};
+    range_of_[tile] = {static_cast<std::uint32_t>(this_thread()), begin,
+                       static_cast<std::uint32_t>(met.tiles.size())};
+  }
+
+  /// Finds out whether the item at this place is late; notes the tiles of lower rank that it meets.
+  /// Without branches for each neighbour, as the answers cannot be foreseen.
+  void look(std::size_t place, std::size_t tile, Met& met) const {
+    const Item item = work_[place];
+    if (turn_of_[item] != turn_at(place)) throw_twice(item);
+    const std::uint32_t first_of_tile = turn_at(first_place(tile));
+    const std::uint32_t first_of_rank = Turns::at(rank_of(tile), 0);
+    std::array<std::uint32_t, 256> lower;
+    std::size_t count = 0;
+    unsigned late = 0;
+    op_.conflicts(item, [&](Item other) {
+      const std::uint32_t turn = turn_of_[other];
+      late |= static_cast<unsigned>(turn - first_of_rank < first_of_tile - first_of_rank);
+      lower[count] = turn;
+      count += static_cast<std::size_t>(turn < first_of_rank);
+      if (count == lower.size()) [[unlikely]]
+        note(tile, std::span(lower).first(std::exchange(count, 0)), met);
+    });
+    note(tile, std::span(lower).first(count), met);
+    is_late_[place] = late != 0;
+  }
+
+  void note(std::size_t tile, std::span<const std::uint32_t> turns, Met& met) const {
+    for (const std::uint32_t turn : turns) {
+      const std::uint32_t other = Turns::place_of(turn) >> layout_.block_bits;
+      if (std::exchange(met.last_of[other], static_cast<std::uint32_t>(tile)) != tile)
+        met.tiles.push_back(other);
+    }
+  }
+
+  std::span<const std::uint32_t> waits_of(std::size_t tile) const {
+    const Range& range = range_of_[tile];
+    return std::span(met_[range.thread].tiles).subspan(range.begin, range.end - range.begin);
+  }
+
+  /// One of the tiles that this one waits for; none if they are done.
+  std::size_t first_before(Begun& begun) {
+    const std::span<const std::uint32_t> waits = waits_of(begun.tile);
+    for (; begun.seen < waits.size(); ++begun.seen)
+      if (tiles_.comes_before(waits[begun.seen], rank_of(begun.tile))) return waits[begun.seen];
+    return none;
+  }
+
+  /// Asks ahead only for items that run: others may change at the same time what belongs to one
+  /// that has left the round.
+  void run_items(std::size_t tile) {
+    const std::span<const Item> items = items_of(tile);
+    const bool* const late = is_late_.get() + first_place(tile);
+    const auto runs = [&](std::size_t i) {
+      return i < items.size() && !late[i] && !woken_.is_postponed(items[i]);
+    };
+    typename Op::Plan plan{};
+    ReachAll reach;
+    auto commit = woken_.commit();
+    Counts& counts = counts_of_[tile];
+    for (std::size_t i = 0; i < items.size() + 3 * ahead; ++i) {
+      for (const int stage : {2, 1, 0}) {
+        const std::size_t asked = i - static_cast<std::size_t>(2 - stage) * ahead;
+        if (runs(asked)) prefetch_item(op_, items[asked], stage);
+      }
+      const std::size_t now = i - 3 * ahead;
+      if (now >= items.size()) continue;
+      if (late[now]) woken_.bring_back(items[now]);
+      if (!runs(now)) continue;
+      ++counts.planned;
+      if (!std::as_const(op_).plan(items[now], plan, reach)) continue;
+      ++counts.applied;
+      commit.turn = turn_at(first_place(tile) + now);
+      op_.apply(items[now], plan, commit);
+    }
+  }
+
+  Op& op_;
+  std::span<const Item> work_;
+  WokenItems& woken_;
+  std::uint32_t* turn_of_;  // [item]
+  BlockLayout layout_;
+  Ranked tiles_;
+  std::unique_ptr<bool[]> is_late_;  // [place]
+  UnsetVector<Range> range_of_;      // [tile], what it waits for
+  UnsetVector<Counts> counts_of_;    // [tile]
+  PerThread<Met> met_;
+};
 
 template <ConflictingOperator Op>
 class TileRounds {

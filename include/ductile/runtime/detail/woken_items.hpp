@@ -48,6 +48,12 @@ class WokenItems {
 
   void begin_round() { ++round_; }
 
+  /// There are more resources now.
+  void grow(std::size_t resource_count) {
+    postponed_in_.resize(resource_count, 0);
+    turn_of_.resize(resource_count, absent);
+  }
+
   /// [item], when each has its turn: a lower number before a higher one where two conflict. Set for
   /// a round's work and reset to `absent` afterwards by whoever runs it.
   UnsetVector<std::uint32_t>& turns() { return turn_of_; }

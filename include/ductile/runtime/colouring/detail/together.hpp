@@ -1,8 +1,9 @@
 /// @file
 /// Together: the colours of first-fit in order, on many threads. How the order lies in the graph
 /// decides by what means, from a sample of vertices: in short windows where neighbours are far
-/// apart, in rows where it is a grid in natural order, in parts where they are near each other. In
-/// any other order vertices would wait for each other in a chain, and one thread does it alone.
+/// apart, in planes where it is a 3D grid in natural order, in parts where they are near each
+/// other. In any other order vertices would wait for each other in a chain, and one thread does it
+/// alone.
 #pragma once
 
 #include <algorithm>
@@ -36,10 +37,12 @@ class OrderOfGraph {
   Shares shares() const {
     if (entries_of_hubs_ > entries_ / 8) return {};
     if (chained_ <= sampled / 8) return {Shares::windows, short_window};
-    if (const std::size_t row = row_of_grid(); row > 0)
-      return row >= least_row && row * 4 * threads_ <= n_
-                 ? Shares{Shares::windows, static_cast<std::uint32_t>(row)}
-                 : Shares{};
+    if (const std::size_t row = row_of_grid(); row > 0) {
+      // A look at few neighbours takes less than the colours of the row before take to come from
+      // another core, so planes are shared out, and rows are not.
+      const bool pays = row >= least_row && row * 4 * threads_ <= n_ && entries_ >= 10 * sampled;
+      return pays ? Shares{Shares::windows, static_cast<std::uint32_t>(row)} : Shares{};
+    }
     // Repair in order takes longer than clashes do.
     const std::size_t share = executor_.deterministic() ? 64 : 16;
     return crossing_ <= sampled / share ? Shares{Shares::parts} : Shares{};
