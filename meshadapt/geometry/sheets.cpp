@@ -237,7 +237,9 @@ Sheets<Dim, Corners>::Sheets(const std::vector<Part>& parts, double tolerance,
   for (const Part& part : parts_) {
     const auto [centre, radius] = sphere_around(part.corner);
     box_of_.push_back(box_around(part.corner));
-    shape_of_.push_back({centre, direction_of(part.corner), radius * (1 + 1e-9)});
+    const bool as_it_is = !(dot(part.turned, part.turned) > 0);
+    shape_of_.push_back(
+        {centre, as_it_is ? direction_of(part.corner) : part.turned, radius * (1 + 1e-9)});
   }
   tree_ = std::make_unique<Tree>(first_part_.size() - 1, [&](std::size_t facet) {
     auto box = Box<Dim>::empty();
@@ -265,7 +267,7 @@ void Sheets<Dim, Corners>::divide(const std::vector<Part>& parts,
     const auto number = static_cast<std::uint32_t>(curved_.size());
     curved_.push_back(*curved[p]);
     Divider<Dim, Corners>(*curved[p], share * tolerance_).each([&](const auto& part) {
-      parts_.push_back({part.corner, parts[p].sheet, parts[p].two_sided});
+      parts_.push_back({part.corner, parts[p].sheet, parts[p].two_sided, parts[p].turned});
       origin_of_.push_back({number, part.weight});
     });
   }
