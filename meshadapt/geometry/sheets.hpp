@@ -96,6 +96,11 @@ class Sheets {
   };
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 
+  bool cover(const Points& simplex, std::uint32_t sheet, const Search& search) const;
+  std::optional<Vector<Dim>> direction_around(const Points& simplex, std::uint32_t sheet) const;
+  bool counts_as_turned(std::uint32_t part) const {
+    return dot(parts_[part].turned, parts_[part].turned) > 0;
+  }
   void divide(const std::vector<Part>& parts, const std::vector<std::optional<Curved>>& curved);
   Points facet_of(std::uint32_t part) const;
   std::optional<typename Curved::Weights> weights_at(const Vector<Dim>& point,

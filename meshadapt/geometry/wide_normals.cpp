@@ -134,7 +134,7 @@ class WideNormals {
 
   /// Do those ahead of the facet and those behind it, on the mean, turn by much?
   bool turns(const std::vector<Place>& places, const Vector<Dim>& across, double area) const {
-    constexpr double little = 0.05;  // of the area, which says nothing
+    constexpr double little = 0.15;  // of the area, which says nothing
     Vector<Dim> ahead, behind;
     double ahead_area = 0, behind_area = 0;
     for (const Place& place : places) {
