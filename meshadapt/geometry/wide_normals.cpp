@@ -31,10 +31,10 @@ class WideNormals {
 
   Vector<Dim> own(std::uint32_t facet) const { return unit(facet_normal(points(facet))); }
 
-  /// Is it low, and does it turn by much at a side?
+  /// Is it lower than noise may be twice, and does it turn by much at a side?
   bool may_be_noise(std::uint32_t facet) const {
     const Points p = points(facet);
-    if (!(height(p) < options_.tolerance)) return false;
+    if (!(norm(altitude(p)) < 2 * options_.tolerance)) return false;
     const Vector<Dim> normal = unit(facet_normal(p));
     return std::any_of(beside_[facet].begin(), beside_[facet].end(), [&](std::uint32_t other) {
       return other != none && sign(facet, other) * dot(normal, own(other)) < options_.least_turn;
@@ -53,6 +53,7 @@ class WideNormals {
     constexpr double least = 0.5;  // three sides of a cube at a corner have more
     if (!(norm(sum) >= least * area)) return {};
     const Vector<Dim> normal = unit(sum);
+    if (!(std::abs(dot(altitude(points(facet)), normal)) < options_.tolerance)) return {};
     for (const Vector<Dim>& across : divisions(normal))
       if (turns(places, across, area)) return {};
     return normal;
@@ -77,11 +78,15 @@ class WideNormals {
     return centre;
   }
 
-  static double height(const Points& p) {
-    double longest = 0;
-    for (std::size_t i = 0; i < Dim; ++i)
-      longest = std::max(longest, norm(p[(i + 1) % Dim] - p[i]));
-    return Dim == 2 ? longest : norm(facet_normal(p)) / longest;
+  /// From the longest side to the corner across, at a right angle; in 2D along the edge.
+  static Vector<Dim> altitude(const Points& p) {
+    if constexpr (Dim == 2) return p[1] - p[0];
+    std::size_t at = 0;
+    const auto side = [&](std::size_t i) { return p[(i + 1) % Dim] - p[i]; };
+    for (std::size_t i = 1; i < Dim; ++i)
+      if (dot(side(i), side(i)) > dot(side(at), side(at))) at = i;
+    const Vector<Dim> along = side(at), to = p[(at + 2) % Dim] - p[at];
+    return to - (dot(to, along) / dot(along, along)) * along;
   }
 
   double sign(std::uint32_t f, std::uint32_t g) const {

@@ -16,18 +16,19 @@
 namespace ductile::meshadapt {
 
 struct WideNormalOptions {
-  double tolerance;   ///< facets lower than that, in 2D shorter, may be noise
-  double least_turn;  ///< cosine of the angle by which noise turns at a side
+  double tolerance;   ///< steps that are lower may be noise
+  double least_turn;  ///< cosine of the angle from which on a turn is much
 };
 
 /// [facet], of unit length and outwards from the facet's element; 0 if it is the facet's own. Empty
 /// if all are. `beside` is [facet][side], the facet that has the side as well and may be of the
 /// same patch, or none.
 ///
-/// That of a low facet that turns by much at a side is the mean, by area, over what is beside it up
-/// to a distance of twice the tolerance, if the surface is smooth there: if the normals do not
-/// cancel, as at the rim of a thin plate, and if the means to either side of the facet, whichever
-/// way it is divided, turn by less than noise against each other. Linear, but quadratic in how many
+/// That of a facet that is lower than twice the tolerance and turns by much at a side is the mean, by
+/// area, over what is beside it up to that distance, if the facet rises by less than the tolerance
+/// from that, and if the surface is smooth there: if the normals do not cancel, as at the rim of a
+/// thin plate, and if the means to either side of the facet, whichever way it is divided, turn
+/// little against each other. Linear, but quadratic in how many
 /// facets are within that distance of each other. Thread safety: one caller; runs on the executor.
 /// Throws std::bad_alloc.
 template <int Dim>
