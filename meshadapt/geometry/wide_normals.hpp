@@ -24,13 +24,12 @@ struct WideNormalOptions {
 /// if all are. `beside` is [facet][side], the facet that has the side as well and may be of the
 /// same patch, or none.
 ///
-/// That of a facet that is lower than twice the tolerance and turns by much at a side is the mean, by
-/// area, over what is beside it up to that distance, if the facet rises by less than the tolerance
-/// from that, and if the surface is smooth there: if the normals do not cancel, as at the rim of a
-/// thin plate, and if the means to either side of the facet, whichever way it is divided, turn
-/// little against each other. Linear, but quadratic in how many
-/// facets are within that distance of each other. Thread safety: one caller; runs on the executor.
-/// Throws std::bad_alloc.
+/// That of a facet that is lower than twice the tolerance and turns by much at a side is the mean,
+/// by area, over what is beside it up to that distance, if the facet rises by less than the
+/// tolerance from that, and if the surface is smooth there: if the normals do not cancel, as at the
+/// rim of a thin plate, and if the means to either side of the facet, whichever way it is divided,
+/// turn little against each other. Linear, but quadratic in how many facets are within that
+/// distance of each other. Thread safety: one caller; runs on the executor. Throws std::bad_alloc.
 template <int Dim>
 std::vector<Vector<Dim>> wide_normals(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                       const std::vector<TaggedFacet<Dim>>& facets,
