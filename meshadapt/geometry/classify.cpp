@@ -22,6 +22,7 @@
 #include "geometry/rounding.hpp"
 #include "geometry/surface.hpp"
 #include "geometry/touching.hpp"
+#include "geometry/wide_normals.hpp"
 
 namespace ductile::meshadapt {
 
@@ -71,6 +72,8 @@ class Classifier {
     find_patches();
     if (surface_tolerance_ > 0) {
       find_kept(options_.keep_facets_at);
+      wide_normals_ = wide_normals<Dim>(executor_, mesh_, facets_, std::span(beside_),
+                                        {surface_tolerance_, least_turn_});
       join_patches();
     }
     if constexpr (Dim == 3) find_curves();
@@ -86,24 +89,27 @@ class Classifier {
  private:
   // ---- Sides: what facets share ----
 
-  /// Sets across_, where a side does not separate patches by itself.
+  /// Sets beside_, where a side does not separate patches by itself, and across_, where a patch
+  /// that is flat goes on.
   void find_neighbours() {
     std::array<std::uint32_t, Dim> nobody;
     nobody.fill(none);
     runtime::grow_filled(executor_, across_, facets_.size(), nobody);
+    runtime::grow_filled(executor_, beside_, facets_.size(), nobody);
     runtime::parallel_for(executor_, sides_.size(), [&](std::size_t i) {
       if (!sides_.begins_run(i)) return;
       const auto both = sides_.run_at(i);
-      if (both.size() != 2 || separates(both[0].key) || !fit(both[0], both[1])) return;
-      across_[both[0].facet][both[0].number] = both[1].facet;
-      across_[both[1].facet][both[1].number] = both[0].facet;
+      if (both.size() != 2 || separates(both[0].key) || !agree(both[0].facet, both[1].facet))
+        return;
+      const auto link = [&](auto& others) {
+        others[both[0].facet][both[0].number] = both[1].facet;
+        others[both[1].facet][both[1].number] = both[0].facet;
+      };
+      link(beside_);
+      if (!folds_back<Dim>(mesh_, facets_[both[0].facet].corners, facets_[both[1].facet].corners,
+                           both[0].key))
+        link(across_);
     });
-  }
-
-  /// May one patch have both of two facets with this side, if they are in its plane?
-  bool fit(const FacetSide& f, const FacetSide& g) const {
-    return agree(f.facet, g.facet) &&
-           !folds_back<Dim>(mesh_, facets_[f.facet].corners, facets_[g.facet].corners, f.key);
   }
 
   bool separates(SideKey key) const {
@@ -249,7 +255,7 @@ class Classifier {
       return p;
     };
     for (const FacetSide& side : sides_) {
-      const std::uint32_t f = side.facet, g = across_[f][side.number];
+      const std::uint32_t f = side.facet, g = beside_[f][side.number];
       if (g == none || g < f || mesh_.patches[facets_[f].patch].required ||
           keeps_shape(facets_[f]) || keeps_shape(facets_[g]))
         continue;
@@ -272,19 +278,32 @@ class Classifier {
 
   /// Are two facets parts of one smooth patch? With a reference, if it has one there.
   bool may_join(std::uint32_t f, std::uint32_t g, SideKey side) const {
-    if (reference_ != nullptr) return is_on_curved_sheet(f);  // the same as that of g, see agree()
-    return turns_little(facets_[f].corners, facets_[g].corners, side);
+    if (reference_ == nullptr) return turns_little(f, g, side);
+    // The sheet of g is the same, see agree().
+    return is_on_curved_sheet(f) &&
+           (!folds_back<Dim>(mesh_, facets_[f].corners, facets_[g].corners, side) ||
+            turns_little(f, g, side));
   }
 
   /// Does a smooth patch have an edge here, or in 2D a corner, that fades out elsewhere?
   bool is_sharp(std::span<const FacetSide> both) const {
-    const TaggedFacet<Dim>&f = facets_[both[0].facet], &g = facets_[both[1].facet];
-    return mesh_.patches[f.patch].smooth && !turns_little(f.corners, g.corners, both[0].key);
+    const std::uint32_t f = both[0].facet, g = both[1].facet;
+    return mesh_.patches[facets_[f].patch].smooth && !turns_little(f, g, both[0].key);
   }
 
-  bool turns_little(const Facet<Dim>& f, const Facet<Dim>& g, SideKey key) const {
-    const Vector<Dim> u = away_from<Dim>(mesh_, f, key), v = away_from<Dim>(mesh_, g, key);
-    return dot(u, v) < -least_turn_ * norm(u) * norm(v);
+  bool turns_little(std::uint32_t f, std::uint32_t g, SideKey key) const {
+    const Facet<Dim>&p = facets_[f].corners, &q = facets_[g].corners;
+    const Vector<Dim> u = away_from<Dim>(mesh_, p, key), v = away_from<Dim>(mesh_, q, key);
+    if (dot(u, v) < -least_turn_ * norm(u) * norm(v)) return true;
+    if (wide_normals_.empty() || !(is_noise(f) || is_noise(g))) return false;
+    const double side = face_alike(mesh_, facets_[f], facets_[g]) ? 1 : -1;
+    return side * dot(wide_normal(f), wide_normal(g)) > least_turn_;
+  }
+  bool is_noise(std::uint32_t facet) const { return norm(wide_normals_[facet]) > 0; }
+  Vector<Dim> wide_normal(std::uint32_t facet) const {
+    if (is_noise(facet)) return wide_normals_[facet];
+    const Vector<Dim> own = normal_of<Dim>(mesh_, outward_corners(mesh_, facets_[facet]));
+    return (1 / norm(own)) * own;
   }
 
   /// Keeps what smooth patches and curves are like, and what their facets must not come close to.
@@ -296,7 +315,7 @@ class Classifier {
     std::vector<SurfaceEdge> edges;
     edges.reserve(curve_edges_.size());
     for (const CurveEdge& e : curve_edges_) edges.push_back({e.a, e.b, e.curve});
-    mesh_.surface = make_surface<Dim>(executor_, mesh_, {facets_, plane_of_, edges},
+    mesh_.surface = make_surface<Dim>(executor_, mesh_, {facets_, plane_of_, wide_normals_, edges},
                                       {surface_tolerance_, tolerance_, least_turn_});
   }
 
@@ -591,6 +610,8 @@ class Classifier {
   std::vector<std::uint32_t> sheet_of_;               // [facet], of the reference
   using Others = std::array<std::uint32_t, Dim>;
   runtime::UnsetVector<Others> across_;             // [facet][side], the other facet or none
+  runtime::UnsetVector<Others> beside_;             // the same, though it may fold back
+  std::vector<Vector<Dim>> wide_normals_;           // [facet], 0 if its own; empty if all are
   std::unordered_map<SideKey, ListedEdge> listed_;  // 3D
   std::vector<std::uint8_t> kept_;  // [vertex], whether facets there keep their shape
   std::vector<PatchId> plane_of_;   // [facet], its patch before flat ones were joined

@@ -112,6 +112,26 @@ bool folds_back(const Mesh<Dim>& mesh, const Facet<Dim>& f, const Facet<Dim>& g,
   return dot(away_from<Dim>(mesh, f, key), away_from<Dim>(mesh, g, key)) > 0;
 }
 
+/// The corners of a facet, seen from outside its element.
+template <int Dim>
+Facet<Dim> outward_corners(const Mesh<Dim>& mesh, const TaggedFacet<Dim>& facet) {
+  return facet_of<Dim>(mesh.corners_of[facet.element], facet.facet);
+}
+
+/// Are the elements of two facets, which have a side in common, on the same side of them?
+template <int Dim>
+bool face_alike(const Mesh<Dim>& mesh, const TaggedFacet<Dim>& f, const TaggedFacet<Dim>& g) {
+  const Facet<Dim> p = outward_corners(mesh, f), q = outward_corners(mesh, g);
+  for (std::size_t i = 0; i < Dim; ++i) {
+    const int at = corner_of(q, p[i]);
+    if (at < 0) continue;
+    if constexpr (Dim == 2) return static_cast<std::size_t>(at) != i;
+    const VertexId next = p[(i + 1) % Dim];
+    if (contains(q, next)) return q[(static_cast<std::size_t>(at) + 1) % Dim] != next;
+  }
+  return true;
+}
+
 /// How many triangles follow each other around a vertex, from one and away from a side of it, up to
 /// a curve, or where not two triangles have a side, or to the first again. Needs no kinds of
 /// vertices, so that kinds can be found with it, by many threads.

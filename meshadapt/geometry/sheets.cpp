@@ -39,6 +39,16 @@ auto divided(const std::array<Vector<3>, 3>& p) {
                     std::array{a, b, c}};
 }
 
+/// The least of a triangle, the length of an edge.
+template <int Dim>
+double height_of(const std::array<Vector<Dim>, 2>& p) {
+  return norm(p[1] - p[0]);
+}
+double height_of(const std::array<Vector<3>, 3>& p) {
+  const double longest = std::max({norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])});
+  return longest > 0 ? norm(facet_normal(p)) / longest : 0;
+}
+
 }  // namespace
 
 /// The parts around a simplex that matter.
@@ -142,6 +152,12 @@ struct Sheets<Dim, Corners>::Search {
     return std::min(most_aside, somewhere / least + radius * slope);
   }
 
+  /// Does it lie upside down, among noise? Then what lies over it is there twice more.
+  bool folds_back(std::uint32_t part) const {
+    return sheets.counts_as_turned(part) &&
+           dot(direction_of(sheets.parts_[part].corner), sheets.parts_[part].turned) < 0;
+  }
+
   /// Whether each point of the simplex has one of the parts above or below; if so how far away at
   /// most, and where that is so. Or whether the parts are too far from there anyway.
   struct Graph {
@@ -160,7 +176,7 @@ struct Sheets<Dim, Corners>::Search {
       const Shape& shape = sheets.shape_of_[part];
       if (prism.is_beside(shape.centre, shape.radius)) continue;
       const auto inside = prism.inside(sheets.parts_[part].corner);
-      share += prism.share(inside);
+      share += (folds_back(part) ? -1 : 1) * prism.share(inside);
       for (const auto& place : inside) {
         const double here = place.aside();
         if (here > graph.most_aside) graph = {false, here, prism.below(place)};
@@ -237,7 +253,9 @@ Sheets<Dim, Corners>::Sheets(const std::vector<Part>& parts, double tolerance,
   for (const Part& part : parts_) {
     const auto [centre, radius] = sphere_around(part.corner);
     box_of_.push_back(box_around(part.corner));
-    shape_of_.push_back({centre, direction_of(part.corner), radius * (1 + 1e-9)});
+    const bool is_noise = dot(part.turned, part.turned) > 0;
+    shape_of_.push_back(
+        {centre, is_noise ? part.turned : direction_of(part.corner), radius * (1 + 1e-9)});
   }
   tree_ = std::make_unique<Tree>(first_part_.size() - 1, [&](std::size_t facet) {
     auto box = Box<Dim>::empty();
@@ -265,7 +283,7 @@ void Sheets<Dim, Corners>::divide(const std::vector<Part>& parts,
     const auto number = static_cast<std::uint32_t>(curved_.size());
     curved_.push_back(*curved[p]);
     Divider<Dim, Corners>(*curved[p], share * tolerance_).each([&](const auto& part) {
-      parts_.push_back({part.corner, parts[p].sheet, parts[p].two_sided});
+      parts_.push_back({part.corner, parts[p].sheet, parts[p].two_sided, parts[p].turned});
       origin_of_.push_back({number, part.weight});
     });
   }
@@ -283,10 +301,34 @@ auto Sheets<Dim, Corners>::facet_of(std::uint32_t part) const -> Points {
 
 template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) const {
+  // What is farther away than that is turned by more somewhere.
+  const double reach = std::min(tolerance_, 0.5 * sphere_around(simplex).radius);
+  if (cover(simplex, sheet, {*this, direction_of(simplex), reach})) return true;
+  const auto direction = direction_around(simplex, sheet);
+  return direction && cover(simplex, sheet, {*this, *direction, tolerance_});
+}
+
+/// How the sheet is turned closest to a simplex that is low, if there is noise around.
+template <int Dim, std::size_t Corners>
+std::optional<Vector<Dim>> Sheets<Dim, Corners>::direction_around(const Points& simplex,
+                                                                  std::uint32_t sheet) const {
+  if (!(height_of(simplex) < tolerance_)) return {};
+  Near near;
+  bool is_noisy = false;
+  each_meeting(box_around(simplex, tolerance_), [&](std::uint32_t part) {
+    if (parts_[part].sheet != sheet || parts_[part].two_sided) return;
+    near.push_back(part);
+    is_noisy = is_noisy || counts_as_turned(part);
+  });
+  if (!is_noisy) return {};
+  return shape_of_[near.closest(*this, sphere_around(simplex).centre).part].direction;
+}
+
+template <int Dim, std::size_t Corners>
+bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet,
+                                 const Search& search) const {
   const Sphere<Dim> sphere = sphere_around(simplex);
   constexpr double least_turn = 0.70710678118654752;  // the cosine of 45 degrees
-  // What is farther away than that is turned by more somewhere.
-  const Search search{*this, direction_of(simplex), std::min(tolerance_, 0.5 * sphere.radius)};
   Around around;
   each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);

@@ -31,6 +31,7 @@ class Sheets {
     /// It is inside the domain, or an edge, and which way it is turned means nothing. Other facets
     /// are turned outwards.
     bool two_sided;
+    Vector<Dim> turned = {};  ///< unit normal that it counts as having, if not 0
   };
 
   /// `curved` is what parts are curved into, nothing where they are flat; or empty if all are.
@@ -79,7 +80,7 @@ class Sheets {
   struct Search;
   struct Shape {
     Vector<Dim> centre;
-    Vector<Dim> direction;  // unit normal of a facet, else along the edge
+    Vector<Dim> direction;  // unit normal of a facet, or what it counts as; else along the edge
     double radius;          // of a sphere around the centre
   };
   struct Closest {
@@ -95,6 +96,11 @@ class Sheets {
   };
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 
+  bool cover(const Points& simplex, std::uint32_t sheet, const Search& search) const;
+  std::optional<Vector<Dim>> direction_around(const Points& simplex, std::uint32_t sheet) const;
+  bool counts_as_turned(std::uint32_t part) const {
+    return dot(parts_[part].turned, parts_[part].turned) > 0;
+  }
   void divide(const std::vector<Part>& parts, const std::vector<std::optional<Curved>>& curved);
   Points facet_of(std::uint32_t part) const;
   std::optional<typename Curved::Weights> weights_at(const Vector<Dim>& point,

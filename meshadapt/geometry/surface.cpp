@@ -7,6 +7,7 @@
 
 #include "geometry/box_index.hpp"
 #include "geometry/distance.hpp"
+#include "geometry/sheets_parts.hpp"
 
 namespace ductile::meshadapt {
 
@@ -20,6 +21,7 @@ class SurfaceMaker {
       : mesh_(mesh),
         facets_(classified.facets),
         plane_of_(classified.plane_of),
+        normals_(classified.normals),
         edges_(classified.edges),
         options_(options) {}
 
@@ -29,13 +31,15 @@ class SurfaceMaker {
     if (hold_facing(model, input)) model = SmoothModel<Dim>(executor, input);
     std::vector<typename Sheets<Dim, Dim>::Part> facet_parts;
     facet_parts.reserve(facets_.size());
-    for (const TaggedFacet<Dim>& f : facets_)
-      facet_parts.push_back({points(corners(f)), f.patch, f.other != none});
+    for (std::size_t f = 0; f < facets_.size(); ++f)
+      facet_parts.push_back({points(corners(facets_[f])), facets_[f].patch,
+                             facets_[f].other != none, wide_normal(f)});
     std::vector<typename Sheets<Dim, 2>::Part> edge_parts;
     typename SmoothModel<Dim>::template Pieces<2> edge_pieces;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       if (!mesh_.curves[edges_[e].curve].smooth) continue;
-      edge_parts.push_back({points(std::array{edges_[e].a, edges_[e].b}), edges_[e].curve, true});
+      edge_parts.push_back(
+          {points(std::array{edges_[e].a, edges_[e].b}), edges_[e].curve, true, {}});
       edge_pieces.push_back(model.edges[e]);
     }
     return std::shared_ptr<const Surface<Dim>>(
@@ -47,6 +51,15 @@ class SurfaceMaker {
   /// Outwards, however the file has them.
   Facet<Dim> corners(const TaggedFacet<Dim>& facet) const {
     return facet_of<Dim>(mesh_.corners_of[facet.element], facet.facet);
+  }
+
+  /// 0 if it is the facet's own.
+  Vector<Dim> wide_normal(std::size_t facet) const {
+    return normals_.empty() ? Vector<Dim>{} : normals_[facet];
+  }
+  Vector<Dim> direction(std::size_t facet) const {
+    const Vector<Dim> wide = wide_normal(facet);
+    return norm(wide) > 0 ? wide : direction_of(points(corners(facets_[facet])));
   }
 
   template <std::size_t N>
@@ -117,8 +130,7 @@ class SurfaceMaker {
     for (const VertexId v : own)
       if (contains(others, v)) return false;
     const auto p = points(own), q = points(others);
-    const Vector<Dim> u = facet_normal(p), v = facet_normal(q);
-    const bool is_turned = dot(u, v) < -0.01 * norm(u) * norm(v);
+    const bool is_turned = dot(direction(facet), direction(other)) < -0.01;
     return is_turned && (comes_near(p, q, reach) || comes_near(q, p, reach));
   }
 
@@ -140,6 +152,7 @@ class SurfaceMaker {
   const Mesh<Dim>& mesh_;
   std::span<const TaggedFacet<Dim>> facets_;
   std::span<const PatchId> plane_of_;
+  std::span<const Vector<Dim>> normals_;
   std::span<const SurfaceEdge> edges_;
   const SurfaceOptions& options_;
 };

@@ -41,7 +41,8 @@ struct SurfaceOptions {
 template <int Dim>
 struct ClassifiedFacets {
   std::span<const TaggedFacet<Dim>> facets;
-  std::span<const PatchId> plane_of;  ///< [facet], the same of those of one patch in one plane
+  std::span<const PatchId> plane_of;     ///< [facet], the same of those of one patch in one plane
+  std::span<const Vector<Dim>> normals;  ///< [facet], see wide_normals()
   std::span<const SurfaceEdge> edges;
 };
 

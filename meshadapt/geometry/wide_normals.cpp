@@ -1,0 +1,187 @@
+#include "geometry/wide_normals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "ductile/runtime/parallel_for.hpp"
+#include "geometry/distance.hpp"
+#include "geometry/facet_sides.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+template <int Dim>
+Vector<Dim> unit(const Vector<Dim>& v) {
+  const double length = norm(v);
+  return length > 0 ? (1 / length) * v : Vector<Dim>{};
+}
+
+template <int Dim>
+class WideNormals {
+ public:
+  using Points = std::array<Vector<Dim>, Dim>;
+  using Others = std::array<std::uint32_t, Dim>;
+
+  WideNormals(const Mesh<Dim>& mesh, const std::vector<TaggedFacet<Dim>>& facets,
+              std::span<const Others> beside, const WideNormalOptions& options)
+      : mesh_(mesh), facets_(facets), beside_(beside), options_(options) {}
+
+  Vector<Dim> own(std::uint32_t facet) const { return unit(facet_normal(points(facet))); }
+
+  /// Is it lower than noise may be twice, and does it turn by much at a side?
+  bool may_be_noise(std::uint32_t facet) const {
+    const Points p = points(facet);
+    if (!(norm(altitude(p)) < 2 * options_.tolerance)) return false;
+    const Vector<Dim> normal = unit(facet_normal(p));
+    return std::any_of(beside_[facet].begin(), beside_[facet].end(), [&](std::uint32_t other) {
+      return other != none && sign(facet, other) * dot(normal, own(other)) < options_.least_turn;
+    });
+  }
+
+  /// Of the surface around a facet, if it is smooth.
+  std::optional<Vector<Dim>> around(std::uint32_t facet) const {
+    const std::vector<Place> places = places_around(facet);
+    Vector<Dim> sum;
+    double area = 0;
+    for (const Place& place : places) {
+      sum += place.normal;
+      area += norm(place.normal);
+    }
+    constexpr double least = 0.5;  // three sides of a cube at a corner have more
+    if (!(norm(sum) >= least * area)) return {};
+    const Vector<Dim> normal = unit(sum);
+    if (!(std::abs(dot(altitude(points(facet)), normal)) < options_.tolerance)) return {};
+    for (const Vector<Dim>& across : divisions(normal))
+      if (turns(places, across, area)) return {};
+    return normal;
+  }
+
+ private:
+  struct Place {
+    Vector<Dim> centre;  // from that of the facet in question
+    Vector<Dim> normal;  // as long as the facet is large, and to the same side
+  };
+
+  Points points(std::uint32_t facet) const {
+    const Facet<Dim> corners = outward_corners(mesh_, facets_[facet]);
+    Points p;
+    for (std::size_t i = 0; i < Dim; ++i) p[i] = mesh_.site_of[corners[i]].position;
+    return p;
+  }
+
+  static Vector<Dim> centre(const Points& p) {
+    Vector<Dim> centre;
+    for (const Vector<Dim>& corner : p) centre += (1.0 / Dim) * corner;
+    return centre;
+  }
+
+  /// From the longest side to the corner across, at a right angle; in 2D along the edge.
+  static Vector<Dim> altitude(const Points& p) {
+    if constexpr (Dim == 2) return p[1] - p[0];
+    std::size_t at = 0;
+    const auto side = [&](std::size_t i) { return p[(i + 1) % Dim] - p[i]; };
+    for (std::size_t i = 1; i < Dim; ++i)
+      if (dot(side(i), side(i)) > dot(side(at), side(at))) at = i;
+    const Vector<Dim> along = side(at), to = p[(at + 2) % Dim] - p[at];
+    return to - (dot(to, along) / dot(along, along)) * along;
+  }
+
+  double sign(std::uint32_t f, std::uint32_t g) const {
+    return face_alike(mesh_, facets_[f], facets_[g]) ? 1 : -1;
+  }
+
+  /// Facets that follow each other from one on, as far as they are close to its centre.
+  std::vector<Place> places_around(std::uint32_t facet) const {
+    constexpr double reach = 2;  // of the tolerance
+    constexpr std::size_t most = 400;
+    const Vector<Dim> origin = centre(points(facet));
+    std::vector<std::pair<std::uint32_t, double>> found{{facet, 1}};
+    std::vector<Place> places;
+    const auto is_found = [&](std::uint32_t f) {
+      return std::any_of(found.begin(), found.end(),
+                         [&](const auto& known) { return known.first == f; });
+    };
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const auto [f, side] = found[i];
+      const Points p = points(f);
+      places.push_back({centre(p) - origin, side * facet_normal(p)});
+      for (const std::uint32_t next : beside_[f]) {
+        if (next == none || found.size() == most || is_found(next)) continue;
+        if (norm(closest_point(points(next), origin) - origin) <= reach * options_.tolerance)
+          found.emplace_back(next, side * sign(f, next));
+      }
+    }
+    return places;
+  }
+
+  /// Directions at a right angle to a normal, evenly around it, none opposite to another.
+  static std::vector<Vector<Dim>> divisions(const Vector<Dim>& normal) {
+    if constexpr (Dim == 2) return {{{-normal[1], normal[0]}}};
+    constexpr int count = 8;
+    int least = 0;
+    for (int i = 1; i < Dim; ++i)
+      if (std::abs(normal[i]) < std::abs(normal[least])) least = i;
+    Vector<Dim> axis;
+    axis[least] = 1;
+    std::vector<Vector<Dim>> directions;
+    if constexpr (Dim == 3) {
+      const Vector<3> u = unit(cross(normal, axis)), v = cross(normal, u);
+      for (int i = 0; i < count; ++i) {
+        const double angle = i * std::numbers::pi / count;
+        directions.push_back(std::cos(angle) * u + std::sin(angle) * v);
+      }
+    }
+    return directions;
+  }
+
+  /// Do those ahead of the facet and those behind it, on the mean, turn by much?
+  bool turns(const std::vector<Place>& places, const Vector<Dim>& across, double area) const {
+    constexpr double little = 0.15;  // of the area, which says nothing
+    Vector<Dim> ahead, behind;
+    double ahead_area = 0, behind_area = 0;
+    for (const Place& place : places) {
+      const bool is_ahead = dot(place.centre, across) > 0;
+      (is_ahead ? ahead : behind) += place.normal;
+      (is_ahead ? ahead_area : behind_area) += norm(place.normal);
+    }
+    return std::min(ahead_area, behind_area) > little * area &&
+           dot(ahead, behind) < options_.least_turn * norm(ahead) * norm(behind);
+  }
+
+  const Mesh<Dim>& mesh_;
+  const std::vector<TaggedFacet<Dim>>& facets_;
+  std::span<const Others> beside_;
+  const WideNormalOptions& options_;
+};
+
+}  // namespace
+
+template <int Dim>
+std::vector<Vector<Dim>> wide_normals(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                      const std::vector<TaggedFacet<Dim>>& facets,
+                                      std::span<const std::array<std::uint32_t, Dim>> beside,
+                                      const WideNormalOptions& options) {
+  const WideNormals<Dim> normals(mesh, facets, beside, options);
+  std::vector<Vector<Dim>> normal_of(facets.size());
+  runtime::parallel_for(executor, facets.size(), [&](std::size_t i) {
+    const auto f = static_cast<std::uint32_t>(i);
+    if (normals.may_be_noise(f)) normal_of[f] = normals.around(f).value_or(Vector<Dim>{});
+  });
+  const auto is_own = [](const Vector<Dim>& normal) { return !(dot(normal, normal) > 0); };
+  if (std::all_of(normal_of.begin(), normal_of.end(), is_own)) return {};
+  return normal_of;
+}
+
+template std::vector<Vector<2>> wide_normals<2>(const runtime::Executor&, const Mesh<2>&,
+                                                const std::vector<TaggedFacet<2>>&,
+                                                std::span<const std::array<std::uint32_t, 2>>,
+                                                const WideNormalOptions&);
+template std::vector<Vector<3>> wide_normals<3>(const runtime::Executor&, const Mesh<3>&,
+                                                const std::vector<TaggedFacet<3>>&,
+                                                std::span<const std::array<std::uint32_t, 3>>,
+                                                const WideNormalOptions&);
+
+}  // namespace ductile::meshadapt

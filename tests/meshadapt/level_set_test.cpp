@@ -1,0 +1,192 @@
+/// @file
+/// Adapts meshes whose boundary has thin facets that turn by anything: what is cut out of a grid,
+/// and what steps are lower than the tolerance.
+#include "support/level_set.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/meshadapt/default_metric.hpp"
+#include "support/bits.hpp"
+#include "support/meshes.hpp"
+#include "support/preserved.hpp"
+
+namespace ductile::meshadapt::level_set_test {
+namespace {
+
+using runtime::Executor;
+
+AdaptedMesh adapted(const AnyMesh& mesh, double size, double tolerance, int threads = 2) {
+  AdaptOptions options;
+  options.make.surface_tolerance = tolerance;
+  options.gradation = 1.3;
+  const Executor executor({.threads = threads});
+  AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, size), options);
+  EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
+  EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, tolerance)), "");
+  return result;
+}
+
+/// The lengths of the sides of all triangles.
+std::vector<double> sides(const AnyMesh& mesh) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const auto& corners : mesh.triangles.vertices)
+    for (const std::uint32_t a : corners)
+      for (const std::uint32_t b : corners)
+        if (a < b) edges.emplace(a, b);
+  std::vector<double> lengths;
+  for (const auto& [a, b] : edges)
+    lengths.push_back(norm(test::point<3>(mesh, a) - test::point<3>(mesh, b)));
+  return lengths;
+}
+
+double farthest_from(const AnyMesh& mesh, const test::Level& distance) {
+  double most = 0;
+  for (const auto& corners : mesh.triangles.vertices)
+    for (const std::uint32_t v : corners)
+      most = std::max(most, std::abs(distance(test::point<3>(mesh, v))));
+  return most;
+}
+
+/// Of one sphere five grids make surfaces alike.
+void expect_alike(double least, double noise) {
+  constexpr double size = 0.2, tolerance = 0.01;
+  std::vector<std::size_t> counts;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    const int n = 10 + 2 * static_cast<int>(seed);
+    const AnyMesh mesh = test::cut_out({n, 1.4, seed, least, noise}, test::sphere_level);
+    const AnyMesh result = adapted(mesh, size, tolerance).mesh;
+    counts.push_back(result.triangles.size());
+    const std::vector<double> lengths = sides(result);
+    const auto is_short = [](double length) { return length < 0.3 * size; };
+    EXPECT_LT(std::count_if(lengths.begin(), lengths.end(), is_short), 0.03 * lengths.size());
+    EXPECT_LT(farthest_from(result, test::sphere_level),
+              farthest_from(mesh, test::sphere_level) + 2 * tolerance);
+  }
+  const auto [fewest, most] = std::minmax_element(counts.begin(), counts.end());
+  EXPECT_LT(*most, 1.3 * *fewest);
+  const double equilateral = 0.433 * size * size;
+  EXPECT_LT(*most, 1.3 * 12.57 / equilateral);
+}
+
+TEST(LevelSet, FiveGridsOfASphereGiveAsManyTriangles) { expect_alike(0, 0); }
+TEST(LevelSet, WhereZerosKeepAwayFromVerticesAsMany) { expect_alike(0.05, 0); }
+TEST(LevelSet, WhereTheyAreOffAtRandomAsMany) { expect_alike(0, 0.02); }
+
+TEST(LevelSet, GivesTheSameBytesAtEachThreadCount) {
+  const AnyMesh mesh = test::cut_out({10, 1.5, 7, 0.03, 0.01}, test::torus_level);
+  const AdaptedMesh first = adapted(mesh, 0.3, 0.02, 1);
+  for (const int threads : {2, 3, 4, 8}) {
+    const AdaptedMesh other = adapted(mesh, 0.3, 0.02, threads);
+    EXPECT_EQ(test::bits(first.mesh.coordinates), test::bits(other.mesh.coordinates));
+    EXPECT_EQ(first.mesh.tetrahedra.vertices, other.mesh.tetrahedra.vertices);
+  }
+}
+
+TEST(LevelSet, RandomGridsStayValid) {
+  test::Random random(5);
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto& level = seed % 3 == 0   ? test::torus_level
+                        : seed % 3 == 1 ? test::gyroid_level
+                                        : test::cube_level;
+    const test::LevelGrid grid{8 + static_cast<int>(test::below(random, 5)),
+                               seed % 3 == 1 ? 0.5 : 1.6, seed, test::uniform(random, 0, 0.1),
+                               test::uniform(random, 0, 0.1)};
+    const double cell = 2 * grid.extent / grid.n;
+    adapted(test::cut_out(grid, level), test::uniform(random, 1, 3) * cell,
+            test::uniform(random, 0.02, 0.3) * cell);
+  }
+}
+
+// ---- What stays ----
+
+double volume(const AnyMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c, d] : mesh.tetrahedra.vertices) {
+    const auto at = [&](std::uint32_t v) { return test::point<3>(mesh, v); };
+    sum += std::abs(dot(cross(at(b) - at(a), at(c) - at(a)), at(d) - at(a))) / 6;
+  }
+  return sum;
+}
+
+/// Of a grid, all triangles with reference 1.
+AnyMesh in_one_piece(const test::Grid& grid) {
+  AnyMesh mesh = test::make_grid(grid);
+  std::fill(mesh.triangles.reference.begin(), mesh.triangles.reference.end(), 1);
+  return mesh;
+}
+
+/// The length of the triangles' sides that lie on the edges of the unit cube, each once.
+double length_on_edges(const AnyMesh& mesh) {
+  const auto on_edge = [](const Vector<3>& p) {
+    const auto ends =
+        std::count_if(p.x.begin(), p.x.end(), [](double x) { return x == 0 || x == 1; });
+    return ends >= 2;
+  };
+  std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
+  double sum = 0;
+  for (const auto& corners : mesh.triangles.vertices)
+    for (const std::uint32_t a : corners)
+      for (const std::uint32_t b : corners) {
+        const Vector<3> p = test::point<3>(mesh, a), q = test::point<3>(mesh, b);
+        if (a < b && on_edge(p) && on_edge(q) && on_edge(0.5 * (p + q)) &&
+            seen.emplace(a, b).second)
+          sum += norm(q - p);
+      }
+  return sum;
+}
+
+/// Its sides are rough by less than the tolerance, where thin facets turn by 60 degrees.
+TEST(LevelSet, ARoughCubeKeepsItsEdges) {
+  test::Grid grid;
+  grid.dimension = 3;
+  for (auto& lines : grid.lines) lines = {0, 0.25, 0.252, 0.5, 0.502, 0.75, 0.752, 1};
+  grid.region = test::whole;
+  AnyMesh mesh = in_one_piece(grid);
+  test::Random random(3);
+  for (double* p = mesh.coordinates.data(); p < mesh.coordinates.data() + mesh.coordinates.size();
+       p += 3) {
+    const auto at_end = [](double x) { return x == 0 || x == 1; };
+    if (std::count_if(p, p + 3, at_end) == 1)
+      *std::find_if(p, p + 3, at_end) += test::uniform(random, -0.002, 0.002);
+  }
+  const AnyMesh result = adapted(mesh, 0.3, 0.01).mesh;
+  EXPECT_NEAR(length_on_edges(result), 12, 1e-9);
+  EXPECT_LT(result.triangles.size(), 0.7 * mesh.triangles.size());
+  EXPECT_NEAR(volume(result), 1, 0.01);
+}
+
+TEST(LevelSet, AThinPlateKeepsItsRim) {
+  for (const double thickness : {0.001, 0.01, 0.04}) {
+    test::Grid grid = test::unit_grid(3, 6);
+    grid.lines[2] = {0, thickness};
+    const AnyMesh mesh = in_one_piece(grid);
+    EXPECT_NEAR(volume(adapted(mesh, 0.5, 0.02).mesh), thickness, 1e-9);
+  }
+}
+
+/// Four terraces on a block.
+AnyMesh terraces(double step) {
+  test::Grid grid = test::unit_grid(3, 8);
+  grid.lines[2] = {0, 0.25, 0.5, 0.5 + step};
+  grid.region = [](const test::Cell& cell) { return cell[2] == 2 && cell[0] % 2 == 0 ? 0 : 1; };
+  return in_one_piece(grid);
+}
+
+TEST(LevelSet, StepsHigherThanTheToleranceStay) {
+  constexpr double tolerance = 0.02;
+  EXPECT_NEAR(volume(adapted(terraces(0.03), 0.5, tolerance).mesh), 0.515, 1e-9);
+  EXPECT_NEAR(volume(adapted(terraces(0.01), 0.5, tolerance).mesh), 0.505, tolerance);
+}
+
+}  // namespace
+}  // namespace ductile::meshadapt::level_set_test
