@@ -7,31 +7,25 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/bends.hpp"
+#include "geometry/curve_bend.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
 
-/// By how much a metric has to be multiplied so that it measures no less than a tensor.
-template <int Dim>
-double excess(const Metric<Dim>& tensor, const Metric<Dim>& metric) {
-  const PrincipalAxes<Dim> axes = principal_axes(metric);
-  Metric<Dim> seen;  // the tensor where the metric is the unit tensor
-  std::size_t at = 0;
-  for (std::size_t j = 0; j < Dim; ++j)
-    for (std::size_t i = 0; i <= j; ++i)
-      seen.m[at++] = dot(axes.vector[i], product(tensor, axes.vector[j])) /
-                     std::sqrt(axes.value[i] * axes.value[j]);
-  const auto values = principal_axes(seen).value;
-  return *std::max_element(values.begin(), values.end());
-}
-
 template <int Dim>
 double largest_value(const Metric<Dim>& tensor) {
   const auto values = principal_axes(tensor).value;
   return *std::max_element(values.begin(), values.end());
+}
+
+template <int Dim>
+double smallest_value(const Metric<Dim>& tensor) {
+  const auto values = principal_axes(tensor).value;
+  return *std::min_element(values.begin(), values.end());
 }
 
 /// No less than the largest of the absolute eigenvalues.
@@ -97,7 +91,7 @@ class Surroundings {
           is_enough(largest_value(absolute(curvature)), distance))
         break;
     }
-    return sizes(absolute(curvature));
+    return sizes(curvature);
   }
 
  private:
@@ -140,22 +134,38 @@ class Surroundings {
     return curvature * distance * distance >= 8 * tolerance_ * chords * chords;
   }
 
-  /// Not smaller than the flat parts around: to divide these brings nothing closer.
-  Metric<Dim> sizes(Metric<Dim> curvature) const {
-    const double most = largest_value(curvature);
+  /// Chords in the directions in which it bends most and least, and across the surface as in the
+  /// first.
+  Metric<Dim> sizes(const Metric<Dim>& curvature) const {
+    PrincipalAxes<Dim> axes = principal_axes(curvature);
+    double most = 0;
+    for (double& value : axes.value) most = std::max(most, value = std::abs(value));
     if (!(most > 0)) return {};
-    const double chord = std::sqrt(8 * tolerance_ / most);
+    const double near = std::sqrt(8 * tolerance_ / most) / 2;
+    std::size_t across = 0;
+    for (std::size_t i = 0; i < Dim; ++i) {
+      const double size =
+          std::max(std::sqrt(8 * tolerance_ / axes.value[i]), least_size(axes.vector[i], near));
+      axes.value[i] = 1 / (size * size);
+      if (std::abs(dot(axes.vector[i], normal_)) > std::abs(dot(axes.vector[across], normal_)))
+        across = i;
+    }
+    axes.value[across] = 0;
+    axes.value[across] = *std::max_element(axes.value.begin(), axes.value.end());
+    return compose(axes);
+  }
+
+  /// In a direction, that of the flat parts around: to divide these brings nothing closer.
+  double least_size(const Vector<Dim>& direction, double near) const {
     double least = 2 * tolerance_;
-    for (const auto& [distance, node] : found_)
-      if (distance <= chord / 2 || found_.size() < 8) {
-        least = std::max(least, bends_.nodes[node].width);
-        const auto& [offset, neighbour] = bends_.next;
-        for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
-          least = std::max(least, norm(position(neighbour[i]) - position(node)));
-      }
-    const double scale = std::min(1.0, chord / least);
-    curvature *= scale * scale / (8 * tolerance_);
-    return curvature;
+    for (const auto& [distance, node] : found_) {
+      if (distance > near && found_.size() >= 8) continue;
+      least = std::max(least, bends_.nodes[node].width);
+      const auto& [offset, neighbour] = bends_.next;
+      for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
+        least = std::max(least, std::abs(dot(position(neighbour[i]) - position(node), direction)));
+    }
+    return least;
   }
 
   const Mesh<Dim>& mesh_;
@@ -167,35 +177,68 @@ class Surroundings {
   Vector<Dim> normal_, origin_;
 };
 
-}  // namespace
+/// The metric made as fine as a tensor, which may ask for nothing in some directions.
+template <int Dim>
+Metric<Dim> bounded(const Metric<Dim>& metric, const Metric<Dim>& tensor) {
+  const double least = smallest_value(metric);
+  PrincipalAxes<Dim> axes = principal_axes(tensor);
+  bool binds = false;
+  for (double& value : axes.value) {
+    if (!std::isfinite(value)) return metric;
+    binds = binds || value > least;
+    value = std::max(value, least);
+  }
+  return binds ? intersect(metric, compose(axes)) : metric;
+}
 
 template <int Dim>
-void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
-                        std::vector<Metric<Dim>>& metric_of) {
+void bound_on_patches(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
+                      std::vector<Metric<Dim>>& metric_of) {
   constexpr double flat = 0.02;  // of the tolerance: a tenth of the longest chord on an arc
   const Bends<Dim> bends(executor, mesh, flat * tolerance);
   const auto& nodes = bends.nodes;
-  std::vector<double> factor_of(nodes.size(), 1);
+  std::vector<Metric<Dim>> sizes_of(nodes.size());
   const std::size_t block_size = std::max<std::size_t>(1024, nodes.size() / 64);
   runtime::parallel_for_blocks(
       executor, nodes.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
         Surroundings<Dim> surroundings(mesh, bends, tolerance);
         for (std::size_t n = begin; n < end; ++n) {
           if (ends_across(nodes[n])) continue;
-          const Metric<Dim>& metric = metric_of[nodes[n].vertex];
-          const auto values = principal_axes(metric).value;
-          const double largest = 1 / std::sqrt(*std::min_element(values.begin(), values.end()));
-          const auto sizes = surroundings.sizes_at(static_cast<std::uint32_t>(n), largest);
-          const double factor = excess(sizes, metric);
-          if (factor > 1 && std::isfinite(factor)) factor_of[n] = factor;
+          const double largest = 1 / std::sqrt(smallest_value(metric_of[nodes[n].vertex]));
+          sizes_of[n] = surroundings.sizes_at(static_cast<std::uint32_t>(n), largest);
         }
       });
-  std::vector<double> most(metric_of.size(), 1);
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    most[nodes[n].vertex] = std::max(most[nodes[n].vertex], factor_of[n]);
+  for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
+    while (end < nodes.size() && nodes[end].patch == nodes[begin].patch) ++end;
+    runtime::parallel_for(executor, end - begin, [&](std::size_t i) {
+      Metric<Dim>& metric = metric_of[nodes[begin + i].vertex];  // once in each patch
+      metric = bounded(metric, sizes_of[begin + i]);
+    });
+  }
+}
+
+void bound_on_curves(const runtime::Executor&, const Mesh<2>&, double, std::vector<Metric<2>>&) {}
+void bound_on_curves(const runtime::Executor& executor, const Mesh<3>& mesh, double tolerance,
+                     std::vector<Metric<3>>& metric_of) {
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    if (most[v] > 1) metric_of[v] *= most[v];
+    const auto vertex = static_cast<VertexId>(v);
+    if (mesh.kind_of[v].freedom > 1 || !mesh.vertex_alive(vertex)) return;
+    for (const CurveLink& link : mesh.links_of.of(vertex)) {
+      if (!mesh.curves[link.curve].smooth) continue;
+      const double largest = 1 / std::sqrt(smallest_value(metric_of[v]));
+      metric_of[v] =
+          bounded(metric_of[v], CurveBend(mesh, vertex, link.curve).sizes(tolerance, largest));
+    }
   });
+}
+
+}  // namespace
+
+template <int Dim>
+void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
+                        std::vector<Metric<Dim>>& metric_of) {
+  bound_on_patches(executor, mesh, tolerance, metric_of);
+  bound_on_curves(executor, mesh, tolerance, metric_of);
 }
 
 template void bound_curved_sizes(const runtime::Executor&, const Mesh<2>&, double,
