@@ -10,6 +10,7 @@
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/bends.hpp"
+#include "geometry/curvature_fit.hpp"
 #include "geometry/curve_bend.hpp"
 
 namespace ductile::meshadapt {
@@ -17,49 +18,9 @@ namespace ductile::meshadapt {
 namespace {
 
 template <int Dim>
-double largest_value(const Metric<Dim>& tensor) {
-  const auto values = principal_axes(tensor).value;
-  return *std::max_element(values.begin(), values.end());
-}
-
-template <int Dim>
 double smallest_value(const Metric<Dim>& tensor) {
   const auto values = principal_axes(tensor).value;
   return *std::min_element(values.begin(), values.end());
-}
-
-/// No less than the largest of the absolute eigenvalues.
-template <int Dim>
-double frobenius_norm(const Metric<Dim>& tensor) {
-  double sum = 0;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) sum += tensor(i, j) * tensor(i, j);
-  return std::sqrt(sum);
-}
-
-/// A tensor after the least rotation that takes one unit vector to another, not the opposite one.
-template <int Dim>
-Metric<Dim> turned(const Metric<Dim>& tensor, const Vector<Dim>& from, const Vector<Dim>& to) {
-  const Vector<Dim> sum = from + to;
-  const double scale = 1 / (1 + dot(from, to));
-  std::array<Vector<Dim>, Dim> axis;  // where each comes from
-  for (int i = 0; i < Dim; ++i) {
-    axis[static_cast<std::size_t>(i)][i] = 1;
-    axis[static_cast<std::size_t>(i)] += 2 * to[i] * from - (scale * sum[i]) * sum;
-  }
-  Metric<Dim> result;
-  std::size_t at = 0;
-  for (std::size_t j = 0; j < Dim; ++j) {
-    const Vector<Dim> seen = product(tensor, axis[j]);
-    for (std::size_t i = 0; i <= j; ++i) result.m[at++] = dot(axis[i], seen);
-  }
-  return result;
-}
-
-/// Is it at a rim that bends nowhere itself, as at the end of an arc?
-template <int Dim>
-bool ends_across(const BendNode<Dim>& node) {
-  return node.at_rim && frobenius_norm(node.turn) <= 1e-7 * std::pow(node.area, (Dim - 2) / 2.0);
 }
 
 /// How a smooth patch bends around a node, up to a distance to which chords stay close to it.
@@ -74,11 +35,10 @@ class Surroundings {
   Metric<Dim> sizes_at(std::uint32_t node, double reach) {
     front_.clear();
     found_.clear();
-    interior_ = at_rim_ = {};
-    normal_ = bends_.nodes[node].normal;
     origin_ = position(node);
+    bend_ = CurvatureFit<Dim>(bends_.nodes[node].normal);
     see(node, node);
-    Metric<Dim> curvature;
+    PrincipalAxes<Dim> curvature = bend_.curvature();
     for (double distance = 0; !front_.empty() && found_.size() < most_nodes;) {
       std::pop_heap(front_.begin(), front_.end(), farther);
       const auto [away, nearest] = front_.back();
@@ -86,10 +46,8 @@ class Surroundings {
       distance = away;
       if (distance > reach) break;
       take(node, nearest, distance);
-      curvature = (interior_.area > 0 ? interior_ : at_rim_).curvature();
-      if (is_enough(frobenius_norm(curvature), distance) &&
-          is_enough(largest_value(absolute(curvature)), distance))
-        break;
+      curvature = bend_.curvature();
+      if (found_.size() > fewest_nodes && is_enough(largest(curvature), distance)) break;
     }
     return sizes(curvature);
   }
@@ -97,14 +55,11 @@ class Surroundings {
  private:
   /// What so many vertices say is not better for more.
   static constexpr std::size_t most_nodes = 100;
+  /// So many beside the node give directions.
+  static constexpr std::size_t fewest_nodes = Dim == 2 ? 2 : 6;
   /// Of chords as long as may be, up to where the surface is looked at from their ends: where
   /// edges are as long, this reaches the next vertices, among which what bends to and fro cancels.
   static constexpr double chords = 1.25;
-  struct Part {
-    Metric<Dim> turn;
-    double area = 0;
-    Metric<Dim> curvature() const { return area > 0 ? (1 / area) * turn : turn; }
-  };
   using Place = std::pair<double, std::uint32_t>;  // distance, node
 
   static bool farther(const Place& a, const Place& b) { return a > b; }
@@ -121,10 +76,7 @@ class Surroundings {
   void take(std::uint32_t from, std::uint32_t node, double distance) {
     found_.emplace_back(distance, node);
     const BendNode<Dim>& found = bends_.nodes[node];
-    Part& part = found.at_rim ? at_rim_ : interior_;
-    const double side = dot(found.normal, normal_) < 0 ? -1 : 1;
-    part.turn += side * turned(found.turn, side * found.normal, normal_);
-    part.area += found.area;
+    bend_.add(position(node) - origin_, found.normal, found.area);
     const auto& [offset, neighbour] = bends_.next;
     for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i) see(from, neighbour[i]);
   }
@@ -134,24 +86,23 @@ class Surroundings {
     return curvature * distance * distance >= 8 * tolerance_ * chords * chords;
   }
 
-  /// Chords in the directions in which it bends most and least, and across the surface as in the
-  /// first.
-  Metric<Dim> sizes(const Metric<Dim>& curvature) const {
-    PrincipalAxes<Dim> axes = principal_axes(curvature);
-    double most = 0;
-    for (double& value : axes.value) most = std::max(most, value = std::abs(value));
+  static double largest(const PrincipalAxes<Dim>& axes) {
+    return *std::max_element(axes.value.begin(), axes.value.end());
+  }
+
+  /// Chords in the directions in which it bends most and least; across the surface, the first axis,
+  /// as in the direction in which it bends most.
+  Metric<Dim> sizes(PrincipalAxes<Dim> axes) const {
+    const double most = largest(axes);
     if (!(most > 0)) return {};
     const double near = std::sqrt(8 * tolerance_ / most) / 2;
-    std::size_t across = 0;
-    for (std::size_t i = 0; i < Dim; ++i) {
+    axes.value[0] = 0;
+    for (std::size_t i = 1; i < Dim; ++i) {
       const double size =
           std::max(std::sqrt(8 * tolerance_ / axes.value[i]), least_size(axes.vector[i], near));
       axes.value[i] = 1 / (size * size);
-      if (std::abs(dot(axes.vector[i], normal_)) > std::abs(dot(axes.vector[across], normal_)))
-        across = i;
+      axes.value[0] = std::max(axes.value[0], axes.value[i]);
     }
-    axes.value[across] = 0;
-    axes.value[across] = *std::max_element(axes.value.begin(), axes.value.end());
     return compose(axes);
   }
 
@@ -173,8 +124,8 @@ class Surroundings {
   double tolerance_;
   std::vector<std::uint32_t> seen_;  // [node], from which it was seen last
   std::vector<Place> front_, found_;
-  Part interior_, at_rim_;
-  Vector<Dim> normal_, origin_;
+  CurvatureFit<Dim> bend_;
+  Vector<Dim> origin_;
 };
 
 /// The metric made as fine as a tensor, which may ask for nothing in some directions.
@@ -203,7 +154,6 @@ void bound_on_patches(const runtime::Executor& executor, const Mesh<Dim>& mesh, 
       executor, nodes.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
         Surroundings<Dim> surroundings(mesh, bends, tolerance);
         for (std::size_t n = begin; n < end; ++n) {
-          if (ends_across(nodes[n])) continue;
           const double largest = 1 / std::sqrt(smallest_value(metric_of[nodes[n].vertex]));
           sizes_of[n] = surroundings.sizes_at(static_cast<std::uint32_t>(n), largest);
         }
