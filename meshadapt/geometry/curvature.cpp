@@ -114,9 +114,15 @@ class Surroundings {
       least = std::max(least, bends_.nodes[node].width);
       const auto& [offset, neighbour] = bends_.next;
       for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
-        least = std::max(least, std::abs(dot(position(neighbour[i]) - position(node), direction)));
+        least = std::max(least, extent(position(neighbour[i]) - position(node), direction));
     }
     return least;
+  }
+
+  /// The length of an edge that goes about in a direction; of another one, how far it goes in it.
+  static double extent(const Vector<Dim>& edge, const Vector<Dim>& direction) {
+    const double length = norm(edge), along = std::abs(dot(edge, direction));
+    return along > length / 2 ? length : along;
   }
 
   const Mesh<Dim>& mesh_;
