@@ -23,17 +23,18 @@ class CurveBend {
   /// A tensor in which edges of the curve that stay within a tolerance of it have length 1, and
   /// those at right angles to it in the plane in which it bends; 0 across that plane. The curvature
   /// is that of the arc with 1.25 chords to either side, or with as much as there is within
-  /// `reach`. Sizes are not smaller than the edges there, or twice the tolerance.
+  /// `reach`. Sizes are not smaller than the edges there, at least two to each
+  /// side, or twice the tolerance.
   Metric<3> sizes(double tolerance, double reach) {
     constexpr double chords = 1.25;  // as on patches
-    constexpr int most_steps = 100;
+    constexpr int fewest_steps = 2, most_steps = 100;
     double curvature = 0;
     for (int step = 0; step < most_steps; ++step) {
       curvature = length() > 0 ? turn() / length() : 0;
       const double distance = follows_both() ? length() / 2 : length();
-      if (curvature * distance * distance >= 8 * tolerance * chords * chords || distance > reach ||
-          !extend())
-        break;
+      const bool enough = step >= fewest_steps &&
+                          curvature * distance * distance >= 8 * tolerance * chords * chords;
+      if (enough || distance > reach || !extend()) break;
     }
     if (!(curvature > 0)) return {};
     const double size =
@@ -55,14 +56,15 @@ class CurveBend {
     Side& side = side_of_[side_count_++];
     side = {none, start_, {}, 0, 0};
     go(side, to);
-    longest_edge_ = std::max(longest_edge_, side.length);
     first_[side_count_ - 1] = side.direction;
+    first_length_ = side.last;
   }
 
-  void go(Side& side, VertexId to) const {
+  void go(Side& side, VertexId to) {
     const Vector<3> edge = position(to) - position(side.at);
     side.last = norm(edge);
     side.length += side.last;
+    longest_edge_ = std::max(longest_edge_, side.last);
     side.direction = (1 / side.last) * edge;
     side.before = side.at;
     side.at = to;
@@ -78,7 +80,7 @@ class CurveBend {
     return false;
   }
 
-  bool extend(Side& side) const {
+  bool extend(Side& side) {
     const VertexId other = follows_both() ? side_of_[&side == &side_of_[0] ? 1 : 0].at : start_;
     if (side.at == other) return false;  // all around
     VertexId next = none;
@@ -97,7 +99,7 @@ class CurveBend {
   double length() const {
     double sum = 0;
     for (std::size_t i = 0; i < side_count_; ++i) sum += side_of_[i].length - side_of_[i].last / 2;
-    return follows_both() ? sum : side_of_[0].length - (side_of_[0].last + longest_edge_) / 2;
+    return follows_both() ? sum : side_of_[0].length - (side_of_[0].last + first_length_) / 2;
   }
   Vector<3> change() const {
     return follows_both() ? side_of_[0].direction + side_of_[1].direction
@@ -124,7 +126,8 @@ class CurveBend {
   std::array<Side, 2> side_of_;
   std::array<Vector<3>, 2> first_;  // the directions of the first edges
   std::size_t side_count_ = 0;
-  double longest_edge_ = 0;  // of those at the vertex
+  double longest_edge_ = 0;  // of those that were followed
+  double first_length_ = 0;  // of the only side, its first edge
 };
 
 }  // namespace ductile::meshadapt
