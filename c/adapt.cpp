@@ -38,6 +38,8 @@ Type type_of(int components, int dimension) {
 
 AnyField metric_of(const AnyMesh& mesh, int components, const double* values,
                    const ductile_options& options) {
+  if (values == nullptr && options.adapt.curved_sizes)
+    return meshadapt::coarsest_metric(mesh, options.adapt.largest_size);
   if (values == nullptr)
     return meshadapt::default_metric(runtime::Executor(options.executor), mesh);
   const Type type = type_of(components, mesh.dimension);

@@ -120,7 +120,7 @@ void ductile_options_destroy(ductile_options* options);
 
 /** Sets one by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hgradreq",
  * "hausd", "ar", "iterations", "threads", "memory" in megabytes, "elements", "norm"; "nomove",
- * "noswap", "noinsert", "nosurf", "thorough" and "racing", which are 0 or 1. */
+ * "noswap", "noinsert", "nosurf", "A", "thorough" and "racing", which are 0 or 1. */
 int ductile_options_set(ductile_options* options, const char* name, double value);
 
 /** Called after each step of the adaptation, on the thread that called ductile_adapt(): the step's

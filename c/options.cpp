@@ -42,12 +42,13 @@ struct Named {
 using Options = ductile_options;
 using Text = std::string;
 
-constexpr std::array<Named, 17> all_options{{
+constexpr std::array<Named, 18> all_options{{
     {"hmin", [](Options& o, const Text&, double x) { o.adapt.smallest_size = x; }},
     {"hmax", [](Options& o, const Text&, double x) { o.adapt.largest_size = x; }},
     {"hgrad", [](Options& o, const Text&, double x) { o.adapt.gradation = x; }},
     {"hgradreq", [](Options& o, const Text&, double x) { o.adapt.required_gradation = x; }},
     {"hausd", [](Options& o, const Text&, double x) { o.adapt.make.surface_tolerance = x; }},
+    {"A", [](Options& o, const Text& n, double x) { o.adapt.curved_sizes = flag(n, x); }},
     {"ar", [](Options& o, const Text&, double x) { o.adapt.make.ridge_angle = x; }},
     {"iterations",
      [](Options& o, const Text& n, double x) { o.adapt.iterations = whole(n, x, 0, 1000); }},

@@ -39,7 +39,7 @@ using meshadapt::AnyMesh;
 using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 
-constexpr std::array<Option, 31> own_options{{
+constexpr std::array<Option, 32> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
@@ -62,6 +62,8 @@ constexpr std::array<Option, 31> own_options{{
     {"-hausd", "X", "lets curved boundaries be up to X from where they were (default: not at all)"},
     {"-geometry", "FILE",
      "with -hausd: they are up to X from the boundaries in FILE, a mesh, not from where they were"},
+    {"-A", "",
+     "with -hausd: sizes from how boundaries are curved, up to -hmax, growing by -hgrad (1.3)"},
     {"-ar", "DEG",
      "with -hausd, edges that turn by DEG degrees are ridges, which stay (default: 45)"},
     {"-v", "N", "0 says nothing, 1 (default) sums up, 2 says more", "--verbose"},
@@ -140,6 +142,7 @@ void set_sizes(Job& job, const Arguments& arguments) {
     if (arguments.has(option)) given.emplace_back(option);
   };
   add("-optim");
+  add("-A");
   if (job.places.any()) add("-f");
   if (!job.places.any()) add("-hsiz");
   add("-sol");
@@ -148,6 +151,10 @@ void set_sizes(Job& job, const Arguments& arguments) {
   if (given.size() > 1)
     throw UsageError("options " + given[0] + " and " + given[1] +
                      ": expected one of them, found both");
+  if (arguments.has("-A") && !arguments.has("-hausd"))
+    throw UsageError(
+        "option -A: expected -hausd, which says how far from curved boundaries edges may be, found "
+        "none");
   if (given.empty()) job.metric_in = metric_beside(job.input);
 }
 
@@ -184,6 +191,8 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   if (adapt.largest_size > 0 && adapt.smallest_size > adapt.largest_size)
     throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
   adapt.gradation = gradation_of(arguments, "-hgrad");
+  adapt.curved_sizes = arguments.has("-A");
+  if (adapt.gradation == 0 && arguments.has("-hgrad")) adapt.gradation = -1;
   if (!arguments.has("-nosizreq")) adapt.required_gradation = gradation_of(arguments, "-hgradreq");
   adapt.thorough = arguments.has("--thorough");
   adapt.by_colours = arguments.has("--by-colours");
@@ -250,6 +259,7 @@ AnyField choose_metric(const Executor& executor, const Job& job,
   const meshadapt::SizeBounds bounds{job.adapt.smallest_size, job.adapt.largest_size};
   if (job.places.any())
     return meshadapt::metric_of(meshadapt::size_field(executor, mesh, sizes), mesh, bounds);
+  if (job.adapt.curved_sizes) return meshadapt::coarsest_metric(mesh, job.adapt.largest_size);
   if (job.size) return meshadapt::constant_metric(mesh, *job.size);
   if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings, bounds);
   if (const auto metric = metric_in(file); metric && !job.keep_sizes)

@@ -10,6 +10,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "geometry/surface.hpp"
 
 namespace ductile::meshadapt {
 
@@ -46,8 +47,8 @@ class BendsMaker {
     find_nodes();
     find_sides();
     for (const Facet& facet : facets_) add_facet(facet);
-    for (BendNode<Dim>& node : nodes_) node.normal = unit(node.normal);
-    for (std::size_t i = 0; i < sides_.size();) i = add_side(i);
+    take_normals();
+    for (std::size_t i = 0; i < sides_.size();) i = join(i);
     find_widths(flat);
     connect();
   }
@@ -133,19 +134,19 @@ class BendsMaker {
     runtime::parallel_sort(executor_, std::span(sides_));
   }
 
-  /// What the facets at the side that begins here do there. Returns where the next one begins.
-  std::size_t add_side(std::size_t begin) {
+  /// The facets at the side that begins here go on in each other, if it does not keep them apart.
+  /// Returns where the next one begins.
+  std::size_t join(std::size_t begin) {
     std::size_t end = begin + 1;
     const auto is_same = [&](const Side& s) {
       return s.low == sides_[begin].low && s.high == sides_[begin].high;
     };
     while (end < sides_.size() && is_same(sides_[end])) ++end;
     const Side& f = sides_[begin];
-    if (end - begin == 2 && !is_fixed(f)) {
-      add_bend(f, sides_[begin + 1]);
-    } else {
-      nodes_[f.low].at_rim = nodes_[f.high].at_rim = true;
-    }
+    if (end - begin != 2 || is_fixed(f)) return end;
+    const Side& g = sides_[begin + 1];
+    facets_[f.facet].across[f.opposite] = g.facet;
+    facets_[g.facet].across[g.opposite] = f.facet;
     return end;
   }
 
@@ -156,35 +157,25 @@ class BendsMaker {
     return mesh_.curve_of(a, b) != 0;
   }
 
-  /// From a side into its facet, a unit vector at a right angle.
-  Vector<Dim> inwards(const Side& side) const {
-    const Vector<Dim> a = at(nodes_[side.low].vertex), b = at(nodes_[side.high].vertex);
-    const Vector<Dim> to = at(facets_[side.facet].vertex[side.opposite]) - a;
-    const Vector<Dim> along = unit(b - a);
-    return unit(to - dot(to, along) * along);
-  }
-
-  void add_bend(const Side& f, const Side& g) {
-    facets_[f.facet].across[f.opposite] = g.facet;
-    facets_[g.facet].across[g.opposite] = f.facet;
-    const Vector<Dim> u = inwards(f), v = inwards(g), towards = u + v;
-    const double turn = 2 * std::asin(std::min(1.0, norm(towards) / 2));
-    const double length =
-        Dim == 2 ? 1 : norm(at(nodes_[f.high].vertex) - at(nodes_[f.low].vertex)) / 2;
-    const Metric<Dim> across = square(turn * length, u - v);
-    const Vector<Dim> direction = unit(towards);
-    for (const std::uint32_t node : {f.low, f.high}) {
-      nodes_[node].turn += std::copysign(1.0, dot(direction, nodes_[node].normal)) * across;
-      if (Dim == 2) break;  // one and the same
-    }
-  }
-
   void add_facet(const Facet& facet) {
     for (const std::uint32_t n : facet.node) {
       nodes_[n].area += facet.area / corners;
       const double side = dot(facet.normal, nodes_[n].normal) < 0 ? -1 : 1;
       nodes_[n].normal += side * facet.normal;
     }
+  }
+
+  void take_normals() {
+    constexpr double reach = 4;  // of the tolerance
+    runtime::parallel_for(executor_, nodes_.size(), [&](std::size_t n) {
+      BendNode<Dim>& node = nodes_[n];
+      node.normal = unit(node.normal);
+      const auto& model = mesh_.surface->facets;
+      const auto nearest = model.nearest_on(at(node.vertex), mesh_.patches[node.patch].sheet,
+                                            reach * model.tolerance());
+      if (nearest && std::abs(dot(nearest->direction, node.normal)) > 0.5)
+        node.normal = nearest->direction;
+    });
   }
 
   // ---- Flat parts: each grows from its largest facet ----

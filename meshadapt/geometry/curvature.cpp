@@ -7,65 +7,20 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/bends.hpp"
+#include "geometry/curvature_fit.hpp"
+#include "geometry/curve_bend.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
 
-/// By how much a metric has to be multiplied so that it measures no less than a tensor.
 template <int Dim>
-double excess(const Metric<Dim>& tensor, const Metric<Dim>& metric) {
-  const PrincipalAxes<Dim> axes = principal_axes(metric);
-  Metric<Dim> seen;  // the tensor where the metric is the unit tensor
-  std::size_t at = 0;
-  for (std::size_t j = 0; j < Dim; ++j)
-    for (std::size_t i = 0; i <= j; ++i)
-      seen.m[at++] = dot(axes.vector[i], product(tensor, axes.vector[j])) /
-                     std::sqrt(axes.value[i] * axes.value[j]);
-  const auto values = principal_axes(seen).value;
-  return *std::max_element(values.begin(), values.end());
-}
-
-template <int Dim>
-double largest_value(const Metric<Dim>& tensor) {
+double smallest_value(const Metric<Dim>& tensor) {
   const auto values = principal_axes(tensor).value;
-  return *std::max_element(values.begin(), values.end());
-}
-
-/// No less than the largest of the absolute eigenvalues.
-template <int Dim>
-double frobenius_norm(const Metric<Dim>& tensor) {
-  double sum = 0;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) sum += tensor(i, j) * tensor(i, j);
-  return std::sqrt(sum);
-}
-
-/// A tensor after the least rotation that takes one unit vector to another, not the opposite one.
-template <int Dim>
-Metric<Dim> turned(const Metric<Dim>& tensor, const Vector<Dim>& from, const Vector<Dim>& to) {
-  const Vector<Dim> sum = from + to;
-  const double scale = 1 / (1 + dot(from, to));
-  std::array<Vector<Dim>, Dim> axis;  // where each comes from
-  for (int i = 0; i < Dim; ++i) {
-    axis[static_cast<std::size_t>(i)][i] = 1;
-    axis[static_cast<std::size_t>(i)] += 2 * to[i] * from - (scale * sum[i]) * sum;
-  }
-  Metric<Dim> result;
-  std::size_t at = 0;
-  for (std::size_t j = 0; j < Dim; ++j) {
-    const Vector<Dim> seen = product(tensor, axis[j]);
-    for (std::size_t i = 0; i <= j; ++i) result.m[at++] = dot(axis[i], seen);
-  }
-  return result;
-}
-
-/// Is it at a rim that bends nowhere itself, as at the end of an arc?
-template <int Dim>
-bool ends_across(const BendNode<Dim>& node) {
-  return node.at_rim && frobenius_norm(node.turn) <= 1e-7 * std::pow(node.area, (Dim - 2) / 2.0);
+  return *std::min_element(values.begin(), values.end());
 }
 
 /// How a smooth patch bends around a node, up to a distance to which chords stay close to it.
@@ -80,11 +35,10 @@ class Surroundings {
   Metric<Dim> sizes_at(std::uint32_t node, double reach) {
     front_.clear();
     found_.clear();
-    interior_ = at_rim_ = {};
-    normal_ = bends_.nodes[node].normal;
     origin_ = position(node);
+    bend_ = CurvatureFit<Dim>(bends_.nodes[node].normal);
     see(node, node);
-    Metric<Dim> curvature;
+    PrincipalAxes<Dim> curvature = bend_.curvature();
     for (double distance = 0; !front_.empty() && found_.size() < most_nodes;) {
       std::pop_heap(front_.begin(), front_.end(), farther);
       const auto [away, nearest] = front_.back();
@@ -92,25 +46,20 @@ class Surroundings {
       distance = away;
       if (distance > reach) break;
       take(node, nearest, distance);
-      curvature = (interior_.area > 0 ? interior_ : at_rim_).curvature();
-      if (is_enough(frobenius_norm(curvature), distance) &&
-          is_enough(largest_value(absolute(curvature)), distance))
-        break;
+      curvature = bend_.curvature();
+      if (found_.size() > fewest_nodes && is_enough(largest(curvature), distance)) break;
     }
-    return sizes(absolute(curvature));
+    return sizes(curvature);
   }
 
  private:
   /// What so many vertices say is not better for more.
   static constexpr std::size_t most_nodes = 100;
+  /// So many beside the node give directions.
+  static constexpr std::size_t fewest_nodes = Dim == 2 ? 2 : 6;
   /// Of chords as long as may be, up to where the surface is looked at from their ends: where
   /// edges are as long, this reaches the next vertices, among which what bends to and fro cancels.
   static constexpr double chords = 1.25;
-  struct Part {
-    Metric<Dim> turn;
-    double area = 0;
-    Metric<Dim> curvature() const { return area > 0 ? (1 / area) * turn : turn; }
-  };
   using Place = std::pair<double, std::uint32_t>;  // distance, node
 
   static bool farther(const Place& a, const Place& b) { return a > b; }
@@ -127,10 +76,7 @@ class Surroundings {
   void take(std::uint32_t from, std::uint32_t node, double distance) {
     found_.emplace_back(distance, node);
     const BendNode<Dim>& found = bends_.nodes[node];
-    Part& part = found.at_rim ? at_rim_ : interior_;
-    const double side = dot(found.normal, normal_) < 0 ? -1 : 1;
-    part.turn += side * turned(found.turn, side * found.normal, normal_);
-    part.area += found.area;
+    bend_.add(position(node) - origin_, found.normal, found.area);
     const auto& [offset, neighbour] = bends_.next;
     for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i) see(from, neighbour[i]);
   }
@@ -140,22 +86,43 @@ class Surroundings {
     return curvature * distance * distance >= 8 * tolerance_ * chords * chords;
   }
 
-  /// Not smaller than the flat parts around: to divide these brings nothing closer.
-  Metric<Dim> sizes(Metric<Dim> curvature) const {
-    const double most = largest_value(curvature);
+  static double largest(const PrincipalAxes<Dim>& axes) {
+    return *std::max_element(axes.value.begin(), axes.value.end());
+  }
+
+  /// Chords in the directions in which it bends most and least; across the surface, the first axis,
+  /// as in the direction in which it bends most.
+  Metric<Dim> sizes(PrincipalAxes<Dim> axes) const {
+    const double most = largest(axes);
     if (!(most > 0)) return {};
-    const double chord = std::sqrt(8 * tolerance_ / most);
+    const double near = std::sqrt(8 * tolerance_ / most) / 2;
+    axes.value[0] = 0;
+    for (std::size_t i = 1; i < Dim; ++i) {
+      const double size =
+          std::max(std::sqrt(8 * tolerance_ / axes.value[i]), least_size(axes.vector[i], near));
+      axes.value[i] = 1 / (size * size);
+      axes.value[0] = std::max(axes.value[0], axes.value[i]);
+    }
+    return compose(axes);
+  }
+
+  /// In a direction, that of the flat parts around: to divide these brings nothing closer.
+  double least_size(const Vector<Dim>& direction, double near) const {
     double least = 2 * tolerance_;
-    for (const auto& [distance, node] : found_)
-      if (distance <= chord / 2 || found_.size() < 8) {
-        least = std::max(least, bends_.nodes[node].width);
-        const auto& [offset, neighbour] = bends_.next;
-        for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
-          least = std::max(least, norm(position(neighbour[i]) - position(node)));
-      }
-    const double scale = std::min(1.0, chord / least);
-    curvature *= scale * scale / (8 * tolerance_);
-    return curvature;
+    for (const auto& [distance, node] : found_) {
+      if (distance > near && found_.size() >= 8) continue;
+      least = std::max(least, bends_.nodes[node].width);
+      const auto& [offset, neighbour] = bends_.next;
+      for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
+        least = std::max(least, extent(position(neighbour[i]) - position(node), direction));
+    }
+    return least;
+  }
+
+  /// The length of an edge that goes about in a direction; of another one, how far it goes in it.
+  static double extent(const Vector<Dim>& edge, const Vector<Dim>& direction) {
+    const double length = norm(edge), along = std::abs(dot(edge, direction));
+    return along > length / 2 ? length : along;
   }
 
   const Mesh<Dim>& mesh_;
@@ -163,39 +130,71 @@ class Surroundings {
   double tolerance_;
   std::vector<std::uint32_t> seen_;  // [node], from which it was seen last
   std::vector<Place> front_, found_;
-  Part interior_, at_rim_;
-  Vector<Dim> normal_, origin_;
+  CurvatureFit<Dim> bend_;
+  Vector<Dim> origin_;
 };
+
+/// The metric made as fine as a tensor, which may ask for nothing in some directions.
+template <int Dim>
+Metric<Dim> bounded(const Metric<Dim>& metric, const Metric<Dim>& tensor) {
+  const double least = smallest_value(metric);
+  PrincipalAxes<Dim> axes = principal_axes(tensor);
+  bool binds = false;
+  for (double& value : axes.value) {
+    if (!std::isfinite(value)) return metric;
+    binds = binds || value > least;
+    value = std::max(value, least);
+  }
+  return binds ? intersect(metric, compose(axes)) : metric;
+}
+
+template <int Dim>
+void bound_on_patches(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
+                      std::vector<Metric<Dim>>& metric_of) {
+  constexpr double flat = 0.02;  // of the tolerance: a tenth of the longest chord on an arc
+  const Bends<Dim> bends(executor, mesh, flat * tolerance);
+  const auto& nodes = bends.nodes;
+  std::vector<Metric<Dim>> sizes_of(nodes.size());
+  const std::size_t block_size = std::max<std::size_t>(1024, nodes.size() / 64);
+  runtime::parallel_for_blocks(
+      executor, nodes.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
+        Surroundings<Dim> surroundings(mesh, bends, tolerance);
+        for (std::size_t n = begin; n < end; ++n) {
+          const double largest = 1 / std::sqrt(smallest_value(metric_of[nodes[n].vertex]));
+          sizes_of[n] = surroundings.sizes_at(static_cast<std::uint32_t>(n), largest);
+        }
+      });
+  for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
+    while (end < nodes.size() && nodes[end].patch == nodes[begin].patch) ++end;
+    runtime::parallel_for(executor, end - begin, [&](std::size_t i) {
+      Metric<Dim>& metric = metric_of[nodes[begin + i].vertex];  // once in each patch
+      metric = bounded(metric, sizes_of[begin + i]);
+    });
+  }
+}
+
+void bound_on_curves(const runtime::Executor&, const Mesh<2>&, double, std::vector<Metric<2>>&) {}
+void bound_on_curves(const runtime::Executor& executor, const Mesh<3>& mesh, double tolerance,
+                     std::vector<Metric<3>>& metric_of) {
+  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
+    const auto vertex = static_cast<VertexId>(v);
+    if (mesh.kind_of[v].freedom > 1 || !mesh.vertex_alive(vertex)) return;
+    for (const CurveLink& link : mesh.links_of.of(vertex)) {
+      if (!mesh.curves[link.curve].smooth) continue;
+      const double largest = 1 / std::sqrt(smallest_value(metric_of[v]));
+      metric_of[v] =
+          bounded(metric_of[v], CurveBend(mesh, vertex, link.curve).sizes(tolerance, largest));
+    }
+  });
+}
 
 }  // namespace
 
 template <int Dim>
 void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
                         std::vector<Metric<Dim>>& metric_of) {
-  constexpr double flat = 0.02;  // of the tolerance: a tenth of the longest chord on an arc
-  const Bends<Dim> bends(executor, mesh, flat * tolerance);
-  const auto& nodes = bends.nodes;
-  std::vector<double> factor_of(nodes.size(), 1);
-  const std::size_t block_size = std::max<std::size_t>(1024, nodes.size() / 64);
-  runtime::parallel_for_blocks(
-      executor, nodes.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
-        Surroundings<Dim> surroundings(mesh, bends, tolerance);
-        for (std::size_t n = begin; n < end; ++n) {
-          if (ends_across(nodes[n])) continue;
-          const Metric<Dim>& metric = metric_of[nodes[n].vertex];
-          const auto values = principal_axes(metric).value;
-          const double largest = 1 / std::sqrt(*std::min_element(values.begin(), values.end()));
-          const auto sizes = surroundings.sizes_at(static_cast<std::uint32_t>(n), largest);
-          const double factor = excess(sizes, metric);
-          if (factor > 1 && std::isfinite(factor)) factor_of[n] = factor;
-        }
-      });
-  std::vector<double> most(metric_of.size(), 1);
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    most[nodes[n].vertex] = std::max(most[nodes[n].vertex], factor_of[n]);
-  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
-    if (most[v] > 1) metric_of[v] *= most[v];
-  });
+  bound_on_patches(executor, mesh, tolerance, metric_of);
+  bound_on_curves(executor, mesh, tolerance, metric_of);
 }
 
 template void bound_curved_sizes(const runtime::Executor&, const Mesh<2>&, double,

@@ -45,7 +45,9 @@ std::vector<std::uint32_t> ReferenceSurface<Dim>::sheets_of(
   const auto is_curved = [&](std::uint32_t sheet) {
     return sheet != none && is_smooth[sheet] != 0;
   };
-  if (std::none_of(sheet_of.begin(), sheet_of.end(), is_curved))
+  const bool bends =
+      std::any_of(is_smooth.begin(), is_smooth.end(), [](std::uint8_t is) { return is != 0; });
+  if (bends && std::none_of(sheet_of.begin(), sheet_of.end(), is_curved))
     throw InputError("geometry: none of the facets of the mesh is within " +
                      number(near * tolerance) +
                      " of one of its curved boundaries with the same reference; expected the "

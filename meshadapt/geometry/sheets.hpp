@@ -67,6 +67,9 @@ class Sheets {
   };
   /// The closest point of all sheets, nearly, within a distance. Thread safety: any thread.
   std::optional<Nearest> nearest(const Vector<Dim>& point, double reach) const;
+  /// The same of one sheet.
+  std::optional<Nearest> nearest_on(const Vector<Dim>& point, std::uint32_t sheet,
+                                    double reach) const;
   /// The same of sheets of one reference, where they are turned by less than 60 degrees against a
   /// direction of unit length. `reference_of` is [sheet].
   std::optional<Nearest> nearest(const Vector<Dim>& point, const Vector<Dim>& direction,

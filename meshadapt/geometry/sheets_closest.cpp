@@ -119,6 +119,12 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, double reach) const
 }
 
 template <int Dim, std::size_t Corners>
+auto Sheets<Dim, Corners>::nearest_on(const Vector<Dim>& point, std::uint32_t sheet,
+                                      double reach) const -> std::optional<Nearest> {
+  return nearest_of(point, reach, [&](std::uint32_t part) { return parts_[part].sheet == sheet; });
+}
+
+template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, const Vector<Dim>& direction,
                                    std::span<const std::int32_t> reference_of,
                                    std::int32_t reference, double reach) const
@@ -160,5 +166,12 @@ template std::optional<Sheets<3, 3>::Nearest> Sheets<3, 3>::nearest(const Vector
                                                                     const Vector<3>&,
                                                                     std::span<const std::int32_t>,
                                                                     std::int32_t, double) const;
+
+template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest_on(const Vector<2>&,
+                                                                       std::uint32_t, double) const;
+template std::optional<Sheets<3, 2>::Nearest> Sheets<3, 2>::nearest_on(const Vector<3>&,
+                                                                       std::uint32_t, double) const;
+template std::optional<Sheets<3, 3>::Nearest> Sheets<3, 3>::nearest_on(const Vector<3>&,
+                                                                       std::uint32_t, double) const;
 
 }  // namespace ductile::meshadapt

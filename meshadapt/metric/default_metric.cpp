@@ -50,6 +50,19 @@ double distance(const AnyMesh& mesh, std::size_t a, std::size_t b) {
   return std::sqrt(squares);
 }
 
+/// Of the box around the vertices, its diagonal; 1 if they are all in one place.
+double extent(const AnyMesh& mesh) {
+  const auto dimension = static_cast<std::size_t>(mesh.dimension);
+  std::array<double, 3> low{}, high{};
+  for (std::size_t i = 0; i < mesh.coordinates.size(); ++i) {
+    const std::size_t axis = i % dimension;
+    low[axis] = i < dimension ? mesh.coordinates[i] : std::min(low[axis], mesh.coordinates[i]);
+    high[axis] = i < dimension ? mesh.coordinates[i] : std::max(high[axis], mesh.coordinates[i]);
+  }
+  const double diagonal = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+  return diagonal > 0 ? std::clamp(diagonal, smallest_size, meshadapt::largest_size) : 1;
+}
+
 /// The logarithms of the edge lengths at each vertex, added up over the elements around it.
 struct LogLengths {
   explicit LogLengths(std::size_t vertices) : sum(vertices), count(vertices) {}
@@ -215,6 +228,11 @@ AnyField constant_metric(const AnyMesh& mesh, double size) {
   if (!(size >= smallest_size && size <= largest_size))
     throw InputError("size: expected a length from 1e-75 to 1e75, found " + number(size));
   return isotropic_field(mesh, std::vector<double>(mesh.vertex_count(), size));
+}
+
+AnyField coarsest_metric(const AnyMesh& mesh, double largest_size) {
+  expect_coordinates(mesh);
+  return constant_metric(mesh, largest_size != 0 ? largest_size : extent(mesh));
 }
 
 AnyField default_metric(const runtime::Executor& executor, const AnyMesh& mesh) {

@@ -67,6 +67,8 @@ void expect_options(const AdaptOptions& options) {
   if (options.make.geometry && !(options.make.surface_tolerance > 0))
     throw InputError("geometry: expected a surface_tolerance with it, " +
                      number(options.make.geometry->tolerance()) + ", found none");
+  if (options.curved_sizes && !(options.make.surface_tolerance > 0))
+    throw InputError("curved_sizes: expected a surface_tolerance with it, found none");
 }
 
 }  // namespace

@@ -52,12 +52,24 @@ struct SizeLimits {
   std::vector<std::string>& warnings;
 };
 
+/// By how much sizes may grow; 0 for as much as is asked for.
+double growth_of(const AdaptOptions& options) {
+  constexpr double from_curves = 1.3;
+  return options.curved_sizes && options.gradation == 0 ? from_curves
+                                                        : std::max(options.gradation, 0.0);
+}
+bool limits_growth(const AdaptOptions& options) {
+  return options.gradation > 0 || options.curved_sizes;
+}
+
 template <int Dim>
 void limit_growth(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                   const SizeLimits& limits, std::vector<Metric<Dim>>& metric_of) {
   const auto& [options, name, warnings] = limits;
   if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.surface_tolerance, metric_of);
-  const auto report = limit_gradation(executor, metric_of, mesh, {.factor = options.gradation});
+  const double factor = growth_of(options);
+  if (factor == 0) return;
+  const auto report = limit_gradation(executor, metric_of, mesh, {.factor = factor});
   if (!report.converged)
     warnings.push_back(name + ": sizes still grow faster than asked for in places, after " +
                        std::to_string(report.sweeps) + " sweeps over the edges");
@@ -70,7 +82,7 @@ void limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, const
   const AdaptOptions& options = limits.options;
   const SizeBounds bounds{options.smallest_size, options.largest_size};
   bound_sizes(executor, metric_of, bounds);
-  if (options.gradation > 0) {
+  if (limits_growth(options)) {
     limit_growth(executor, mesh, limits, metric_of);
     bound_sizes(executor, metric_of, bounds);  // intersections may be finer than the metrics
   }
@@ -201,7 +213,7 @@ Mesh<Dim> with_growth_limited(const runtime::Executor& executor, const AdaptOpti
   constexpr double much = 1.1;
   constexpr int most_times = 5;
   Mesh<Dim> mesh = adapter->take_mesh();
-  if (options.gradation <= 0 || !options.insert) return mesh;
+  if (!limits_growth(options) || !options.insert) return mesh;
   for (int time = 0; time < most_times; ++time) {
     renumber(executor, mesh);
     auto metric_of = runtime::make_vector<Metric<Dim>>(executor, mesh.vertex_slots());

@@ -112,6 +112,7 @@ class Options:
     smallest_size: float
     largest_size: float
     gradation: float
+    curved_sizes: bool
     required_gradation: float
     memory_limit: int
     thorough: bool

@@ -225,7 +225,7 @@ class Mesh:
     def remesh(self, metric: Optional[MetricLike] = None, *, hsiz: Optional[float] = None,
                hmin: float = 0, hmax: float = 0, hgrad: float = 0, hgradreq: float = 0,
                hausd: float = 0, geometry: Optional[Geometry] = None, ar: float = 45,
-               iterations: int = 16, thorough: bool = False,
+               curved_sizes: bool = False, iterations: int = 16, thorough: bool = False,
                nomove: bool = False, noswap: bool = False, noinsert: bool = False,
                nosurf: bool = False, required_vertices: Any = None, required_facets: Any = None,
                required_cells: Any = None, memory: int = 0, threads: int = 0,
@@ -239,7 +239,7 @@ class Mesh:
             than vertices have seen; a size at each vertex, ``(n,)``; or a metric tensor,
             ``(n, 3)`` in 2D and ``(n, 6)`` in 3D (m11 m12 m22 m13 m23 m33, as in files, not in the
             order of Mmg's own functions), or ``(n, d, d)``. By default the sizes that the mesh has,
-            within `hmin` and `hmax`.
+            within `hmin` and `hmax`, or those of `curved_sizes`.
         hsiz : float, optional
             The same as a number for `metric`, by Mmg's name.
         hmin, hmax : float, optional
@@ -258,6 +258,11 @@ class Mesh:
             pass that of the first mesh to every call.
         ar : float, optional
             Facets that turn by as many degrees meet at a ridge, which stays.
+        curved_sizes : bool, optional
+            Sizes on curved boundaries are bounded by what `hausd` allows, in each direction by how
+            the boundary bends there, and grow from there by `hgrad`, or 1.3. Without a `metric`
+            nothing else limits them but `hmin` and `hmax`: Mmg's ``-A``. With an `hgrad` the bounds
+            hold anyway.
         iterations : int, optional
             At most this many rounds.
         thorough : bool, optional
@@ -309,6 +314,7 @@ class Mesh:
                               cells=required_cells)
         options = options_of(smallest_size=number(hmin, "hmin"), largest_size=number(hmax, "hmax"),
                            gradation=number(hgrad, "hgrad"),
+                           curved_sizes=curved_sizes,
                            required_gradation=number(hgradreq, "hgradreq"),
                            surface_tolerance=number(hausd, "hausd") or (geometry.hausd if geometry else 0),
                            geometry=geometry and geometry._data, ridge_angle=number(ar, "ar"),

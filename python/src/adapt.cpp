@@ -58,7 +58,8 @@ class Progress {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Rows of an array, and what they are; without them the mesh keeps its sizes.
+/// Rows of an array, and what they are; without them the mesh keeps its sizes, or gets those of
+/// curved boundaries.
 using MaybeMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
 
 /// What adapt(executor, options) gives, with Python's function as its progress.
@@ -83,7 +84,8 @@ py::tuple remesh(const AnyMesh& mesh, const MaybeMetric& metric, const AdaptOpti
   const auto adapt = [&](const runtime::Executor& executor, const AdaptOptions& options) {
     const AnyField wanted =
         given ? meshadapt::metric_of(*given, mesh, {options.smallest_size, options.largest_size})
-              : meshadapt::default_metric(executor, mesh);
+        : options.curved_sizes ? meshadapt::coarsest_metric(mesh, options.largest_size)
+                               : meshadapt::default_metric(executor, mesh);
     return meshadapt::adapt(executor, mesh, wanted, options);
   };
   return adapted_by(adapt, given_options, threads, progress);
@@ -106,6 +108,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("smallest_size", &AdaptOptions::smallest_size)
       .def_readwrite("largest_size", &AdaptOptions::largest_size)
       .def_readwrite("gradation", &AdaptOptions::gradation)
+      .def_readwrite("curved_sizes", &AdaptOptions::curved_sizes)
       .def_readwrite("required_gradation", &AdaptOptions::required_gradation)
       .def_readwrite("memory_limit", &AdaptOptions::memory_limit)
       .def_readwrite("thorough", &AdaptOptions::thorough)

@@ -288,6 +288,10 @@ def test_curved_boundaries_are_followed(dim):
         assert out.check() == [] and not out.report.warnings
         radius = np.linalg.norm(out.points[np.unique(out.facets)], axis=1)
         assert radius.min() > 0.93 and radius.max() < 1.02
+    alone = ball.remesh(hausd=0.02, curved_sizes=True)
+    assert alone.check() == [] and len(alone.cells) < len(ball.cells)
+    with pytest.raises(ductile.InputError, match="curved_sizes: expected"):
+        ball.remesh(curved_sizes=True)
     geometry = ductile.Geometry(ball, hausd=0.04)  # as far as its chords are off
     out = ball
     for _ in range(3):

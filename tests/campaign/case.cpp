@@ -68,6 +68,7 @@ class CaseMaker {
     choose_metric();
     choose_tolerance(shape.curved);
     choose_options();
+    choose_geometry();
     return std::move(case_);
   }
 
@@ -216,6 +217,17 @@ class CaseMaker {
     if (case_.promise.unlisted_boundary || random_.chance(0.05)) option("--complete-boundary");
     for (const char* word : {"-noswap", "-nomove", "-noinsert", "--iterations", "-nosurf"})
       if (has(word)) case_.rests = false;
+  }
+
+  /// What boundaries are measured from, and sizes that come from how they are curved.
+  void choose_geometry() {
+    if (case_.promise.tolerance <= 0) return;
+    if (random_.chance(0.35)) option("-geometry", "in.mesh");
+    const bool few = has("-hgrad") && kind_.asks == Asks::anything && !has("-hsiz");
+    if (few && random_.chance(is("inclusion") || is("round") ? 0.4 : 0.1)) {
+      option("-A");
+      case_.metric.reset();
+    }
   }
 
   void choose_gradation() {

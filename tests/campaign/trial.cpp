@@ -123,7 +123,10 @@ class Trial {
     std::vector<std::string> words = {"adapt",      from + ".mesh", "-o",
                                       to + ".mesh", "--threads",    threads};
     words.insert(words.end(), options.begin(), options.end());
-    const bool has_size = std::find(options.begin(), options.end(), "-hsiz") != options.end();
+    const auto has = [&](const char* word) {
+      return std::find(options.begin(), options.end(), word) != options.end();
+    };
+    const bool has_size = has("-hsiz") || has("-A");
     if (!has_size && std::filesystem::exists(folder_ / (from + ".sol")))
       words.insert(words.end(), {"-sol", from + ".sol"});
     return run_program(words);

@@ -239,9 +239,14 @@ TEST(AdaptCommand, CoarsensACurvedBoundaryIfToldTo) {
   EXPECT_EQ(other.status, 2);
   EXPECT_TRUE(contains(other.err, "from the geometry")) << other.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "other.mesh"));
-  for (const char* wrong :
-       {"-hausd 0", "-hausd 0.01 -ar 90", "-hausd 0.01 -ar 0", "-geometry arc.mesh"})
+  const Outcome alone = folder.run("adapt arc.mesh -A -hausd 0.01 -o alone.mesh");
+  EXPECT_EQ(alone.status, 0) << alone.err;
+  EXPECT_LT(meshadapt::read_mesh(folder.path() / "alone.mesh").edges.size(),
+            meshadapt::read_mesh(folder.path() / "arc.o.mesh").edges.size() / 2);
+  for (const char* wrong : {"-hausd 0", "-hausd 0.01 -ar 90", "-hausd 0.01 -ar 0",
+                            "-geometry arc.mesh", "-hausd 0.01 -A"})
     EXPECT_EQ(folder.run(std::string("adapt arc.mesh -hsiz 0.3 ") + wrong).status, 2) << wrong;
+  EXPECT_EQ(folder.run("adapt arc.mesh -A").status, 2);
 }
 
 TEST(AdaptCommand, RefusesSizesThatNoMetricCanHave) {

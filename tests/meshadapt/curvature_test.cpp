@@ -7,6 +7,7 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/meshes.hpp"
@@ -36,9 +37,9 @@ double size_along(const Metric<Dim>& metric, const Vector<Dim>& direction) {
 }
 
 /// Calls visit(v, radius, along) for each vertex of an arc (see test::bend) that is on one of its
-/// two curved sides and not at their ends, with the direction in which these bend.
+/// two curved sides, with the direction in which these bend.
 template <int Dim>
-void each_on_curved_sides(const AnyMesh& any, double angle, auto&& visit) {
+void each_on_curved_sides(const AnyMesh& any, auto&& visit) {
   for (std::size_t v = 0; v < any.vertex_count(); ++v) {
     const auto p = position_in<Dim>(any, v);
     const double radius = std::hypot(p[0], p[1]), turn = std::atan2(p[1], p[0]);
@@ -46,7 +47,7 @@ void each_on_curved_sides(const AnyMesh& any, double angle, auto&& visit) {
     Vector<Dim> along{};
     along[0] = -std::sin(turn);
     along[1] = std::cos(turn);
-    if (curved && turn > 1e-9 && turn < angle - 1e-9) visit(v, radius, along);
+    if (curved) visit(v, radius, along);
   }
 }
 
@@ -56,9 +57,16 @@ void takes_sizes_from_arcs(int n) {
   test::bend(any, 2);
   const auto metric_of = bounded<Dim>(any, 0.01);
   std::size_t count = 0;
-  each_on_curved_sides<Dim>(any, 2, [&](std::size_t v, double radius, const Vector<Dim>& along) {
+  each_on_curved_sides<Dim>(any, [&](std::size_t v, double radius, const Vector<Dim>& along) {
+    Vector<Dim> outwards{}, axis{};
+    outwards[0] = along[1];
+    outwards[1] = -along[0];
+    axis[Dim - 1] = 1;
     EXPECT_NEAR(size_along(metric_of[v], along) / std::sqrt(8 * 0.01 * radius), 1, 0.03);
-    EXPECT_EQ(metric_of[v].m[1], 0) << "as much in all directions";
+    EXPECT_NEAR(size_along(metric_of[v], outwards) / std::sqrt(8 * 0.01 * radius), 1, 0.03);
+    if (Dim == 3) {
+      EXPECT_GT(size_along(metric_of[v], axis), 0.6 * asked);
+    }
     ++count;
   });
   const auto left = std::count(metric_of.begin(), metric_of.end(), isotropic<Dim>(asked));
@@ -76,21 +84,27 @@ TEST(CurvedSizes, AreNotSmallerThanTheEdgesThere) {
   AnyMesh any = test::make_grid(test::unit_grid(2, n));
   test::bend(any, 2);
   const auto metric_of = bounded<2>(any, 1e-9);
-  each_on_curved_sides<2>(any, 2, [&](std::size_t v, double radius, const Vector<2>& along) {
+  each_on_curved_sides<2>(any, [&](std::size_t v, double radius, const Vector<2>& along) {
     EXPECT_NEAR(size_along(metric_of[v], along) / (radius * 2 / n), 1, 0.03);
   });
 }
 
+/// A cube of cells under a map of its points.
+AnyMesh mapped(int n, auto&& map) {
+  AnyMesh any = test::make_grid(test::unit_grid(3, n));
+  for (std::size_t at = 0; at < any.coordinates.size(); at += 3) {
+    const Vector<3> to = map(any.coordinates[at], any.coordinates[at + 1], any.coordinates[at + 2]);
+    std::copy(to.x.begin(), to.x.end(), &any.coordinates[at]);
+  }
+  return any;
+}
+
 /// Between two spheres: 2 degrees of longitude and latitude a cell.
 TEST(CurvedSizes, AreThoseOfASphere) {
-  AnyMesh any = test::make_grid(test::unit_grid(3, 12));
-  for (std::size_t at = 0; at < any.coordinates.size(); at += 3) {
-    double* p = &any.coordinates[at];
-    const double radius = 1 + p[0], u = 0.4 * (p[1] - 0.5), v = 0.4 * (p[2] - 0.5);
-    p[0] = radius * std::cos(u) * std::cos(v);
-    p[1] = radius * std::sin(u) * std::cos(v);
-    p[2] = radius * std::sin(v);
-  }
+  const AnyMesh any = mapped(12, [](double x, double y, double z) {
+    const double radius = 1 + x, u = 0.4 * (y - 0.5), v = 0.4 * (z - 0.5);
+    return radius * Vector<3>{{std::cos(u) * std::cos(v), std::sin(u) * std::cos(v), std::sin(v)}};
+  });
   const auto metric_of = bounded<3>(any, 0.02);
   std::size_t count = 0;
   for (std::size_t v = 0; v < any.vertex_count(); ++v) {
@@ -98,14 +112,135 @@ TEST(CurvedSizes, AreThoseOfASphere) {
     const double radius = norm(p);
     const bool inside = std::abs(p[1]) < 0.15 * radius && std::abs(p[2]) < 0.15 * radius;
     if (!inside || std::abs(radius - 2) > 1e-9) continue;
-    EXPECT_NEAR(size_along(metric_of[v], p) / std::sqrt(8 * 0.02 * radius), 1, 0.05);
+    for (const Vector<3>& direction : {p, Vector<3>{{-p[1], p[0], 0}}, Vector<3>{{0, 0, 1}}})
+      EXPECT_NEAR(size_along(metric_of[v], direction) / std::sqrt(8 * 0.02 * radius), 1, 0.05);
     ++count;
   }
   EXPECT_GT(count, 20U);
 }
 
-/// A tube thicker than the edges that its outside must have: sizes that grow inwards make better
-/// elements than those asked for.
+/// In the middle of what is z = 1 in the cube.
+Metric<3> metric_on_top(const AnyMesh& any, double tolerance) {
+  const auto metric_of = bounded<3>(any, tolerance);
+  std::size_t middle = 0;
+  double least = 1e9;
+  for (std::size_t v = 0; v < any.vertex_count(); ++v) {
+    const auto p = position_in<3>(any, v);
+    const double off = std::hypot(p[0], p[1]) - 0.1 * p[2];
+    if (off < least) least = off, middle = v;
+  }
+  return metric_of[middle];
+}
+
+/// Curvatures of 0.8 and -0.2: sizes are bounded whichever way it bends.
+TEST(CurvedSizes, AreThoseOfASaddle) {
+  const AnyMesh any = mapped(16, [](double x, double y, double z) {
+    const double u = x - 0.5, v = y - 0.5;
+    return Vector<3>{{u, v, z + z * (0.4 * u * u - 0.1 * v * v)}};
+  });
+  const Metric<3> metric = metric_on_top(any, 0.004);
+  EXPECT_NEAR(size_along(metric, {{1, 0, 0}}) / std::sqrt(8 * 0.004 / 0.8), 1, 0.05);
+  EXPECT_NEAR(size_along(metric, {{0, 1, 0}}) / std::sqrt(8 * 0.004 / 0.2), 1, 0.05);
+  EXPECT_NEAR(size_along(metric, {{0, 0, 1}}) / std::sqrt(8 * 0.004 / 0.8), 1, 0.05);
+}
+
+/// The outside of a torus of radii 1 and 0.4, along x and y.
+TEST(CurvedSizes, AreThoseOfATorus) {
+  const AnyMesh any = mapped(16, [](double x, double y, double z) {
+    const double u = x - 0.5, v = y - 0.5, r = 0.2 + 0.2 * z, from_axis = 1 + r * std::cos(u);
+    return Vector<3>{{r * std::sin(u), from_axis * std::sin(v), from_axis * std::cos(v)}};
+  });
+  const Metric<3> metric = metric_on_top(any, 0.002);
+  EXPECT_NEAR(size_along(metric, {{1, 0, 0}}) / std::sqrt(8 * 0.002 * 0.4), 1, 0.05);
+  EXPECT_NEAR(size_along(metric, {{0, 1, 0}}) / std::sqrt(8 * 0.002 * 1.4), 1, 0.05);
+}
+
+/// A circle on a flat lid, between two references: nothing but the curve bends there.
+TEST(CurvedSizes, AreThoseOfACurve) {
+  AnyMesh any = test::truncated_cone(12, 1);
+  const auto is_inside = [&](const auto& corners) {
+    return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+      const auto p = position_in<3>(any, v);
+      return p[2] > 1 - 1e-9 && std::hypot(p[0], p[1]) < 0.51;
+    });
+  };
+  for (std::size_t t = 0; t < any.triangles.size(); ++t)
+    if (is_inside(any.triangles.vertices[t])) any.triangles.reference[t] = 9;
+  const auto metric_of = bounded<3>(any, 0.01);
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < any.vertex_count(); ++v) {
+    const auto p = position_in<3>(any, v);
+    const double radius = std::hypot(p[0], p[1]);
+    if (p[2] < 1 - 1e-9 || std::abs(radius - 0.5) > 1e-6) continue;
+    // Edges there are longer than chords: 24 of them make the circle.
+    EXPECT_LT(size_along(metric_of[v], {{-p[1], p[0], 0}}), 0.3);
+    EXPECT_GT(size_along(metric_of[v], {{0, 0, 1}}), 0.9 * asked);
+    ++count;
+  }
+  EXPECT_GT(count, 12U);
+}
+
+// ---- Sizes from curvature alone ----
+
+/// Lengths of edges on the mantle of a cylinder around the z axis, along it and around it.
+struct MantleEdges {
+  double along = 0, around = 0;  // means
+  std::size_t facets = 0;
+};
+MantleEdges mantle_edges(const AnyMesh& any) {
+  MantleEdges found;
+  std::size_t along = 0, around = 0;
+  for (std::size_t t = 0; t < any.triangles.size(); ++t) {
+    if (any.triangles.reference[t] != 1) continue;
+    ++found.facets;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& corners = any.triangles.vertices[t];
+      const Vector<3> edge =
+          position_in<3>(any, corners[i]) - position_in<3>(any, corners[(i + 1) % 3]);
+      const double flat = std::hypot(edge[0], edge[1]), high = std::abs(edge[2]);
+      if (high > 2 * flat) found.along += high, ++along;
+      if (flat > 2 * high) found.around += flat, ++around;
+    }
+  }
+  found.along /= static_cast<double>(along);
+  found.around /= static_cast<double>(around);
+  return found;
+}
+
+/// Around it chords of 0.28, along it as long as asked for: a few edges of about 1, where equal
+/// sizes of 0.28 would make 2 pi / (0.28^2 sqrt(3) / 4) = 185 facets or more.
+TEST(CurvedSizes, AloneMakeACylinderOfLongElements) {
+  const AnyMesh any = test::truncated_cone(16, 1);
+  AdaptOptions options;
+  options.make.surface_tolerance = 0.01;
+  options.curved_sizes = true;
+  const AdaptedMesh result = adapt(executor, any, coarsest_metric(any), options);
+  const MantleEdges edges = mantle_edges(result.mesh);
+  EXPECT_GT(edges.along, 0.45);
+  EXPECT_GT(edges.around, 0.18);
+  EXPECT_LT(edges.around, 0.32);
+  EXPECT_LT(edges.facets, 130U);
+  for (const int threads : {1, 3, 4, 8}) {
+    const AdaptedMesh other =
+        adapt(Executor({.threads = threads}), any, coarsest_metric(any), options);
+    EXPECT_EQ(other.mesh.coordinates, result.mesh.coordinates) << threads;
+    EXPECT_EQ(other.mesh.tetrahedra.vertices, result.mesh.tetrahedra.vertices) << threads;
+  }
+}
+
+TEST(CurvedSizes, AloneLeaveABoxAsCoarseAsMayBe) {
+  const AnyMesh any = test::make_grid(test::unit_grid(3, 6));
+  AdaptOptions options;
+  options.make.surface_tolerance = 0.01;
+  options.curved_sizes = true;
+  const AdaptedMesh result = adapt(executor, any, coarsest_metric(any), options);
+  EXPECT_LT(result.mesh.tetrahedra.size(), 30U);
+  options.make.surface_tolerance = 0;
+  EXPECT_THROW(adapt(executor, any, coarsest_metric(any), options), InputError);
+}
+
+/// A tube thicker than the edges that its outside must have: in sizes that grow inwards elements
+/// are better than in those asked for.
 TEST(CurvedSizes, MakeBetterShapesWithGradation) {
   AnyMesh any = test::make_grid(test::unit_grid(3, 10));
   test::bend(any, 2);
@@ -114,8 +249,7 @@ TEST(CurvedSizes, MakeBetterShapesWithGradation) {
   const AnyField metric = constant_metric(any, 0.5);
   const auto quality = [&] {
     const AdaptedMesh result = adapt(executor, any, metric, options);
-    const AnyField same = constant_metric(result.mesh, 0.5);
-    return measure(executor, result.mesh, &same).quality.mean;
+    return measure(executor, result.mesh, &result.metric).quality.mean;
   };
   const double as_asked = quality();
   options.gradation = 1.3;

@@ -54,6 +54,10 @@ double norm_of(const AnyMesh& mesh, std::size_t vertex) {
   return std::sqrt(square);
 }
 
+double norm_in_plane(const AnyMesh& mesh, std::size_t vertex) {
+  return std::hypot(mesh.coordinates[3 * vertex], mesh.coordinates[3 * vertex + 1]);
+}
+
 /// How far vertices on the boundary are from the sphere at most.
 double off_sphere(const AnyMesh& mesh) {
   std::set<std::uint32_t> boundary;
@@ -207,6 +211,33 @@ TEST_P(GeometryOf, ABoxHasNothingThatIsCurved) {
   const AnyField metric = constant_metric(mesh, 0.1);
   EXPECT_EQ(test::bits(adapt(executor, mesh, metric, options).mesh.coordinates),
             test::bits(adapt(executor, mesh, metric, without).mesh.coordinates));
+}
+
+/// A disk of a reference of its own on top of a box: a curve bends, but no patch.
+TEST(Geometry, OfACircleOnAFlatSideFitsItsMesh) {
+  AnyMesh mesh = test::make_grid(test::unit_grid(3, 8));
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += 3) {
+    double &x = mesh.coordinates[at], &y = mesh.coordinates[at + 1];
+    const double most = std::max(std::abs(x -= 0.5), std::abs(y -= 0.5)), far = std::hypot(x, y);
+    const double round = far > 0 ? most / far : 1;
+    const double scale = 1 + std::min(1.0, (0.5 - most) / 0.25) * (round - 1);
+    x *= scale;
+    y *= scale;
+  }
+  const auto is_inside = [&](std::uint32_t v) { return norm_in_plane(mesh, v) < 0.251; };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& corners = mesh.triangles.vertices[t];
+    if (mesh.triangles.reference[t] == 6 && std::all_of(corners.begin(), corners.end(), is_inside))
+      mesh.triangles.reference[t] = 9;
+  }
+  const Executor executor({.threads = 2});
+  AdaptOptions options;
+  options.make.surface_tolerance = 0.01;
+  options.make.geometry =
+      std::make_shared<const Geometry>(executor, mesh, GeometryOptions{.tolerance = 0.01});
+  const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 0.2), options);
+  EXPECT_EQ(test::joined(check_adapted(executor, mesh, result.mesh, 0.01)), "");
+  EXPECT_LT(result.mesh.triangles.size(), mesh.triangles.size());
 }
 
 TEST(Geometry, RefusesATolerance) {

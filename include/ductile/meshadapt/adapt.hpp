@@ -35,6 +35,11 @@ struct AdaptOptions {
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
                              ///< limit_gradation), from what make.surface_tolerance allows on
                              ///< curved boundaries; 0 or less: as given. Mmg's default is 1.3
+  bool curved_sizes =
+      false;  ///< sizes on curved boundaries are bounded by what
+              ///< make.surface_tolerance allows without a gradation, too; they grow
+              ///< from there by a factor of 1.3, or as given with one below 0. With
+              ///< coarsest_metric() they come from curvature alone, as with Mmg's -A
   double required_gradation = 0;  ///< sizes at required facets, edges and elements, and at all
                                   ///< facets with make.lock_boundary, are those that these have,
                                   ///< whatever metric and bounds ask for; from there they grow, or

@@ -12,6 +12,12 @@ namespace ductile::meshadapt {
 /// vertices have coordinates and references. Thread safety: any thread.
 AnyField constant_metric(const AnyMesh& mesh, double size);
 
+/// Asks for edges as long as this, or as the diagonal of the box around the mesh if it is 0,
+/// everywhere: for nothing but what limits on sizes ask for, see AdaptOptions::curved_sizes. Throws
+/// InputError unless it is 0 or from 1e-75 to 1e75 and vertices have coordinates and references.
+/// Thread safety: any thread.
+AnyField coarsest_metric(const AnyMesh& mesh, double largest_size = 0);
+
 /// What the program adapts a mesh to when no metric is given: the sizes that the mesh has, in the
 /// directions in which it has them, so that stretched elements and layers stay and the number of
 /// elements is about the same. At each vertex it has the shape of implied_tensors(), and in it the

@@ -1,0 +1,86 @@
+/// @file
+/// CurvatureFit: the principal curvatures of a surface, or a curve in 2D, at a point, from its
+/// normals around there.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/meshadapt/vector.hpp"
+
+namespace ductile::meshadapt {
+
+/// The symmetric tensor in the tangent plane by which normals change with places, by weighted least
+/// squares (Rusinkiewicz, "Estimating curvatures and their derivatives on triangle meshes", 3DPVT
+/// 2004). It is exact on spheres and cylinders, however far away the places are.
+template <int Dim>
+class CurvatureFit {
+ public:
+  CurvatureFit() = default;
+  /// Of the point, of unit length.
+  explicit CurvatureFit(const Vector<Dim>& normal) : normal_(normal) {
+    int least = 0;
+    for (int i = 1; i < Dim; ++i)
+      if (std::abs(normal[i]) < std::abs(normal[least])) least = i;
+    Vector<Dim>& along = tangent_[0];
+    along[least] = 1;
+    along -= normal[least] * normal;
+    along *= 1 / norm(along);
+    if constexpr (Dim == 3) tangent_[1] = cross(normal, along);
+  }
+
+  /// A place, from the point, and the unit normal there, to either side.
+  void add(const Vector<Dim>& offset, const Vector<Dim>& normal, double weight) {
+    const double side = dot(normal, normal_) < 0 ? -weight : weight;
+    std::array<double, tangents> place, change;
+    for (std::size_t i = 0; i < tangents; ++i) {
+      place[i] = dot(offset, tangent_[i]);
+      change[i] = side * dot(normal, tangent_[i]);
+    }
+    for (std::size_t i = 0; i < tangents; ++i)
+      for (std::size_t j = 0; j < tangents; ++j) {
+        squares_[i][j] += weight * place[i] * place[j];
+        changes_[i][j] += change[i] * place[j];
+      }
+  }
+
+  /// The absolute principal curvatures and their directions; the first is the normal with 0.
+  PrincipalAxes<Dim> curvature() const {
+    PrincipalAxes<Dim> result{};
+    result.vector[0] = normal_;
+    if constexpr (Dim == 2) {
+      result.value[1] = squares_[0][0] > 0 ? std::abs(changes_[0][0] / squares_[0][0]) : 0;
+      result.vector[1] = tangent_[0];
+    } else {
+      const auto axes = principal_axes(solved());
+      for (std::size_t i = 0; i < 2; ++i) {
+        result.value[i + 1] = std::abs(axes.value[i]);
+        result.vector[i + 1] = axes.vector[i][0] * tangent_[0] + axes.vector[i][1] * tangent_[1];
+      }
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t tangents = Dim - 1;
+
+  /// Where all places are on a line, it bends in its direction alone.
+  Metric<2> solved() const {
+    const double trace = squares_[0][0] + squares_[1][1];
+    if (!(trace > 0)) return {};
+    const double little = 1e-9 * trace, xy = squares_[0][1];
+    const double xx = squares_[0][0] + little, yy = squares_[1][1] + little;
+    // x a + y b, x b + y c: the changes along both tangents, of which b is in both.
+    const double p = changes_[0][0], q = changes_[0][1] + changes_[1][0], r = changes_[1][1];
+    const double b = (q - xy * (p / xx + r / yy)) / (xx + yy - xy * xy * (1 / xx + 1 / yy));
+    return {{(p - xy * b) / xx, b, (r - xy * b) / yy}};
+  }
+
+  Vector<Dim> normal_;
+  std::array<Vector<Dim>, tangents> tangent_{};
+  std::array<std::array<double, tangents>, tangents> squares_{}, changes_{};
+};
+
+}  // namespace ductile::meshadapt
