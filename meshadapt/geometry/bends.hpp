@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
 

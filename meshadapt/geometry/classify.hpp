@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/make_mesh_options.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -11,8 +11,8 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "geometry/box_index.hpp"
-#include "mesh/first_bad.hpp"
+#include "mesh/box_index.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/scale.hpp"
 
 namespace ductile::meshadapt {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 
 namespace ductile::meshadapt {

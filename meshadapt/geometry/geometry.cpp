@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "geometry/reference_surface.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 
 namespace ductile::meshadapt {
 

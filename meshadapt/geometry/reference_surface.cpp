@@ -6,7 +6,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/facet_sides.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 
 namespace ductile::meshadapt {
 

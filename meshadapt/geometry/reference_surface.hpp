@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
 #include "geometry/surface.hpp"

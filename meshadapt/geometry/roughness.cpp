@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/rounding.hpp"
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
-#include "geometry/precision.hpp"
+#include "mesh/mesh.hpp"
+#include "mesh/precision.hpp"
 
 namespace ductile::meshadapt {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "geometry/prism.hpp"
+#include "mesh/prism.hpp"
 #include "geometry/sheets_parts.hpp"
 
 namespace ductile::meshadapt {

@@ -10,8 +10,8 @@
 #include <boost/container/small_vector.hpp>
 
 #include "ductile/meshadapt/simplex.hpp"
-#include "geometry/box_index.hpp"
-#include "geometry/distance.hpp"
+#include "mesh/box_index.hpp"
+#include "mesh/distance.hpp"
 #include "geometry/sheets.hpp"
 
 namespace ductile::meshadapt {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <tuple>
 
-#include "geometry/box_index.hpp"
-#include "geometry/distance.hpp"
+#include "mesh/box_index.hpp"
+#include "mesh/distance.hpp"
 #include "geometry/sheets_parts.hpp"
 
 namespace ductile::meshadapt {

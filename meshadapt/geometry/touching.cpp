@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "ductile/runtime/worklist.hpp"
-#include "geometry/box_index.hpp"
-#include "geometry/distance.hpp"
+#include "mesh/box_index.hpp"
+#include "mesh/distance.hpp"
 
 namespace ductile::meshadapt {
 

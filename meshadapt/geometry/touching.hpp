@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {

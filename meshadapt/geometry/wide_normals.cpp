@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "ductile/runtime/parallel_for.hpp"
-#include "geometry/distance.hpp"
+#include "mesh/distance.hpp"
 #include "geometry/facet_sides.hpp"
 
 namespace ductile::meshadapt {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
 

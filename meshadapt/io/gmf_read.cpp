@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/flatten.hpp"
+#include "mesh/flatten.hpp"
 #include "file_bytes.hpp"
 #include "gmf_ascii.hpp"
 #include "gmf_binary.hpp"

@@ -7,7 +7,7 @@
 
 #include "gmf_mesh.hpp"
 #include "gmf_sink.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "spatial_mesh.hpp"
 

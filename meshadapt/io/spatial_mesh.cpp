@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ductile/meshadapt/flatten.hpp"
+#include "mesh/flatten.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/indices.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "metric/small_system.hpp"
+#include "core/small_system.hpp"
 
 namespace ductile::meshadapt {
 

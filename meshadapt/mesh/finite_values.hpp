@@ -7,7 +7,7 @@
 #include <string>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/flatten.hpp"
+#include "mesh/flatten.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"

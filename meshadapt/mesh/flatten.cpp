@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/flatten.hpp"
+#include "mesh/flatten.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 
 namespace ductile::meshadapt {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 
 namespace ductile::meshadapt {
 

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/orientation.hpp"
+#include "core/orientation.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -17,7 +17,7 @@
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/wording.hpp"
 

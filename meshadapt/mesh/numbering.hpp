@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 

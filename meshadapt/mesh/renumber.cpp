@@ -8,11 +8,11 @@
 #include <tuple>
 #include <utility>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/numbering.hpp"
 
 namespace ductile::meshadapt {

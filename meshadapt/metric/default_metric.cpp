@@ -14,7 +14,7 @@
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/wording.hpp"
 #include "metric/little_stretch.hpp"

@@ -9,7 +9,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/interpolation.hpp"
 

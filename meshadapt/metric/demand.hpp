@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/executor.hpp"
 

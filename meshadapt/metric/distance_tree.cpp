@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "geometry/distance.hpp"
+#include "mesh/distance.hpp"
 
 namespace ductile::meshadapt {
 

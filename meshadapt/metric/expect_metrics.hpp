@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/metric.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/metric_range.hpp"

@@ -8,7 +8,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "metric/small_system.hpp"
+#include "core/small_system.hpp"
 #include "metric/surroundings.hpp"
 
 namespace ductile::meshadapt {

@@ -8,7 +8,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "mesh/finite_values.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/spectrum.hpp"
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <span>
 
-#include "ductile/meshadapt/orientation.hpp"
+#include "core/orientation.hpp"
 
 namespace ductile::meshadapt {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/executor.hpp"
 

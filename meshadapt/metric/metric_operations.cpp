@@ -14,7 +14,7 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"
 #include "metric/mesh_gradation.hpp"

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "metric/little_stretch.hpp"

@@ -13,7 +13,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/distance_tree.hpp"
 #include "metric/entities_of.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"

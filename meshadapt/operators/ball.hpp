@@ -12,7 +12,7 @@
 
 #include "operators/base.hpp"
 #include "operators/cavity.hpp"
-#include "operators/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace ductile::meshadapt {
 

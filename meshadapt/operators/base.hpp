@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "ductile/meshadapt/quality.hpp"
+#include "core/quality.hpp"
 
 namespace ductile::meshadapt {
 

@@ -9,7 +9,7 @@
 #include <boost/container/small_vector.hpp>
 #include <boost/container/static_vector.hpp>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/deferred_update.hpp"
 #include "geometry/surface.hpp"
 

@@ -12,10 +12,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "operators/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace ductile::meshadapt {
 

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/meshadapt/background.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "operators/background.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/operator.hpp"

@@ -5,8 +5,8 @@
 /// are poor elements that no move or swap makes better.
 #pragma once
 
-#include "ductile/meshadapt/background.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "operators/background.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"

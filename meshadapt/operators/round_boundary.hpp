@@ -3,7 +3,7 @@
 /// that is flat only up to its precision, so that it is as flat when it is read again.
 #pragma once
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ductile/meshadapt/quality.hpp"
+#include "core/quality.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {

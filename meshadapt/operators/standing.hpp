@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "operators/edge_range.hpp"
 

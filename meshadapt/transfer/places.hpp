@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {

@@ -11,7 +11,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "transfer/element_fields.hpp"
 #include "transfer/places.hpp"

@@ -9,9 +9,9 @@
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
-#include "mesh/take_apart.hpp"
+#include "adapt/take_apart.hpp"
 #include "oracle.hpp"
 
 namespace ductile::fuzz {

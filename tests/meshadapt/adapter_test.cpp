@@ -1,6 +1,6 @@
 /// @file
 /// Checks the whole data structure after each kernel of random adaptations.
-#include "operators/adapter.hpp"
+#include "adapt/adapter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
-#include "mesh/check_structure.hpp"
+#include "geometry/make_mesh.hpp"
+#include "checks/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"

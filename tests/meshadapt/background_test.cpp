@@ -1,11 +1,11 @@
-#include "ductile/meshadapt/background.hpp"
+#include "operators/background.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"

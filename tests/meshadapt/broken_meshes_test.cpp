@@ -14,14 +14,14 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/background.hpp"
+#include "operators/background.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/meshadapt/mesh_from_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/origins.hpp"

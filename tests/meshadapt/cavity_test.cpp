@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::cavity_test {

@@ -8,7 +8,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/meshes.hpp"
 

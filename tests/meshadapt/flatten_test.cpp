@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/flatten.hpp"
+#include "mesh/flatten.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/list_pool.hpp"
+#include "mesh/list_pool.hpp"
 
 #include <gtest/gtest.h>
 

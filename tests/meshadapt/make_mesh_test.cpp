@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "mesh/check_structure.hpp"
-#include "mesh/take_apart.hpp"
+#include "checks/check_structure.hpp"
+#include "adapt/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

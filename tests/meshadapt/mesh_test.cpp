@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
-#include "mesh/check_structure.hpp"
-#include "mesh/take_apart.hpp"
+#include "geometry/make_mesh.hpp"
+#include "checks/check_structure.hpp"
+#include "adapt/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

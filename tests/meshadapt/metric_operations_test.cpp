@@ -11,9 +11,9 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "mesh/take_apart.hpp"
+#include "adapt/take_apart.hpp"
 #include "metric/mesh_gradation.hpp"
 
 namespace ductile::meshadapt::metric_operations_test {

@@ -1,4 +1,4 @@
-#include "geometry/prism.hpp"
+#include "mesh/prism.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/quality.hpp"
+#include "core/quality.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
-#include "mesh/check_structure.hpp"
+#include "geometry/make_mesh.hpp"
+#include "checks/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"

@@ -12,10 +12,10 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "mesh/check_structure.hpp"
-#include "mesh/take_apart.hpp"
+#include "checks/check_structure.hpp"
+#include "adapt/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 

@@ -15,7 +15,7 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"

@@ -12,7 +12,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "geometry/rounding.hpp"
 #include "support/meshes.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "geometry/distance.hpp"
+#include "mesh/distance.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::sheets_test {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ductile/meshadapt/orientation.hpp"
+#include "core/orientation.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::simplex_test {

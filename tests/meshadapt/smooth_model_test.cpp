@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/simplex.hpp"
-#include "geometry/distance.hpp"
+#include "mesh/distance.hpp"
 #include "geometry/divided.hpp"
 #include "geometry/sheets.hpp"
 #include "support/meshes.hpp"

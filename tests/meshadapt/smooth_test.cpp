@@ -7,9 +7,9 @@
 #include <set>
 
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/run_rounds.hpp"
-#include "mesh/check_structure.hpp"
+#include "checks/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 

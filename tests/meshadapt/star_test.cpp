@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::star_test {

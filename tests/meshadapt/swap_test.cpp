@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <numbers>
 
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "support/meshes.hpp"
 

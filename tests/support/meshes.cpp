@@ -5,7 +5,7 @@
 #include <numbers>
 #include <set>
 
-#include "ductile/meshadapt/orientation.hpp"
+#include "core/orientation.hpp"
 #include "ductile/runtime/hash.hpp"
 
 namespace ductile::meshadapt::test {

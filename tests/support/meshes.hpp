@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt::test {
 

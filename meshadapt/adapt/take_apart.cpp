@@ -1,4 +1,4 @@
-#include "mesh/take_apart.hpp"
+#include "adapt/take_apart.hpp"
 
 #include <algorithm>
 #include <compare>

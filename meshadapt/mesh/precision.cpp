@@ -1,4 +1,4 @@
-#include "geometry/precision.hpp"
+#include "mesh/precision.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,9 +3,9 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "geometry/crossing_facets.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/indices.hpp"
-#include "mesh/problems.hpp"
+#include "checks/problems.hpp"
 
 namespace ductile::meshadapt {
 

@@ -9,7 +9,7 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/make_mesh_options.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
 

@@ -1,4 +1,4 @@
-#include "operators/adapter.hpp"
+#include "adapt/adapter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,13 +13,13 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "metric/demand.hpp"
 #include "operators/coarsen.hpp"
-#include "operators/metric_path.hpp"
+#include "adapt/metric_path.hpp"
 #include "operators/refine.hpp"
 #include "operators/remaining_work.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"
 #include "operators/swap_by_vertex.hpp"
-#include "operators/tuning.hpp"
+#include "adapt/tuning.hpp"
 
 namespace ductile::meshadapt {
 

@@ -9,14 +9,14 @@
 #include <cstdint>
 #include <span>
 
-#include "ductile/meshadapt/orientation.hpp"
+#include "core/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/facet_key.hpp"
 #include "mesh/grouping.hpp"
-#include "mesh/problems.hpp"
+#include "checks/problems.hpp"
 
 namespace ductile::meshadapt {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/list_pool.hpp"
-#include "ductile/meshadapt/quality.hpp"
+#include "mesh/list_pool.hpp"
+#include "core/quality.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"

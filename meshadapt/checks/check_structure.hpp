@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {

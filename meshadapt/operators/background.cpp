@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/background.hpp"
+#include "operators/background.hpp"
 
 #include <algorithm>
 #include <functional>

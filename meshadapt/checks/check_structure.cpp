@@ -1,13 +1,13 @@
-#include "mesh/check_structure.hpp"
+#include "checks/check_structure.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include "ductile/meshadapt/orientation.hpp"
+#include "core/orientation.hpp"
 #include "geometry/rounding.hpp"
-#include "mesh/problems.hpp"
+#include "checks/problems.hpp"
 
 namespace ductile::meshadapt {
 

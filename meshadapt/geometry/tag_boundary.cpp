@@ -1,15 +1,15 @@
-#include "mesh/tag_boundary.hpp"
+#include "geometry/tag_boundary.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <unordered_map>
 #include <utility>
 
-#include "ductile/meshadapt/flatten.hpp"
+#include "mesh/flatten.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
-#include "mesh/check_input.hpp"
-#include "mesh/first_bad.hpp"
+#include "geometry/check_input.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/listed_twice.hpp"
 
 namespace ductile::meshadapt {

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/orientation.hpp"
+#include "core/orientation.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "metric/entities_of.hpp"
 
 namespace ductile::meshadapt {

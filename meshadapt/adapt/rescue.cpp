@@ -1,4 +1,4 @@
-#include "operators/rescue.hpp"
+#include "adapt/rescue.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/atomic.hpp"
 

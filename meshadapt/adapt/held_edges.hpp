@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {

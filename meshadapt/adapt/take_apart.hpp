@@ -5,7 +5,7 @@
 #pragma once
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {

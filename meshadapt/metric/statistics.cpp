@@ -8,7 +8,7 @@
 
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
-#include "ductile/meshadapt/quality.hpp"
+#include "core/quality.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"

@@ -7,7 +7,7 @@
 
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/metric_range.hpp"

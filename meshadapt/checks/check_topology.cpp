@@ -4,7 +4,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/topology.hpp"
 
 namespace ductile::meshadapt {

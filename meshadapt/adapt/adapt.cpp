@@ -10,12 +10,12 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"
 #include "metric/spectrum.hpp"
-#include "operators/processor_level.hpp"
+#include "adapt/processor_level.hpp"
 
 namespace ductile::meshadapt {
 namespace {

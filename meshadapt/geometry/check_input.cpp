@@ -1,15 +1,15 @@
-#include "mesh/check_input.hpp"
+#include "geometry/check_input.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/flatten.hpp"
+#include "mesh/flatten.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/first_bad.hpp"
+#include "core/first_bad.hpp"
 
 namespace ductile::meshadapt {
 

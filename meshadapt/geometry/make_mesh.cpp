@@ -1,17 +1,17 @@
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "ductile/meshadapt/orientation.hpp"
+#include "core/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/classify.hpp"
-#include "mesh/check_input.hpp"
-#include "mesh/first_bad.hpp"
+#include "geometry/check_input.hpp"
+#include "core/first_bad.hpp"
 #include "mesh/neighbours.hpp"
-#include "mesh/tag_boundary.hpp"
+#include "geometry/tag_boundary.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/background.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "operators/background.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "operators/edge_range.hpp"
 #include "operators/edges.hpp"

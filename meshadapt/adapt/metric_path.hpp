@@ -12,9 +12,9 @@
 #include <functional>
 #include <vector>
 
-#include "ductile/meshadapt/background.hpp"
+#include "operators/background.hpp"
 #include "ductile/meshadapt/complexity.hpp"
-#include "ductile/meshadapt/mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"

@@ -1,4 +1,4 @@
-#include "operators/processor_level.hpp"
+#include "adapt/processor_level.hpp"
 
 namespace ductile::meshadapt {
 

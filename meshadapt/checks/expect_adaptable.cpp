@@ -1,5 +1,5 @@
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/make_mesh.hpp"
+#include "geometry/make_mesh.hpp"
 
 namespace ductile::meshadapt {
 
