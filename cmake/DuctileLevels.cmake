@@ -1,6 +1,6 @@
 # Compiles the hot part of a library once more for processors that can do more than all of those the
 # library is built for. The library then holds both and chooses when it runs (see
-# meshadapt/operators/processor_level.hpp).
+# meshadapt/adapt/processor_level.hpp).
 #
 # What a compiler makes of an inline function or a template is shared by all that use it, so a
 # program could end up with instructions that its processor does not have. Therefore the objects of

@@ -1,7 +1,8 @@
 # Reads the sources and fails, naming file and line, where one breaks the order of the layers:
 #   1. runtime never includes meshadapt, nor mesh adaptation's sources the program's;
 #   2. the runtime's other parts never include its colouring, so that nobody who runs rounds parses it;
-#   3. OpenMP, atomics, locks, threads and signals appear in runtime only.
+#   3. OpenMP, atomics, locks, threads and signals appear in runtime only;
+#   4. each floor of mesh adaptation includes lower ones only.
 #   cmake -D SOURCE_DIR=... -P check_layers.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -54,6 +55,72 @@ forbid("<(atomic|mutex|shared_mutex|thread|condition_variable|future|semaphore|b
 forbid("std::(atomic|mutex|shared_mutex|thread|jthread|async|call_once)|__atomic_|__sync_|pthread_"
   "atomics, locks and threads stay inside runtime" ${above_runtime})
 forbid("<(csignal|signal\\.h)>|sigaction|std::signal" "signals stay inside runtime" ${above_runtime})
+
+# The floors of mesh adaptation, lowest first. Of rooms on one floor neither includes the other.
+set(floors core mesh metric io,transfer,geometry checks,operators adapt cli)
+set(level 0)
+foreach(floor IN LISTS floors)
+  string(REPLACE "," ";" rooms ${floor})
+  foreach(room IN LISTS rooms)
+    set(level_of_${room} ${level})
+    # A public header is in the room of its source; those that have none are listed below.
+    file(GLOB sources RELATIVE ${SOURCE_DIR}/meshadapt/${room} ${SOURCE_DIR}/meshadapt/${room}/*.cpp)
+    foreach(source IN LISTS sources)
+      string(REPLACE .cpp "" name ${source})
+      if(NOT room STREQUAL cli)
+        set(room_of_${name} ${room})
+      endif()
+    endforeach()
+  endforeach()
+  math(EXPR level "${level} + 1")
+endforeach()
+foreach(place IN ITEMS core/vector core/simplex mesh/any_mesh mesh/make_mesh_options io/files operators/rules)
+  string(REPLACE "/" ";" parts ${place})
+  list(GET parts 0 room)
+  list(GET parts 1 name)
+  set(room_of_${name} ${room})
+endforeach()
+
+# Fails for every include in a file of a room that is of the same floor's other rooms, or higher.
+function(forbid_upwards file room)
+  file(STRINGS ${file} lines REGEX "^#include \"")
+  foreach(line IN LISTS lines)
+    set(other "")
+    if(line MATCHES "\"ductile/meshadapt/([a-z_]+)\\.hpp\"")
+      set(other "${room_of_${CMAKE_MATCH_1}}")
+    elseif(line MATCHES "\"([a-z]+)/[a-z_0-9]+\\.hpp\"")
+      set(other ${CMAKE_MATCH_1})
+    endif()
+    if(DEFINED level_of_${other} AND NOT other STREQUAL room
+       AND NOT level_of_${other} LESS level_of_${room})
+      file(RELATIVE_PATH shown ${SOURCE_DIR} ${file})
+      string(APPEND failures "  ${shown}: ${line}\n    ${room} knows nothing of ${other}\n")
+    endif()
+  endforeach()
+  set(failures "${failures}" PARENT_SCOPE)
+endfunction()
+
+file(GLOB rooms RELATIVE ${SOURCE_DIR}/meshadapt ${SOURCE_DIR}/meshadapt/*)
+list(REMOVE_ITEM rooms CMakeLists.txt)
+foreach(room IN LISTS rooms)
+  if(NOT DEFINED level_of_${room})
+    string(APPEND failures "  meshadapt/${room} is on no floor; give it one in check_layers.cmake\n")
+    continue()
+  endif()
+  file(GLOB_RECURSE files ${SOURCE_DIR}/meshadapt/${room}/*.?pp)
+  foreach(file IN LISTS files)
+    forbid_upwards(${file} ${room})
+  endforeach()
+endforeach()
+file(GLOB headers ${SOURCE_DIR}/include/ductile/meshadapt/*.hpp)
+foreach(header IN LISTS headers)
+  get_filename_component(name ${header} NAME_WE)
+  if(DEFINED room_of_${name})
+    forbid_upwards(${header} ${room_of_${name}})
+  else()
+    string(APPEND failures "  ${name}.hpp is in no room; give it one in check_layers.cmake\n")
+  endif()
+endforeach()
 
 if(failures)
   message(FATAL_ERROR "layers broken:\n${failures}")

@@ -1,0 +1,1 @@
+#include "ductile/meshadapt/transfer.hpp"
