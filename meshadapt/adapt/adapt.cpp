@@ -4,18 +4,18 @@
 #include <cmath>
 #include <optional>
 
+#include "adapt/processor_level.hpp"
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"
 #include "metric/spectrum.hpp"
-#include "adapt/processor_level.hpp"
 
 namespace ductile::meshadapt {
 namespace {

@@ -11,20 +11,20 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/meshadapt/error.hpp"
-#include "geometry/make_mesh.hpp"
-#include "ductile/meshadapt/simplex.hpp"
-#include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/parallel_for.hpp"
-#include "geometry/curvature.hpp"
-#include "adapt/take_apart.hpp"
-#include "metric/demand.hpp"
-#include "metric/mesh_gradation.hpp"
-#include "metric/required_sizes.hpp"
 #include "adapt/adapter.hpp"
 #include "adapt/held_edges.hpp"
 #include "adapt/processor_level.hpp"
 #include "adapt/rescue.hpp"
+#include "adapt/take_apart.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "geometry/curvature.hpp"
+#include "geometry/make_mesh.hpp"
+#include "metric/demand.hpp"
+#include "metric/mesh_gradation.hpp"
+#include "metric/required_sizes.hpp"
 #include "operators/round_boundary.hpp"
 
 #ifndef DUCTILE_LEVEL  // which is only given where this is compiled once more

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
-#include "core/first_bad.hpp"
 #include "metric/entities_of.hpp"
 
 namespace ductile::meshadapt {

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "adapt/metric_path.hpp"
+#include "adapt/tuning.hpp"
 #include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/operator.hpp"
@@ -13,13 +15,11 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "metric/demand.hpp"
 #include "operators/coarsen.hpp"
-#include "adapt/metric_path.hpp"
 #include "operators/refine.hpp"
 #include "operators/remaining_work.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"
 #include "operators/swap_by_vertex.hpp"
-#include "adapt/tuning.hpp"
 
 namespace ductile::meshadapt {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "operators/background.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/operator.hpp"
+#include "mesh/mesh.hpp"
+#include "operators/background.hpp"
 #include "operators/edge_range.hpp"
 #include "operators/edges.hpp"
 #include "operators/smooth.hpp"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -12,14 +12,14 @@
 #include <functional>
 #include <vector>
 
-#include "operators/background.hpp"
 #include "ductile/meshadapt/complexity.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/mesh.hpp"
 #include "metric/interpolation.hpp"
 #include "metric/metric_of_element.hpp"
+#include "operators/background.hpp"
 
 namespace ductile::meshadapt {
 

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -1,11 +1,11 @@
 /// @file
 /// The check that the boundary of a mesh does not cross itself.
+#include "checks/problems.hpp"
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "geometry/crossing_facets.hpp"
 #include "mesh/array_lengths.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/indices.hpp"
-#include "checks/problems.hpp"
 
 namespace ductile::meshadapt {
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 
+#include "checks/problems.hpp"
 #include "core/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
@@ -16,7 +17,6 @@
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/facet_key.hpp"
 #include "mesh/grouping.hpp"
-#include "checks/problems.hpp"
 
 namespace ductile::meshadapt {
 

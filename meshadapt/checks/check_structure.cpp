@@ -5,9 +5,9 @@
 #include <limits>
 #include <map>
 
+#include "checks/problems.hpp"
 #include "core/orientation.hpp"
 #include "geometry/rounding.hpp"
-#include "checks/problems.hpp"
 
 namespace ductile::meshadapt {
 

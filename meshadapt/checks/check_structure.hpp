@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

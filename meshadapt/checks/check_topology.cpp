@@ -1,10 +1,10 @@
 #include <string>
 #include <vector>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "mesh/array_lengths.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/topology.hpp"
 
 namespace ductile::meshadapt {

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/colouring/graph.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "mesh/flatten.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "core/first_bad.hpp"
+#include "mesh/flatten.hpp"
 
 namespace ductile::meshadapt {
 

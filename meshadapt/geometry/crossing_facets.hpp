@@ -9,10 +9,10 @@
 #include <limits>
 #include <utility>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "mesh/box_index.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/scale.hpp"
 
 namespace ductile::meshadapt {

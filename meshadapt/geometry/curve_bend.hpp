@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "geometry/make_mesh.hpp"
 #include "geometry/reference_surface.hpp"
-#include "core/first_bad.hpp"
 
 namespace ductile::meshadapt {
 

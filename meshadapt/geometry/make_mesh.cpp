@@ -4,14 +4,14 @@
 #include <map>
 #include <set>
 
+#include "core/first_bad.hpp"
 #include "core/orientation.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "geometry/classify.hpp"
 #include "geometry/check_input.hpp"
-#include "core/first_bad.hpp"
-#include "mesh/neighbours.hpp"
+#include "geometry/classify.hpp"
 #include "geometry/tag_boundary.hpp"
+#include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {

@@ -9,8 +9,8 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/make_mesh_options.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

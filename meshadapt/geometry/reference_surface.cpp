@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/facet_sides.hpp"
-#include "core/first_bad.hpp"
 
 namespace ductile::meshadapt {
 

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
 #include "geometry/surface.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "ductile/meshadapt/error.hpp"
-#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "geometry/make_mesh.hpp"
 #include "geometry/rounding.hpp"
 
 namespace ductile::meshadapt {

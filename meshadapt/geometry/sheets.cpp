@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "mesh/prism.hpp"
 #include "geometry/sheets_parts.hpp"
+#include "mesh/prism.hpp"
 
 namespace ductile::meshadapt {
 

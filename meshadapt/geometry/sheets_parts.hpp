@@ -10,9 +10,9 @@
 #include <boost/container/small_vector.hpp>
 
 #include "ductile/meshadapt/simplex.hpp"
+#include "geometry/sheets.hpp"
 #include "mesh/box_index.hpp"
 #include "mesh/distance.hpp"
-#include "geometry/sheets.hpp"
 
 namespace ductile::meshadapt {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <tuple>
 
+#include "geometry/sheets_parts.hpp"
 #include "mesh/box_index.hpp"
 #include "mesh/distance.hpp"
-#include "geometry/sheets_parts.hpp"
 
 namespace ductile::meshadapt {
 

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
 #include "geometry/sheets.hpp"
 #include "geometry/smooth_model.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -5,11 +5,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "mesh/flatten.hpp"
+#include "core/first_bad.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
 #include "geometry/check_input.hpp"
-#include "core/first_bad.hpp"
+#include "mesh/flatten.hpp"
 #include "mesh/listed_twice.hpp"
 
 namespace ductile::meshadapt {

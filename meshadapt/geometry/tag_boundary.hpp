@@ -9,9 +9,9 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/make_mesh_options.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

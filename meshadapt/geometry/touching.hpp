@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "ductile/runtime/parallel_for.hpp"
-#include "mesh/distance.hpp"
 #include "geometry/facet_sides.hpp"
+#include "mesh/distance.hpp"
 
 namespace ductile::meshadapt {
 

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

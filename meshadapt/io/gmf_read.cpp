@@ -5,7 +5,6 @@
 #include <string>
 
 #include "ductile/meshadapt/files.hpp"
-#include "mesh/flatten.hpp"
 #include "file_bytes.hpp"
 #include "gmf_ascii.hpp"
 #include "gmf_binary.hpp"
@@ -13,6 +12,7 @@
 #include "gmf_mesh.hpp"
 #include "gmf_sections.hpp"
 #include "gmf_skip.hpp"
+#include "mesh/flatten.hpp"
 
 namespace ductile::meshadapt {
 namespace {

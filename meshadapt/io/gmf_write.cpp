@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/first_bad.hpp"
 #include "gmf_mesh.hpp"
 #include "gmf_sink.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "spatial_mesh.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/flatten.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
+#include "mesh/flatten.hpp"
 #include "mesh/indices.hpp"
 
 namespace ductile::meshadapt {

@@ -4,13 +4,13 @@
 #include <string>
 #include <utility>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "mesh/flatten.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
-#include "core/first_bad.hpp"
+#include "mesh/flatten.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"

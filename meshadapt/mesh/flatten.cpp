@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "mesh/array_lengths.hpp"
 #include "core/first_bad.hpp"
+#include "mesh/array_lengths.hpp"
 
 namespace ductile::meshadapt {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "ductile/meshadapt/any_mesh.hpp"
 #include "core/first_bad.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {

@@ -12,13 +12,13 @@
 #include <span>
 #include <vector>
 
-#include "ductile/meshadapt/any_mesh.hpp"
-#include "mesh/list_pool.hpp"
 #include "core/quality.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/growing_array.hpp"
+#include "mesh/list_pool.hpp"
 
 namespace ductile::meshadapt {
 

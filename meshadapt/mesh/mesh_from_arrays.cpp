@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/meshadapt/error.hpp"
+#include "core/first_bad.hpp"
 #include "core/orientation.hpp"
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -17,7 +18,6 @@
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/wording.hpp"
 

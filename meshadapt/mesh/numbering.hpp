@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -8,11 +8,11 @@
 #include <tuple>
 #include <utility>
 
-#include "mesh/mesh.hpp"
+#include "core/first_bad.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
-#include "core/first_bad.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/numbering.hpp"
 
 namespace ductile::meshadapt {

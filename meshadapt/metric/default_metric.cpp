@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/wording.hpp"
 #include "metric/little_stretch.hpp"

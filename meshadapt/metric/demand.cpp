@@ -5,11 +5,11 @@
 #include <functional>
 #include <string>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/interpolation.hpp"
 

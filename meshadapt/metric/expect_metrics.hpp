@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/metric.hpp"
 #include "core/first_bad.hpp"
+#include "ductile/meshadapt/metric.hpp"
 #include "mesh/wording.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/metric_range.hpp"

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "core/small_system.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "core/small_system.hpp"
 #include "metric/surroundings.hpp"
 
 namespace ductile::meshadapt {

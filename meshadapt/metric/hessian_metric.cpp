@@ -5,10 +5,10 @@
 #include <limits>
 #include <string>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "mesh/finite_values.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/spectrum.hpp"
 

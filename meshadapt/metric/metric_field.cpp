@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "core/first_bad.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/metric_range.hpp"

@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
-#include "core/first_bad.hpp"
 #include "metric/bounded_metric.hpp"
 #include "metric/expect_metrics.hpp"
 #include "metric/mesh_gradation.hpp"

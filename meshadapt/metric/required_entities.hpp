@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "mesh/mesh.hpp"
 #include "metric/little_stretch.hpp"
 #include "metric/metric_range.hpp"
 

@@ -7,10 +7,10 @@
 
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -7,13 +7,13 @@
 #include <string>
 #include <utility>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "metric/distance_tree.hpp"
 #include "metric/entities_of.hpp"

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <span>
 
+#include "core/quality.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
-#include "core/quality.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"

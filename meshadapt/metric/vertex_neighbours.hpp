@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/atomic.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

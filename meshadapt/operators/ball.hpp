@@ -10,9 +10,9 @@
 #include <limits>
 #include <span>
 
+#include "core/lanes.hpp"
 #include "operators/base.hpp"
 #include "operators/cavity.hpp"
-#include "core/lanes.hpp"
 
 namespace ductile::meshadapt {
 

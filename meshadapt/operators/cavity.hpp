@@ -9,9 +9,9 @@
 #include <boost/container/small_vector.hpp>
 #include <boost/container/static_vector.hpp>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/deferred_update.hpp"
 #include "geometry/surface.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

@@ -12,10 +12,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "mesh/mesh.hpp"
+#include "core/lanes.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
-#include "core/lanes.hpp"
+#include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {
 

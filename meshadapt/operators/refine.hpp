@@ -11,11 +11,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "operators/background.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/operator.hpp"
+#include "mesh/mesh.hpp"
+#include "operators/background.hpp"
 #include "operators/cavity.hpp"
 #include "operators/edges.hpp"
 #include "operators/marked_set.hpp"

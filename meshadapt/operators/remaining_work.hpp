@@ -5,11 +5,11 @@
 /// are poor elements that no move or swap makes better.
 #pragma once
 
-#include "operators/background.hpp"
-#include "mesh/mesh.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
+#include "operators/background.hpp"
 #include "operators/edge_survey.hpp"
 #include "operators/smooth.hpp"
 

@@ -6,10 +6,10 @@
 /// sweep is a Gauss-Seidel iteration. It runs in tiles.
 #pragma once
 
-#include "operators/background.hpp"
 #include "ductile/meshadapt/rules.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "operators/background.hpp"
 #include "operators/ball.hpp"
 #include "operators/edge_range.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "mesh/mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/mesh.hpp"
 #include "operators/edge_range.hpp"
 
 namespace ductile::meshadapt {

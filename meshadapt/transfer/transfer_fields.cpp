@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "mesh/array_lengths.hpp"
-#include "core/first_bad.hpp"
 #include "mesh/wording.hpp"
 #include "transfer/element_fields.hpp"
 #include "transfer/places.hpp"

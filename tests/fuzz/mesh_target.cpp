@@ -7,11 +7,11 @@
 #include <cstring>
 #include <string_view>
 
+#include "adapt/take_apart.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "geometry/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
-#include "adapt/take_apart.hpp"
+#include "geometry/make_mesh.hpp"
 #include "oracle.hpp"
 
 namespace ductile::fuzz {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "geometry/make_mesh.hpp"
 #include "core/orientation.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 

@@ -14,19 +14,19 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "operators/background.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
-#include "geometry/make_mesh.hpp"
 #include "ductile/meshadapt/mesh_from_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/origins.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/meshadapt/transfer.hpp"
+#include "geometry/make_mesh.hpp"
+#include "operators/background.hpp"
 #include "support/broken_input.hpp"
 #include "support/meshes.hpp"
 

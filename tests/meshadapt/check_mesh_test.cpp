@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "checks/check_structure.hpp"
 #include "geometry/make_mesh.hpp"
 #include "io_support.hpp"
-#include "checks/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

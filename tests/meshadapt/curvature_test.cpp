@@ -8,8 +8,8 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "geometry/make_mesh.hpp"
 #include "ductile/meshadapt/statistics.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::curvature_test {

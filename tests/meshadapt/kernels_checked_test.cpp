@@ -6,11 +6,11 @@
 #include <cmath>
 #include <memory>
 
-#include "operators/background.hpp"
-#include "ductile/meshadapt/check_mesh.hpp"
-#include "geometry/make_mesh.hpp"
-#include "ductile/runtime/checked_rounds.hpp"
 #include "checks/check_structure.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/runtime/checked_rounds.hpp"
+#include "geometry/make_mesh.hpp"
+#include "operators/background.hpp"
 #include "operators/coarsen.hpp"
 #include "operators/smooth.hpp"
 #include "operators/swap.hpp"

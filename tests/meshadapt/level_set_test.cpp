@@ -30,7 +30,7 @@ AdaptedMesh adapted(const AnyMesh& mesh, double size, double tolerance, int thre
   const Executor executor({.threads = threads});
   AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, size), options);
   EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
-  EXPECT_EQ(test::joined(check_domain(mesh, result.mesh, tolerance)), "");
+  EXPECT_EQ(test::joined(check_domain(executor, mesh, result.mesh, tolerance)), "");
   return result;
 }
 

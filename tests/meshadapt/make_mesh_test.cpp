@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "adapt/take_apart.hpp"
+#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "checks/check_structure.hpp"
-#include "adapt/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "adapt/take_apart.hpp"
+#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "geometry/make_mesh.hpp"
-#include "checks/check_structure.hpp"
-#include "adapt/take_apart.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "adapt/take_apart.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "adapt/take_apart.hpp"
+#include "geometry/make_mesh.hpp"
 #include "metric/mesh_gradation.hpp"
 
 namespace ductile::meshadapt::metric_operations_test {

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "adapt/take_apart.hpp"
+#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "checks/check_structure.hpp"
-#include "adapt/take_apart.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 

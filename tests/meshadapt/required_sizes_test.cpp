@@ -15,8 +15,8 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"

@@ -16,8 +16,8 @@
 #include "ductile/meshadapt/local_sizes.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "mesh/distance.hpp"
 #include "io_support.hpp"
+#include "mesh/distance.hpp"
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "ductile/meshadapt/simplex.hpp"
-#include "mesh/distance.hpp"
 #include "geometry/divided.hpp"
 #include "geometry/sheets.hpp"
+#include "mesh/distance.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::smooth_model_test {

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <set>
 
-#include "ductile/meshadapt/check_mesh.hpp"
-#include "geometry/make_mesh.hpp"
-#include "ductile/runtime/run_rounds.hpp"
 #include "checks/check_structure.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 

@@ -6,8 +6,8 @@
 #include <initializer_list>
 #include <numbers>
 
-#include "geometry/make_mesh.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::swap_test {
