@@ -1,0 +1,154 @@
+#include "displace.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/runtime/hash.hpp"
+#include "elements_around.hpp"
+
+namespace ductile::petsc {
+
+using meshadapt::Metric;
+using meshadapt::Vector;
+
+namespace {
+
+/// Length of an edge by what is wanted at its ends.
+template <int Dim>
+double wanted_length(const Part& part, VertexId a, VertexId b) {
+  const Vector<Dim> edge =
+      meshadapt::position_in<Dim>(part.mesh, b) - meshadapt::position_in<Dim>(part.mesh, a);
+  const auto length_at = [&](VertexId v) {
+    Metric<Dim> metric;
+    std::copy_n(&part.wanted.values[v * metric.m.size()], metric.m.size(), metric.m.begin());
+    return std::sqrt(meshadapt::squared_length(metric, edge));
+  };
+  return meshadapt::mean_length(length_at(a), length_at(b));
+}
+
+/// Far from what is wanted; what is just out of the usual range may be so on any mesh.
+bool is_blocked(double length) { return length > 2 || length < 0.5; }
+
+/// The order of two ranks, which is another one every second pass.
+std::uint64_t place_in_order(int rank, int pass) {
+  const auto r = static_cast<std::uint64_t>(rank), p = static_cast<std::uint64_t>(pass);
+  const std::uint64_t place = (runtime::mix64(r + 1000003 * (p / 2)) >> 20U << 20U) + r;
+  return p % 2 == 0 ? place : ~place;
+}
+
+/// The front of other ranks that advances into a part.
+template <int Dim>
+class Front {
+ public:
+  Front(const Part& part, const Interfaces& interfaces, const Turn& turn)
+      : part_(part),
+        elements_(meshadapt::elements_in<Dim>(part.mesh).vertices),
+        around_(part.mesh),
+        turn_(turn),
+        target_of_(elements_.size(), turn.rank),
+        taker_of_(part.mesh.vertex_count(), turn.rank) {
+    for (const SharedVertex& shared : interfaces.vertices) {
+      int& taker = taker_of_[shared.vertex];
+      for (const int rank : shared.ranks)
+        if (has_priority({rank, turn.pass}, taker)) taker = rank;
+      if (taker != turn.rank) front_.push_back(shared.vertex);
+    }
+  }
+
+  std::vector<int> advance() {
+    constexpr int beyond_blocked = 2;
+    for (int left = beyond_blocked; left > 0; --left) {
+      const auto layer = next_layer();
+      if (layer.empty() || 2 * (moved_ + layer.size()) > elements_.size()) break;
+      moved_ += layer.size();
+      if (take(layer)) left = beyond_blocked + 1;
+    }
+    return std::move(target_of_);
+  }
+
+ private:
+  /// The elements around the front that still stay.
+  std::vector<std::uint32_t> next_layer() const {
+    std::vector<std::uint32_t> layer;
+    for (const VertexId v : front_)
+      for (const std::uint32_t e : around_.of(v))
+        if (target_of_[e] == turn_.rank) layer.push_back(e);
+    std::sort(layer.begin(), layer.end());
+    layer.erase(std::unique(layer.begin(), layer.end()), layer.end());
+    return layer;
+  }
+
+  /// Gives each to the rank with most priority of those at its corners, and makes its corners the
+  /// front. Returns whether edges there are blocked.
+  bool take(const std::vector<std::uint32_t>& layer) {
+    for (const std::uint32_t e : layer)
+      for (const VertexId v : elements_[e])
+        if (has_priority({taker_of_[v], turn_.pass}, target_of_[e])) target_of_[e] = taker_of_[v];
+    front_.clear();
+    bool blocked = false;
+    for (const std::uint32_t e : layer) {
+      for (const VertexId v : elements_[e])
+        if (taker_of_[v] == turn_.rank) {
+          taker_of_[v] = target_of_[e];
+          front_.push_back(v);
+        }
+      for (std::size_t k = 0; k < meshadapt::Simplex<Dim>::edges; ++k) {
+        const auto [a, b] = meshadapt::ends_of_edge<Dim>(elements_[e], k);
+        blocked = blocked || is_blocked(wanted_length<Dim>(part_, a, b));
+      }
+    }
+    return blocked;
+  }
+
+  const Part& part_;
+  const std::vector<meshadapt::Corners<Dim>>& elements_;
+  ElementsAround<Dim> around_;
+  Turn turn_;
+  std::vector<int> target_of_;  // [element]
+  std::vector<int> taker_of_;   // [vertex], who takes the elements around it
+  std::vector<VertexId> front_;
+  std::size_t moved_ = 0;
+};
+
+}  // namespace
+
+bool has_priority(const Turn& a, int over) {
+  return place_in_order(a.rank, a.pass) > place_in_order(over, a.pass);
+}
+
+template <int Dim>
+EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interfaces) {
+  EdgesAtInterfaces edges;
+  if (part.element_count() == 0) return edges;
+  std::vector<std::uint8_t> is_shared(part.mesh.vertex_count(), 0);
+  for (const SharedVertex& shared : interfaces.vertices) is_shared[shared.vertex] = 1;
+  std::vector<std::pair<VertexId, VertexId>> found;
+  for (const auto& corners : meshadapt::elements_in<Dim>(part.mesh).vertices)
+    for (std::size_t k = 0; k < meshadapt::Simplex<Dim>::edges; ++k) {
+      const auto [a, b] = meshadapt::ends_of_edge<Dim>(corners, k);
+      if (is_shared[a] != 0 || is_shared[b] != 0) found.emplace_back(std::minmax(a, b));
+    }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  edges.all = static_cast<std::int64_t>(found.size());
+  edges.blocked = std::count_if(found.begin(), found.end(), [&](const auto& edge) {
+    return is_blocked(wanted_length<Dim>(part, edge.first, edge.second));
+  });
+  return edges;
+}
+
+template <int Dim>
+std::vector<int> displaced(const Part& part, const Interfaces& interfaces, const Turn& turn) {
+  if (part.element_count() == 0) return {};
+  return Front<Dim>(part, interfaces, turn).advance();
+}
+
+template EdgesAtInterfaces edges_at_interfaces<2>(const Part&, const Interfaces&);
+template EdgesAtInterfaces edges_at_interfaces<3>(const Part&, const Interfaces&);
+template std::vector<int> displaced<2>(const Part&, const Interfaces&, const Turn&);
+template std::vector<int> displaced<3>(const Part&, const Interfaces&, const Turn&);
+
+}  // namespace ductile::petsc

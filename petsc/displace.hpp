@@ -1,0 +1,43 @@
+/// @file
+/// Displacing interfaces: what was held on an interface in one pass is inside of a part in the next.
+/// The rank that has priority takes what lies on the other side: the elements around shared
+/// vertices, layer by layer, until edges have about the lengths that are wanted, and two more.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "interfaces.hpp"
+#include "part.hpp"
+
+namespace ductile::petsc {
+
+/// Edges around shared vertices, measured by what is wanted.
+struct EdgesAtInterfaces {
+  std::int64_t all = 0;      ///< with an end that is shared; those on interfaces count on each side
+  std::int64_t blocked = 0;  ///< of these, shorter than 1/2 or longer than 2
+};
+
+template <int Dim>
+EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interfaces);
+
+struct Turn {
+  int rank;
+  int pass;  ///< from 0
+};
+
+/// Which of two ranks has priority in a pass: it alternates from pass to pass for each pair.
+bool has_priority(const Turn& a, int over);
+
+/// The rank to which each element goes in this pass, most of them to this one: at least half of them
+/// stay.
+template <int Dim>
+std::vector<int> displaced(const Part& part, const Interfaces& interfaces, const Turn& turn);
+
+extern template EdgesAtInterfaces edges_at_interfaces<2>(const Part&, const Interfaces&);
+extern template EdgesAtInterfaces edges_at_interfaces<3>(const Part&, const Interfaces&);
+extern template std::vector<int> displaced<2>(const Part&, const Interfaces&, const Turn&);
+extern template std::vector<int> displaced<3>(const Part&, const Interfaces&, const Turn&);
+
+}  // namespace ductile::petsc

@@ -1,0 +1,22 @@
+/// @file
+/// What a DM's DMPlexMetric parameters say of the adaptation.
+#pragma once
+
+#include "adapt_parts.hpp"
+#include "plex.hpp"
+
+namespace ductile::petsc {
+
+struct Parameters {
+  AdaptPartsOptions options;
+  int verbosity = -1;  ///< a line for each pass from 1 on
+};
+
+/// Gradation factor, Hausdorff number, smallest and largest size, no insertion, swapping, movement
+/// or change of the surface, the number of passes and the verbosity. A Hausdorff number counts if it
+/// is not PETSc's default of 0.01, which is a length that nobody has chosen: boundaries then keep
+/// the facets that they have, except where these are flat. Target complexity, order of
+/// normalisation and largest anisotropy are for DMPlexMetricNormalize(), which has used them.
+Parameters parameters_of(DM dm);
+
+}  // namespace ductile::petsc
