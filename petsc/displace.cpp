@@ -62,7 +62,7 @@ class Front {
     constexpr int beyond_blocked = 2;
     for (int left = beyond_blocked; left > 0; --left) {
       const auto layer = next_layer();
-      if (layer.empty() || 2 * (moved_ + layer.size()) > elements_.size()) break;
+      if (layer.empty() || 4 * (moved_ + layer.size()) > 3 * elements_.size()) break;
       moved_ += layer.size();
       if (take(layer)) left = beyond_blocked + 1;
     }

@@ -30,8 +30,8 @@ struct Turn {
 /// Which of two ranks has priority in a pass: it alternates from pass to pass for each pair.
 bool has_priority(const Turn& a, int over);
 
-/// The rank to which each element goes in this pass, most of them to this one: at least half of them
-/// stay.
+/// The rank to which each element goes in this pass, most of them to this one: at least a
+/// quarter of them stays.
 template <int Dim>
 std::vector<int> displaced(const Part& part, const Interfaces& interfaces, const Turn& turn);
 
