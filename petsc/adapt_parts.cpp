@@ -4,9 +4,11 @@
 #include <utility>
 
 #include "adapt_part.hpp"
+#include "adapt_zone.hpp"
 #include "balance.hpp"
 #include "displace.hpp"
 #include "grade.hpp"
+#include "held.hpp"
 #include "migrate.hpp"
 
 namespace ductile::petsc {
@@ -44,6 +46,7 @@ class Parts {
 
  private:
   static constexpr double beforehand = 1.2, at_the_end = 1.05;  // the imbalance that may be
+  static constexpr int layers = 3;  // around what was held, that are adapted with it
 
   void find_interfaces() {
     comm_.on_all([&] { list_boundary(executor_, part_); });
@@ -64,13 +67,19 @@ class Parts {
     const double begin = MPI_Wtime();
     if (comm_.size() > 1 && options_.adapt.gradation > 0)
       grade<Dim>(comm_, executor_, part_, interfaces_, options_.adapt.gradation);
-    auto adapted = comm_.on_all(
-        [&] { return adapt_part<Dim>(executor_, part_, interfaces_, options_.adapt); });
+    auto adapted = comm_.on_all([&] {
+      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_.adapt);
+      return adapt_zone<Dim>(executor_, part_, interfaces_, held_elements<Dim>(part_, layers),
+                             options_.adapt);
+    });
     part_ = std::move(adapted.part);
     interfaces_ = std::move(adapted.interfaces);
     number_vertices(comm_, interfaces_, part_);
-    const EdgesAtInterfaces edges =
-        comm_.on_all([&] { return edges_at_interfaces<Dim>(part_, interfaces_); });
+    const EdgesAtInterfaces edges = comm_.on_all([&] {
+      part_.was_shared.assign(part_.number_of.size(), 0);
+      for (const SharedVertex& shared : interfaces_.vertices) part_.was_shared[shared.vertex] = 1;
+      return edges_at_interfaces<Dim>(part_, interfaces_);
+    });
     const auto elements = static_cast<std::int64_t>(part_.element_count());
     const auto sums = comm_.sums({elements, edges.all, edges.blocked});
     const std::int64_t most = comm_.largest(elements);

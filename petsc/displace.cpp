@@ -1,36 +1,15 @@
 #include "displace.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 
-#include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "elements_around.hpp"
+#include "held.hpp"
 
 namespace ductile::petsc {
 
-using meshadapt::Metric;
-using meshadapt::Vector;
-
 namespace {
-
-/// Length of an edge by what is wanted at its ends.
-template <int Dim>
-double wanted_length(const Part& part, VertexId a, VertexId b) {
-  const Vector<Dim> edge =
-      meshadapt::position_in<Dim>(part.mesh, b) - meshadapt::position_in<Dim>(part.mesh, a);
-  const auto length_at = [&](VertexId v) {
-    Metric<Dim> metric;
-    std::copy_n(&part.wanted.values[v * metric.m.size()], metric.m.size(), metric.m.begin());
-    return std::sqrt(meshadapt::squared_length(metric, edge));
-  };
-  return meshadapt::mean_length(length_at(a), length_at(b));
-}
-
-/// Far from what is wanted; what is just out of the usual range may be so on any mesh.
-bool is_blocked(double length) { return length > 2 || length < 0.5; }
 
 /// The order of two ranks, which is another one every second pass.
 std::uint64_t place_in_order(int rank, int pass) {
@@ -95,10 +74,7 @@ class Front {
           taker_of_[v] = target_of_[e];
           front_.push_back(v);
         }
-      for (std::size_t k = 0; k < meshadapt::Simplex<Dim>::edges; ++k) {
-        const auto [a, b] = meshadapt::ends_of_edge<Dim>(elements_[e], k);
-        blocked = blocked || is_blocked(wanted_length<Dim>(part_, a, b));
-      }
+      blocked = blocked || has_blocked_edge<Dim>(part_, e);
     }
     return blocked;
   }
@@ -120,34 +96,11 @@ bool has_priority(const Turn& a, int over) {
 }
 
 template <int Dim>
-EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interfaces) {
-  EdgesAtInterfaces edges;
-  if (part.element_count() == 0) return edges;
-  std::vector<std::uint8_t> is_shared(part.mesh.vertex_count(), 0);
-  for (const SharedVertex& shared : interfaces.vertices) is_shared[shared.vertex] = 1;
-  std::vector<std::pair<VertexId, VertexId>> found;
-  for (const auto& corners : meshadapt::elements_in<Dim>(part.mesh).vertices)
-    for (std::size_t k = 0; k < meshadapt::Simplex<Dim>::edges; ++k) {
-      const auto [a, b] = meshadapt::ends_of_edge<Dim>(corners, k);
-      if (is_shared[a] != 0 || is_shared[b] != 0) found.emplace_back(std::minmax(a, b));
-    }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  edges.all = static_cast<std::int64_t>(found.size());
-  edges.blocked = std::count_if(found.begin(), found.end(), [&](const auto& edge) {
-    return is_blocked(wanted_length<Dim>(part, edge.first, edge.second));
-  });
-  return edges;
-}
-
-template <int Dim>
 std::vector<int> displaced(const Part& part, const Interfaces& interfaces, const Turn& turn) {
   if (part.element_count() == 0) return {};
   return Front<Dim>(part, interfaces, turn).advance();
 }
 
-template EdgesAtInterfaces edges_at_interfaces<2>(const Part&, const Interfaces&);
-template EdgesAtInterfaces edges_at_interfaces<3>(const Part&, const Interfaces&);
 template std::vector<int> displaced<2>(const Part&, const Interfaces&, const Turn&);
 template std::vector<int> displaced<3>(const Part&, const Interfaces&, const Turn&);
 

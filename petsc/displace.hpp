@@ -13,15 +13,6 @@
 
 namespace ductile::petsc {
 
-/// Edges around shared vertices, measured by what is wanted.
-struct EdgesAtInterfaces {
-  std::int64_t all = 0;      ///< with an end that is shared; those on interfaces count on each side
-  std::int64_t blocked = 0;  ///< of these, shorter than 1/2 or longer than 2
-};
-
-template <int Dim>
-EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interfaces);
-
 struct Turn {
   int rank;
   int pass;  ///< from 0
@@ -35,8 +26,6 @@ bool has_priority(const Turn& a, int over);
 template <int Dim>
 std::vector<int> displaced(const Part& part, const Interfaces& interfaces, const Turn& turn);
 
-extern template EdgesAtInterfaces edges_at_interfaces<2>(const Part&, const Interfaces&);
-extern template EdgesAtInterfaces edges_at_interfaces<3>(const Part&, const Interfaces&);
 extern template std::vector<int> displaced<2>(const Part&, const Interfaces&, const Turn&);
 extern template std::vector<int> displaced<3>(const Part&, const Interfaces&, const Turn&);
 

@@ -26,6 +26,7 @@ struct Vertex {
   std::array<double, Dim> position;
   Metric<Dim> wanted;
   std::int32_t reference;
+  std::uint8_t was_shared;
 };
 
 template <std::size_t N>
@@ -83,7 +84,8 @@ PerRank<Vertex<Dim>> vertices_to(const Part& part, const std::vector<int>& targe
     list.erase(std::unique(list.begin(), list.end()), list.end());
     for (const VertexId v : list) {
       Vertex<Dim> vertex{part.number_of[v], meshadapt::position_in<Dim>(part.mesh, v).x, {},
-                         part.mesh.vertex_reference[v]};
+                         part.mesh.vertex_reference[v],
+                         part.was_shared.empty() ? std::uint8_t{0} : part.was_shared[v]};
       std::copy_n(&part.wanted.values[v * Metric<Dim>::size], Metric<Dim>::size,
                   vertex.wanted.m.begin());
       to[rank].push_back(vertex);
@@ -103,6 +105,7 @@ Part assemble(std::vector<Vertex<Dim>> vertices, const std::vector<Simplex<Dim +
   for (const Vertex<Dim>& vertex : vertices) {
     if (!part.number_of.empty() && part.number_of.back() == vertex.number) continue;
     part.number_of.push_back(vertex.number);
+    part.was_shared.push_back(vertex.was_shared);
     part.mesh.vertex_reference.push_back(vertex.reference);
     part.mesh.coordinates.insert(part.mesh.coordinates.end(), vertex.position.begin(),
                                  vertex.position.end());
