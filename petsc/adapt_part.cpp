@@ -42,7 +42,8 @@ void drop_unlabelled_facets(AnyMesh& mesh) {
 }
 
 template <int Dim>
-AnyField mapped(const Executor& executor, const AnyField& field, Metric<Dim> (*map)(const Metric<Dim>&)) {
+AnyField mapped(const Executor& executor, const AnyField& field,
+                Metric<Dim> (*map)(const Metric<Dim>&)) {
   auto tensor_of = meshadapt::tensors_of<Dim>(executor, field);
   runtime::parallel_for(executor, tensor_of.size(),
                         [&](std::size_t v) { tensor_of[v] = map(tensor_of[v]); });

@@ -13,8 +13,8 @@
 namespace ductile::petsc {
 
 struct AdaptedPart {
-  Part part;                   ///< numbers are those of before, or -1 of new vertices
-  Interfaces interfaces;       ///< the shared vertices, in the new part; no facets
+  Part part;              ///< numbers are those of before, or -1 of new vertices
+  Interfaces interfaces;  ///< the shared vertices, in the new part; no facets
   meshadapt::AdaptReport report;
 };
 

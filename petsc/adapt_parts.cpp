@@ -33,8 +33,9 @@ class Parts {
       reports.push_back(adapt(pass));
       if (options_.told) options_.told(reports.back());
       if (pass >= options_.passes || !is_worthwhile(reports.back())) break;
-      const std::vector<int> target_of = comm_.on_all(
-          [&] { return displaced<Dim>(part_, interfaces_, {comm_.rank(), pass - 1}); });
+      const std::vector<int> target_of = comm_.on_all([&] {
+        return displaced<Dim>(part_, interfaces_, {comm_.rank(), pass - 1});
+      });
       part_ = migrate<Dim>(comm_, part_, target_of);
       find_interfaces();
     }
@@ -46,7 +47,7 @@ class Parts {
 
  private:
   static constexpr double beforehand = 1.2, at_the_end = 1.05;  // the imbalance that may be
-  static constexpr int layers = 3;  // around what was held, that are adapted with it
+  static constexpr std::uint8_t layers = 3;  // around what was held, that are adapted with it
 
   void find_interfaces() {
     comm_.on_all([&] { list_boundary(executor_, part_); });
@@ -56,8 +57,7 @@ class Parts {
 
   void balance(double accepted) {
     if (comm_.size() == 1) return;
-    const auto load_of =
-        comm_.on_all([&] { return predicted_elements<Dim>(executor_, part_); });
+    const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(executor_, part_); });
     if (imbalance(comm_, load_of) <= accepted) return;
     part_ = migrate<Dim>(comm_, part_, balanced<Dim>(comm_, part_, interfaces_, load_of));
     find_interfaces();
@@ -85,8 +85,12 @@ class Parts {
     const std::int64_t most = comm_.largest(elements);
     const std::int64_t microseconds =
         comm_.largest(static_cast<std::int64_t>(1e6 * (MPI_Wtime() - begin)));
-    return {pass, sums[0], sums[1], sums[2],
-            static_cast<double>(most * comm_.size()) / static_cast<double>(std::max<std::int64_t>(1, sums[0])),
+    return {pass,
+            sums[0],
+            sums[1],
+            sums[2],
+            static_cast<double>(most * comm_.size()) /
+                static_cast<double>(std::max<std::int64_t>(1, sums[0])),
             1e-6 * static_cast<double>(microseconds)};
   }
 

@@ -19,25 +19,25 @@ namespace ductile::petsc {
 
 /// How the mesh stands after a pass; figures of all ranks.
 struct PassReport {
-  int pass = 0;                ///< from 1
+  int pass = 0;  ///< from 1
   std::int64_t elements = 0;
-  std::int64_t edges = 0;      ///< around shared vertices
-  std::int64_t blocked = 0;    ///< of these, far from what is wanted (see EdgesAtInterfaces)
-  double imbalance = 1;        ///< the largest number of elements of a rank over the mean
-  double seconds = 0;          ///< of this pass, on the slowest rank
+  std::int64_t edges = 0;    ///< around shared vertices
+  std::int64_t blocked = 0;  ///< of these, far from what is wanted (see EdgesAtInterfaces)
+  double imbalance = 1;      ///< the largest number of elements of a rank over the mean
+  double seconds = 0;        ///< of this pass, on the slowest rank
 };
 
 struct AdaptPartsOptions {
-  meshadapt::AdaptOptions adapt = {};  ///< required_gradation holds at interfaces
-  int passes = 3;                      ///< at most; at least one is made
+  meshadapt::AdaptOptions adapt = {};                ///< required_gradation holds at interfaces
+  int passes = 3;                                    ///< at most; at least one is made
   std::function<void(const PassReport&)> told = {};  ///< called after each pass, on all ranks
 };
 
 /// A distributed mesh that may be made something else of.
 struct AdaptedParts {
-  Part part;              ///< numbered in the order of the ranks; lists its boundary
+  Part part;  ///< numbered in the order of the ranks; lists its boundary
   Interfaces interfaces;
-  std::int64_t own = 0;   ///< vertices that this rank has numbered
+  std::int64_t own = 0;  ///< vertices that this rank has numbered
   std::vector<PassReport> passes;
 };
 

@@ -18,12 +18,12 @@ namespace {
 
 /// A line for each pass, on the first rank.
 void tell(MPI_Comm comm, const PassReport& pass) {
-  check(PetscPrintf(comm,
-                    "ductile: pass %d: %lld elements, %lld of %lld edges around interfaces blocked, "
-                    "imbalance %.2f, %.3f s\n",
-                    pass.pass, static_cast<long long>(pass.elements),
-                    static_cast<long long>(pass.blocked), static_cast<long long>(pass.edges),
-                    pass.imbalance, pass.seconds));
+  check(PetscPrintf(
+      comm,
+      "ductile: pass %d: %lld elements, %lld of %lld edges around interfaces blocked, "
+      "imbalance %.2f, %.3f s\n",
+      pass.pass, static_cast<long long>(pass.elements), static_cast<long long>(pass.blocked),
+      static_cast<long long>(pass.edges), pass.imbalance, pass.seconds));
 }
 
 DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cells) {
@@ -32,14 +32,13 @@ DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cell
   const int threads = threads_of(comm, dm);
   const runtime::Executor executor =
       comm.on_all([&] { return runtime::Executor({.threads = threads}); });
-  const CarriedLabels labels =
-      labels_of(comm, dm, metric != nullptr ? facets : nullptr, metric != nullptr ? cells : nullptr);
+  const CarriedLabels labels = labels_of(comm, dm, metric != nullptr ? facets : nullptr,
+                                         metric != nullptr ? cells : nullptr);
   PlexPart read = read_plex(comm, dm, labels);
   const auto& adapt = parameters.options.adapt;
-  read.part.wanted =
-      metric != nullptr
-          ? metric_of_vector(comm, dm, metric, read, {adapt.smallest_size, adapt.largest_size})
-          : metric_of_label(comm, executor, facets, read);
+  read.part.wanted = metric != nullptr ? metric_of_vector(comm, dm, metric, read,
+                                                          {adapt.smallest_size, adapt.largest_size})
+                                       : metric_of_label(comm, executor, facets, read);
   if (parameters.verbosity > 0)
     parameters.options.told = [&](const PassReport& pass) { tell(handle, pass); };
   const AdaptedParts parts =

@@ -17,7 +17,8 @@ namespace {
 /// Adds a vertex of one part to another. Returns its number there.
 template <int Dim>
 VertexId add_vertex(Part& to, const Part& from, VertexId v) {
-  const auto tensor = from.wanted.values.begin() + static_cast<std::ptrdiff_t>(v) * Metric<Dim>::size;
+  const auto tensor =
+      from.wanted.values.begin() + static_cast<std::ptrdiff_t>(v) * Metric<Dim>::size;
   const auto place = from.mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(v) * Dim;
   to.wanted.values.insert(to.wanted.values.end(), tensor, tensor + Metric<Dim>::size);
   to.mesh.coordinates.insert(to.mesh.coordinates.end(), place, place + Dim);

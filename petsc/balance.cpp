@@ -123,8 +123,7 @@ std::vector<int> parts_in_order(const Communicator& comm, const std::vector<doub
   for (const double load : load_of) {
     const double middle = at + 500 * load;
     at += 1000 * load;
-    part_of.push_back(
-        std::clamp(static_cast<int>(middle / all * comm.size()), 0, comm.size() - 1));
+    part_of.push_back(std::clamp(static_cast<int>(middle / all * comm.size()), 0, comm.size() - 1));
   }
   return part_of;
 }

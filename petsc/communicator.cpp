@@ -65,8 +65,8 @@ Communicator::Counts Communicator::exchange_counts(const std::vector<std::size_t
   on_all([&] {
     place(counts.received, counts.received_begin);
     counts.begin.assign(counts.received_begin.begin(), counts.received_begin.end());
-    counts.begin.push_back(std::accumulate(counts.received.begin(), counts.received.end(),
-                                           std::size_t{0}));
+    counts.begin.push_back(
+        std::accumulate(counts.received.begin(), counts.received.end(), std::size_t{0}));
   });
   return counts;
 }

@@ -1,6 +1,7 @@
 /// @file
 /// Communicator: what ranks say to each other: sums, lists for each other rank, and failures. All
-/// of it is collective: every rank of the communicator calls it, on the thread that initialised MPI.
+/// of it is collective: every rank of the communicator calls it, on the thread that initialised
+/// MPI.
 #pragma once
 
 #include <mpi.h>
@@ -60,7 +61,8 @@ class Communicator {
   template <class Work>
   auto on_all(Work&& work) const;
 
-  /// Sends to[rank] to each rank. Throws std::length_error or std::bad_alloc, as Error on all ranks.
+  /// Sends to[rank] to each rank. Throws std::length_error or std::bad_alloc, as Error on all
+  /// ranks.
   template <class T>
   Received<T> exchange(const PerRank<T>& to) const;
 

@@ -28,27 +28,31 @@ class Front {
         around_(part.mesh),
         turn_(turn),
         target_of_(elements_.size(), turn.rank),
-        taker_of_(part.mesh.vertex_count(), turn.rank) {
+        taker_of_(part.mesh.vertex_count(), turn.rank),
+        left_of_(part.mesh.vertex_count(), 0) {
     for (const SharedVertex& shared : interfaces.vertices) {
       int& taker = taker_of_[shared.vertex];
       for (const int rank : shared.ranks)
         if (has_priority({rank, turn.pass}, taker)) taker = rank;
-      if (taker != turn.rank) front_.push_back(shared.vertex);
+      if (taker == turn.rank) continue;
+      front_.push_back(shared.vertex);
+      left_of_[shared.vertex] = beyond_blocked;
     }
   }
 
   std::vector<int> advance() {
-    constexpr int beyond_blocked = 2;
-    for (int left = beyond_blocked; left > 0; --left) {
+    while (true) {
       const auto layer = next_layer();
       if (layer.empty() || 4 * (moved_ + layer.size()) > 3 * elements_.size()) break;
       moved_ += layer.size();
-      if (take(layer)) left = beyond_blocked + 1;
+      take(layer);
     }
     return std::move(target_of_);
   }
 
  private:
+  static constexpr std::uint8_t beyond_blocked = 2;
+
   /// The elements around the front that still stay.
   std::vector<std::uint32_t> next_layer() const {
     std::vector<std::uint32_t> layer;
@@ -60,31 +64,38 @@ class Front {
     return layer;
   }
 
-  /// Gives each to the rank with most priority of those at its corners, and makes its corners the
-  /// front. Returns whether edges there are blocked.
-  bool take(const std::vector<std::uint32_t>& layer) {
-    for (const std::uint32_t e : layer)
-      for (const VertexId v : elements_[e])
-        if (has_priority({taker_of_[v], turn_.pass}, target_of_[e])) target_of_[e] = taker_of_[v];
-    front_.clear();
-    bool blocked = false;
+  /// Gives each to the rank with most priority of those at its corners. These are the next front,
+  /// where there are layers left.
+  void take(const std::vector<std::uint32_t>& layer) {
+    std::vector<std::uint8_t> left;  // [element of the layer], layers beyond it
     for (const std::uint32_t e : layer) {
-      for (const VertexId v : elements_[e])
-        if (taker_of_[v] == turn_.rank) {
-          taker_of_[v] = target_of_[e];
-          front_.push_back(v);
-        }
-      blocked = blocked || has_blocked_edge<Dim>(part_, e);
+      std::uint8_t most = 1;
+      for (const VertexId v : elements_[e]) {
+        if (has_priority({taker_of_[v], turn_.pass}, target_of_[e])) target_of_[e] = taker_of_[v];
+        most = std::max(most, left_of_[v]);
+      }
+      left.push_back(has_blocked_edge<Dim>(part_, e) ? beyond_blocked
+                                                     : static_cast<std::uint8_t>(most - 1));
     }
-    return blocked;
+    for (const VertexId v : front_) left_of_[v] = 0;
+    front_.clear();
+    for (std::size_t i = 0; i < layer.size(); ++i)
+      for (const VertexId v : elements_[layer[i]]) {
+        if (taker_of_[v] == turn_.rank) taker_of_[v] = target_of_[layer[i]];
+        if (left[i] > left_of_[v]) {
+          if (left_of_[v] == 0) front_.push_back(v);
+          left_of_[v] = left[i];
+        }
+      }
   }
 
   const Part& part_;
   const std::vector<meshadapt::Corners<Dim>>& elements_;
   ElementsAround<Dim> around_;
   Turn turn_;
-  std::vector<int> target_of_;  // [element]
-  std::vector<int> taker_of_;   // [vertex], who takes the elements around it
+  std::vector<int> target_of_;         // [element]
+  std::vector<int> taker_of_;          // [vertex], who takes the elements around it
+  std::vector<std::uint8_t> left_of_;  // [vertex], layers that are taken from there; 0 but in front
   std::vector<VertexId> front_;
   std::size_t moved_ = 0;
 };

@@ -1,7 +1,7 @@
 /// @file
-/// Displacing interfaces: what was held on an interface in one pass is inside of a part in the next.
-/// The rank that has priority takes what lies on the other side: the elements around shared
-/// vertices, layer by layer, until edges have about the lengths that are wanted, and two more.
+/// Displacing interfaces: what was held on an interface in one pass is inside of a part in the
+/// next. The rank that has priority takes what lies on the other side: two layers of elements, and
+/// two beyond those whose edges are far from the lengths that are wanted.
 #pragma once
 
 #include <cstddef>

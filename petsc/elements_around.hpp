@@ -44,7 +44,7 @@ class ElementsAround {
 
  private:
   const std::vector<meshadapt::Corners<Dim>>& elements_;
-  std::vector<std::uint32_t> first_;   // [vertex], into around_, and the end
+  std::vector<std::uint32_t> first_;  // [vertex], into around_, and the end
   std::vector<std::uint32_t> around_;
 };
 

@@ -35,39 +35,50 @@ class Zone {
       : part_(part),
         elements_(meshadapt::elements_in<Dim>(part.mesh).vertices),
         around_(part.mesh),
-        is_held_(elements_.size(), 0) {
+        is_held_(elements_.size(), 0),
+        left_of_(part.mesh.vertex_count(), 0) {
     for (VertexId v = 0; v < part.was_shared.size(); ++v)
       if (part.was_shared[v] != 0) front_.push_back(v);
   }
 
-  std::vector<std::uint8_t> spread(int layers) {
-    for (int left = layers; left > 0 && !front_.empty(); --left)
-      if (add_layer()) left = layers + 1;
+  std::vector<std::uint8_t> spread(std::uint8_t layers) {
+    for (const VertexId v : front_) left_of_[v] = layers;
+    while (!front_.empty()) add_layer(layers);
     return std::move(is_held_);
   }
 
  private:
-  /// Adds the elements around the front, whose corners are the next one. Returns whether one of them
-  /// has a blocked edge.
-  bool add_layer() {
-    std::vector<VertexId> next;
-    bool blocked = false;
+  /// Adds the elements around the front. Their corners are the next one, where there are layers
+  /// left: all of them around blocked edges.
+  void add_layer(std::uint8_t layers) {
+    struct Reached {
+      VertexId vertex;
+      std::uint8_t left;
+    };
+    std::vector<Reached> reached;
     for (const VertexId v : front_)
       for (const std::uint32_t e : around_.of(v)) {
         if (std::exchange(is_held_[e], 1) != 0) continue;
-        next.insert(next.end(), elements_[e].begin(), elements_[e].end());
-        blocked = blocked || has_blocked_edge<Dim>(part_, e);
+        std::uint8_t most = 1;
+        for (const VertexId w : elements_[e]) most = std::max(most, left_of_[w]);
+        const std::uint8_t left =
+            has_blocked_edge<Dim>(part_, e) ? layers : static_cast<std::uint8_t>(most - 1);
+        for (const VertexId w : elements_[e]) reached.push_back({w, left});
       }
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
-    front_ = std::move(next);
-    return blocked;
+    for (const VertexId v : front_) left_of_[v] = 0;
+    front_.clear();
+    for (const auto& [vertex, left] : reached) {
+      if (left <= left_of_[vertex]) continue;
+      if (left_of_[vertex] == 0) front_.push_back(vertex);
+      left_of_[vertex] = left;
+    }
   }
 
   const Part& part_;
   const std::vector<meshadapt::Corners<Dim>>& elements_;
   ElementsAround<Dim> around_;
   std::vector<std::uint8_t> is_held_;  // [element]
+  std::vector<std::uint8_t> left_of_;  // [vertex], layers beyond it; 0 but in front
   std::vector<VertexId> front_;
 };
 
@@ -105,7 +116,7 @@ EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interf
 }
 
 template <int Dim>
-std::vector<std::uint8_t> held_elements(const Part& part, int layers) {
+std::vector<std::uint8_t> held_elements(const Part& part, std::uint8_t layers) {
   if (part.element_count() == 0) return {};
   return Zone<Dim>(part).spread(layers);
 }
@@ -114,7 +125,7 @@ template bool has_blocked_edge<2>(const Part&, std::uint32_t);
 template bool has_blocked_edge<3>(const Part&, std::uint32_t);
 template EdgesAtInterfaces edges_at_interfaces<2>(const Part&, const Interfaces&);
 template EdgesAtInterfaces edges_at_interfaces<3>(const Part&, const Interfaces&);
-template std::vector<std::uint8_t> held_elements<2>(const Part&, int);
-template std::vector<std::uint8_t> held_elements<3>(const Part&, int);
+template std::vector<std::uint8_t> held_elements<2>(const Part&, std::uint8_t);
+template std::vector<std::uint8_t> held_elements<3>(const Part&, std::uint8_t);
 
 }  // namespace ductile::petsc

@@ -27,16 +27,16 @@ struct EdgesAtInterfaces {
 template <int Dim>
 EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interfaces);
 
-/// [element] 1 of those around vertices that were shared in the last pass: layer by layer, as long as
-/// edges are blocked, and as far as `layers` more. Empty of an empty part.
+/// [element] 1 of those around vertices that were shared in the last pass: `layers` layers,
+/// and as many beyond elements with blocked edges. At least one. Empty of an empty part.
 template <int Dim>
-std::vector<std::uint8_t> held_elements(const Part& part, int layers);
+std::vector<std::uint8_t> held_elements(const Part& part, std::uint8_t layers);
 
 extern template bool has_blocked_edge<2>(const Part&, std::uint32_t);
 extern template bool has_blocked_edge<3>(const Part&, std::uint32_t);
 extern template EdgesAtInterfaces edges_at_interfaces<2>(const Part&, const Interfaces&);
 extern template EdgesAtInterfaces edges_at_interfaces<3>(const Part&, const Interfaces&);
-extern template std::vector<std::uint8_t> held_elements<2>(const Part&, int);
-extern template std::vector<std::uint8_t> held_elements<3>(const Part&, int);
+extern template std::vector<std::uint8_t> held_elements<2>(const Part&, std::uint8_t);
+extern template std::vector<std::uint8_t> held_elements<3>(const Part&, std::uint8_t);
 
 }  // namespace ductile::petsc

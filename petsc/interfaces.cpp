@@ -88,10 +88,9 @@ Interfaces find_interfaces(const Communicator& comm, const Part& part) {
   for (std::uint32_t f = 0; f < facets.size(); ++f)
     for (const int rank : beside[f])
       if (rank != comm.rank()) interfaces.facets.push_back({f, rank});
-  std::sort(interfaces.facets.begin(), interfaces.facets.end(),
-            [&](const SharedFacet& a, const SharedFacet& b) {
-              return keys[a.facet] < keys[b.facet];
-            });
+  std::sort(
+      interfaces.facets.begin(), interfaces.facets.end(),
+      [&](const SharedFacet& a, const SharedFacet& b) { return keys[a.facet] < keys[b.facet]; });
 
   const auto by_number = [&](VertexId a, VertexId b) {
     return part.number_of[a] < part.number_of[b];

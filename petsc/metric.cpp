@@ -18,7 +18,7 @@ namespace {
 
 /// One value or one tensor of a vector, for a vertex of the DMPlex.
 struct Layout {
-  PetscInt each;     ///< components of a vertex
+  PetscInt each;  ///< components of a vertex
   bool same_for_all;
 
   PetscInt begin(PetscInt vertex) const { return same_for_all ? 0 : vertex * each; }
@@ -138,16 +138,15 @@ AnyField metric_of_vector(const Communicator& comm, DM dm, Vec vector, const Ple
   });
 }
 
-AnyField metric_of_label(const Communicator& comm, const runtime::Executor& executor,
-                         DMLabel label, const PlexPart& part) {
+AnyField metric_of_label(const Communicator& comm, const runtime::Executor& executor, DMLabel label,
+                         const PlexPart& part) {
   const std::vector<std::int32_t> flag_of = comm.on_all([&] {
     std::vector<std::int32_t> flags;
     for (const PetscInt cell : part.cell_of) flags.push_back(flag_at(label, cell));
     return flags;
   });
-  return part.part.mesh.dimension == 2
-             ? metric_of_flags<2>(comm, executor, part.part, flag_of)
-             : metric_of_flags<3>(comm, executor, part.part, flag_of);
+  return part.part.mesh.dimension == 2 ? metric_of_flags<2>(comm, executor, part.part, flag_of)
+                                       : metric_of_flags<3>(comm, executor, part.part, flag_of);
 }
 
 }  // namespace ductile::petsc

@@ -21,7 +21,7 @@ AnyField metric_of_vector(const Communicator& comm, DM dm, Vec vector, const Ple
 /// The metric that a label of cells asks for: the sizes that the mesh has, half of them in cells
 /// marked DM_ADAPT_REFINE, twice in those marked DM_ADAPT_COARSEN. Refinement wins at vertices of
 /// both. Collective.
-AnyField metric_of_label(const Communicator& comm, const runtime::Executor& executor,
-                         DMLabel label, const PlexPart& part);
+AnyField metric_of_label(const Communicator& comm, const runtime::Executor& executor, DMLabel label,
+                         const PlexPart& part);
 
 }  // namespace ductile::petsc

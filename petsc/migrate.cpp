@@ -83,7 +83,9 @@ PerRank<Vertex<Dim>> vertices_to(const Part& part, const std::vector<int>& targe
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     for (const VertexId v : list) {
-      Vertex<Dim> vertex{part.number_of[v], meshadapt::position_in<Dim>(part.mesh, v).x, {},
+      Vertex<Dim> vertex{part.number_of[v],
+                         meshadapt::position_in<Dim>(part.mesh, v).x,
+                         {},
                          part.mesh.vertex_reference[v],
                          part.was_shared.empty() ? std::uint8_t{0} : part.was_shared[v]};
       std::copy_n(&part.wanted.values[v * Metric<Dim>::size], Metric<Dim>::size,
@@ -98,9 +100,8 @@ PerRank<Vertex<Dim>> vertices_to(const Part& part, const std::vector<int>& targe
 template <int Dim>
 Part assemble(std::vector<Vertex<Dim>> vertices, const std::vector<Simplex<Dim + 1>>& elements,
               std::vector<Simplex<Dim>> facets) {
-  std::stable_sort(vertices.begin(), vertices.end(), [](const auto& a, const auto& b) {
-    return a.number < b.number;
-  });
+  std::stable_sort(vertices.begin(), vertices.end(),
+                   [](const auto& a, const auto& b) { return a.number < b.number; });
   Part part = empty_part(Dim);
   for (const Vertex<Dim>& vertex : vertices) {
     if (!part.number_of.empty() && part.number_of.back() == vertex.number) continue;
@@ -143,8 +144,8 @@ std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfa
   constexpr std::int64_t of_another = -2;
   for (const SharedVertex& shared : interfaces.vertices)
     if (shared.ranks.front() != comm.rank()) part.number_of[shared.vertex] = of_another;
-  const auto own = static_cast<std::int64_t>(
-      std::count(part.number_of.begin(), part.number_of.end(), -1));
+  const auto own =
+      static_cast<std::int64_t>(std::count(part.number_of.begin(), part.number_of.end(), -1));
   std::int64_t next = comm.sum_before(own);
   for (std::int64_t& number : part.number_of)
     if (number == -1) number = next++;

@@ -16,8 +16,8 @@ namespace ductile::petsc {
 /// Collective.
 std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfaces, Part& part);
 
-/// Sends each element to the rank that target_of names, and makes a part of what comes, in the order
-/// of the ranks that it comes from. Collective.
+/// Sends each element to the rank that target_of names, and makes a part of what comes, in the
+/// order of the ranks that it comes from. Collective.
 template <int Dim>
 Part migrate(const Communicator& comm, const Part& part, const std::vector<int>& target_of);
 

@@ -38,8 +38,8 @@ Parameters parameters_of(DM dm) {
   adapt.make.lock_boundary = is_set(dm, DMPlexMetricNoSurf);
   const auto passes = parameter<PetscInt>(dm, DMPlexMetricGetNumIterations);
   parameters.options.passes = 2 * static_cast<int>(std::clamp<PetscInt>(passes, 1, 1000));
-  parameters.verbosity =
-      static_cast<int>(std::clamp<PetscInt>(parameter<PetscInt>(dm, DMPlexMetricGetVerbosity), -1, 10));
+  parameters.verbosity = static_cast<int>(
+      std::clamp<PetscInt>(parameter<PetscInt>(dm, DMPlexMetricGetVerbosity), -1, 10));
   return parameters;
 }
 

@@ -46,8 +46,7 @@ class Reader {
     if (dimension != of_space || (dimension != 2 && dimension != 3))
       throw InputError("mesh: expected dimension 2 in the plane or 3 in space, found " +
                        std::to_string(dimension) + " in " + std::to_string(of_space));
-    const DMPolytopeType simplex =
-        dimension == 2 ? DM_POLYTOPE_TRIANGLE : DM_POLYTOPE_TETRAHEDRON;
+    const DMPolytopeType simplex = dimension == 2 ? DM_POLYTOPE_TRIANGLE : DM_POLYTOPE_TETRAHEDRON;
     for (PetscInt c = cells_.begin; c < cells_.end; ++c) {
       DMPolytopeType type = DM_POLYTOPE_UNKNOWN;
       check(DMPlexGetCellType(dm_, c, &type));

@@ -10,9 +10,9 @@ namespace ductile::petsc {
 
 /// What each rank owns of a mesh.
 struct PlexPart {
-  Part part;                         ///< without the metric
-  std::vector<PetscInt> point_of;    ///< [vertex], counted from the first vertex of the DMPlex
-  std::vector<PetscInt> cell_of;     ///< [element]
+  Part part;                       ///< without the metric
+  std::vector<PetscInt> point_of;  ///< [vertex], counted from the first vertex of the DMPlex
+  std::vector<PetscInt> cell_of;   ///< [element]
 };
 
 /// Throws Error, on all ranks, if the mesh is not one of triangles in the plane or tetrahedra.

@@ -39,9 +39,8 @@ class Writer {
     });
     PetscSF sf = nullptr;
     check(DMPlexCreateFromCellListParallelPetsc(
-        comm_.handle(), Dim, static_cast<PetscInt>(elements().size()),
-        static_cast<PetscInt>(own_), PETSC_DECIDE, Dim + 1, PETSC_TRUE, corners.data(), Dim,
-        places.data(), &sf, nullptr, &dm_));
+        comm_.handle(), Dim, static_cast<PetscInt>(elements().size()), static_cast<PetscInt>(own_),
+        PETSC_DECIDE, Dim + 1, PETSC_TRUE, corners.data(), Dim, places.data(), &sf, nullptr, &dm_));
     check(PetscSFDestroy(&sf));
   }
 
@@ -63,10 +62,9 @@ class Writer {
     std::sort(sorted.begin(), sorted.end());
     const PetscInt first = vertices_of(dm_).begin;
     for (const std::int64_t number : number_of)
-      point_of_.push_back(first +
-                          static_cast<PetscInt>(
-                              std::lower_bound(sorted.begin(), sorted.end(), number) -
-                              sorted.begin()));
+      point_of_.push_back(
+          first + static_cast<PetscInt>(std::lower_bound(sorted.begin(), sorted.end(), number) -
+                                        sorted.begin()));
   }
 
   void write_labels(const CarriedLabels& labels) {

@@ -130,7 +130,7 @@ def diagonal(*size_of):
 def own_points(dm, begin, end):
     """Those of a stratum that no other rank owns."""
     leaves = set()
-    if ranks > 1:
+    if dm.getComm().getSize() > 1:
         _, local, remote = dm.getPointSF().getGraph()
         if remote is not None:
             leaves = set(range(len(remote)) if local is None else local.tolist())
