@@ -1,6 +1,7 @@
 #include "adapt_parts.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "adapt_part.hpp"
@@ -94,12 +95,13 @@ class Parts {
             1e-6 * static_cast<double>(microseconds)};
   }
 
-  /// Without insertion edges stay as long as they are; a second pass moves and swaps where the
-  /// first could not.
+  /// A second pass always is: the interfaces of the first were there before. Without insertion no
+  /// more can be done to what is blocked.
   bool is_worthwhile(const PassReport& report) const {
-    if (!options_.adapt.insert)
-      return report.edges > 0 && report.pass < 2 && (options_.adapt.swap || options_.adapt.move);
-    return report.blocked > 0;
+    const auto& [insert, swap, move] =
+        std::tie(options_.adapt.insert, options_.adapt.swap, options_.adapt.move);
+    if (report.edges == 0 || !(insert || swap || move)) return false;
+    return report.pass < 2 || (insert && report.blocked > 0);
   }
 
   const Communicator& comm_;

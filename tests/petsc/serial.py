@@ -38,7 +38,7 @@ def run(dim, n, tensor_at, comm):
     return quality(dm, tensor_at)
 
 
-for dim, n, finest in ((2, 24, 0.006), (3, 8, 0.05)):
+for dim, n, finest in ((2, 40, 0.0015), (3, 8, 0.025)):
     tensor_at = waves(dim, finest)
     serial = run(dim, n, tensor_at, PETSc.COMM_SELF)
     serial["cells"] //= ranks  # each rank has made one
