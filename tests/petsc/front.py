@@ -3,7 +3,6 @@ does not drift, and the sets keep their measures."""
 
 from support import *
 
-options["petscpartitioner_type"] = "simple"
 dm = plex(*box(2, 16))
 label_box(dm)
 dm = distributed(dm)

@@ -1,5 +1,5 @@
 """Random meshes and metrics: each result is a mesh that PETSc accepts and has the measures that it
-had. The cases are the same each time but for PETSc's partitions."""
+had. The cases are the same each time; more of them by -cases, others by -seed."""
 
 from support import *
 

@@ -2,9 +2,6 @@
 
 from support import *
 
-# PETSc's own partitioner would give another start each time.
-options["petscpartitioner_type"] = "simple"
-
 for dim, n in ((2, 20), (3, 7)):
     digests = set()
     for threads in (1, 2, 1):

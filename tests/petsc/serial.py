@@ -3,8 +3,6 @@ Each run adapts twice, the second time to the metric at the vertices of the firs
 
 from support import *
 
-options["petscpartitioner_type"] = "simple"
-
 
 def waves(dim, finest):
     """Thin layers along a wave, as of a shock: small across it, four times as long along it."""
@@ -30,8 +28,7 @@ def run(dim, n, tensor_at, comm):
         points, cells = points[:0], cells[:0]
     dm = PETSc.DMPlex().createFromCellList(dim, cells.astype(PETSc.IntType), points, comm=comm)
     label_box(dm)
-    if comm.getSize() > 1:
-        dm.distribute()
+    dm = distributed(dm)
     for _ in range(2):
         dm = dm.adaptMetric(metric_vector(dm, tensor_at), "Face Sets", "Cell Sets")
     check_plex(dm)
