@@ -28,7 +28,7 @@ void tell(MPI_Comm comm, const PassReport& pass) {
 
 DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cells) {
   const Communicator comm(handle);
-  Parameters parameters = parameters_of(dm);
+  Parameters parameters = parameters_of(comm, dm);
   const int threads = threads_of(comm, dm);
   const runtime::Executor executor =
       comm.on_all([&] { return runtime::Executor({.threads = threads}); });

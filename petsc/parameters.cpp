@@ -19,7 +19,7 @@ bool is_set(DM dm, PetscErrorCode (*get)(DM, PetscBool*)) {
 
 }  // namespace
 
-Parameters parameters_of(DM dm) {
+Parameters parameters_of(const Communicator& comm, DM dm) {
   constexpr double hausdorff_of_nobody = 0.01;
   constexpr double no_smallest = 1e-30, no_largest = 1e30;  // PETSc's defaults
   Parameters parameters;
@@ -27,7 +27,8 @@ Parameters parameters_of(DM dm) {
   adapt.gradation = parameter<PetscReal>(dm, DMPlexMetricGetGradationFactor);
   adapt.required_gradation = 2.3;
   const double hausdorff = parameter<PetscReal>(dm, DMPlexMetricGetHausdorffNumber);
-  if (hausdorff != hausdorff_of_nobody) adapt.make.surface_tolerance = hausdorff;
+  if (comm.size() == 1 && hausdorff != hausdorff_of_nobody)
+    adapt.make.surface_tolerance = hausdorff;
   const double smallest = parameter<PetscReal>(dm, DMPlexMetricGetMinimumMagnitude);
   const double largest = parameter<PetscReal>(dm, DMPlexMetricGetMaximumMagnitude);
   if (smallest > no_smallest) adapt.smallest_size = smallest;

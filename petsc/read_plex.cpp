@@ -46,6 +46,10 @@ class Reader {
     if (dimension != of_space || (dimension != 2 && dimension != 3))
       throw InputError("mesh: expected dimension 2 in the plane or 3 in space, found " +
                        std::to_string(dimension) + " in " + std::to_string(of_space));
+    Vec of_cells = nullptr;
+    check(DMGetCellCoordinatesLocalNoncollective(dm_, &of_cells));
+    if (of_cells != nullptr)
+      throw InputError("mesh: expected one that is not periodic, found coordinates of cells");
     const DMPolytopeType simplex = dimension == 2 ? DM_POLYTOPE_TRIANGLE : DM_POLYTOPE_TETRAHEDRON;
     for (PetscInt c = cells_.begin; c < cells_.end; ++c) {
       DMPolytopeType type = DM_POLYTOPE_UNKNOWN;
