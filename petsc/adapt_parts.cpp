@@ -56,10 +56,18 @@ class Parts {
     if (comm_.size() > 1) interfaces_ = petsc::find_interfaces<Dim>(comm_, part_);
   }
 
+  /// Interfaces everywhere, as between parts of every second element, leave nothing to adapt and
+  /// nowhere to displace them.
+  bool is_scattered() const {
+    const auto sums = comm_.sums({static_cast<std::int64_t>(interfaces_.facets.size()),
+                                  static_cast<std::int64_t>(part_.element_count())});
+    return 4 * sums[0] > sums[1];  // facets count on both sides
+  }
+
   void balance(double accepted) {
     if (comm_.size() == 1) return;
     const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(executor_, part_); });
-    if (imbalance(comm_, load_of) <= accepted) return;
+    if (imbalance(comm_, load_of) <= accepted && !is_scattered()) return;
     part_ = migrate<Dim>(comm_, part_, balanced<Dim>(comm_, part_, interfaces_, load_of));
     find_interfaces();
   }
