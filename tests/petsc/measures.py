@@ -48,3 +48,12 @@ label_box(dm)
 adapted = dm.adaptMetric(full(dm), "Face Sets", "Cell Sets")
 check_plex(adapted)
 expect(cell_counts(adapted).min() > 0, "a rank starves")
+
+# Parts of every second cell, or third: there is no vertex inside of any.
+points, cells = box(2, 12)
+dm = plex(points, np.concatenate([cells[r::ranks] for r in range(ranks)]))
+label_box(dm)
+dm = distributed(dm)
+adapted = dm.adaptMetric(full(dm), "Face Sets", "Cell Sets")
+check_plex(adapted)
+expect(quality(adapted, diagonal(size, lambda x: 3 * size(x)))["worst"] > 0.3, "nothing got better")

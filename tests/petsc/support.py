@@ -47,7 +47,7 @@ def expect(truth, message):
 
 
 def box(dim, n):
-    """Vertices and cells of the unit box, n edges along each side."""
+    """Vertices and cells of the unit box, n edges along each side; cells cube by cube."""
     axis = np.linspace(0, 1, n + 1)
     points = np.stack(np.meshgrid(*[axis] * dim, indexing="ij")[::-1], -1).reshape(-1, dim)
     step = [(n + 1) ** d for d in range(dim)]
@@ -62,7 +62,7 @@ def box(dim, n):
         if (np.linalg.det(edges) > 0) != (dim == 2):  # PETSc's tetrahedra are turned the other way
             cell[:, [1, 2]] = cell[:, [2, 1]]
         cells.append(cell)
-    return points, np.concatenate(cells)
+    return points, np.stack(cells, 1).reshape(-1, dim + 1)
 
 
 def plex(points, cells):
