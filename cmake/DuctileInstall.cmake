@@ -31,6 +31,12 @@ if(TARGET ductile_c)
   install(FILES ${PROJECT_SOURCE_DIR}/c/ductile.f90
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT c)
 endif()
+# PETSc loads it by its name; who links it needs PETSc's flags, not CMake's package.
+if(TARGET ductile_petsc)
+  set_target_properties(ductile_petsc PROPERTIES INSTALL_RPATH "$ORIGIN")
+  install(TARGETS ductile_petsc COMPONENT petsc LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endif()
 if(TARGET ductile)
   file(RELATIVE_PATH ductile_libraries_from_program
     ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})

@@ -46,9 +46,9 @@ forbid("#include .*meshadapt" "runtime knows nothing of meshadapt" include/ducti
 forbid_except("/runtime/colouring/" "#include .*/colouring/"
   "colouring stands on the other parts of runtime, not they on it" include/ductile/runtime runtime)
 forbid("#include .*meshadapt" "runtime's tests build without meshadapt" tests/runtime)
-forbid("#include .*cli/" "only the program includes the program" ${below_program} c python)
+forbid("#include .*cli/" "only the program includes the program" ${below_program} c petsc python)
 
-set(above_runtime include/ductile/meshadapt meshadapt c python docs/examples)
+set(above_runtime include/ductile/meshadapt meshadapt c petsc python docs/examples)
 forbid("#pragma +omp|<omp\\.h>|omp_[a-z]+_" "OpenMP stays inside runtime" ${above_runtime})
 forbid("<(atomic|mutex|shared_mutex|thread|condition_variable|future|semaphore|barrier|latch|stop_token)>"
   "atomics, locks and threads stay inside runtime" ${above_runtime})

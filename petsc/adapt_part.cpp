@@ -1,0 +1,121 @@
+#include "adapt_part.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "ductile/meshadapt/mesh_from_arrays.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/transfer.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::petsc {
+
+using meshadapt::Metric;
+using runtime::Executor;
+
+namespace {
+
+/// Requires what must stay, and marks the vertices among it by references: their index, plus 1.
+template <int Dim>
+AnyMesh with_required(const Part& part, const Interfaces& interfaces) {
+  AnyMesh mesh = part.mesh;
+  const auto require = [&](VertexId v) {
+    if (mesh.vertex_reference[v] != 0) return;
+    mesh.vertex_reference[v] = static_cast<std::int32_t>(v) + 1;
+    mesh.required_vertices.push_back(v);
+  };
+  std::fill(mesh.vertex_reference.begin(), mesh.vertex_reference.end(), 0);
+  for (const SharedVertex& shared : interfaces.vertices) require(shared.vertex);
+  for (VertexId v = 0; v < mesh.vertex_count(); ++v)
+    if (part.mesh.vertex_reference[v] != unlabelled) require(v);
+  auto& required = Dim == 2 ? mesh.required_edges : mesh.required_triangles;
+  for (const SharedFacet& shared : interfaces.facets) required.push_back(shared.facet);
+  return mesh;
+}
+
+template <int Dim>
+void drop_unlabelled_facets(AnyMesh& mesh) {
+  auto& facets = meshadapt::facets_in<Dim>(mesh);
+  auto kept = std::exchange(facets, {});
+  for (std::size_t f = 0; f < kept.size(); ++f)
+    if (kept.reference[f] != unlabelled) facets.add(kept.vertices[f], kept.reference[f]);
+}
+
+template <int Dim>
+AnyField mapped(const Executor& executor, const AnyField& field,
+                Metric<Dim> (*map)(const Metric<Dim>&)) {
+  auto tensor_of = meshadapt::tensors_of<Dim>(executor, field);
+  runtime::parallel_for(executor, tensor_of.size(),
+                        [&](std::size_t v) { tensor_of[v] = map(tensor_of[v]); });
+  return meshadapt::symmetric_field(executor, tensor_of, field.name);
+}
+
+/// What is wanted at the vertices of another mesh of the same part.
+template <int Dim>
+AnyField wanted_on(const Executor& executor, const Part& part, const AnyMesh& mesh) {
+  const AnyField logarithms = mapped<Dim>(executor, part.wanted, meshadapt::logarithm<Dim>);
+  const auto carried = meshadapt::interpolate_field(executor, {part.mesh, logarithms}, mesh);
+  return mapped<Dim>(executor, carried.field, meshadapt::exponential<Dim>);
+}
+
+/// Gives vertices that were marked the numbers and labels that they had, others none.
+void restore_vertices(const Part& before, Part& after, Interfaces& interfaces) {
+  std::vector<VertexId> now(before.mesh.vertex_count(), meshadapt::none);
+  after.number_of.assign(after.mesh.vertex_count(), -1);
+  for (VertexId v = 0; v < after.mesh.vertex_count(); ++v) {
+    std::int32_t& reference = after.mesh.vertex_reference[v];
+    if (reference != 0) {
+      const auto was = static_cast<VertexId>(reference - 1);
+      now[was] = v;
+      after.number_of[v] = before.number_of[was];
+      reference = before.mesh.vertex_reference[was];
+    } else {
+      reference = unlabelled;
+    }
+  }
+  for (SharedVertex& shared : interfaces.vertices) shared.vertex = now[shared.vertex];
+}
+
+}  // namespace
+
+void list_boundary(const Executor& executor, Part& part) {
+  if (part.element_count() == 0) return;
+  auto& references =
+      part.mesh.dimension == 2 ? part.mesh.edges.reference : part.mesh.triangles.reference;
+  const std::size_t labelled = references.size();
+  meshadapt::list_boundary(executor, part.mesh);
+  std::fill(references.begin() + static_cast<std::ptrdiff_t>(labelled), references.end(),
+            unlabelled);
+}
+
+template <int Dim>
+AdaptedPart adapt_part(const Executor& executor, Part part, const Interfaces& interfaces,
+                       const meshadapt::AdaptOptions& options) {
+  AdaptedPart result{{}, interfaces, {}};
+  if (part.element_count() == 0) {
+    result.part = std::move(part);
+    return result;
+  }
+  auto [mesh, metric, report] =
+      meshadapt::adapt(executor, with_required<Dim>(part, interfaces), part.wanted, options);
+  result.report = std::move(report);
+  result.part.mesh = std::move(mesh);
+  AnyMesh& after = result.part.mesh;
+  after.corners.clear();
+  after.ridges.clear();
+  after.required_vertices.clear();
+  after.required_edges.clear();
+  after.required_triangles.clear();
+  restore_vertices(part, result.part, result.interfaces);
+  drop_unlabelled_facets<Dim>(after);
+  result.part.wanted =
+      interfaces.vertices.empty() ? std::move(metric) : wanted_on<Dim>(executor, part, after);
+  return result;
+}
+
+template AdaptedPart adapt_part<2>(const Executor&, Part, const Interfaces&,
+                                   const meshadapt::AdaptOptions&);
+template AdaptedPart adapt_part<3>(const Executor&, Part, const Interfaces&,
+                                   const meshadapt::AdaptOptions&);
+
+}  // namespace ductile::petsc

@@ -1,0 +1,38 @@
+/// @file
+/// adapt_part: adapts what one rank has, with the interfaces as they are.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "interfaces.hpp"
+#include "part.hpp"
+
+namespace ductile::petsc {
+
+struct AdaptedPart {
+  Part part;              ///< numbers are those of before, or -1 of new vertices
+  Interfaces interfaces;  ///< the shared vertices, in the new part; no facets
+  meshadapt::AdaptReport report;
+};
+
+/// Lists the facets that are on the part's boundary, or between references, without a label. An
+/// empty part stays as it is.
+void list_boundary(const runtime::Executor& executor, Part& part);
+
+/// Adapts a part that lists its boundary to the metric that it wants, with shared vertices and
+/// facets required, and vertices that have a label. What is wanted at the new vertices is
+/// interpolated, by logarithms, from the part before: what is adapted to near interfaces is
+/// another, which goes over into the sizes that these have. Throws as adapt() does.
+template <int Dim>
+AdaptedPart adapt_part(const runtime::Executor& executor, Part part, const Interfaces& interfaces,
+                       const meshadapt::AdaptOptions& options);
+
+extern template AdaptedPart adapt_part<2>(const runtime::Executor&, Part, const Interfaces&,
+                                          const meshadapt::AdaptOptions&);
+extern template AdaptedPart adapt_part<3>(const runtime::Executor&, Part, const Interfaces&,
+                                          const meshadapt::AdaptOptions&);
+
+}  // namespace ductile::petsc

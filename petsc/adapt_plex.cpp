@@ -1,0 +1,69 @@
+#include "adapt_plex.hpp"
+
+#include <string>
+#include <utility>
+
+#include "adapt_parts.hpp"
+#include "communicator.hpp"
+#include "metric.hpp"
+#include "parameters.hpp"
+#include "plex.hpp"
+#include "read_plex.hpp"
+#include "threads.hpp"
+#include "write_plex.hpp"
+
+namespace ductile::petsc {
+
+namespace {
+
+/// A line for each pass, on the first rank.
+void tell(MPI_Comm comm, const PassReport& pass) {
+  check(PetscPrintf(
+      comm,
+      "ductile: pass %d: %lld elements, %lld of %lld edges around interfaces blocked, "
+      "imbalance %.2f, %.3f s\n",
+      pass.pass, static_cast<long long>(pass.elements), static_cast<long long>(pass.blocked),
+      static_cast<long long>(pass.edges), pass.imbalance, pass.seconds));
+}
+
+DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cells) {
+  const Communicator comm(handle);
+  Parameters parameters = parameters_of(comm, dm);
+  const int threads = threads_of(comm, dm);
+  const runtime::Executor executor =
+      comm.on_all([&] { return runtime::Executor({.threads = threads}); });
+  const CarriedLabels labels = labels_of(comm, dm, metric != nullptr ? facets : nullptr,
+                                         metric != nullptr ? cells : nullptr);
+  PlexPart read = read_plex(comm, dm, labels);
+  const auto& adapt = parameters.options.adapt;
+  read.part.wanted = metric != nullptr ? metric_of_vector(comm, dm, metric, read,
+                                                          {adapt.smallest_size, adapt.largest_size})
+                                       : metric_of_label(comm, executor, facets, read);
+  if (parameters.verbosity > 0)
+    parameters.options.told = [&](const PassReport& pass) { tell(handle, pass); };
+  const AdaptedParts parts =
+      read.part.mesh.dimension == 2
+          ? adapt_parts<2>(comm, executor, std::move(read.part), parameters.options)
+          : adapt_parts<3>(comm, executor, std::move(read.part), parameters.options);
+  return write_plex(comm, parts, labels);
+}
+
+}  // namespace
+
+PetscErrorCode adapt_plex(DM dm, Vec metric, DMLabel facets, DMLabel cells, DM* adapted) {
+  PetscFunctionBegin;
+  MPI_Comm comm = MPI_COMM_NULL;
+  PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(dm), &comm));
+  std::string failure;
+  try {
+    *adapted = adapted_plex(comm, dm, metric, facets, cells);
+  } catch (const std::bad_alloc&) {
+    failure = "there is not enough memory";
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  PetscCheck(failure.empty(), comm, PETSC_ERR_LIB, "Ductile: %s", failure.c_str());
+  PetscFunctionReturn(0);
+}
+
+}  // namespace ductile::petsc

@@ -1,0 +1,188 @@
+#include "adapt_zone.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "ductile/meshadapt/metric.hpp"
+#include "elements_around.hpp"
+
+namespace ductile::petsc {
+
+using meshadapt::Metric;
+using meshadapt::none;
+
+namespace {
+
+/// Adds a vertex of one part to another. Returns its number there.
+template <int Dim>
+VertexId add_vertex(Part& to, const Part& from, VertexId v) {
+  const auto tensor =
+      from.wanted.values.begin() + static_cast<std::ptrdiff_t>(v) * Metric<Dim>::size;
+  const auto place = from.mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(v) * Dim;
+  to.wanted.values.insert(to.wanted.values.end(), tensor, tensor + Metric<Dim>::size);
+  to.mesh.coordinates.insert(to.mesh.coordinates.end(), place, place + Dim);
+  to.mesh.vertex_reference.push_back(from.mesh.vertex_reference[v]);
+  to.number_of.push_back(from.number_of[v]);
+  return static_cast<VertexId>(to.wanted.vertex_count++);
+}
+
+/// A part in which elements and facets of another are put, with the vertices that they have.
+template <int Dim>
+class Taking {
+ public:
+  Taking(Part& to, const Part& from) : to_(to), from_(from), now_(from.number_of.size(), none) {}
+
+  template <std::size_t N>
+  void add(meshadapt::Cells<static_cast<int>(N)>& cells, std::array<VertexId, N> corners,
+           std::int32_t reference) {
+    for (VertexId& v : corners) v = vertex(v);
+    cells.add(corners, reference);
+  }
+
+  /// Its number there, or none.
+  VertexId now(VertexId v) const { return now_[v]; }
+  /// Says that a vertex is there already.
+  void set(VertexId v, VertexId is) { now_[v] = is; }
+
+ private:
+  VertexId vertex(VertexId v) {
+    if (now_[v] == none) now_[v] = add_vertex<Dim>(to_, from_, v);
+    return now_[v];
+  }
+
+  Part& to_;
+  const Part& from_;
+  std::vector<VertexId> now_;  // [vertex of from]
+};
+
+/// One part as two, of which the second is adapted, and put together again.
+template <int Dim>
+class Zone {
+ public:
+  Zone(const Part& part, const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held)
+      : part_(part),
+        interfaces_(interfaces),
+        is_held_(is_held),
+        around_(part.mesh),
+        outer_(empty_part(Dim)),
+        inner_(empty_part(Dim)),
+        to_outer_(outer_, part),
+        to_inner_(inner_, part) {}
+
+  AdaptedPart adapt(const runtime::Executor& executor, const meshadapt::AdaptOptions& options) {
+    divide();
+    list_boundary(executor, inner_);
+    find_required();
+    AdaptedPart adapted = adapt_part<Dim>(executor, std::move(inner_), required_, options);
+    return joined(std::move(adapted));
+  }
+
+ private:
+  /// Facets between the two go with the inner one.
+  void divide() {
+    const auto& elements = meshadapt::elements_in<Dim>(part_.mesh);
+    for (std::uint32_t e = 0; e < elements.size(); ++e) {
+      const bool inside = is_held_[e] != 0;
+      (inside ? to_inner_ : to_outer_)
+          .add(meshadapt::elements_in<Dim>((inside ? inner_ : outer_).mesh), elements.vertices[e],
+               elements.reference[e]);
+    }
+    const auto& facets = meshadapt::facets_in<Dim>(part_.mesh);
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      if (facets.reference[f] == unlabelled) continue;
+      bool inside = false;
+      around_.visit_beside(facets.vertices[f],
+                           [&](std::uint32_t e) { inside = inside || is_held_[e] != 0; });
+      (inside ? to_inner_ : to_outer_)
+          .add(meshadapt::facets_in<Dim>((inside ? inner_ : outer_).mesh), facets.vertices[f],
+               facets.reference[f]);
+    }
+  }
+
+  /// What the inner part shares with the outer one or with other ranks.
+  void find_required() {
+    std::vector<VertexId> was(inner_.number_of.size(), none);  // [inner vertex]
+    for (VertexId v = 0; v < part_.number_of.size(); ++v)
+      if (to_inner_.now(v) != none) was[to_inner_.now(v)] = v;
+    std::vector<std::uint8_t> is_shared(part_.number_of.size(), 0);
+    for (const SharedVertex& shared : interfaces_.vertices) is_shared[shared.vertex] = 1;
+    for (VertexId v = 0; v < was.size(); ++v)
+      if (is_shared[was[v]] != 0 || to_outer_.now(was[v]) != none) {
+        required_.vertices.push_back({v, {}});
+        was_required_.push_back(was[v]);
+      }
+    using Facet = meshadapt::Facet<Dim>;
+    const auto sorted = [](Facet facet) {
+      std::sort(facet.begin(), facet.end());
+      return facet;
+    };
+    std::set<Facet> on_interfaces;
+    for (const SharedFacet& shared : interfaces_.facets)
+      on_interfaces.insert(sorted(meshadapt::facets_in<Dim>(part_.mesh).vertices[shared.facet]));
+    const auto& facets = meshadapt::facets_in<Dim>(inner_.mesh).vertices;
+    for (std::uint32_t f = 0; f < facets.size(); ++f) {
+      Facet facet = facets[f];
+      for (VertexId& v : facet) v = was[v];
+      bool cut = on_interfaces.contains(sorted(facet));
+      around_.visit_beside(facet, [&](std::uint32_t e) { cut = cut || is_held_[e] == 0; });
+      if (cut) required_.facets.push_back({f, 0});
+    }
+  }
+
+  /// The outer part with what came out of the inner one.
+  AdaptedPart joined(AdaptedPart adapted) {
+    Taking<Dim> taking(outer_, adapted.part);
+    const auto& required = adapted.interfaces.vertices;
+    for (std::size_t i = 0; i < required.size(); ++i)
+      taking.set(required[i].vertex, to_outer_.now(was_required_[i]));
+    const AnyMesh& inner = adapted.part.mesh;
+    const auto& elements = meshadapt::elements_in<Dim>(inner);
+    for (std::size_t e = 0; e < elements.size(); ++e)
+      taking.add(meshadapt::elements_in<Dim>(outer_.mesh), elements.vertices[e],
+                 elements.reference[e]);
+    const auto& facets = meshadapt::facets_in<Dim>(inner);
+    for (std::size_t f = 0; f < facets.size(); ++f)
+      taking.add(meshadapt::facets_in<Dim>(outer_.mesh), facets.vertices[f], facets.reference[f]);
+    std::vector<VertexId> now(part_.number_of.size(), none);
+    for (VertexId v = 0; v < now.size(); ++v) now[v] = to_outer_.now(v);
+    for (std::size_t i = 0; i < required.size(); ++i)
+      now[was_required_[i]] = taking.now(required[i].vertex);
+    AdaptedPart result{std::move(outer_), interfaces_, std::move(adapted.report)};
+    result.interfaces.facets.clear();
+    for (SharedVertex& shared : result.interfaces.vertices) shared.vertex = now[shared.vertex];
+    return result;
+  }
+
+  const Part& part_;
+  const Interfaces& interfaces_;
+  const std::vector<std::uint8_t>& is_held_;
+  ElementsAround<Dim> around_;
+  Part outer_, inner_;
+  Taking<Dim> to_outer_, to_inner_;
+  Interfaces required_;                 // of the inner part
+  std::vector<VertexId> was_required_;  // [required vertex], in the whole part
+};
+
+}  // namespace
+
+template <int Dim>
+AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
+                       const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held,
+                       const meshadapt::AdaptOptions& options) {
+  const auto held = static_cast<std::size_t>(std::count(is_held.begin(), is_held.end(), 1));
+  if (2 * held > is_held.size()) return adapt_part<Dim>(executor, part, interfaces, options);
+  if (held > 0) return Zone<Dim>(part, interfaces, is_held).adapt(executor, options);
+  AdaptedPart result{part, interfaces, {}};
+  result.interfaces.facets.clear();
+  return result;
+}
+
+template AdaptedPart adapt_zone<2>(const runtime::Executor&, const Part&, const Interfaces&,
+                                   const std::vector<std::uint8_t>&,
+                                   const meshadapt::AdaptOptions&);
+template AdaptedPart adapt_zone<3>(const runtime::Executor&, const Part&, const Interfaces&,
+                                   const std::vector<std::uint8_t>&,
+                                   const meshadapt::AdaptOptions&);
+
+}  // namespace ductile::petsc

@@ -1,0 +1,24 @@
+/// @file
+/// grade: limits how fast sizes grow over the whole distributed mesh, not within each part alone.
+#pragma once
+
+#include "communicator.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "interfaces.hpp"
+#include "part.hpp"
+
+namespace ductile::petsc {
+
+/// Makes what is wanted finer until sizes grow by at most `factor` per unit of metric length, as
+/// limit_gradation() does, across interfaces too: parts are graded, shared vertices take the finer
+/// metric, until none does. Throws as limit_gradation() does, as Error on all ranks. Collective.
+template <int Dim>
+void grade(const Communicator& comm, const runtime::Executor& executor, Part& part,
+           const Interfaces& interfaces, double factor);
+
+extern template void grade<2>(const Communicator&, const runtime::Executor&, Part&,
+                              const Interfaces&, double);
+extern template void grade<3>(const Communicator&, const runtime::Executor&, Part&,
+                              const Interfaces&, double);
+
+}  // namespace ductile::petsc

@@ -1,0 +1,27 @@
+/// @file
+/// migrate: elements go to other ranks, with their vertices, the metric there and their facets.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "communicator.hpp"
+#include "interfaces.hpp"
+#include "part.hpp"
+
+namespace ductile::petsc {
+
+/// Gives all vertices numbers, in the order of ranks; shared ones get theirs from the first rank
+/// that has them, so that the numbers of each rank follow each other. Returns how many it gave.
+/// Collective.
+std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfaces, Part& part);
+
+/// Sends each element to the rank that target_of names, and makes a part of what comes, in the
+/// order of the ranks that it comes from. Collective.
+template <int Dim>
+Part migrate(const Communicator& comm, const Part& part, const std::vector<int>& target_of);
+
+extern template Part migrate<2>(const Communicator&, const Part&, const std::vector<int>&);
+extern template Part migrate<3>(const Communicator&, const Part&, const std::vector<int>&);
+
+}  // namespace ductile::petsc

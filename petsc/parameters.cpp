@@ -1,0 +1,47 @@
+#include "parameters.hpp"
+
+#include <algorithm>
+
+namespace ductile::petsc {
+
+namespace {
+
+template <class Value>
+Value parameter(DM dm, PetscErrorCode (*get)(DM, Value*)) {
+  Value value{};
+  check(get(dm, &value));
+  return value;
+}
+
+bool is_set(DM dm, PetscErrorCode (*get)(DM, PetscBool*)) {
+  return parameter<PetscBool>(dm, get) == PETSC_TRUE;
+}
+
+}  // namespace
+
+Parameters parameters_of(const Communicator& comm, DM dm) {
+  constexpr double hausdorff_of_nobody = 0.01;
+  constexpr double no_smallest = 1e-30, no_largest = 1e30;  // PETSc's defaults
+  Parameters parameters;
+  auto& adapt = parameters.options.adapt;
+  adapt.gradation = parameter<PetscReal>(dm, DMPlexMetricGetGradationFactor);
+  adapt.required_gradation = 2.3;
+  const double hausdorff = parameter<PetscReal>(dm, DMPlexMetricGetHausdorffNumber);
+  if (comm.size() == 1 && hausdorff != hausdorff_of_nobody)
+    adapt.make.surface_tolerance = hausdorff;
+  const double smallest = parameter<PetscReal>(dm, DMPlexMetricGetMinimumMagnitude);
+  const double largest = parameter<PetscReal>(dm, DMPlexMetricGetMaximumMagnitude);
+  if (smallest > no_smallest) adapt.smallest_size = smallest;
+  if (largest < no_largest) adapt.largest_size = largest;
+  adapt.insert = !is_set(dm, DMPlexMetricNoInsertion);
+  adapt.swap = !is_set(dm, DMPlexMetricNoSwapping);
+  adapt.move = !is_set(dm, DMPlexMetricNoMovement);
+  adapt.make.lock_boundary = is_set(dm, DMPlexMetricNoSurf);
+  const auto passes = parameter<PetscInt>(dm, DMPlexMetricGetNumIterations);
+  parameters.options.passes = 2 * static_cast<int>(std::clamp<PetscInt>(passes, 1, 1000));
+  parameters.verbosity = static_cast<int>(
+      std::clamp<PetscInt>(parameter<PetscInt>(dm, DMPlexMetricGetVerbosity), -1, 10));
+  return parameters;
+}
+
+}  // namespace ductile::petsc

@@ -1,0 +1,15 @@
+"""The same mesh, bit for bit, each time and at any number of threads of a rank."""
+
+from support import *
+
+for dim, n in ((2, 20), (3, 7)):
+    digests = set()
+    for threads in (1, 2, 1):
+        options["dm_ductile_threads"] = threads
+        dm = plex(*box(dim, n))
+        label_box(dm)
+        dm = distributed(dm)
+        size = lambda x: 0.02 * dim / 2 + 0.2 * abs(x[:, 0] - 0.4 - 0.2 * x[:, 1])
+        metric = metric_vector(dm, diagonal(size, *[lambda x: 2 * size(x)] * (dim - 1)))
+        digests.add(digest(dm.adaptMetric(metric, "Face Sets", "Cell Sets")))
+    expect(len(digests) == 1, f"{dim}D: the mesh is not the same each time")
