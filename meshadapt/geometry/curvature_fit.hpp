@@ -14,7 +14,8 @@ namespace ductile::meshadapt {
 
 /// The symmetric tensor in the tangent plane by which normals change with places, by weighted least
 /// squares (Rusinkiewicz, "Estimating curvatures and their derivatives on triangle meshes", 3DPVT
-/// 2004). It is exact on spheres and cylinders, however far away the places are.
+/// 2004), about the mean of the places and normals, so that no single normal counts more than
+/// others. It is exact on spheres and cylinders, however far away the places are.
 template <int Dim>
 class CurvatureFit {
  public:
@@ -34,16 +35,20 @@ class CurvatureFit {
   /// A place, from the point, and the unit normal there, to either side.
   void add(const Vector<Dim>& offset, const Vector<Dim>& normal, double weight) {
     const double side = dot(normal, normal_) < 0 ? -weight : weight;
-    std::array<double, tangents> place, change;
+    std::array<double, tangents> place, turn;
     for (std::size_t i = 0; i < tangents; ++i) {
       place[i] = dot(offset, tangent_[i]);
-      change[i] = side * dot(normal, tangent_[i]);
+      turn[i] = side * dot(normal, tangent_[i]);
     }
-    for (std::size_t i = 0; i < tangents; ++i)
+    weight_ += weight;
+    for (std::size_t i = 0; i < tangents; ++i) {
+      place_[i] += weight * place[i];
+      change_[i] += turn[i];
       for (std::size_t j = 0; j < tangents; ++j) {
         squares_[i][j] += weight * place[i] * place[j];
-        changes_[i][j] += change[i] * place[j];
+        changes_[i][j] += turn[i] * place[j];
       }
+    }
   }
 
   /// The absolute principal curvatures and their directions; the first is the normal with 0.
@@ -51,7 +56,8 @@ class CurvatureFit {
     PrincipalAxes<Dim> result{};
     result.vector[0] = normal_;
     if constexpr (Dim == 2) {
-      result.value[1] = squares_[0][0] > 0 ? std::abs(changes_[0][0] / squares_[0][0]) : 0;
+      const double spread = square(0, 0);
+      result.value[1] = spread > 0 ? std::abs(change(0, 0) / spread) : 0;
       result.vector[1] = tangent_[0];
     } else {
       const auto axes = principal_axes(solved());
@@ -66,20 +72,30 @@ class CurvatureFit {
  private:
   static constexpr std::size_t tangents = Dim - 1;
 
+  // About the means.
+  double square(std::size_t i, std::size_t j) const {
+    return weight_ > 0 ? squares_[i][j] - place_[i] * place_[j] / weight_ : 0;
+  }
+  double change(std::size_t i, std::size_t j) const {
+    return weight_ > 0 ? changes_[i][j] - change_[i] * place_[j] / weight_ : 0;
+  }
+
   /// Where all places are on a line, it bends in its direction alone.
   Metric<2> solved() const {
-    const double trace = squares_[0][0] + squares_[1][1];
+    const double trace = square(0, 0) + square(1, 1);
     if (!(trace > 0)) return {};
-    const double little = 1e-9 * trace, xy = squares_[0][1];
-    const double xx = squares_[0][0] + little, yy = squares_[1][1] + little;
+    const double little = 1e-9 * trace, xy = square(0, 1);
+    const double xx = square(0, 0) + little, yy = square(1, 1) + little;
     // x a + y b, x b + y c: the changes along both tangents, of which b is in both.
-    const double p = changes_[0][0], q = changes_[0][1] + changes_[1][0], r = changes_[1][1];
+    const double p = change(0, 0), q = change(0, 1) + change(1, 0), r = change(1, 1);
     const double b = (q - xy * (p / xx + r / yy)) / (xx + yy - xy * xy * (1 / xx + 1 / yy));
     return {{(p - xy * b) / xx, b, (r - xy * b) / yy}};
   }
 
   Vector<Dim> normal_;
   std::array<Vector<Dim>, tangents> tangent_{};
+  double weight_ = 0;
+  std::array<double, tangents> place_{}, change_{};  // sums, by weight
   std::array<std::array<double, tangents>, tangents> squares_{}, changes_{};
 };
 
