@@ -17,7 +17,7 @@ PetscErrorCode DuctilePetscRegister() {
 }
 
 /// PETSc calls the function of this name in a library that -dll_append names.
-PETSC_EXTERN PetscErrorCode PetscDLLibraryRegister_ductile_petsc() {  // NOLINT: PETSc's name
+PETSC_EXTERN PetscErrorCode PetscDLLibraryRegister_ductile_petsc() {  // NOLINT: PETSc looks for it
   PetscFunctionBegin;
   PetscCall(DuctilePetscRegister());
   PetscFunctionReturn(0);
