@@ -39,10 +39,6 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325U;
 };
 
-std::array<const KernelReport*, kernel_count> kernels_of(const AdaptReport& report) {
-  return {&report.coarsen, &report.refine, &report.swap, &report.smooth};
-}
-
 PhaseSeconds phases_of(const KernelReport& kernel) {
   PhaseSeconds phases{0,
                       kernel.conflict_seconds,
@@ -59,16 +55,17 @@ PhaseSeconds phases_of(const KernelReport& kernel) {
 void add(Sample& sample, const AdaptReport& report) {
   PartSeconds parts{};
   for (std::size_t k = 0; k < kernel_count; ++k) {
-    const KernelReport& kernel = *kernels_of(report)[k];
+    const KernelReport& kernel = report.*meshadapt::kernels[k].report;
     parts[k] = kernel.seconds;
     const PhaseSeconds phases = phases_of(kernel);
     for (std::size_t i = 0; i < phases.size(); ++i) sample.phase_seconds[k][i] += phases[i];
   }
-  parts[4] = report.setup_seconds;
-  parts[5] = report.renumber_seconds;
-  parts[7] = report.total_seconds;
-  parts[6] = parts[7];
-  for (std::size_t i = 0; i < 6; ++i) parts[6] -= parts[i];
+  parts[kernel_count] = report.setup_seconds;
+  parts[kernel_count + 1] = report.renumber_seconds;
+  parts[kernel_count + 3] = report.total_seconds;
+  double& other = parts[kernel_count + 2];
+  other = report.total_seconds;
+  for (std::size_t i = 0; i < kernel_count + 2; ++i) other -= parts[i];
   for (std::size_t i = 0; i < parts.size(); ++i) sample.part_seconds[i] += parts[i];
 }
 

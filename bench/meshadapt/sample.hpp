@@ -34,10 +34,15 @@ struct MeshFigures {
   bool valid = false;  ///< it is a mesh, and one of the unit square or cube
 };
 
-/// Parts of the time of adapt(), in the order of all tables.
-constexpr std::array<const char*, 8> part_names{"coarsen", "refine",   "swap",  "smooth",
-                                                "setup",   "renumber", "other", "total"};
-constexpr std::size_t kernel_count = 4;  ///< the first ones
+/// Parts of the time of adapt(), in the order of all tables: the kernels are the first ones.
+constexpr std::size_t kernel_count = meshadapt::kernels.size();
+constexpr auto part_names = [] {
+  std::array<const char*, kernel_count + 4> names{};
+  for (std::size_t k = 0; k < kernel_count; ++k) names[k] = meshadapt::kernels[k].name;
+  std::size_t part = kernel_count;
+  for (const char* name : {"setup", "renumber", "other", "total"}) names[part++] = name;
+  return names;
+}();
 using PartSeconds = std::array<double, part_names.size()>;
 
 /// Parts of a kernel's time.

@@ -25,15 +25,6 @@ MeshSummary summarise_mesh(const AnyMesh& mesh) {
           std::nullopt};
 }
 
-using NamedKernel = std::pair<const char*, const KernelReport*>;
-
-std::array<NamedKernel, 4> kernels(const AdaptReport& report) {
-  return {{{"coarsen", &report.coarsen},
-           {"refine", &report.refine},
-           {"swap", &report.swap},
-           {"smooth", &report.smooth}}};
-}
-
 std::string counts(const MeshSummary& mesh) {
   std::string text = mesh.name + ": " + with_commas(mesh.vertices) + " vertices, " +
                      with_commas(mesh.triangles) + " triangles";
@@ -194,8 +185,8 @@ std::string to_text(const AdaptSummary& summary, bool with_histograms) {
           " iterations" +
           (report.converged ? "" : " (the most allowed; more may help: --iterations)") +
           ", peak memory " + with_commas(summary.peak_memory >> 20U) + " MB\n ";
-  for (const auto& [name, kernel] : kernels(report))
-    text += " " + std::string(name) + " " + seconds(kernel->seconds) + ",";
+  for (const auto& [name, kernel] : meshadapt::kernels)
+    text += " " + std::string(name) + " " + seconds((report.*kernel).seconds) + ",";
   text += " set-up " + seconds(report.setup_seconds) + ", renumbering " +
           seconds(report.renumber_seconds) + "\n";
   return text + counts(summary.after) + figures(summary.after, with_histograms) +
@@ -205,8 +196,9 @@ std::string to_text(const AdaptSummary& summary, bool with_histograms) {
 std::string to_json(const AdaptSummary& summary) {
   const AdaptReport& report = summary.report;
   std::string kernel_list, warnings;
-  for (const auto& [name, kernel] : kernels(report))
-    kernel_list += (kernel_list.empty() ? "" : ", ") + json_string(name) + ": " + json_of(*kernel);
+  for (const auto& [name, kernel] : meshadapt::kernels)
+    kernel_list +=
+        (kernel_list.empty() ? "" : ", ") + json_string(name) + ": " + json_of(report.*kernel);
   for (const std::string& warning : report.warnings)
     warnings += (warnings.empty() ? "" : ", ") + json_string(warning);
   return "{\"before\": " + json_of(summary.before) + ",\n \"after\": " + json_of(summary.after) +

@@ -206,7 +206,7 @@ namespace {
 
 /// What lengths are compared with at a poor element. Edges that are short for the worst element
 /// around them are hardly ever worth removing, and faces are hardly ever worth piercing by an edge
-/// that is long for the worse element (docs/performance.md).
+/// that is long for the worse element (docs/notebook/tried-in-adaptation.md).
 struct Gauge {
   Metric<3> metric;        // that the element is judged by
   double mean_square = 0;  // of its edges, in that metric
@@ -247,7 +247,8 @@ class EdgeSearch {
 
   /// The square of the length, as Gauge has it, above which an edge may be worth removing. The more
   /// elements are around it, and the better the worst of them is, the longer it is; elements at the
-  /// boundary count twice, as if mirrored there. Fitted to what was found (docs/performance.md).
+  /// boundary count twice, as if mirrored there. Fitted to what was found
+  /// (docs/notebook/tried-in-adaptation.md).
   static double long_edge(const Star::Edge& edge) {
     constexpr double never = std::numeric_limits<double>::infinity();
     constexpr std::array slope = {never, never, never, 1.0, 2.2, 3.2, 4.6, 9.0, 9.0};

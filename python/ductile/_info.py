@@ -84,7 +84,7 @@ def info(mesh: Mesh, M: Optional[MetricLike] = None) -> Info:
 def _report_text(report: _ductile.Report) -> str:
     lines = [f"{'converged' if report.converged else 'not converged'} after {report.iterations} "
              f"rounds in {report.total_seconds:.3g} s"]
-    for name in ("coarsen", "refine", "swap", "smooth"):
+    for name in report.kernels:
         kernel = getattr(report, name)
         lines.append(f"  {name:8} {kernel.seconds:8.3f} s  {kernel.applied:,} times")
     if report.held_long_edges or report.held_short_edges:

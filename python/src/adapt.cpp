@@ -137,14 +137,16 @@ void bind_report(py::module_& module) {
       .def_readonly("considered", &KernelReport::considered)
       .def_readonly("applied", &KernelReport::applied)
       .def_readonly("rounds", &KernelReport::rounds);
-  py::class_<AdaptReport>(module, "Report",
-                          "How an adaptation went: rounds, seconds, what was done, warnings.")
-      .def_readonly("iterations", &AdaptReport::iterations)
+  py::class_<AdaptReport> report(
+      module, "Report", "How an adaptation went: rounds, seconds, what was done, warnings.");
+  py::list names;
+  for (const auto& [name, kernel] : meshadapt::kernels) {
+    report.def_readonly(name, kernel);
+    names.append(name);
+  }
+  report.attr("kernels") = py::tuple(names);
+  report.def_readonly("iterations", &AdaptReport::iterations)
       .def_readonly("converged", &AdaptReport::converged)
-      .def_readonly("coarsen", &AdaptReport::coarsen)
-      .def_readonly("refine", &AdaptReport::refine)
-      .def_readonly("swap", &AdaptReport::swap)
-      .def_readonly("smooth", &AdaptReport::smooth)
       .def_readonly("setup_seconds", &AdaptReport::setup_seconds)
       .def_readonly("renumber_seconds", &AdaptReport::renumber_seconds)
       .def_readonly("total_seconds", &AdaptReport::total_seconds)

@@ -20,12 +20,12 @@ namespace {
 void add(TimedSteps& sum, const FollowedMesh& step) {
   const meshadapt::AdaptReport& report = step.adapted.report;
   ++sum.steps;
-  sum.seconds.coarsen += report.coarsen.seconds;
-  sum.seconds.swap += report.swap.seconds;
-  sum.seconds.refine += report.refine.seconds;
-  sum.seconds.smooth += report.smooth.seconds;
-  sum.seconds.other += report.total_seconds - report.coarsen.seconds - report.swap.seconds -
-                       report.refine.seconds - report.smooth.seconds;
+  sum.seconds.other += report.total_seconds;
+  for (std::size_t k = 0; k < meshadapt::kernels.size(); ++k) {
+    const double seconds = (report.*meshadapt::kernels[k].report).seconds;
+    sum.seconds.kernels[k] += seconds;
+    sum.seconds.other -= seconds;
+  }
   sum.seconds.metric += step.metric_seconds;
 }
 

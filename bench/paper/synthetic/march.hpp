@@ -4,7 +4,9 @@
 /// mesh adapted. Some steps are taken on several numbers of threads, from the same mesh, and timed.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <numeric>
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
@@ -31,10 +33,10 @@ FollowedMesh follow(const runtime::Executor& executor, const meshadapt::AnyMesh&
 
 /// Seconds, summed over time steps.
 struct KernelSeconds {
-  double coarsen = 0, swap = 0, refine = 0, smooth = 0;
+  std::array<double, meshadapt::kernels.size()> kernels{};
   double other = 0;   ///< of adapt(): set-up, renumbering
   double metric = 0;  ///< sampling, recovery of the Hessian, scaling
-  double adapt() const { return coarsen + swap + refine + smooth + other; }
+  double adapt() const { return std::accumulate(kernels.begin(), kernels.end(), other); }
 };
 
 struct March {

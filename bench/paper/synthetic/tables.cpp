@@ -9,21 +9,19 @@ namespace ductile::paper {
 
 namespace {
 
-const std::vector<std::string> kernel_names{"coarsen", "swap",   "refine", "smooth",
-                                            "other",   "metric", "adapt"};
-
-/// Seconds per step, in the order of kernel_names.
+/// Seconds per step: the kernels, the rest, the metric, and all but the metric.
 std::vector<double> seconds_per_step(const TimedSteps& timed) {
   const KernelSeconds& sum = timed.seconds;
-  std::vector<double> seconds{sum.coarsen, sum.swap,   sum.refine, sum.smooth,
-                              sum.other,   sum.metric, sum.adapt()};
+  std::vector<double> seconds(sum.kernels.begin(), sum.kernels.end());
+  for (const double other : {sum.other, sum.metric, sum.adapt()}) seconds.push_back(other);
   for (double& value : seconds) value /= timed.steps;
   return seconds;
 }
 
 std::vector<std::string> columns(const std::string& first) {
   std::vector<std::string> names{first};
-  names.insert(names.end(), kernel_names.begin(), kernel_names.end());
+  for (const meshadapt::NamedKernel& kernel : meshadapt::kernels) names.emplace_back(kernel.name);
+  for (const char* other : {"other", "metric", "adapt"}) names.emplace_back(other);
   return names;
 }
 

@@ -3,7 +3,9 @@
 /// swapping, refining and smoothing. AnyMesh in, AnyMesh out; the dimension is found there.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -98,6 +100,17 @@ struct AdaptReport {
   /// hold them for several processors and uses the best that this one can run.
   std::string_view instructions = "as built";
 };
+
+/// The kernels, and by number their names and reports. Whatever lists kernels goes by this table.
+enum class Kernel : std::uint8_t { coarsen, refine, swap, smooth };
+struct NamedKernel {
+  const char* name;
+  KernelReport AdaptReport::*report;
+};
+inline constexpr std::array<NamedKernel, 4> kernels{{{"coarsen", &AdaptReport::coarsen},
+                                                     {"refine", &AdaptReport::refine},
+                                                     {"swap", &AdaptReport::swap},
+                                                     {"smooth", &AdaptReport::smooth}}};
 
 /// A mesh and the metric at its vertices.
 struct AdaptedMesh {

@@ -1,0 +1,46 @@
+#include "adapt/run_by_conflicts.hpp"
+#include "adapt/workpiece.hpp"
+#include "operators/smooth.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+/// Brings vertices of curved boundaries that were made on chords to the model of the surface.
+template <int Dim>
+runtime::UnsetVector<VertexId> work_for(Workpiece<Dim>& work, const Step& step) {
+  const runtime::Executor& executor = work.executor();
+  if (step.move == Move::to_surface)
+    return Smooth<Dim>::vertices_on_surface(executor, work.mesh(),
+                                            step.everywhere ? 0 : work.mesh().epoch - 1);
+  const std::uint32_t after = work.end_epoch(step.kernel);
+  return step.move == Move::laplacian
+             ? Smooth<Dim>::movable_vertices(executor, work.mesh(), after)
+             : Smooth<Dim>::movable_vertices_of_poor(executor, work.mesh(), step.below, after);
+}
+
+}  // namespace
+
+template <int Dim>
+std::size_t run_smooth(Workpiece<Dim>& work, const Step& step) {
+  const bool to_surface = step.move == Move::to_surface;
+  if (to_surface && !work.mesh().surface) return 0;
+  const runtime::PhaseTimer timer(work.report_of(step.kernel).seconds);
+  if (step.everywhere && !to_surface) work.look_everywhere(step.kernel);
+  Smooth<Dim> op(work.mesh(), work.background(), work.smoothing(step));
+  std::size_t changes = 0;
+  for (int sweep = 0; sweep < step.sweeps; ++sweep) {
+    const runtime::RoundsReport rounds =
+        run_by_conflicts(work.executor(), op, work_for(work, step), work.options().by_colours);
+    work.add(step.kernel, rounds);
+    changes += rounds.applied;
+  }
+  if (changes != 0) work.forget_survey();
+  if (!to_surface) work.tell(step.kernel, changes);
+  return changes;
+}
+
+template std::size_t run_smooth<2>(Workpiece<2>&, const Step&);
+template std::size_t run_smooth<3>(Workpiece<3>&, const Step&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,46 @@
+#include <utility>
+
+#include "adapt/workpiece.hpp"
+#include "ductile/runtime/run_rounds.hpp"
+#include "operators/swap.hpp"
+#include "operators/swap_by_vertex.hpp"
+
+namespace ductile::meshadapt {
+
+namespace {
+
+template <int Dim>
+runtime::RoundsReport run_swaps(Workpiece<Dim>& work, runtime::UnsetVector<Swappable> found) {
+  using runtime::Strategy;
+  if (work.options().by_colours) {
+    SwapByVertex<Dim> op(work.executor(), work.mesh(), std::move(found), work.range());
+    return runtime::run_rounds_by<Strategy::colours>(work.executor(), op, op.vertices());
+  }
+  Swap<Dim> op(work.executor(), work.mesh(), work.range());
+  return runtime::run_rounds_by<Strategy::reservations>(work.executor(), op, std::move(found));
+}
+
+}  // namespace
+
+template <int Dim>
+std::size_t run_swap(Workpiece<Dim>& work, const Step& step) {
+  const runtime::PhaseTimer timer(work.report_of(step.kernel).seconds);
+  std::size_t changes = 0;
+  for (int sweep = 0; sweep < step.sweeps; ++sweep) {
+    const std::uint32_t after = work.end_epoch(step.kernel);
+    auto found =
+        Swap<Dim>::improvements(work.executor(), work.mesh(), after, step.below, work.range());
+    if (found.empty()) break;
+    const runtime::RoundsReport rounds = run_swaps(work, std::move(found));
+    work.add(step.kernel, rounds);
+    changes += rounds.applied;
+    if (work.share(rounds.applied) < step.enough) break;
+  }
+  work.tell(step.kernel, changes);
+  return changes;
+}
+
+template std::size_t run_swap<2>(Workpiece<2>&, const Step&);
+template std::size_t run_swap<3>(Workpiece<3>&, const Step&);
+
+}  // namespace ductile::meshadapt

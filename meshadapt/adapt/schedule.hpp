@@ -1,0 +1,249 @@
+/// @file
+/// Schedule: which kernel runs when, how often and on what, as data. Phases follow each other, a
+/// phase is a list of steps that is passed through until little changes, a step is one kernel.
+///
+/// `approach` is Algorithm 1 of the published method (Rokos, Gorman, Jensen, Kelly,
+/// arXiv:1505.04694, 2015): rounds of coarsening, refinement, swapping and smoothing. Splits by
+/// stages and all phases after it are ours (decisions 5, 7 and 27). A new kernel is a row of
+/// `kernels` in adapt.hpp, a row of `kernel_rows` and the steps that use it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "ductile/meshadapt/adapt.hpp"
+
+namespace ductile::meshadapt {
+
+constexpr std::size_t index_of(Kernel kernel) { return static_cast<std::size_t>(kernel); }
+
+/// Bounds of shares and lengths that nothing is above, or below.
+inline constexpr double never = std::numeric_limits<double>::infinity(), always = -1;
+
+/// What the kernels that change lengths go for. The input is brought near the metric; then edges
+/// that are still too short are collapsed even if that makes some too long, because splits and
+/// swaps find a better way to fill the same place; in the end no edge leaves its range any more.
+enum class Aim : std::uint8_t { approach, rearrange, finish };
+
+/// What a kernel looks at first in a phase: what has changed since it last looked, the whole mesh,
+/// or only what changes from then on.
+enum class Look : std::uint8_t { news, all, what_comes };
+
+/// How smoothing moves vertices: towards the places where their elements would be regular, and to
+/// better ones where elements stay poor; only the latter; or only to the model of the surface.
+enum class Move : std::uint8_t { laplacian, optimise, to_surface };
+
+/// One kernel, at one place of a phase. Shares are of the number of elements.
+struct Step {
+  Kernel kernel;
+  int sweeps = 1;     ///< at most
+  double enough = 0;  ///< a sweep that changes a smaller share is the last
+  double below = 1;   ///< mean ratio of the elements that swaps and moves are for
+  Move move = Move::laplacian;
+  bool everywhere = false;  ///< looks at the whole mesh each time; in a mesh that came adapted at
+                            ///< what has changed since the phase began
+  double next_stage_below = 0;    ///< splits go on to the next stage at once while the pass has
+                                  ///< changed a smaller share
+  double renumber_above = never;  ///< first renumbers a mesh of which the pass has changed a
+                                  ///< larger share, if it is not in order
+};
+
+/// Steps that are passed through several times.
+struct Phase {
+  Aim aim;
+  std::span<const Step> steps;
+  int passes = 1;                           ///< at most
+  double calm = 0;                          ///< a pass that changes a smaller share is the last
+  std::array<Look, kernels.size()> look{};  ///< [kernel]
+};
+
+/// The numbers by which the driver decides; those by which kernels refuse are in rules.hpp. Shares
+/// are of the number of elements.
+struct Thresholds {
+  // ---- A mesh that comes adapted (decision 27) ----
+  static constexpr double nothing = 2e-4;    ///< to change: it is left alone
+  static constexpr double little = 0.02;     ///< to change: it is only mended
+  static constexpr double not_much = 0.06;   ///< to change: it is mended, unless adapting it anew
+                                             ///< makes it clearly better
+  static constexpr double many_poor = 5e-3;  ///< may hide what there is to do
+  static constexpr std::size_t least_count = 100;  ///< elements; one change is no small share of a
+                                                   ///< small mesh, but it is little work
+
+  // ---- A metric that is far from the mesh (decisions 19 and 33) ----
+  static constexpr double most_slivers = 0.5;    ///< in the metric: it is far
+  static constexpr double some_slivers = 0.02;   ///< it is far if sizes jump, too
+  static constexpr double much_of_demand = 0.2;  ///< share of the elements asked for that lie where
+                                                 ///< sizes jump
+  static constexpr int rounds_on_the_way = 6;    ///< to each metric, at most
+  static constexpr double near = 0.1;            ///< changed by a round: the next metric may come
+  static constexpr double too_many = 1.5;  ///< times the elements asked for: the way is cut short
+
+  // ---- The end of the approach: a thin layer that is split in halves begins with few changes ----
+  static constexpr double hardly_any = 5e-3;       ///< changed by a round: it is over
+  static constexpr double many_splits_left = 0.1;  ///< it is not over
+
+  // ---- Kernels ----
+  static constexpr double many_collapses = 0.1;  ///< by one sweep; what fewer leave is mostly
+                                                 ///< refused until other kernels change something
+  static constexpr double many_swaps = 0.015;    ///< the same for swaps
+  static constexpr double any_swaps = 5e-5;      ///< the same in the end
+  static constexpr int most_rounds = 30;  ///< collapses may wake each other many times, for little
+  static constexpr double eager = 1.03;   ///< rearranging collapses edges that are hardly long
+                                          ///< enough: some would end up too short
+};
+
+/// How much is done for better elements.
+struct Care {
+  double calm;   ///< share of changes below which the mesh is near the metric
+  int polishes;  ///< passes
+  double far;    ///< of SmoothOptions
+};
+
+/// What differs between the dimensions.
+template <int Dim>
+struct Tuning;
+
+template <>
+struct Tuning<2> {
+  /// How much longer than the rules want edges must be to be split, by stage.
+  static constexpr double stages[] = {1};
+  static constexpr Care normal{.calm = 0.03, .polishes = 1, .far = 0.16};
+  static constexpr Care thorough{.calm = 0.03, .polishes = 2, .far = 0.08};
+  static constexpr double kept_shape = 0.5;      ///< of Rules, on the way to the metric
+  static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
+  static constexpr int rearrangements = 4;       ///< passes
+  static constexpr double swap_below = 0.9;      ///< mean ratio of elements that are swapped
+  static constexpr double optimise_below = 0.8;  ///< of those that are optimised in the end
+  /// ... and of those around a vertex on the whole where they are finished together.
+  static constexpr double mean_below = 0.9;
+  static constexpr double far = 0.003;  ///< of most elements where the metric is far from the mesh
+  /// Order matters less than the time to restore it, unless much has changed.
+  static constexpr double renumber_above = 0.05;
+};
+
+template <>
+struct Tuning<3> {
+  /// Coarsening and swapping shorten many long edges, so the first stage splits none, and each
+  /// after it what is left of the longest.
+  static constexpr double stages[] = {never, 2.5, 1.7, 1.25, 1};
+  static constexpr Care normal{.calm = 0.1, .polishes = 1, .far = 0.2};
+  static constexpr Care thorough{.calm = 0.05, .polishes = 2, .far = 0.08};
+  static constexpr double kept_shape = 0.2;
+  static constexpr double stretched_edge = 1.55;
+  static constexpr int rearrangements = 2;
+  static constexpr double swap_below = 0.8;
+  static constexpr double optimise_below = 0.6;
+  static constexpr double mean_below = 0;
+  static constexpr double far = 0.012;
+  static constexpr double renumber_above = always;
+};
+
+template <int Dim>
+const Care& care_of(const AdaptOptions& options) {
+  return options.thorough ? Tuning<Dim>::thorough : Tuning<Dim>::normal;
+}
+
+/// The steps of all phases.
+template <int Dim>
+struct Steps {
+  using T = Thresholds;
+  using Of = Tuning<Dim>;
+  static constexpr Step coarsen{
+      .kernel = Kernel::coarsen, .sweeps = 8, .enough = T::many_collapses};
+  static constexpr Step refine{.kernel = Kernel::refine};
+  static constexpr Step swap{
+      .kernel = Kernel::swap, .sweeps = 4, .enough = T::many_swaps, .below = Of::swap_below};
+  static constexpr Step optimise{.kernel = Kernel::smooth, .below = Of::optimise_below};
+
+  /// Refinement is one stage further in each round, or more if there is little else to do.
+  static constexpr Step approach[] = {coarsen,
+                                      {.kernel = Kernel::refine, .next_stage_below = 0.02},
+                                      {.kernel = Kernel::swap,
+                                       .sweeps = 8,
+                                       .enough = T::many_swaps,
+                                       .below = Of::swap_below,
+                                       .renumber_above = Of::renumber_above},
+                                      {.kernel = Kernel::smooth, .below = 0.3}};
+  /// Collapses what is left of short edges, swaps and smooths, and only then splits what has become
+  /// too long.
+  static constexpr Step rearrange[] = {coarsen, swap, optimise, refine, swap, optimise};
+  /// In 3D the next phase does what the last step would.
+  static constexpr std::size_t rearrange_count = Dim == 2 ? 6 : 5;
+  static constexpr Step settle[] = {
+      {.kernel = Kernel::smooth, .move = Move::to_surface, .everywhere = true}};
+  static constexpr Step polish[] = {{.kernel = Kernel::smooth, .sweeps = 3, .below = 0.5}, swap};
+  static constexpr Step raise[] = {{.kernel = Kernel::smooth,
+                                    .sweeps = 2,
+                                    .below = Of::optimise_below,
+                                    .move = Move::optimise,
+                                    .everywhere = true}};
+  static constexpr Step last_swap{
+      .kernel = Kernel::swap, .sweeps = 4, .enough = T::any_swaps, .below = Of::swap_below};
+  static constexpr Step finish[] = {coarsen,
+                                    last_swap,
+                                    refine,
+                                    last_swap,
+                                    {.kernel = Kernel::smooth,
+                                     .below = Of::optimise_below,
+                                     .move = Move::optimise,
+                                     .everywhere = true}};
+};
+
+/// The phases of a run. The first goes on until the mesh is near the metric, see Adapter; those
+/// that insert are left out where nothing may be inserted.
+template <int Dim>
+struct Schedule {
+  Phase approach, rearrange, settle, polish, raise, finish;
+};
+
+template <int Dim>
+Schedule<Dim> schedule_for(const AdaptOptions& options) {
+  using S = Steps<Dim>;
+  const Care& care = care_of<Dim>(options);
+  return {
+      .approach = {Aim::approach, S::approach, options.iterations, care.calm},
+      .rearrange = {.aim = Aim::rearrange,
+                    .steps = std::span(S::rearrange).first(S::rearrange_count),
+                    .passes = Tuning<Dim>::rearrangements,
+                    .look = {Look::all, Look::news, Look::news, Look::what_comes}},
+      .settle = {Aim::rearrange, S::settle},
+      .polish = {Aim::rearrange, S::polish, care.polishes},
+      .raise = {Aim::rearrange, S::raise},
+      // Until there is nothing to do: adapting the result again shall change nothing.
+      .finish = {Aim::finish, S::finish, 10, 1e-4, {Look::all, Look::all, Look::all, Look::news}}};
+}
+
+template <int Dim>
+class Workpiece;
+
+/// The kernels as steps, each in a file of its own: as many sweeps as the step asks for, until one
+/// changes little. They return how many changes they made.
+template <int Dim>
+std::size_t run_coarsen(Workpiece<Dim>& work, const Step& step);
+template <int Dim>
+std::size_t run_refine(Workpiece<Dim>& work, const Step& step);
+template <int Dim>
+std::size_t run_swap(Workpiece<Dim>& work, const Step& step);
+template <int Dim>
+std::size_t run_smooth(Workpiece<Dim>& work, const Step& step);
+
+/// What the driver knows of a kernel; its name and its report are in `kernels`.
+template <int Dim>
+struct KernelRow {
+  std::size_t (*run)(Workpiece<Dim>&, const Step&);
+  bool AdaptOptions::*allowed;  ///< the option by which it may run
+  bool renews;                  ///< makes or removes vertices or elements
+  bool counts;                  ///< a pass is calm when such changes are few
+};
+
+template <int Dim>
+inline constexpr std::array<KernelRow<Dim>, kernels.size()> kernel_rows{
+    {{run_coarsen<Dim>, &AdaptOptions::insert, true, true},
+     {run_refine<Dim>, &AdaptOptions::insert, true, true},
+     {run_swap<Dim>, &AdaptOptions::swap, Dim == 3, true},
+     {run_smooth<Dim>, &AdaptOptions::move, false, false}}};
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,204 @@
+#include "adapt/workpiece.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::parallel_for;
+
+namespace {
+
+/// The mesh in an order in which what is near in space is near in memory, every vertex with its
+/// metric and with one of its elements as its host.
+template <int Dim>
+Mesh<Dim> with_metrics(const runtime::Executor& executor, Mesh<Dim> mesh,
+                       const std::vector<Metric<Dim>>& metric_of, Neighbours<Dim>& neighbours) {
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
+    mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
+  });
+  renumber(executor, mesh, neighbours);
+  parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
+    mesh.host_of[v] = mesh.elements_of.of(static_cast<VertexId>(v)).front();
+  });
+  return mesh;
+}
+
+}  // namespace
+
+template <int Dim>
+Workpiece<Dim>::Workpiece(const runtime::Executor& executor, const AdaptOptions& options,
+                          Mesh<Dim> mesh, Neighbours<Dim> neighbours,
+                          const std::vector<Metric<Dim>>& metric_of)
+    : executor_(executor),
+      options_(options),
+      mesh_(with_metrics(executor, std::move(mesh), metric_of, neighbours)),
+      background_(executor, mesh_, std::move(neighbours)) {
+  update_shapes(executor_, mesh_);
+}
+
+template <int Dim>
+Mesh<Dim> Workpiece<Dim>::take_mesh() {
+  background_.release(executor_);
+  survey_ = EdgeSurvey<Dim>();
+  return std::move(mesh_);
+}
+
+template <int Dim>
+void Workpiece<Dim>::begin(const Phase& phase, bool came_adapted) {
+  go_for(phase.aim, false);
+  if (phase.aim != Aim::approach) go_to_last_stage();  // what is left is split at once
+  const std::uint32_t now = mesh_.epoch - 1;
+  everywhere_after_ = came_adapted ? now : 0;
+  for (std::size_t k = 0; k < kernels.size(); ++k)
+    if (phase.look[k] != Look::news) seen_by_[k] = phase.look[k] == Look::all ? 0 : now;
+}
+
+template <int Dim>
+std::size_t Workpiece<Dim>::run(const Step& step) {
+  const KernelRow<Dim>& row = kernel_rows<Dim>[index_of(step.kernel)];
+  if (!(options_.*row.allowed)) return 0;
+  const std::size_t changes = row.run(*this, step);
+  return row.counts ? changes : 0;
+}
+
+template <int Dim>
+void Workpiece<Dim>::go_for(Aim aim, bool keeps_lengths) {
+  aim_ = aim;
+  keeps_lengths_ = keeps_lengths;
+}
+
+template <int Dim>
+bool Workpiece<Dim>::next_stage() {
+  if (!options_.insert || stage_ == last_stage) return false;
+  ++stage_;
+  return true;
+}
+
+template <int Dim>
+Rules Workpiece<Dim>::rules() const {
+  Rules rules = options_.rules;
+  if (aim_ == Aim::approach) rules.kept_shape *= Tuning<Dim>::kept_shape;
+  if (aim_ == Aim::rearrange) {
+    rules.stretched_edge = Tuning<Dim>::stretched_edge;
+    rules.short_edge *= Thresholds::eager;
+  }
+  if (aim_ == Aim::finish) {
+    rules.extends_long_edges = false;
+    rules.shortest_split = rules.short_edge;
+  }
+  return rules;
+}
+
+/// What moves and swaps leave edges in: in the end they may undo nothing of what collapses and
+/// splits have reached.
+template <int Dim>
+EdgeRange Workpiece<Dim>::range() const {
+  if (!keeps_lengths_) return {};
+  return {options_.rules.short_edge, options_.rules.long_edge};
+}
+
+template <int Dim>
+SmoothOptions Workpiece<Dim>::smoothing(const Step& step) const {
+  const bool to_surface = step.move == Move::to_surface;
+  return {.laplacian = step.move == Move::laplacian,
+          .optimise_below = to_surface ? 0 : step.below,
+          .mean_below = aim_ == Aim::finish ? Tuning<Dim>::mean_below : 0,
+          .far = care_of<Dim>(options_).far,
+          // What gets a little too long on the way to the surface is for the next splits.
+          .range = to_surface ? EdgeRange{} : range(),
+          .to_surface = to_surface};
+}
+
+/// From which length on edges are split now.
+template <int Dim>
+double Workpiece<Dim>::long_edge() const {
+  return options_.rules.long_edge * Tuning<Dim>::stages[stage_];
+}
+
+/// The survey of edges, for those longer than this and all that any kernel takes for short.
+template <int Dim>
+EdgeSurvey<Dim>& Workpiece<Dim>::survey_for(double longer) {
+  survey_.compare_with({.shorter = Thresholds::eager * options_.rules.short_edge,
+                        .longer = std::isinf(longer) ? options_.rules.long_edge : longer});
+  return survey_;
+}
+
+/// Ends the mesh's epoch for a scan that starts now; returns when the same kernel's last one ended.
+template <int Dim>
+std::uint32_t Workpiece<Dim>::end_epoch(Kernel kernel) {
+  return std::exchange(seen_by_[index_of(kernel)], mesh_.epoch++);
+}
+
+template <int Dim>
+void Workpiece<Dim>::add(Kernel kernel, const runtime::RoundsReport& rounds) {
+  if (rounds.applied != 0 && kernel_rows<Dim>[index_of(kernel)].renews) {
+    element_count_.reset();
+    in_order_ = false;
+  }
+  KernelReport& sum = report_of(kernel);
+  sum.considered += rounds.planned;
+  sum.applied += rounds.applied;
+  sum.rounds += rounds.rounds;
+  sum.conflict_seconds += rounds.conflict_seconds;
+  sum.plan_seconds += rounds.plan_seconds;
+  sum.apply_seconds += rounds.apply_seconds;
+  sum.commit_seconds += rounds.commit_seconds;
+  sum.wake_seconds += rounds.wake_seconds;
+}
+
+template <int Dim>
+void Workpiece<Dim>::tell(Kernel kernel, std::size_t changes) const {
+  const AdaptProgress progress{kernels[index_of(kernel)].name, report_.iterations, changes};
+  if (options_.progress && !options_.progress(progress)) throw Cancelled();
+}
+
+/// Counted only after a kernel has made or removed some.
+template <int Dim>
+std::size_t Workpiece<Dim>::element_count() const {
+  if (!element_count_)
+    element_count_ = runtime::parallel_reduce(
+        executor_, mesh_.element_slots(), std::size_t{0},
+        [&](std::size_t e) { return std::size_t{mesh_.alive(static_cast<ElementId>(e))}; },
+        std::plus<>());
+  return *element_count_;
+}
+
+template <int Dim>
+double Workpiece<Dim>::share(std::size_t changes) const {
+  return static_cast<double>(changes) /
+         static_cast<double>(std::max<std::size_t>(1, element_count()));
+}
+
+template <int Dim>
+void Workpiece<Dim>::renumber_mesh(VertexId unlisted) {
+  const runtime::PhaseTimer timer(report_.renumber_seconds);
+  renumber(executor_, mesh_, unlisted);
+  in_order_ = true;
+  survey_.forget();
+}
+
+template <int Dim>
+void Workpiece<Dim>::take_metrics() {
+  parallel_for(executor_, mesh_.vertex_slots(), [&](std::size_t i) {
+    const auto v = static_cast<VertexId>(i);
+    if (!mesh_.vertex_alive(v)) return;
+    const auto [host, metric] = background_.sample(mesh_.site_of[v].position, mesh_.host_of[v]);
+    mesh_.host_of[v] = host;
+    mesh_.site_of[v] = make_site(mesh_.site_of[v].position, metric);
+  });
+  update_shapes(executor_, mesh_);
+  survey_.forget();
+  seen_by_ = {};
+}
+
+template class Workpiece<2>;
+template class Workpiece<3>;
+
+}  // namespace ductile::meshadapt
