@@ -117,9 +117,9 @@ Standing Adapter<Dim>::standing() const {
 
 template <int Dim>
 std::size_t Adapter<Dim>::elements_below(double mean_ratio) const {
-  const double shape = shape_of_mean_ratio<Dim>(mean_ratio);
+  const double quality = quality_of_mean_ratio<Dim>(mean_ratio);
   const auto is_below = [&](std::size_t e) -> std::size_t {
-    return mesh().alive(static_cast<ElementId>(e)) && mesh().shape_of[e] < shape;
+    return mesh().alive(static_cast<ElementId>(e)) && mesh().quality_of[e] < quality;
   };
   return runtime::parallel_reduce(executor_, mesh().element_slots(), std::size_t{0}, is_below,
                                   std::plus<>());

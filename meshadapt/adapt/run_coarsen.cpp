@@ -11,7 +11,7 @@ std::size_t run_coarsen(Workpiece<Dim>& work, const Step& step) {
   std::size_t changes = 0;
   for (int sweep = 0; sweep < step.sweeps; ++sweep) {
     const std::uint32_t after = work.end_epoch(step.kernel);
-    const auto vertices = Coarsen<Dim>::crowded_vertices(
+    const auto vertices = Coarsen<Dim>::short_edge_vertices(
         executor, work.mesh(), work.survey_for(work.long_edge()), work.rules().short_edge, after);
     Coarsen<Dim> op(work.mesh(), work.rules());
     const bool by_colours = work.options().by_colours;

@@ -40,7 +40,7 @@ Workpiece<Dim>::Workpiece(const runtime::Executor& executor, const AdaptOptions&
       options_(options),
       mesh_(with_metrics(executor, std::move(mesh), metric_of, neighbours)),
       background_(executor, mesh_, std::move(neighbours)) {
-  update_shapes(executor_, mesh_);
+  update_qualities(executor_, mesh_);
 }
 
 template <int Dim>
@@ -84,7 +84,7 @@ bool Workpiece<Dim>::next_stage() {
 template <int Dim>
 Rules Workpiece<Dim>::rules() const {
   Rules rules = options_.rules;
-  if (aim_ == Aim::approach) rules.kept_shape *= Tuning<Dim>::kept_shape;
+  if (aim_ == Aim::approach) rules.kept_quality *= Tuning<Dim>::kept_quality;
   if (aim_ == Aim::rearrange) {
     rules.stretched_edge = Tuning<Dim>::stretched_edge;
     rules.short_edge *= Thresholds::eager;
@@ -193,7 +193,7 @@ void Workpiece<Dim>::take_metrics() {
     mesh_.host_of[v] = host;
     mesh_.site_of[v] = make_site(mesh_.site_of[v].position, metric);
   });
-  update_shapes(executor_, mesh_);
+  update_qualities(executor_, mesh_);
   survey_.forget();
   seen_by_ = {};
 }
