@@ -42,10 +42,8 @@ bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
   if (choices.empty()) return false;
   const double longest = longest_allowed(ring);
   double worst = 1;
-  for (const ElementId e : ball) {
-    if (has_required_elements_ && mesh_.required_element(e)) return false;
-    worst = std::min<double>(worst, mesh_.quality_of[e]);
-  }
+  for (const ElementId e : ball) worst = std::min<double>(worst, mesh_.quality_of[e]);
+  if (!keeps_required(gone)) return false;
   plan.gone = gone;
   for (const Candidate& choice : choices) {
     plan.kept = choice.kept;
@@ -56,6 +54,15 @@ bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
     return true;
   }
   return false;
+}
+
+/// No element that is required changes.
+template <int Dim>
+bool Coarsen<Dim>::keeps_required(VertexId gone) const {
+  if (!has_required_elements_) return true;
+  const auto ball = mesh_.elements_of.of(gone);
+  return std::none_of(ball.begin(), ball.end(),
+                      [&](ElementId e) { return mesh_.required_element(e); });
 }
 
 template <int Dim>

@@ -62,21 +62,16 @@ class Coarsen {
   }
   std::size_t commit() { return deferred_ ? commit_lists(mesh_, *deferred_) : 0; }
 
- private:
-  struct Candidate {
-    double length;  ///< to the fourth power, by the geometric mean of both ends
-    VertexId kept;
-    friend auto operator<=>(const Candidate&, const Candidate&) = default;
-  };
   /// The neighbours of the vertex that may go, and its edges to them.
   struct Ring {
     VertexBuffer vertices;
     Buffer<EndSquares, 64> edges;
   };
   Ring ring_around(VertexId gone) const;
-  Buffer<Candidate, 32> candidates(VertexId gone, const Ring& ring) const;
 
-  // ---- Rules: each one reason to refuse a collapse, named for what it protects ----
+  // ---- Rules: each one reason to refuse a collapse, named for what it protects. Without effect
+  // on the mesh, so that a test may ask for each; decide() asks for all ----
+  bool keeps_required(VertexId gone) const;
   bool keeps_geometry(VertexId gone, VertexId kept) const;
   bool keeps_patches(VertexId gone, VertexId kept) const;
   double longest_allowed(const Ring& ring) const;
@@ -84,9 +79,17 @@ class Coarsen {
   bool keeps_shapes(Plan& plan, double worst_before) const;
   bool keeps_surface(const Plan& plan) const;
   bool keeps_sides_apart(const Plan& plan) const;
+
+ private:
+  struct Candidate {
+    double length;  ///< to the fourth power, by the geometric mean of both ends
+    VertexId kept;
+    friend auto operator<=>(const Candidate&, const Candidate&) = default;
+  };
+  Buffer<Candidate, 32> candidates(VertexId gone, const Ring& ring) const;
+
   bool ends_curve(const Plan& plan) const;
   bool joins_rim(const Plan& plan, ElementId element, std::size_t facet) const;
-
   void note_short_edges(Plan& plan, const Ring& ring) const;
 
   void collapse(const Plan& plan, const SharedLists<Dim>& lists);

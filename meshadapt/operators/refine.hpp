@@ -30,6 +30,8 @@ class Refine {
          const Rules& rules)
       : executor_(executor), mesh_(mesh), background_(background), rules_(rules) {}
 
+  /// Rule: no edge of what is required is split. The shell is that of the edge.
+  bool may_split(const LongEdge& edge, const Shell& shell) const;
   /// Would this edge be split if it were the only long one? Thread safety: any thread.
   bool splits(const LongEdge& edge) const;
 
@@ -89,7 +91,6 @@ class Refine {
   void prefetch_shells_after(std::size_t number) const;
   void note_splits(std::size_t begin, std::size_t end);
   bool locate(const LongEdge& edge, const Shell& shell, Split& split) const;
-  bool may_split(const LongEdge& edge, const Shell& shell) const;
   void classify(const LongEdge& edge, const Shell& shell, Split& split) const;
   bool spans_layer(ElementId element) const;
 

@@ -80,6 +80,11 @@ class Smooth {
   // ---- Apply: move it, renew the qualities around it ----
   void apply(VertexId vertex, const Plan& plan, auto&) { move(vertex, plan); }
 
+  // ---- Rules: each one reason to refuse a place, named for what it protects ----
+  bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
+  bool keeps_surface(VertexId vertex, const Vector<Dim>& position) const;
+  bool keeps_lengths(VertexId vertex, const Site<Dim>& site) const;
+
  private:
   /// What is climbed: the worst quality around, or the harmonic mean of all.
   enum class Aim : std::uint8_t { worst, mean };
@@ -92,9 +97,6 @@ class Smooth {
   };
   void move(VertexId vertex, const Plan& plan);
   bool follow(VertexId vertex, const Place& best, Plan& plan) const;
-  bool keeps_volumes(VertexId vertex, const Vector<Dim>& position) const;
-  bool keeps_surface(VertexId vertex, const Vector<Dim>& position) const;
-  bool keeps_lengths(VertexId vertex, const Site<Dim>& site) const;
   bool place(const Ball<Dim>& ball, const Vector<Dim>& position, const Place& near,
              const Score& bar, Place& result) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;

@@ -91,6 +91,7 @@ class KernelReport:
 class Report:
     iterations: int
     converged: bool
+    kernels: tuple[str, ...]
     coarsen: KernelReport
     refine: KernelReport
     swap: KernelReport

@@ -9,6 +9,7 @@
 #include "ductile/runtime/run_rounds.hpp"
 #include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"
+#include "support/small_mesh.hpp"
 
 namespace ductile::meshadapt::swap_test {
 namespace {
@@ -16,34 +17,10 @@ namespace {
 const runtime::Executor executor({.threads = 2});
 
 template <int Dim>
-Mesh<Dim> in_unit_metric(const AnyMesh& any, const MakeMeshOptions& options) {
-  Neighbours<Dim> neighbours;
-  std::vector<std::string> warnings;
-  auto mesh = make_mesh<Dim>(executor, any, options, neighbours, warnings);
-  Metric<Dim> unit;
-  for (std::size_t i = 0, k = 0; i < Dim; k += ++i + 1) unit.m[k] = 1;
-  for (auto& site : mesh.site_of) site = make_site(site.position, unit);
-  update_qualities(executor, mesh);
-  return mesh;
-}
-
-/// A mesh in the Euclidean metric.
-template <int Dim>
 Mesh<Dim> mesh_of(std::initializer_list<Vector<Dim>> points,
                   std::initializer_list<Corners<Dim>> elements) {
-  AnyMesh any;
-  any.dimension = Dim;
-  for (const Vector<Dim>& point : points) {
-    any.coordinates.insert(any.coordinates.end(), point.x.begin(), point.x.end());
-    any.vertex_reference.push_back(0);
-  }
-  for (const Corners<Dim>& corners : elements) {
-    if constexpr (Dim == 2)
-      any.triangles.add(corners, 1);
-    else
-      any.tetrahedra.add(corners, 1);
-  }
-  return in_unit_metric<Dim>(any, {.complete_boundary = true});
+  return test::in_unit_metric<Dim>(executor, test::listed_mesh<Dim>(points, elements),
+                                   {.complete_boundary = true});
 }
 
 /// Elements around the edge 0-1, eight as in an orange of which the upper half was cut away, all
@@ -67,7 +44,8 @@ Mesh<3> half_orange(double height, double tolerance, bool covered = false) {
     any.tetrahedra.add({1, 2, 3, top}, 2);
   }
   any.vertex_reference.assign(any.coordinates.size() / 3, 0);
-  return in_unit_metric<3>(any, {.complete_boundary = true, .hausdorff_tolerance = tolerance});
+  return test::in_unit_metric<3>(executor, any,
+                                 {.complete_boundary = true, .hausdorff_tolerance = tolerance});
 }
 
 template <int Dim>
