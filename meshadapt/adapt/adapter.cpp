@@ -8,8 +8,8 @@
 
 #include "adapt/metric_path.hpp"
 #include "adapt/tuning.hpp"
-#include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/run_rounds.hpp"

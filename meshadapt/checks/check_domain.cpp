@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "ductile/meshadapt/vector.hpp"
 #include "geometry/roughness.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/boundary_surface.hpp"

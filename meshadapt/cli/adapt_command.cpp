@@ -12,15 +12,15 @@
 #include "carried_fields.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/adapt_to_sizes.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/geometry.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
+#include "io/atomic_file.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "run_in_team.hpp"
@@ -336,7 +336,7 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
   job.fields.write(outputs, carried);
   if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, adapted.mesh, with_fields);
-  if (job.json) outputs.stage(*job.json).write(json);
+  if (job.json) write_bytes(outputs, *job.json, json);
   print_warnings(warnings, job.verbosity);
   outputs.commit();
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/determinant.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/atomic.hpp"

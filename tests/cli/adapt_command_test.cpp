@@ -5,9 +5,9 @@
 #include <string>
 
 #include "adapt_report.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "program.hpp"
 
 namespace ductile::cli::adapt_command_test {
