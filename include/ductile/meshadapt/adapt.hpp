@@ -35,7 +35,7 @@ struct AdaptReport {
   /// boundaries that keep their facets.
   std::size_t fixed_vertices = 0;
   /// Edges of the adapted mesh on curved boundaries that may change
-  /// (MakeMeshOptions::surface_tolerance), and those of them that are shorter than 1/sqrt 2.
+  /// (MakeMeshOptions::hausdorff_tolerance), and those of them that are shorter than 1/sqrt 2.
   std::size_t curved_edges = 0, curved_edges_short = 0;
   /// Edges of the adapted mesh that are longer than Rules::long_edge, or shorter than
   /// Rules::short_edge, because required entities hold them: a long one belongs to a required

@@ -47,13 +47,13 @@ struct MakeMeshOptions {
   bool lock_boundary = false;  ///< treat every boundary and interface facet as required
   /// Hausdorff tolerance: how far curved boundaries, interfaces and the curves between them may be
   /// from a smooth model of the input, a length; 0: they keep the facets they have.
-  double surface_tolerance = 0;
+  double hausdorff_tolerance = 0;
   /// Degrees, more than 0 and less than 90. Two facets whose normals differ by this angle or more
   /// meet in a ridge, two edges of a curve in a corner; both are kept. What turns by less is
   /// curved.
   double ridge_angle = 45;
-  /// Where distances are measured from; null: from a model of this mesh. Wants a surface_tolerance,
-  /// which must be the geometry's.
+  /// Where distances are measured from; null: from a model of this mesh. Wants a
+  /// hausdorff_tolerance, which must be the geometry's.
   std::shared_ptr<const Geometry> geometry = nullptr;
   /// Vertices at which curved boundaries keep the facets they have all the same. Indices, from 0.
   std::vector<std::uint32_t> keep_facets_at = {};
@@ -75,11 +75,11 @@ struct AdaptOptions {
   double smallest_size = 0;  ///< no edge length below this is asked for; 0: no bound
   double largest_size = 0;   ///< no edge length above this is asked for; 0: no bound
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
-                             ///< limit_gradation), from what make.surface_tolerance allows on
+                             ///< limit_gradation), from what make.hausdorff_tolerance allows on
                              ///< curved boundaries; 0 or less: as given. Mmg's default is 1.3
   bool curved_sizes =
       false;  ///< sizes on curved boundaries are bounded by what
-              ///< make.surface_tolerance allows without a gradation, too; they grow
+              ///< make.hausdorff_tolerance allows without a gradation, too; they grow
               ///< from there by a factor of 1.3, or as given with one below 0. With
               ///< coarsest_metric() they come from curvature alone, as with Mmg's -A
   double required_gradation = 0;  ///< sizes at required facets, edges and elements, and at all
