@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/runtime/executor.hpp"
-#include "mesh/boundary_surface.hpp"
+#include "mesh/adjacency.hpp"
 
 namespace ductile::meshadapt {
 
@@ -32,23 +30,19 @@ struct RegionTopology {
 /// Nearly linear in the mesh. Precondition: indices are in range.
 /// Thread safety: one caller; runs on the executor.
 template <int Dim>
-std::vector<RegionTopology> topology_of(const runtime::Executor& executor, const AnyMesh& mesh,
-                                        BoundaryFrom from);
+std::vector<RegionTopology> topology_of(const AdjacentMesh<Dim>& mesh);
 
-/// How the topology of `after`, whose boundary is listed, differs from that of `before`, a line
-/// for each region and number; empty if it does not.
-/// Thread safety: one caller; runs on the executor.
+/// How the topology of `after` differs from that of `before`, a line for each region and number;
+/// empty if it does not. Thread safety: one caller; runs on the executor.
 template <int Dim>
-std::vector<std::string> topology_faults(const runtime::Executor& executor, const AnyMesh& before,
-                                         const AnyMesh& after);
+std::vector<std::string> topology_faults(const AdjacentMesh<Dim>& before,
+                                         const AdjacentMesh<Dim>& after);
 
-extern template std::vector<RegionTopology> topology_of<2>(const runtime::Executor&, const AnyMesh&,
-                                                           BoundaryFrom);
-extern template std::vector<RegionTopology> topology_of<3>(const runtime::Executor&, const AnyMesh&,
-                                                           BoundaryFrom);
-extern template std::vector<std::string> topology_faults<2>(const runtime::Executor&,
-                                                            const AnyMesh&, const AnyMesh&);
-extern template std::vector<std::string> topology_faults<3>(const runtime::Executor&,
-                                                            const AnyMesh&, const AnyMesh&);
+extern template std::vector<RegionTopology> topology_of(const AdjacentMesh<2>&);
+extern template std::vector<RegionTopology> topology_of(const AdjacentMesh<3>&);
+extern template std::vector<std::string> topology_faults(const AdjacentMesh<2>&,
+                                                         const AdjacentMesh<2>&);
+extern template std::vector<std::string> topology_faults(const AdjacentMesh<3>&,
+                                                         const AdjacentMesh<3>&);
 
 }  // namespace ductile::meshadapt
