@@ -26,7 +26,7 @@ Rescue<Dim>::Rescue(const runtime::Executor& executor, const AnyMesh& input,
 template <int Dim>
 bool Rescue<Dim>::accepts(const AnyMesh& adapted) {
   ++attempts_;
-  const AdjacentMesh<Dim> now(input_.executor(), adapted);
+  const AdjacentMesh now(input_.executor(), adapted);
   const auto faults = adapted_faults(input_, now, tolerance_);
   is_right_ = faults.empty();
   if (is_right_ || options_.lock_boundary) return true;
@@ -40,9 +40,9 @@ bool Rescue<Dim>::accepts(const AnyMesh& adapted) {
 
 /// Each time from farther away, as facets of the adapted mesh may have been larger before.
 template <int Dim>
-bool Rescue<Dim>::keeps_more(const AdjacentMesh<Dim>& adapted) {
+bool Rescue<Dim>::keeps_more(const AdjacentMesh& adapted) {
   if (!mesh_faults(adapted).empty()) return false;
-  const auto places = damaged_places(input_, adapted);
+  const auto places = damaged_places<Dim>(input_, adapted);
   const auto near = boundary_vertices_near(input_, places, distance_);
   distance_ *= 2;
   std::vector<std::uint32_t> all;

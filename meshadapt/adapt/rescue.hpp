@@ -32,9 +32,9 @@ class Rescue {
   void warn(std::vector<std::string>& warnings) const;
 
  private:
-  bool keeps_more(const AdjacentMesh<Dim>& adapted);
+  bool keeps_more(const AdjacentMesh& adapted);
 
-  AdjacentMesh<Dim> input_;
+  AdjacentMesh input_;
   MakeMeshOptions options_;
   double tolerance_;  // of the surface, as asked for
   double distance_;   // from places at which facets are kept

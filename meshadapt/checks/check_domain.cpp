@@ -84,23 +84,24 @@ Measures measures(const AnyMesh& mesh) {
 
 /// Of each region, by reference, interfaces to others included.
 template <int Dim>
-std::map<std::int32_t, double> boundary_measures(const AdjacentMesh<Dim>& mesh) {
+std::map<std::int32_t, double> boundary_measures(const AdjacentMesh& mesh) {
   const auto& reference_of = elements_in<Dim>(mesh.mesh()).reference;
   const std::vector<std::uint32_t> region_of(reference_of.begin(), reference_of.end());
   std::map<std::int32_t, double> sum_of;
-  for (const BoundarySide<Dim>& side : sides_of<Dim>(mesh.executor(), mesh.adjacency(), region_of))
+  for (const BoundarySide<Dim>& side :
+       sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>(), region_of))
     sum_of[static_cast<std::int32_t>(side.region)] += facet_measure<Dim>(mesh.mesh(), side.corners);
   return sum_of;
 }
 
 /// Of the boundary that is not listed.
 template <int Dim>
-double unlisted_measure(const AdjacentMesh<Dim>& mesh) {
+double unlisted_measure(const AdjacentMesh& mesh) {
   std::vector<Facet<Dim>> listed = facets_in<Dim>(mesh.mesh()).vertices;
   for (Facet<Dim>& facet : listed) std::sort(facet.begin(), facet.end());
   std::sort(listed.begin(), listed.end());
   double sum = 0;
-  for (const BoundarySide<Dim>& side : sides_of<Dim>(mesh.executor(), mesh.adjacency()))
+  for (const BoundarySide<Dim>& side : sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>()))
     if (!std::binary_search(listed.begin(), listed.end(), side.corners))
       sum += facet_measure<Dim>(mesh.mesh(), side.corners);
   return sum;
@@ -155,9 +156,9 @@ double rough_measure(const AnyMesh& mesh, double roughness) {
 /// How long the non-manifold edges are, where more than two facets of the boundary meet, in 2D how
 /// many such vertices there are; each as often as there is a pair of facets too many.
 template <int Dim>
-double non_manifold_length(const AdjacentMesh<Dim>& mesh) {
+double non_manifold_length(const AdjacentMesh& mesh) {
   const BoundarySurface<Dim> surface(mesh.executor(),
-                                     sides_of<Dim>(mesh.executor(), mesh.adjacency()));
+                                     sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>()));
   double sum = 0;
   surface.each_meeting([&](std::span<const BoundaryJoint> joints) {
     if (joints.size() < 3) return;
@@ -173,8 +174,7 @@ double non_manifold_length(const AdjacentMesh<Dim>& mesh) {
 template <int Dim>
 class DomainChecker {
  public:
-  DomainChecker(const AdjacentMesh<Dim>& before, const AdjacentMesh<Dim>& after,
-                double hausdorff_tolerance)
+  DomainChecker(const AdjacentMesh& before, const AdjacentMesh& after, double hausdorff_tolerance)
       : adjacent_before_(before),
         adjacent_after_(after),
         before_(before.mesh()),
@@ -222,7 +222,7 @@ class DomainChecker {
                            old_.regions.begin()->first == now_.regions.begin()->first;
     if (is_domain) return;
     std::map<std::int32_t, double> boundary_of;
-    if (hausdorff_tolerance_ > 0) boundary_of = boundary_measures(adjacent_before_);
+    if (hausdorff_tolerance_ > 0) boundary_of = boundary_measures<Dim>(adjacent_before_);
     std::map<std::int32_t, double> expected = old_.regions;
     for (const auto& [reference, value] : now_.regions) expected.try_emplace(reference, 0.0);
     for (const auto& [reference, value] : expected) {
@@ -247,7 +247,7 @@ class DomainChecker {
       }
       // What was not listed may be by now, see MakeMeshOptions::complete_boundary.
       if (reference == 0 && std::abs(now_.facets[0] - value) > allowed)
-        value += unlisted_measure(adjacent_before_);
+        value += unlisted_measure<Dim>(adjacent_before_);
       compare(what + " measure ", now_.facets[reference], value, allowed, faults);
     }
     return faults;
@@ -256,9 +256,9 @@ class DomainChecker {
   /// Curves along which the boundary met itself before may be shorter now, or end elsewhere by
   /// rounding; those that bend may be longer.
   void compare_non_manifold(std::vector<std::string>& faults) const {
-    const double now = non_manifold_length(adjacent_after_);
+    const double now = non_manifold_length<Dim>(adjacent_after_);
     if (now == 0) return;
-    const double expected = non_manifold_length(adjacent_before_);
+    const double expected = non_manifold_length<Dim>(adjacent_before_);
     if (now <= expected * (hausdorff_tolerance_ == 0 ? 1 + 1e-6 : 1.5)) return;
     std::ostringstream text;
     text << "the boundary meets itself " << (Dim == 2 ? "at vertices, " : "along edges, ") << now
@@ -266,8 +266,8 @@ class DomainChecker {
     faults.push_back(text.str());
   }
 
-  const AdjacentMesh<Dim>& adjacent_before_;
-  const AdjacentMesh<Dim>& adjacent_after_;
+  const AdjacentMesh& adjacent_before_;
+  const AdjacentMesh& adjacent_after_;
   const AnyMesh& before_;
   const AnyMesh& after_;
   double hausdorff_tolerance_;
@@ -287,23 +287,17 @@ void expect_comparable(const AnyMesh& before, const AnyMesh& after) {
                      ", that of " + before.name + ", found " + std::to_string(after.dimension));
 }
 
-template <int Dim>
-std::vector<std::string> domain_faults(const AdjacentMesh<Dim>& before,
-                                       const AdjacentMesh<Dim>& after, double hausdorff_tolerance) {
-  return DomainChecker<Dim>(before, after, hausdorff_tolerance).run();
+std::vector<std::string> domain_faults(const AdjacentMesh& before, const AdjacentMesh& after,
+                                       double hausdorff_tolerance) {
+  expect_comparable(before.mesh(), after.mesh());
+  if (after.mesh().dimension == 2)
+    return DomainChecker<2>(before, after, hausdorff_tolerance).run();
+  return DomainChecker<3>(before, after, hausdorff_tolerance).run();
 }
 
 std::vector<std::string> check_domain(const Executor& executor, const AnyMesh& before,
                                       const AnyMesh& after, double hausdorff_tolerance) {
-  expect_comparable(before, after);
-  if (before.dimension == 2)
-    return domain_faults<2>({executor, before}, {executor, after}, hausdorff_tolerance);
-  return domain_faults<3>({executor, before}, {executor, after}, hausdorff_tolerance);
+  return domain_faults({executor, before}, {executor, after}, hausdorff_tolerance);
 }
-
-template std::vector<std::string> domain_faults(const AdjacentMesh<2>&, const AdjacentMesh<2>&,
-                                                double);
-template std::vector<std::string> domain_faults(const AdjacentMesh<3>&, const AdjacentMesh<3>&,
-                                                double);
 
 }  // namespace ductile::meshadapt

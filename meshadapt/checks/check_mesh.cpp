@@ -25,7 +25,7 @@ namespace {
 template <int Dim>
 class AnyMeshChecker {
  public:
-  explicit AnyMeshChecker(const AdjacentMesh<Dim>& mesh)
+  explicit AnyMeshChecker(const AdjacentMesh& mesh)
       : executor_(mesh.executor()), adjacent_(mesh), mesh_(mesh.mesh()), problems_(executor_) {}
 
   std::vector<std::string> run() {
@@ -124,7 +124,7 @@ class AnyMeshChecker {
 
   /// Says which facets of elements are listed, and where listed ones are.
   void find_listed() {
-    const Adjacency<Dim>& adjacency = adjacent_.adjacency();
+    const Adjacency<Dim>& adjacency = adjacent_.adjacency<Dim>();
     first_listed_ =
         runtime::make_filled<std::uint32_t>(executor_, (Dim + 1) * elements().size(), none);
     place_of_ = runtime::make_unset_vector<ElementFacet>(executor_, facets().size());
@@ -139,7 +139,7 @@ class AnyMeshChecker {
   }
 
   void check_facets() {
-    const Adjacency<Dim>& adjacency = adjacent_.adjacency();
+    const Adjacency<Dim>& adjacency = adjacent_.adjacency<Dim>();
     find_listed();
     const std::string facet = std::string("facet of ") + element_name;
     const auto is_crowded = [&](const ElementFacet& at) {
@@ -188,7 +188,7 @@ class AnyMeshChecker {
     problems_.expect_none(
         mesh_.vertex_count(),
         [&](std::size_t v) {
-          return adjacent_.adjacency().elements_of(static_cast<VertexId>(v)).empty();
+          return adjacent_.lists<Dim>().elements_of(static_cast<VertexId>(v)).empty();
         },
         [](std::size_t v) { return "vertex " + number(v) + " belongs to no element"; });
   }
@@ -210,7 +210,7 @@ class AnyMeshChecker {
         [&](std::size_t i) { return "the " + name_of(i) + " is listed twice"; });
     const auto is_edge = [&](std::size_t i) {
       const auto a = static_cast<VertexId>(key[i] >> 32U), b = static_cast<VertexId>(key[i]);
-      const auto around = adjacent_.adjacency().elements_of(a);
+      const auto around = adjacent_.lists<Dim>().elements_of(a);
       return std::any_of(around.begin(), around.end(),
                          [&](ElementId e) { return contains(elements().vertices[e], b); });
     };
@@ -220,7 +220,7 @@ class AnyMeshChecker {
   }
 
   const Executor& executor_;
-  const AdjacentMesh<Dim>& adjacent_;
+  const AdjacentMesh& adjacent_;
   const AnyMesh& mesh_;
   Problems problems_;
   runtime::UnsetVector<std::uint32_t> first_listed_;  // [element][facet], none
@@ -229,18 +229,15 @@ class AnyMeshChecker {
 
 }  // namespace
 
-template <int Dim>
-std::vector<std::string> mesh_faults(const AdjacentMesh<Dim>& mesh) {
-  return AnyMeshChecker<Dim>(mesh).run();
+std::vector<std::string> mesh_faults(const AdjacentMesh& mesh) {
+  const int dimension = mesh.mesh().dimension;
+  if (dimension == 2) return AnyMeshChecker<2>(mesh).run();
+  if (dimension == 3) return AnyMeshChecker<3>(mesh).run();
+  return {"the dimension is " + std::to_string(dimension) + ", expected 2 or 3"};
 }
 
 std::vector<std::string> check_mesh(const Executor& executor, const AnyMesh& mesh) {
-  if (mesh.dimension == 2) return mesh_faults<2>({executor, mesh});
-  if (mesh.dimension == 3) return mesh_faults<3>({executor, mesh});
-  return {"the dimension is " + std::to_string(mesh.dimension) + ", expected 2 or 3"};
+  return mesh_faults({executor, mesh});
 }
-
-template std::vector<std::string> mesh_faults(const AdjacentMesh<2>&);
-template std::vector<std::string> mesh_faults(const AdjacentMesh<3>&);
 
 }  // namespace ductile::meshadapt

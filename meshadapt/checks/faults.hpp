@@ -11,19 +11,16 @@
 
 namespace ductile::meshadapt {
 
-template <int Dim>
-std::vector<std::string> mesh_faults(const AdjacentMesh<Dim>& mesh);
+std::vector<std::string> mesh_faults(const AdjacentMesh& mesh);
 
-/// Precondition: both have all coordinates and references, and name no other vertices.
-template <int Dim>
-std::vector<std::string> domain_faults(const AdjacentMesh<Dim>& before,
-                                       const AdjacentMesh<Dim>& after, double hausdorff_tolerance);
+std::vector<std::string> domain_faults(const AdjacentMesh& before, const AdjacentMesh& after,
+                                       double hausdorff_tolerance);
 
-template <int Dim>
-std::vector<std::string> adapted_faults(const AdjacentMesh<Dim>& before,
-                                        const AdjacentMesh<Dim>& after, double hausdorff_tolerance);
+std::vector<std::string> adapted_faults(const AdjacentMesh& before, const AdjacentMesh& after,
+                                        double hausdorff_tolerance);
 
-/// Throws InputError unless domains can be compared: see check_domain().
+/// Throws InputError unless both are of one dimension, have all coordinates and references, and
+/// name no vertices beyond those that there are.
 void expect_comparable(const AnyMesh& before, const AnyMesh& after);
 
 }  // namespace ductile::meshadapt

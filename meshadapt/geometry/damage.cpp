@@ -139,13 +139,12 @@ void find_lost_parts(std::vector<BoundaryPart<Dim>> before,
 }  // namespace
 
 template <int Dim>
-std::vector<Box<Dim>> damaged_places(const AdjacentMesh<Dim>& before,
-                                     const AdjacentMesh<Dim>& after) {
+std::vector<Box<Dim>> damaged_places(const AdjacentMesh& before, const AdjacentMesh& after) {
   const Executor& executor = after.executor();
   std::vector<Box<Dim>> places;
   find_crossings<Dim>(executor, before.mesh(), after.mesh(), places);
-  BoundarySurface<Dim> old(executor, sides_of<Dim>(executor, before.adjacency()));
-  BoundarySurface<Dim> now(executor, sides_of<Dim>(executor, after.adjacency()));
+  BoundarySurface<Dim> old(executor, sides_of<Dim>(executor, before.adjacency<Dim>()));
+  BoundarySurface<Dim> now(executor, sides_of<Dim>(executor, after.adjacency<Dim>()));
   find_non_manifold<Dim>(after.mesh(), now, places);
   find_inner_facets<Dim>(before.mesh(), after.mesh(), now, places);
   if (places.empty())
@@ -154,12 +153,12 @@ std::vector<Box<Dim>> damaged_places(const AdjacentMesh<Dim>& before,
 }
 
 template <int Dim>
-std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh<Dim>& mesh,
+std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh& mesh,
                                                   const std::vector<Box<Dim>>& places,
                                                   double distance) {
   const Executor& executor = mesh.executor();
   const BoxIndex<Dim> index(places.size(), [&](std::size_t i) { return places[i]; });
-  const auto sides = sides_of<Dim>(executor, mesh.adjacency());
+  const auto sides = sides_of<Dim>(executor, mesh.adjacency<Dim>());
   auto near = runtime::parallel_collect<std::uint32_t>(
       executor, sides.size(), [&](std::size_t s, auto&& append) {
         Box<Dim> box = box_of<Dim>(mesh.mesh(), sides[s].corners);
@@ -177,11 +176,11 @@ std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh<Dim>& mesh,
   return {near.begin(), near.end()};
 }
 
-template std::vector<Box<2>> damaged_places(const AdjacentMesh<2>&, const AdjacentMesh<2>&);
-template std::vector<Box<3>> damaged_places(const AdjacentMesh<3>&, const AdjacentMesh<3>&);
-template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh<2>&,
+template std::vector<Box<2>> damaged_places<2>(const AdjacentMesh&, const AdjacentMesh&);
+template std::vector<Box<3>> damaged_places<3>(const AdjacentMesh&, const AdjacentMesh&);
+template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
                                                            const std::vector<Box<2>>&, double);
-template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh<3>&,
+template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
                                                            const std::vector<Box<3>>&, double);
 
 }  // namespace ductile::meshadapt

@@ -14,22 +14,21 @@ namespace ductile::meshadapt {
 /// Precondition: check_mesh() finds no index of `after` out of range. A logarithm more than linear
 /// in the meshes. Thread safety: one caller; runs on the executor.
 template <int Dim>
-std::vector<Box<Dim>> damaged_places(const AdjacentMesh<Dim>& before,
-                                     const AdjacentMesh<Dim>& after);
+std::vector<Box<Dim>> damaged_places(const AdjacentMesh& before, const AdjacentMesh& after);
 
 /// The vertices of boundary facets that are no farther than this, along each axis, from one of the
 /// places; sorted. Thread safety: one caller; runs on the executor.
 template <int Dim>
-std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh<Dim>& mesh,
+std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh& mesh,
                                                   const std::vector<Box<Dim>>& places,
                                                   double distance);
 
-extern template std::vector<Box<2>> damaged_places(const AdjacentMesh<2>&, const AdjacentMesh<2>&);
-extern template std::vector<Box<3>> damaged_places(const AdjacentMesh<3>&, const AdjacentMesh<3>&);
-extern template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh<2>&,
+extern template std::vector<Box<2>> damaged_places<2>(const AdjacentMesh&, const AdjacentMesh&);
+extern template std::vector<Box<3>> damaged_places<3>(const AdjacentMesh&, const AdjacentMesh&);
+extern template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
                                                                   const std::vector<Box<2>>&,
                                                                   double);
-extern template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh<3>&,
+extern template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
                                                                   const std::vector<Box<3>>&,
                                                                   double);
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
@@ -24,17 +25,21 @@ struct ElementFacet {
   int facet = 0;
 };
 
-template <int Dim>
-struct Adjacency {
-  std::span<const Corners<Dim>> corners_of;                  // [element]
-  std::vector<std::uint32_t> first_around;                   // [vertex], and the end
-  std::vector<ElementId> around;                             // see elements_of(); one more is there
-  std::vector<std::array<ElementId, Dim + 1>> neighbour_of;  // [element][facet]; `none`, `crowded`
+/// The elements around each vertex.
+struct VertexElements {
+  std::vector<std::uint32_t> first_around;  // [vertex], and the end
+  std::vector<ElementId> around;            // one more than is used, so that its end has an address
 
-  /// The elements around a vertex, ascending.
+  /// In ascending order.
   std::span<const ElementId> elements_of(VertexId vertex) const {
     return {&around[first_around[vertex]], &around[first_around[vertex + 1]]};
   }
+};
+
+template <int Dim>
+struct Adjacency : VertexElements {
+  std::span<const Corners<Dim>> corners_of;                  // [element]
+  std::vector<std::array<ElementId, Dim + 1>> neighbour_of;  // [element][facet]; `none`, `crowded`
 
   ElementId across(ElementId element, int facet) const {
     return neighbour_of[element][static_cast<std::size_t>(facet)];
@@ -55,16 +60,20 @@ struct Adjacency {
                           std::span<const std::uint32_t> region_of) const;
 };
 
-/// Refers to the corners. Precondition: they are below vertex_count. Nearly linear; throws
-/// std::bad_alloc, and std::length_error if lists have more than 2^32 entries.
-/// Thread safety: one caller; runs on the executor.
+/// Precondition: corners are below vertex_count. Nearly linear; throws std::bad_alloc, and
+/// std::length_error if lists have more than 2^32 entries.
+/// Thread safety: one caller; runs on the executor. So does what follows.
+template <int Dim>
+VertexElements list_elements(const runtime::Executor& executor,
+                             std::span<const Corners<Dim>> corners_of, std::size_t vertex_count);
+
+/// Takes the lists, and refers to the corners.
 template <int Dim>
 Adjacency<Dim> make_adjacency(const runtime::Executor& executor,
-                              std::span<const Corners<Dim>> corners_of, std::size_t vertex_count);
+                              std::span<const Corners<Dim>> corners_of, VertexElements lists);
 
-/// A mesh, and its adjacency from when somebody first asks for it. Refers to both. Thread safety:
-/// one thread.
-template <int Dim>
+/// A mesh, and what of its adjacency has been asked for, made then and kept. Refers to both.
+/// Precondition of asking: the mesh has this dimension, and the vertices that its elements name.
 class AdjacentMesh {
  public:
   AdjacentMesh(const runtime::Executor& executor, const AnyMesh& mesh)
@@ -72,25 +81,26 @@ class AdjacentMesh {
 
   const runtime::Executor& executor() const { return executor_; }
   const AnyMesh& mesh() const { return mesh_; }
-  const std::vector<Corners<Dim>>& elements() const { return elements_in<Dim>(mesh_).vertices; }
 
-  /// Precondition: the mesh has the vertices that its elements name.
-  const Adjacency<Dim>& adjacency() const {
-    if (!made_) made_ = make_adjacency<Dim>(executor_, elements(), mesh_.vertex_count());
-    return *made_;
-  }
+  /// The elements around each vertex; takes less than half the time of all.
+  template <int Dim>
+  const VertexElements& lists() const;
+  template <int Dim>
+  const Adjacency<Dim>& adjacency() const;
 
  private:
+  template <int Dim>
+  std::optional<Adjacency<Dim>>& kept() const {
+    return std::get<std::optional<Adjacency<Dim>>>(kept_);
+  }
+
   const runtime::Executor& executor_;
   const AnyMesh& mesh_;
-  mutable std::optional<Adjacency<Dim>> made_;
+  mutable std::optional<VertexElements> lists_;  // until there is an adjacency, which takes them
+  mutable std::tuple<std::optional<Adjacency<2>>, std::optional<Adjacency<3>>> kept_;
 };
 
 extern template struct Adjacency<2>;
 extern template struct Adjacency<3>;
-extern template Adjacency<2> make_adjacency(const runtime::Executor&, std::span<const Corners<2>>,
-                                            std::size_t);
-extern template Adjacency<3> make_adjacency(const runtime::Executor&, std::span<const Corners<3>>,
-                                            std::size_t);
 
 }  // namespace ductile::meshadapt

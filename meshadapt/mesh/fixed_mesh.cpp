@@ -82,8 +82,9 @@ class FixedMeshMaker {
 
   /// What a crowded facet has on its other side cannot be told, so it counts as a boundary.
   void connect() {
-    Adjacency<Dim> adjacency =
-        make_adjacency<Dim>(executor_, mesh_.corners_of, mesh_.vertex_count());
+    const std::span<const Corners<Dim>> corners_of = mesh_.corners_of;
+    Adjacency<Dim> adjacency = make_adjacency<Dim>(
+        executor_, corners_of, list_elements<Dim>(executor_, corners_of, mesh_.vertex_count()));
     mesh_.first_around = std::move(adjacency.first_around);
     mesh_.around = std::move(adjacency.around);
     mesh_.neighbour_of = std::move(adjacency.neighbour_of);

@@ -112,10 +112,11 @@ void count_boundary(BoundarySurface<Dim> surface, std::vector<RegionTopology>& r
 }
 
 template <int Dim>
-void count(const AdjacentMesh<Dim>& mesh, Regions region_of, std::vector<RegionTopology>& regions) {
+void count(const AdjacentMesh& mesh, Regions region_of, std::vector<RegionTopology>& regions) {
   const Executor& executor = mesh.executor();
   Parts<Dim>(executor, mesh.mesh(), region_of).count(regions);
-  count_boundary<Dim>({executor, sides_of<Dim>(executor, mesh.adjacency(), region_of)}, regions);
+  count_boundary<Dim>({executor, sides_of<Dim>(executor, mesh.adjacency<Dim>(), region_of)},
+                      regions);
 }
 
 /// Which number differs, for a message.
@@ -153,10 +154,9 @@ std::vector<std::string> differences(const std::vector<RegionTopology>& expected
   return faults;
 }
 
-}  // namespace
-
+/// Of all elements and, if there are several references, of the elements of each, by reference.
 template <int Dim>
-std::vector<RegionTopology> topology_of(const AdjacentMesh<Dim>& mesh) {
+std::vector<RegionTopology> topology_of(const AdjacentMesh& mesh) {
   const Executor& executor = mesh.executor();
   std::vector<RegionTopology> all(1);
   count<Dim>(mesh, {}, all);
@@ -176,15 +176,11 @@ std::vector<RegionTopology> topology_of(const AdjacentMesh<Dim>& mesh) {
   return all;
 }
 
-template <int Dim>
-std::vector<std::string> topology_faults(const AdjacentMesh<Dim>& before,
-                                         const AdjacentMesh<Dim>& after) {
-  return differences(topology_of(before), topology_of(after));
-}
+}  // namespace
 
-template std::vector<RegionTopology> topology_of(const AdjacentMesh<2>&);
-template std::vector<RegionTopology> topology_of(const AdjacentMesh<3>&);
-template std::vector<std::string> topology_faults(const AdjacentMesh<2>&, const AdjacentMesh<2>&);
-template std::vector<std::string> topology_faults(const AdjacentMesh<3>&, const AdjacentMesh<3>&);
+std::vector<std::string> topology_faults(const AdjacentMesh& before, const AdjacentMesh& after) {
+  return after.mesh().dimension == 2 ? differences(topology_of<2>(before), topology_of<2>(after))
+                                     : differences(topology_of<3>(before), topology_of<3>(after));
+}
 
 }  // namespace ductile::meshadapt

@@ -26,23 +26,10 @@ struct RegionTopology {
   friend bool operator==(const RegionTopology&, const RegionTopology&) = default;
 };
 
-/// Of all elements and, if there are several references, of the elements of each, by reference.
-/// Nearly linear in the mesh. Precondition: indices are in range.
+/// How the topology of `after` differs from that of `before`, which has the same dimension: of all
+/// elements and of the elements of each reference, a line for each region and number; empty if it
+/// does not. Nearly linear in the meshes. Precondition: indices are in range.
 /// Thread safety: one caller; runs on the executor.
-template <int Dim>
-std::vector<RegionTopology> topology_of(const AdjacentMesh<Dim>& mesh);
-
-/// How the topology of `after` differs from that of `before`, a line for each region and number;
-/// empty if it does not. Thread safety: one caller; runs on the executor.
-template <int Dim>
-std::vector<std::string> topology_faults(const AdjacentMesh<Dim>& before,
-                                         const AdjacentMesh<Dim>& after);
-
-extern template std::vector<RegionTopology> topology_of(const AdjacentMesh<2>&);
-extern template std::vector<RegionTopology> topology_of(const AdjacentMesh<3>&);
-extern template std::vector<std::string> topology_faults(const AdjacentMesh<2>&,
-                                                         const AdjacentMesh<2>&);
-extern template std::vector<std::string> topology_faults(const AdjacentMesh<3>&,
-                                                         const AdjacentMesh<3>&);
+std::vector<std::string> topology_faults(const AdjacentMesh& before, const AdjacentMesh& after);
 
 }  // namespace ductile::meshadapt
