@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/meshadapt/adapt_to_sizes.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "handles.hpp"
 
 namespace ductile::c {

@@ -10,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/mesh_from_arrays.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "handles.hpp"
 
 namespace ductile::c {

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/origins.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "handles.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ductile/meshadapt/mesh_from_arrays.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "ductile/runtime/parallel_for.hpp"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "adapt_part.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "interfaces.hpp"
 

@@ -9,7 +9,7 @@
 #include "cases/curved_mesh.hpp"
 #include "cases/formulas.hpp"
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 

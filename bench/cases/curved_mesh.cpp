@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 
 namespace ductile::bench {
 

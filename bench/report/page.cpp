@@ -1,6 +1,6 @@
 #include "report/page.hpp"
 
-#include "ductile/meshadapt/atomic_file.hpp"
+#include "ductile/meshadapt/files.hpp"
 
 namespace ductile::bench {
 
@@ -26,7 +26,7 @@ void Page::picture(const std::string& file, const std::string& what) {
 
 void Page::write(const std::filesystem::path& path) const {
   meshadapt::AtomicOutputs outputs;
-  outputs.stage(path).write(body_);
+  write_bytes(outputs, path, body_);
   outputs.commit();
 }
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdio>
 
-#include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "report/page.hpp"
 
 namespace ductile::bench {
@@ -56,18 +56,19 @@ std::string Table::html() const {
 
 void Table::write_csv(const std::filesystem::path& path) const {
   meshadapt::AtomicOutputs outputs;
-  meshadapt::OutputFile& file = outputs.stage(path);
-  for (std::size_t c = 0; c < columns_.size(); ++c) file.write((c > 0 ? "," : "") + columns_[c]);
-  file.write("\n");
+  std::string text;
+  for (std::size_t c = 0; c < columns_.size(); ++c) text += (c > 0 ? "," : "") + columns_[c];
+  text += "\n";
   for (const auto& row : rows_) {
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       if (row[c].words.find_first_of(",\n") != std::string::npos)
         throw meshadapt::Error(path.string() + ": expected words without commas, found '" +
                                row[c].words + "'");
-      file.write((c > 0 ? "," : "") + row[c].text(12));
+      text += (c > 0 ? "," : "") + row[c].text(12);
     }
-    file.write("\n");
+    text += "\n";
   }
+  write_bytes(outputs, path, text);
   outputs.commit();
 }
 

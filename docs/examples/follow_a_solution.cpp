@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 
 namespace meshadapt = ductile::meshadapt;

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/adapt_to_sizes.hpp"
+#include "ductile/meshadapt/adapt.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "metric/entities_of.hpp"
 
 namespace ductile::meshadapt {

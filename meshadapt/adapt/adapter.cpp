@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "adapt/metric_path.hpp"
-#include "ductile/meshadapt/complexity.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "metric/demand.hpp"
 #include "operators/edges.hpp"

@@ -12,7 +12,8 @@
 #include <functional>
 #include <vector>
 
-#include "ductile/meshadapt/complexity.hpp"
+#include "core/determinant.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"

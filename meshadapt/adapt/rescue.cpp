@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "ductile/meshadapt/check_mesh.hpp"
+#include "checks/faults.hpp"
 #include "geometry/damage.hpp"
 
 namespace ductile::meshadapt {
@@ -18,33 +18,32 @@ constexpr int most_local_attempts = 6;
 template <int Dim>
 Rescue<Dim>::Rescue(const runtime::Executor& executor, const AnyMesh& input,
                     const MakeMeshOptions& options)
-    : executor_(executor),
-      input_(input),
+    : input_(executor, input),
       options_(options),
-      from_(options.complete_boundary ? BoundaryFrom::elements : BoundaryFrom::listed_facets),
       tolerance_(options.hausdorff_tolerance),
       distance_(options.hausdorff_tolerance) {}
 
 template <int Dim>
 bool Rescue<Dim>::accepts(const AnyMesh& adapted) {
   ++attempts_;
-  const auto faults = check_adapted(executor_, input_, adapted, tolerance_);
+  const AdjacentMesh now(input_.executor(), adapted);
+  const auto faults = adapted_faults(input_, now, tolerance_);
   is_right_ = faults.empty();
   if (is_right_ || options_.lock_boundary) return true;
   if (first_fault_.empty()) first_fault_ = faults.front();
   if (options_.hausdorff_tolerance == 0)
     options_.lock_boundary = true;
-  else if (attempts_ >= most_local_attempts || !keeps_more(adapted))
+  else if (attempts_ >= most_local_attempts || !keeps_more(now))
     options_.hausdorff_tolerance = 0;
   return false;
 }
 
 /// Each time from farther away, as facets of the adapted mesh may have been larger before.
 template <int Dim>
-bool Rescue<Dim>::keeps_more(const AnyMesh& adapted) {
-  if (!check_mesh(executor_, adapted).empty()) return false;
-  const auto places = damaged_places<Dim>(executor_, input_, adapted, from_);
-  const auto near = boundary_vertices_near<Dim>(executor_, input_, from_, places, distance_);
+bool Rescue<Dim>::keeps_more(const AdjacentMesh& adapted) {
+  if (!mesh_faults(adapted).empty()) return false;
+  const auto places = damaged_places<Dim>(input_, adapted);
+  const auto near = boundary_vertices_near(input_, places, distance_);
   distance_ *= 2;
   std::vector<std::uint32_t> all;
   std::set_union(options_.keep_facets_at.begin(), options_.keep_facets_at.end(), near.begin(),
@@ -63,7 +62,8 @@ void Rescue<Dim>::warn(std::vector<std::string>& warnings) const {
            " vertices of curved boundaries";
   else if (!options_.lock_boundary)
     kept = "all facets of curved boundaries";
-  warnings.push_back(input_.name + ": adapted " + std::to_string(attempts_) + " times, because " +
+  warnings.push_back(input_.mesh().name + ": adapted " + std::to_string(attempts_) +
+                     " times, because " +
                      "boundaries that are closer than the surface tolerance met (" + first_fault_ +
                      "); " + kept + " keep their shape");
 }

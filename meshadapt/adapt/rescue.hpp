@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "mesh/boundary_surface.hpp"
+#include "mesh/adjacency.hpp"
 
 namespace ductile::meshadapt {
 
@@ -32,12 +32,10 @@ class Rescue {
   void warn(std::vector<std::string>& warnings) const;
 
  private:
-  bool keeps_more(const AnyMesh& adapted);
+  bool keeps_more(const AdjacentMesh& adapted);
 
-  const runtime::Executor& executor_;
-  const AnyMesh& input_;
+  AdjacentMesh input_;
   MakeMeshOptions options_;
-  BoundaryFrom from_;
   double tolerance_;  // of the surface, as asked for
   double distance_;   // from places at which facets are kept
   int attempts_ = 0;

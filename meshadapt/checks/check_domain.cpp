@@ -11,10 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "checks/faults.hpp"
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "ductile/meshadapt/vector.hpp"
 #include "geometry/roughness.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/boundary_surface.hpp"
@@ -83,26 +84,26 @@ Measures measures(const AnyMesh& mesh) {
 
 /// Of each region, by reference, interfaces to others included.
 template <int Dim>
-std::map<std::int32_t, double> boundary_measures(const Executor& executor, const AnyMesh& mesh) {
-  const auto& reference_of = elements_in<Dim>(mesh).reference;
+std::map<std::int32_t, double> boundary_measures(const AdjacentMesh& mesh) {
+  const auto& reference_of = elements_in<Dim>(mesh.mesh()).reference;
   const std::vector<std::uint32_t> region_of(reference_of.begin(), reference_of.end());
   std::map<std::int32_t, double> sum_of;
   for (const BoundarySide<Dim>& side :
-       sides_of<Dim>(executor, mesh, BoundaryFrom::elements, region_of))
-    sum_of[static_cast<std::int32_t>(side.region)] += facet_measure<Dim>(mesh, side.corners);
+       sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>(), region_of))
+    sum_of[static_cast<std::int32_t>(side.region)] += facet_measure<Dim>(mesh.mesh(), side.corners);
   return sum_of;
 }
 
 /// Of the boundary that is not listed.
 template <int Dim>
-double unlisted_measure(const Executor& executor, const AnyMesh& mesh) {
-  std::vector<Facet<Dim>> listed = facets_in<Dim>(mesh).vertices;
+double unlisted_measure(const AdjacentMesh& mesh) {
+  std::vector<Facet<Dim>> listed = facets_in<Dim>(mesh.mesh()).vertices;
   for (Facet<Dim>& facet : listed) std::sort(facet.begin(), facet.end());
   std::sort(listed.begin(), listed.end());
   double sum = 0;
-  for (const BoundarySide<Dim>& side : sides_of<Dim>(executor, mesh, BoundaryFrom::elements))
+  for (const BoundarySide<Dim>& side : sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>()))
     if (!std::binary_search(listed.begin(), listed.end(), side.corners))
-      sum += facet_measure<Dim>(mesh, side.corners);
+      sum += facet_measure<Dim>(mesh.mesh(), side.corners);
   return sum;
 }
 
@@ -155,15 +156,16 @@ double rough_measure(const AnyMesh& mesh, double roughness) {
 /// How long the non-manifold edges are, where more than two facets of the boundary meet, in 2D how
 /// many such vertices there are; each as often as there is a pair of facets too many.
 template <int Dim>
-double non_manifold_length(const Executor& executor, const AnyMesh& mesh, BoundaryFrom from) {
-  const BoundarySurface<Dim> surface(executor, sides_of<Dim>(executor, mesh, from));
+double non_manifold_length(const AdjacentMesh& mesh) {
+  const BoundarySurface<Dim> surface(mesh.executor(),
+                                     sides_of<Dim>(mesh.executor(), mesh.adjacency<Dim>()));
   double sum = 0;
   surface.each_meeting([&](std::span<const BoundaryJoint> joints) {
     if (joints.size() < 3) return;
     double length = 1;
     if constexpr (Dim == 3)
-      length = norm(position_in<3>(mesh, joints[0].key & 0xffffffffU) -
-                    position_in<3>(mesh, joints[0].key >> 32U));
+      length = norm(position_in<3>(mesh.mesh(), joints[0].key & 0xffffffffU) -
+                    position_in<3>(mesh.mesh(), joints[0].key >> 32U));
     sum += length * (static_cast<double>(joints.size()) / 2 - 1);
   });
   return sum;
@@ -172,14 +174,14 @@ double non_manifold_length(const Executor& executor, const AnyMesh& mesh, Bounda
 template <int Dim>
 class DomainChecker {
  public:
-  DomainChecker(const Executor& executor, const AnyMesh& before, const AnyMesh& after,
-                double hausdorff_tolerance)
-      : executor_(executor),
-        before_(before),
-        after_(after),
+  DomainChecker(const AdjacentMesh& before, const AdjacentMesh& after, double hausdorff_tolerance)
+      : adjacent_before_(before),
+        adjacent_after_(after),
+        before_(before.mesh()),
+        after_(after.mesh()),
         hausdorff_tolerance_(hausdorff_tolerance),
-        old_(measures<Dim>(before)),
-        now_(measures<Dim>(after)) {}
+        old_(measures<Dim>(before_)),
+        now_(measures<Dim>(after_)) {}
 
   /// What differs by more than usual is looked at again if the mesh was written with few digits.
   std::vector<std::string> run() {
@@ -220,7 +222,7 @@ class DomainChecker {
                            old_.regions.begin()->first == now_.regions.begin()->first;
     if (is_domain) return;
     std::map<std::int32_t, double> boundary_of;
-    if (hausdorff_tolerance_ > 0) boundary_of = boundary_measures<Dim>(executor_, before_);
+    if (hausdorff_tolerance_ > 0) boundary_of = boundary_measures<Dim>(adjacent_before_);
     std::map<std::int32_t, double> expected = old_.regions;
     for (const auto& [reference, value] : now_.regions) expected.try_emplace(reference, 0.0);
     for (const auto& [reference, value] : expected) {
@@ -245,7 +247,7 @@ class DomainChecker {
       }
       // What was not listed may be by now, see MakeMeshOptions::complete_boundary.
       if (reference == 0 && std::abs(now_.facets[0] - value) > allowed)
-        value += unlisted_measure<Dim>(executor_, before_);
+        value += unlisted_measure<Dim>(adjacent_before_);
       compare(what + " measure ", now_.facets[reference], value, allowed, faults);
     }
     return faults;
@@ -254,9 +256,9 @@ class DomainChecker {
   /// Curves along which the boundary met itself before may be shorter now, or end elsewhere by
   /// rounding; those that bend may be longer.
   void compare_non_manifold(std::vector<std::string>& faults) const {
-    const double now = non_manifold_length<Dim>(executor_, after_, BoundaryFrom::listed_facets);
+    const double now = non_manifold_length<Dim>(adjacent_after_);
     if (now == 0) return;
-    const double expected = non_manifold_length<Dim>(executor_, before_, BoundaryFrom::elements);
+    const double expected = non_manifold_length<Dim>(adjacent_before_);
     if (now <= expected * (hausdorff_tolerance_ == 0 ? 1 + 1e-6 : 1.5)) return;
     std::ostringstream text;
     text << "the boundary meets itself " << (Dim == 2 ? "at vertices, " : "along edges, ") << now
@@ -264,7 +266,8 @@ class DomainChecker {
     faults.push_back(text.str());
   }
 
-  const Executor& executor_;
+  const AdjacentMesh& adjacent_before_;
+  const AdjacentMesh& adjacent_after_;
   const AnyMesh& before_;
   const AnyMesh& after_;
   double hausdorff_tolerance_;
@@ -273,8 +276,7 @@ class DomainChecker {
 
 }  // namespace
 
-std::vector<std::string> check_domain(const Executor& executor, const AnyMesh& before,
-                                      const AnyMesh& after, double hausdorff_tolerance) {
+void expect_comparable(const AnyMesh& before, const AnyMesh& after) {
   for (const AnyMesh* mesh : {&before, &after}) {
     expect_coordinates(*mesh);
     expect_references(*mesh);
@@ -283,9 +285,19 @@ std::vector<std::string> check_domain(const Executor& executor, const AnyMesh& b
   if (after.dimension != before.dimension)
     throw InputError(after.name + ": expected dimension " + std::to_string(before.dimension) +
                      ", that of " + before.name + ", found " + std::to_string(after.dimension));
-  if (before.dimension == 2)
-    return DomainChecker<2>(executor, before, after, hausdorff_tolerance).run();
-  return DomainChecker<3>(executor, before, after, hausdorff_tolerance).run();
+}
+
+std::vector<std::string> domain_faults(const AdjacentMesh& before, const AdjacentMesh& after,
+                                       double hausdorff_tolerance) {
+  expect_comparable(before.mesh(), after.mesh());
+  if (after.mesh().dimension == 2)
+    return DomainChecker<2>(before, after, hausdorff_tolerance).run();
+  return DomainChecker<3>(before, after, hausdorff_tolerance).run();
+}
+
+std::vector<std::string> check_domain(const Executor& executor, const AnyMesh& before,
+                                      const AnyMesh& after, double hausdorff_tolerance) {
+  return domain_faults({executor, before}, {executor, after}, hausdorff_tolerance);
 }
 
 }  // namespace ductile::meshadapt

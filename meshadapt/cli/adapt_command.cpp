@@ -10,17 +10,17 @@
 
 #include "adapt_report.hpp"
 #include "carried_fields.hpp"
+#include "checks/faults.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/adapt_to_sizes.hpp"
-#include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/geometry.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
+#include "io/atomic_file.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "run_in_team.hpp"
@@ -306,15 +306,16 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
     line.show(progress);
     return true;
   };
-  AdaptedMesh adapted = !job.places.any() ? meshadapt::adapt(executor, mesh, metric, adapt)
-                                          : meshadapt::adapt_to_sizes(executor, mesh, sizes, adapt);
-  if (adapted.report.checked) return adapted;
-  const auto faults =
-      meshadapt::check_adapted(executor, mesh, adapted.mesh, job.adapt.make.hausdorff_tolerance);
+  return !job.places.any() ? meshadapt::adapt(executor, mesh, metric, adapt)
+                           : meshadapt::adapt_to_sizes(executor, mesh, sizes, adapt);
+}
+
+void expect_right(const meshadapt::AdjacentMesh& before, const meshadapt::AdjacentMesh& after,
+                  double hausdorff_tolerance) {
+  const auto faults = meshadapt::adapted_faults(before, after, hausdorff_tolerance);
   if (!faults.empty())
     throw meshadapt::Error("the adapted mesh is not valid (" + faults.front() +
                            "); nothing was written; please report this with its input");
-  return adapted;
 }
 
 /// Says what was warned of, and what does not go into the files, before they have their names: no
@@ -336,7 +337,7 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
   job.fields.write(outputs, carried);
   if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, adapted.mesh, with_fields);
-  if (job.json) outputs.stage(*job.json).write(json);
+  if (job.json) write_bytes(outputs, *job.json, json);
   print_warnings(warnings, job.verbosity);
   outputs.commit();
 }
@@ -387,10 +388,12 @@ int work(const Executor& executor, Job job) {
   job.adapt.make.geometry = read_geometry(executor, job, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric, sizes);
+  const meshadapt::AdjacentMesh before(executor, mesh), after(executor, adapted.mesh);
+  if (!adapted.report.checked) expect_right(before, after, job.adapt.make.hausdorff_tolerance);
   adapted.mesh.name = job.output.string();
   const auto carried = job.fields.carry(executor, mesh, fields, adapted.mesh);
   const AdaptSummary summary = summarise(
-      executor, mesh, metric, adapted,
+      before, metric, adapted, after,
       {.before = job.json || job.verbosity > 1,
        .after = job.json || job.verbosity > 0,
        .expects_lengths = job.adapt.insert,

@@ -9,6 +9,7 @@
 
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
+#include "metric/measure.hpp"
 #include "report.hpp"
 
 namespace ductile::cli {
@@ -160,19 +161,19 @@ std::vector<std::string> advice(const meshadapt::MeshStatistics& statistics,
 
 }  // namespace
 
-AdaptSummary summarise(const runtime::Executor& executor, const AnyMesh& before,
-                       const meshadapt::AnyField& metric, const meshadapt::AdaptedMesh& after,
+AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::AnyField& metric,
+                       const meshadapt::AdaptedMesh& adapted, const meshadapt::AdjacentMesh& after,
                        const SummaryOptions& options) {
-  AdaptSummary summary{.before = summarise_mesh(before),
-                       .after = summarise_mesh(after.mesh),
-                       .report = after.report,
-                       .threads = executor.threads(),
-                       .deterministic = executor.deterministic()};
+  AdaptSummary summary{.before = summarise_mesh(before.mesh()),
+                       .after = summarise_mesh(after.mesh()),
+                       .report = adapted.report,
+                       .threads = after.executor().threads(),
+                       .deterministic = after.executor().deterministic()};
   summary.peak_memory = runtime::peak_memory();
-  if (options.before) summary.before.statistics = measure(executor, before, &metric);
-  if (options.after) summary.after.statistics = measure(executor, after.mesh, &after.metric);
+  if (options.before) summary.before.statistics = measure(before, &metric);
+  if (options.after) summary.after.statistics = measure(after, &adapted.metric);
   if (options.expects_lengths && summary.after.statistics)
-    for (std::string& said : advice(*summary.after.statistics, after, options))
+    for (std::string& said : advice(*summary.after.statistics, adapted, options))
       summary.report.warnings.push_back(std::move(said));
   return summary;
 }

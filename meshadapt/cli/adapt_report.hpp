@@ -7,7 +7,7 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/statistics.hpp"
-#include "ductile/runtime/executor.hpp"
+#include "mesh/adjacency.hpp"
 
 namespace ductile::cli {
 
@@ -33,8 +33,9 @@ struct SummaryOptions {
   double hausdorff_tolerance = 0;    ///< ... or are, as they stay within this; 0: they do not move
 };
 
-AdaptSummary summarise(const runtime::Executor& executor, const meshadapt::AnyMesh& before,
-                       const meshadapt::AnyField& metric, const meshadapt::AdaptedMesh& after,
+/// `after` is the mesh of `adapted`.
+AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::AnyField& metric,
+                       const meshadapt::AdaptedMesh& adapted, const meshadapt::AdjacentMesh& after,
                        const SummaryOptions& options);
 
 std::string to_text(const AdaptSummary& summary, bool with_histograms);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "files.hpp"
 

@@ -10,7 +10,6 @@
 
 #include "arguments.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/runtime/executor.hpp"

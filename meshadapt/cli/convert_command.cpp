@@ -6,8 +6,8 @@
 
 #include "command.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
 

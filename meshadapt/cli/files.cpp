@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "arguments.hpp"
-#include "ductile/meshadapt/atomic_file.hpp"
-#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
 namespace ductile::cli {

@@ -6,10 +6,11 @@
 
 #include "command.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "files.hpp"
+#include "io/atomic_file.hpp"
 #include "report.hpp"
 #include "run_in_team.hpp"
 
@@ -112,15 +113,15 @@ std::string names_json(const AnyMesh& mesh) {
 void write_json(const std::string& path, const AnyMesh& mesh, const Validity& validity,
                 const std::string& statistics) {
   meshadapt::AtomicOutputs outputs;
-  outputs.stage(path).write("{\"mesh\": " + json_string(mesh.name) +
-                            ", \"dimension\": " + std::to_string(mesh.dimension) +
-                            ", \"valid\": " + (validity.reason.empty() ? "true" : "false") +
-                            ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
-                            ", \"edges\": " + std::to_string(mesh.edges.size()) +
-                            ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
-                            ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
-                            ", \"names\": " + names_json(mesh) + ", \"statistics\": " + statistics +
-                            "}\n");
+  write_bytes(outputs, path,
+              "{\"mesh\": " + json_string(mesh.name) +
+                  ", \"dimension\": " + std::to_string(mesh.dimension) +
+                  ", \"valid\": " + (validity.reason.empty() ? "true" : "false") +
+                  ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
+                  ", \"edges\": " + std::to_string(mesh.edges.size()) +
+                  ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
+                  ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
+                  ", \"names\": " + names_json(mesh) + ", \"statistics\": " + statistics + "}\n");
   outputs.commit();
 }
 

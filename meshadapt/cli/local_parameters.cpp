@@ -5,7 +5,7 @@
 #include <system_error>
 #include <vector>
 
-#include "ductile/meshadapt/local_sizes.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 
 namespace ductile::cli {
 

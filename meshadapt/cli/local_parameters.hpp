@@ -10,7 +10,7 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/local_sizes.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::cli {

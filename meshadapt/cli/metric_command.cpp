@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "command.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "files.hpp"

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::cli {

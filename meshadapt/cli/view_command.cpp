@@ -9,6 +9,7 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
+#include "io/atomic_file.hpp"
 #include "picture/draw.hpp"
 #include "run_in_team.hpp"
 #include "shown_field.hpp"
@@ -120,7 +121,7 @@ int work(const runtime::Executor& executor, const Job& job) {
       make_scene(executor, file.mesh, metric ? &*metric : nullptr, options_of_scene);
   const std::string bytes = draw(scene, job.format, job.size);
   meshadapt::AtomicOutputs outputs;
-  outputs.stage(job.picture).write(bytes);
+  write_bytes(outputs, job.picture, bytes);
   outputs.commit();
   print_warnings(warnings);
   return done;

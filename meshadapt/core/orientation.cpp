@@ -1,4 +1,5 @@
 #include "core/orientation.hpp"
+#include "core/determinant.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {

@@ -10,6 +10,7 @@
 #include <concepts>
 #include <numbers>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 

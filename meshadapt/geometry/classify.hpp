@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "ductile/meshadapt/make_mesh_options.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {

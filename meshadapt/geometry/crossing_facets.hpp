@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/determinant.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "ductile/meshadapt/metric.hpp"
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
 

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
 

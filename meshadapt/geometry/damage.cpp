@@ -7,6 +7,7 @@
 
 #include "ductile/runtime/worklist.hpp"
 #include "geometry/crossing_facets.hpp"
+#include "mesh/boundary_surface.hpp"
 
 namespace ductile::meshadapt {
 
@@ -138,28 +139,29 @@ void find_lost_parts(std::vector<BoundaryPart<Dim>> before,
 }  // namespace
 
 template <int Dim>
-std::vector<Box<Dim>> damaged_places(const Executor& executor, const AnyMesh& before,
-                                     const AnyMesh& after, BoundaryFrom from) {
+std::vector<Box<Dim>> damaged_places(const AdjacentMesh& before, const AdjacentMesh& after) {
+  const Executor& executor = after.executor();
   std::vector<Box<Dim>> places;
-  find_crossings<Dim>(executor, before, after, places);
-  BoundarySurface<Dim> old(executor, sides_of<Dim>(executor, before, from));
-  BoundarySurface<Dim> now(executor, sides_of<Dim>(executor, after, BoundaryFrom::listed_facets));
-  find_non_manifold<Dim>(after, now, places);
-  find_inner_facets<Dim>(before, after, now, places);
-  if (places.empty()) find_lost_parts(parts_of(before, old), parts_of(after, now), places);
+  find_crossings<Dim>(executor, before.mesh(), after.mesh(), places);
+  BoundarySurface<Dim> old(executor, sides_of<Dim>(executor, before.adjacency<Dim>()));
+  BoundarySurface<Dim> now(executor, sides_of<Dim>(executor, after.adjacency<Dim>()));
+  find_non_manifold<Dim>(after.mesh(), now, places);
+  find_inner_facets<Dim>(before.mesh(), after.mesh(), now, places);
+  if (places.empty())
+    find_lost_parts(parts_of(before.mesh(), old), parts_of(after.mesh(), now), places);
   return places;
 }
 
 template <int Dim>
-std::vector<std::uint32_t> boundary_vertices_near(const Executor& executor, const AnyMesh& mesh,
-                                                  BoundaryFrom from,
+std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh& mesh,
                                                   const std::vector<Box<Dim>>& places,
                                                   double distance) {
+  const Executor& executor = mesh.executor();
   const BoxIndex<Dim> index(places.size(), [&](std::size_t i) { return places[i]; });
-  const auto sides = sides_of<Dim>(executor, mesh, from);
+  const auto sides = sides_of<Dim>(executor, mesh.adjacency<Dim>());
   auto near = runtime::parallel_collect<std::uint32_t>(
       executor, sides.size(), [&](std::size_t s, auto&& append) {
-        Box<Dim> box = box_of<Dim>(mesh, sides[s].corners);
+        Box<Dim> box = box_of<Dim>(mesh.mesh(), sides[s].corners);
         for (int i = 0; i < Dim; ++i) {
           box.low[i] -= distance;
           box.high[i] += distance;
@@ -174,15 +176,11 @@ std::vector<std::uint32_t> boundary_vertices_near(const Executor& executor, cons
   return {near.begin(), near.end()};
 }
 
-template std::vector<Box<2>> damaged_places(const Executor&, const AnyMesh&, const AnyMesh&,
-                                            BoundaryFrom);
-template std::vector<Box<3>> damaged_places(const Executor&, const AnyMesh&, const AnyMesh&,
-                                            BoundaryFrom);
-template std::vector<std::uint32_t> boundary_vertices_near(const Executor&, const AnyMesh&,
-                                                           BoundaryFrom, const std::vector<Box<2>>&,
-                                                           double);
-template std::vector<std::uint32_t> boundary_vertices_near(const Executor&, const AnyMesh&,
-                                                           BoundaryFrom, const std::vector<Box<3>>&,
-                                                           double);
+template std::vector<Box<2>> damaged_places<2>(const AdjacentMesh&, const AdjacentMesh&);
+template std::vector<Box<3>> damaged_places<3>(const AdjacentMesh&, const AdjacentMesh&);
+template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
+                                                           const std::vector<Box<2>>&, double);
+template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
+                                                           const std::vector<Box<3>>&, double);
 
 }  // namespace ductile::meshadapt

@@ -5,39 +5,30 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/runtime/executor.hpp"
-#include "mesh/boundary_surface.hpp"
+#include "mesh/adjacency.hpp"
 #include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
 
 /// Boxes around the places of the damage, and some others; none if it cannot be told where it is.
-/// `from` is of `before`; the boundary of `after` is listed. Precondition: check_mesh() finds no
-/// index of `after` out of range. A logarithm more than linear in the meshes.
-/// Thread safety: one caller; runs on the executor.
+/// Precondition: check_mesh() finds no index of `after` out of range. A logarithm more than linear
+/// in the meshes. Thread safety: one caller; runs on the executor.
 template <int Dim>
-std::vector<Box<Dim>> damaged_places(const runtime::Executor& executor, const AnyMesh& before,
-                                     const AnyMesh& after, BoundaryFrom from);
+std::vector<Box<Dim>> damaged_places(const AdjacentMesh& before, const AdjacentMesh& after);
 
 /// The vertices of boundary facets that are no farther than this, along each axis, from one of the
 /// places; sorted. Thread safety: one caller; runs on the executor.
 template <int Dim>
-std::vector<std::uint32_t> boundary_vertices_near(const runtime::Executor& executor,
-                                                  const AnyMesh& mesh, BoundaryFrom from,
+std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh& mesh,
                                                   const std::vector<Box<Dim>>& places,
                                                   double distance);
 
-extern template std::vector<Box<2>> damaged_places(const runtime::Executor&, const AnyMesh&,
-                                                   const AnyMesh&, BoundaryFrom);
-extern template std::vector<Box<3>> damaged_places(const runtime::Executor&, const AnyMesh&,
-                                                   const AnyMesh&, BoundaryFrom);
-extern template std::vector<std::uint32_t> boundary_vertices_near(const runtime::Executor&,
-                                                                  const AnyMesh&, BoundaryFrom,
+extern template std::vector<Box<2>> damaged_places<2>(const AdjacentMesh&, const AdjacentMesh&);
+extern template std::vector<Box<3>> damaged_places<3>(const AdjacentMesh&, const AdjacentMesh&);
+extern template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
                                                                   const std::vector<Box<2>>&,
                                                                   double);
-extern template std::vector<std::uint32_t> boundary_vertices_near(const runtime::Executor&,
-                                                                  const AnyMesh&, BoundaryFrom,
+extern template std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh&,
                                                                   const std::vector<Box<3>>&,
                                                                   double);
 

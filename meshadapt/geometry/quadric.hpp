@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
 

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "geometry/divided.hpp"
 #include "mesh/box.hpp"
 

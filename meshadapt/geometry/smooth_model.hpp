@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/curved_simplex.hpp"
 

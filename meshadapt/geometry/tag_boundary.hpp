@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/make_mesh_options.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/classify.hpp"
 #include "mesh/mesh.hpp"

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/atomic_file.hpp"
+#include "io/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -301,6 +301,10 @@ void check_writable(const std::vector<fs::path>& paths) {
     places.push_back(place_of(path));
     if (std::count(places.begin(), places.end(), places.back()) > 1) complain_of_two_outputs(path);
   }
+}
+
+void write_bytes(AtomicOutputs& outputs, const fs::path& path, std::string_view bytes) {
+  outputs.stage(path).write(bytes);
 }
 
 }  // namespace ductile::meshadapt

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "ductile/runtime/arrays.hpp"
 
 namespace ductile::meshadapt {

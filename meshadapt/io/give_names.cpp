@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
-#include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/files.hpp"
 
 namespace ductile::meshadapt {
 namespace {

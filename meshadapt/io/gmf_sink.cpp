@@ -1,4 +1,5 @@
 #include "gmf_sink.hpp"
+#include "io/atomic_file.hpp"
 
 #include <string>
 

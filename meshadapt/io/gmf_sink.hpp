@@ -14,8 +14,9 @@
 #include <string>
 #include <type_traits>
 
-#include "ductile/meshadapt/atomic_file.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "gmf_place.hpp"
+#include "io/atomic_file.hpp"
 
 namespace ductile::meshadapt::gmf {
 

@@ -8,6 +8,7 @@
 #include "core/first_bad.hpp"
 #include "gmf_mesh.hpp"
 #include "gmf_sink.hpp"
+#include "io/atomic_file.hpp"
 #include "mesh/wording.hpp"
 #include "spatial_mesh.hpp"
 

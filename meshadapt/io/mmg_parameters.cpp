@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "ductile/meshadapt/local_sizes.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "file_bytes.hpp"
 #include "gmf_ascii.hpp"
 

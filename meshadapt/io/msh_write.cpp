@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/atomic_file.hpp"
 #include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
+#include "io/atomic_file.hpp"
 #include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/atomic_file.hpp"
 #include "spatial_mesh.hpp"
 #include "vtk_cells.hpp"
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "ductile/meshadapt/error.hpp"
+#include "io/atomic_file.hpp"
 #include "spatial_mesh.hpp"
 #include "vtk_array.hpp"
 #include "vtk_cells.hpp"

@@ -4,97 +4,28 @@
 #include <utility>
 
 #include "ductile/runtime/arrays.hpp"
-#include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
 
 namespace ductile::meshadapt {
 
-using Marks = runtime::UnsetVector<std::uint8_t>;  // [vertex]
-
-namespace {
-
-/// Marks the vertices of elements of more than one region.
-template <int Dim>
-void mark_between_regions(const runtime::Executor& executor, const AnyMesh& mesh,
-                          std::span<const std::uint32_t> region_of, Marks& marked) {
-  const auto& elements = elements_in<Dim>(mesh).vertices;
-  auto lowest = runtime::make_filled<std::uint32_t>(executor, mesh.vertex_count(), none);
-  runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
-    for (const VertexId v : elements[e]) runtime::atomic_min(lowest[v], region_of[e]);
-  });
-  runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
-    for (const VertexId v : elements[e])
-      if (lowest[v] != region_of[e]) runtime::atomic_mark(marked[v]);
-  });
-}
-
-/// Marks the vertices that a side may have.
-template <int Dim>
-Marks marked_vertices(const runtime::Executor& executor, const AnyMesh& mesh, BoundaryFrom from,
-                      std::span<const std::uint32_t> region_of) {
-  auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_count(),
-                                                   from == BoundaryFrom::elements ? 1 : 0);
-  if (from == BoundaryFrom::elements) return marked;
-  const auto& facets = facets_in<Dim>(mesh).vertices;
-  runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
-    for (const VertexId v : facets[f]) runtime::atomic_mark(marked[v]);
-  });
-  if (!region_of.empty()) mark_between_regions<Dim>(executor, mesh, region_of, marked);
-  return marked;
-}
-
-}  // namespace
-
 template <int Dim>
 runtime::UnsetVector<BoundarySide<Dim>> sides_of(const runtime::Executor& executor,
-                                                 const AnyMesh& mesh, BoundaryFrom from,
+                                                 const Adjacency<Dim>& adjacency,
                                                  std::span<const std::uint32_t> region_of) {
-  return sides_among<Dim>(executor, mesh, marked_vertices<Dim>(executor, mesh, from, region_of),
-                          region_of);
-}
-
-/// Facets between two elements of one region cancel each other in a sum of hashes at their lowest
-/// corner, so that hardly any others are left to sort.
-template <int Dim>
-runtime::UnsetVector<BoundarySide<Dim>> sides_among(const runtime::Executor& executor,
-                                                    const AnyMesh& mesh, const Marks& marked,
-                                                    std::span<const std::uint32_t> region_of) {
-  using Side = BoundarySide<Dim>;
-  const auto& elements = elements_in<Dim>(mesh).vertices;
-  const auto each_side = [&](std::size_t e, auto&& visit) {
-    const Corners<Dim>& corners = elements[e];
-    int count = 0;
-    for (const VertexId v : corners) count += marked[v];
-    if (count < Dim) return;
-    for (int i = 0; i <= Dim; ++i) {
-      if (count - marked[corners[static_cast<std::size_t>(i)]] < Dim) continue;
-      Side side{facet_of<Dim>(corners, i), region_of.empty() ? 0 : region_of[e]};
-      std::sort(side.corners.begin(), side.corners.end());
-      visit(side);
-    }
-  };
-  auto hashes_at = runtime::make_filled<std::uint64_t>(executor, mesh.vertex_count(), 0);  // lowest
-  runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
-    each_side(e, [&](const Side& side) {
-      std::uint64_t hash = side.region;
-      for (const VertexId v : side.corners) hash = runtime::mix64(hash ^ v);
-      runtime::atomic_flip(hashes_at[side.corners[0]], hash);
-    });
-  });
-  auto all =
-      runtime::parallel_collect<Side>(executor, elements.size(), [&](std::size_t e, auto&& append) {
-        each_side(e, [&](const Side& side) {
-          if (hashes_at[side.corners[0]] != 0) append(side);
-        });
+  auto sides = runtime::parallel_collect<BoundarySide<Dim>>(
+      executor, adjacency.corners_of.size(), [&](std::size_t e, auto&& append) {
+        const auto element = static_cast<ElementId>(e);
+        for (int i = 0; i <= Dim; ++i) {
+          if (!adjacency.on_region_boundary(element, i, region_of)) continue;
+          Facet<Dim> corners = facet_of<Dim>(adjacency.corners_of[e], i);
+          std::sort(corners.begin(), corners.end());
+          append({corners, region_of.empty() ? 0 : region_of[e]});
+        }
       });
-  runtime::parallel_sort(executor, std::span(all));
-  return runtime::parallel_collect<Side>(executor, all.size(), [&](std::size_t i, auto&& append) {
-    if ((i == 0 || all[i - 1] != all[i]) && (i + 1 == all.size() || all[i + 1] != all[i]))
-      append(all[i]);
-  });
+  runtime::parallel_sort(executor, std::span(sides));
+  return sides;
 }
 
 template <int Dim>
@@ -173,18 +104,12 @@ std::size_t BoundarySurface<Dim>::index_of(const BoundarySide<Dim>& side,
                                   vertices_.begin());
 }
 
-template runtime::UnsetVector<BoundarySide<2>> sides_of(const runtime::Executor&, const AnyMesh&,
-                                                        BoundaryFrom,
+template runtime::UnsetVector<BoundarySide<2>> sides_of(const runtime::Executor&,
+                                                        const Adjacency<2>&,
                                                         std::span<const std::uint32_t>);
-template runtime::UnsetVector<BoundarySide<3>> sides_of(const runtime::Executor&, const AnyMesh&,
-                                                        BoundaryFrom,
+template runtime::UnsetVector<BoundarySide<3>> sides_of(const runtime::Executor&,
+                                                        const Adjacency<3>&,
                                                         std::span<const std::uint32_t>);
-template runtime::UnsetVector<BoundarySide<2>> sides_among(const runtime::Executor&, const AnyMesh&,
-                                                           const Marks&,
-                                                           std::span<const std::uint32_t>);
-template runtime::UnsetVector<BoundarySide<3>> sides_among(const runtime::Executor&, const AnyMesh&,
-                                                           const Marks&,
-                                                           std::span<const std::uint32_t>);
 template class BoundarySurface<2>;
 template class BoundarySurface<3>;
 

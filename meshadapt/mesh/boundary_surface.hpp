@@ -11,11 +11,11 @@
 #include <cstdint>
 #include <span>
 
-#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/disjoint_sets.hpp"
 #include "ductile/runtime/executor.hpp"
+#include "mesh/adjacency.hpp"
 
 namespace ductile::meshadapt {
 
@@ -39,26 +39,12 @@ struct BoundaryJoint {
   }
 };
 
-/// Which facets may be on the boundary of a mesh.
-enum class BoundaryFrom : std::uint8_t {
-  listed_facets,  ///< all boundary facets are listed, or else have corners that others have
-  elements        ///< any
-};
-
 /// The sides of all regions, sorted. `region_of` numbers them by element; empty: all are of one.
 /// Nearly linear in the mesh. Thread safety: one caller; runs on the executor.
 template <int Dim>
 runtime::UnsetVector<BoundarySide<Dim>> sides_of(const runtime::Executor& executor,
-                                                 const AnyMesh& mesh, BoundaryFrom from,
+                                                 const Adjacency<Dim>& adjacency,
                                                  std::span<const std::uint32_t> region_of = {});
-
-/// As above, of those sides whose corners are all marked: 1 in `marked`, [vertex], where others are
-/// 0.
-template <int Dim>
-runtime::UnsetVector<BoundarySide<Dim>> sides_among(
-    const runtime::Executor& executor, const AnyMesh& mesh,
-    const runtime::UnsetVector<std::uint8_t>& marked,
-    std::span<const std::uint32_t> region_of = {});
 
 template <int Dim>
 class BoundarySurface {

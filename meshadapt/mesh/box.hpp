@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
 

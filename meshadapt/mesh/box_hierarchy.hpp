@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"

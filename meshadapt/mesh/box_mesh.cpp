@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>

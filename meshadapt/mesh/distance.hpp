@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
 

@@ -1,18 +1,19 @@
 #include "ductile/meshadapt/fixed_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "core/determinant.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/adjacency.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/flatten.hpp"
 #include "mesh/indices.hpp"
-#include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"
 
 namespace ductile::meshadapt {
@@ -31,8 +32,7 @@ class FixedMeshMaker {
     check();
     place_vertices();
     measure_elements();
-    list_elements();
-    find_neighbours();
+    connect();
     describe_vertices();
     return std::move(mesh_);
   }
@@ -80,35 +80,16 @@ class FixedMeshMaker {
            " has no volume; remove or repair it");
   }
 
-  void list_elements() {
-    auto& first = mesh_.first_around;
-    std::vector<std::uint32_t> count(mesh_.vertex_count() + 1);
-    const auto each_corner = [&](auto&& visit) {
-      parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
-        for (const VertexId v : mesh_.corners_of[e]) visit(v, static_cast<ElementId>(e));
-      });
-    };
-    each_corner([&](VertexId v, ElementId) { runtime::atomic_count(count[v]); });
-    runtime::exclusive_scan<std::uint32_t>(executor_, count);
-    first = count;
-    mesh_.around.resize(std::size_t{first.back()} + 1);
-    each_corner([&](VertexId v, ElementId element) {
-      mesh_.around[runtime::atomic_count(count[v])] = element;
-    });
-    parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
-      std::sort(&mesh_.around[first[v]], &mesh_.around[first[v + 1]]);
-    });
-  }
-
   /// What a crowded facet has on its other side cannot be told, so it counts as a boundary.
-  void find_neighbours() {
-    mesh_.neighbour_of.resize(mesh_.element_count());
-    meshadapt::find_neighbours<Dim>(
-        executor_, mesh_.corners_of, mesh_.vertex_count(),
-        [this](VertexId v) { return mesh_.elements_of(v); }, mesh_.neighbour_of);
+  void connect() {
+    const std::span<const Corners<Dim>> corners_of = mesh_.corners_of;
+    Adjacency<Dim> adjacency = make_adjacency<Dim>(
+        executor_, corners_of, list_elements<Dim>(executor_, corners_of, mesh_.vertex_count()));
+    mesh_.first_around = std::move(adjacency.first_around);
+    mesh_.around = std::move(adjacency.around);
+    mesh_.neighbour_of = std::move(adjacency.neighbour_of);
     parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
-      for (ElementId& other : mesh_.neighbour_of[e])
-        if (other == crowded) other = none;
+      std::ranges::replace(mesh_.neighbour_of[e], crowded, none);
     });
   }
 

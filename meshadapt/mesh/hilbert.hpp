@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "mesh/box.hpp"
 

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/mesh_from_arrays.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 
 #include <algorithm>
 #include <array>

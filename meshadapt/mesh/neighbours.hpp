@@ -76,13 +76,22 @@ class NeighbourFinder {
     if (is_free(met)) {
       met = {key.others, lowest, element, static_cast<std::uint8_t>(facet), key.odd};
     } else if (met.twice || met.odd == key.odd) {
-      met.twice = true;
-      neighbour_at(met.element, met.facet) = neighbour_at(element, facet) = crowded;
+      crowd(met);
+      neighbour_at(element, facet) = crowded;
     } else {
       met.twice = true;
       neighbour_at(met.element, met.facet) = element;
       neighbour_at(element, facet) = met.element;
     }
+  }
+
+  /// What has been met has another element on the same side, or a third.
+  void crowd(Met& met) {
+    ElementId& other = neighbour_at(met.element, met.facet);
+    if (met.twice && other != crowded)
+      std::ranges::replace(neighbour_of_[other], met.element, crowded);
+    met.twice = true;
+    other = crowded;
   }
 
   ElementId& neighbour_at(ElementId element, int facet) {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
 

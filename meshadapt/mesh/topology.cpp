@@ -11,6 +11,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "mesh/boundary_surface.hpp"
 
 namespace ductile::meshadapt {
 
@@ -111,10 +112,11 @@ void count_boundary(BoundarySurface<Dim> surface, std::vector<RegionTopology>& r
 }
 
 template <int Dim>
-void count(const Executor& executor, const AnyMesh& mesh, BoundaryFrom from, Regions region_of,
-           std::vector<RegionTopology>& regions) {
-  Parts<Dim>(executor, mesh, region_of).count(regions);
-  count_boundary<Dim>({executor, sides_of<Dim>(executor, mesh, from, region_of)}, regions);
+void count(const AdjacentMesh& mesh, Regions region_of, std::vector<RegionTopology>& regions) {
+  const Executor& executor = mesh.executor();
+  Parts<Dim>(executor, mesh.mesh(), region_of).count(regions);
+  count_boundary<Dim>({executor, sides_of<Dim>(executor, mesh.adjacency<Dim>(), region_of)},
+                      regions);
 }
 
 /// Which number differs, for a message.
@@ -152,14 +154,13 @@ std::vector<std::string> differences(const std::vector<RegionTopology>& expected
   return faults;
 }
 
-}  // namespace
-
+/// Of all elements and, if there are several references, of the elements of each, by reference.
 template <int Dim>
-std::vector<RegionTopology> topology_of(const Executor& executor, const AnyMesh& mesh,
-                                        BoundaryFrom from) {
+std::vector<RegionTopology> topology_of(const AdjacentMesh& mesh) {
+  const Executor& executor = mesh.executor();
   std::vector<RegionTopology> all(1);
-  count<Dim>(executor, mesh, from, {}, all);
-  const auto& reference_of = elements_in<Dim>(mesh).reference;
+  count<Dim>(mesh, {}, all);
+  const auto& reference_of = elements_in<Dim>(mesh.mesh()).reference;
   const std::vector<std::int32_t> references = references_of(reference_of);
   if (references.size() < 2) return all;
   auto region_of = runtime::make_unset_vector<std::uint32_t>(executor, reference_of.size());
@@ -170,27 +171,16 @@ std::vector<RegionTopology> topology_of(const Executor& executor, const AnyMesh&
   });
   std::vector<RegionTopology> regions(references.size());
   for (std::size_t r = 0; r < regions.size(); ++r) regions[r].reference = references[r];
-  count<Dim>(executor, mesh, from, region_of, regions);
+  count<Dim>(mesh, region_of, regions);
   all.insert(all.end(), regions.begin(), regions.end());
   return all;
 }
 
-/// The boundary of `before` need not be listed; if it is, it takes less time to find.
-template <int Dim>
-std::vector<std::string> topology_faults(const Executor& executor, const AnyMesh& before,
-                                         const AnyMesh& after) {
-  const auto now = topology_of<Dim>(executor, after, BoundaryFrom::listed_facets);
-  auto faults = differences(topology_of<Dim>(executor, before, BoundaryFrom::listed_facets), now);
-  if (!faults.empty())
-    faults = differences(topology_of<Dim>(executor, before, BoundaryFrom::elements), now);
-  return faults;
-}
+}  // namespace
 
-template std::vector<RegionTopology> topology_of<2>(const Executor&, const AnyMesh&, BoundaryFrom);
-template std::vector<RegionTopology> topology_of<3>(const Executor&, const AnyMesh&, BoundaryFrom);
-template std::vector<std::string> topology_faults<2>(const Executor&, const AnyMesh&,
-                                                     const AnyMesh&);
-template std::vector<std::string> topology_faults<3>(const Executor&, const AnyMesh&,
-                                                     const AnyMesh&);
+std::vector<std::string> topology_faults(const AdjacentMesh& before, const AdjacentMesh& after) {
+  return after.mesh().dimension == 2 ? differences(topology_of<2>(before), topology_of<2>(after))
+                                     : differences(topology_of<3>(before), topology_of<3>(after));
+}
 
 }  // namespace ductile::meshadapt

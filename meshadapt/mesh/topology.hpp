@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/runtime/executor.hpp"
-#include "mesh/boundary_surface.hpp"
+#include "mesh/adjacency.hpp"
 
 namespace ductile::meshadapt {
 
@@ -28,27 +26,10 @@ struct RegionTopology {
   friend bool operator==(const RegionTopology&, const RegionTopology&) = default;
 };
 
-/// Of all elements and, if there are several references, of the elements of each, by reference.
-/// Nearly linear in the mesh. Precondition: indices are in range.
+/// How the topology of `after` differs from that of `before`, which has the same dimension: of all
+/// elements and of the elements of each reference, a line for each region and number; empty if it
+/// does not. Nearly linear in the meshes. Precondition: indices are in range.
 /// Thread safety: one caller; runs on the executor.
-template <int Dim>
-std::vector<RegionTopology> topology_of(const runtime::Executor& executor, const AnyMesh& mesh,
-                                        BoundaryFrom from);
-
-/// How the topology of `after`, whose boundary is listed, differs from that of `before`, a line
-/// for each region and number; empty if it does not.
-/// Thread safety: one caller; runs on the executor.
-template <int Dim>
-std::vector<std::string> topology_faults(const runtime::Executor& executor, const AnyMesh& before,
-                                         const AnyMesh& after);
-
-extern template std::vector<RegionTopology> topology_of<2>(const runtime::Executor&, const AnyMesh&,
-                                                           BoundaryFrom);
-extern template std::vector<RegionTopology> topology_of<3>(const runtime::Executor&, const AnyMesh&,
-                                                           BoundaryFrom);
-extern template std::vector<std::string> topology_faults<2>(const runtime::Executor&,
-                                                            const AnyMesh&, const AnyMesh&);
-extern template std::vector<std::string> topology_faults<3>(const runtime::Executor&,
-                                                            const AnyMesh&, const AnyMesh&);
+std::vector<std::string> topology_faults(const AdjacentMesh& before, const AdjacentMesh& after);
 
 }  // namespace ductile::meshadapt

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/complexity.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 
 #include <algorithm>
 #include <cmath>

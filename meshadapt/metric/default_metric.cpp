@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "core/determinant.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/first_bad.hpp"
-#include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/wording.hpp"

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "mesh/box_hierarchy.hpp"
 

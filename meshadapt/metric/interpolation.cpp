@@ -3,6 +3,7 @@
 #include <limits>
 #include <span>
 
+#include "core/determinant.hpp"
 #include "core/orientation.hpp"
 
 namespace ductile::meshadapt {

@@ -12,7 +12,6 @@
 
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "ductile/meshadapt/vector.hpp"
 
 namespace ductile::meshadapt {
 

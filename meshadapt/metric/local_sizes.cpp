@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/local_sizes.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 
 #include <algorithm>
 #include <string>

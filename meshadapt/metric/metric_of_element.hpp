@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "ductile/meshadapt/metric.hpp"
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
 

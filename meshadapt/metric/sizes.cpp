@@ -9,8 +9,8 @@
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"

@@ -14,10 +14,9 @@
 #include "ductile/runtime/worklist.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
-#include "mesh/grouping.hpp"
 #include "mesh/indices.hpp"
-#include "mesh/numbering.hpp"
 #include "metric/expect_metrics.hpp"
+#include "metric/measure.hpp"
 
 namespace ductile::meshadapt {
 
@@ -72,52 +71,23 @@ double quality_of(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   return std::copysign(std::min(ideal / squares, 1.0), measure);
 }
 
-/// For each vertex, those of a higher number to which an edge leads.
+/// Sets `found` to the vertices of a higher number to which edges lead, each once, in an order that
+/// depends on the mesh alone. Thread safety: any thread.
 template <int Dim>
-class HigherNeighbours {
- public:
-  HigherNeighbours(const Executor& executor, const std::vector<Corners<Dim>>& elements,
-                   std::size_t vertex_count)
-      : elements_(elements),
-        end_of_(runtime::make_unset_vector<std::uint32_t>(executor, vertex_count)),
-        listed_(runtime::make_unset_vector<std::uint32_t>(executor, elements.size() * Dim)) {
-    Grouping grouping(executor, GroupingBounds::even(executor, elements.size(), vertex_count),
-                      end_of_, [&elements](std::uint32_t element, auto&& visit) {
-                        const Corners<Dim>& corners = elements[element];
-                        const VertexId highest = *std::max_element(corners.begin(), corners.end());
-                        for (const VertexId v : corners)
-                          if (v != highest) visit(v);
-                      });
-    grouping.list([&](std::uint32_t place, std::uint32_t element) { listed_[place] = element; });
-  }
-
-  /// Sets `found` to those of a vertex, each once, in an order that depends on the mesh alone.
-  /// Thread safety: any thread.
-  void find(VertexId vertex, std::vector<VertexId>& found) const {
-    constexpr std::size_t few = 64;  // to be looked through for each
-    found.clear();
-    const auto is_new = [&](VertexId v) {
-      return found.size() > few || std::find(found.begin(), found.end(), v) == found.end();
-    };
-    for (const std::uint32_t element : around(vertex))
-      for (const VertexId v : elements_[element])
-        if (v > vertex && is_new(v)) found.push_back(v);
-    if (found.size() <= few) return;
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-  }
-
- private:
-  /// The elements of which a vertex is a corner, but not the highest.
-  std::span<const std::uint32_t> around(VertexId vertex) const {
-    const std::uint32_t begin = vertex == 0 ? 0 : end_of_[vertex - 1];
-    return std::span(listed_).subspan(begin, end_of_[vertex] - begin);
-  }
-
-  const std::vector<Corners<Dim>>& elements_;
-  Ids end_of_;  // [vertex], in the list
-  Ids listed_;  // elements, vertex by vertex
-};
+void find_higher_neighbours(const VertexElements& lists, const std::vector<Corners<Dim>>& elements,
+                            VertexId vertex, std::vector<VertexId>& found) {
+  constexpr std::size_t few = 64;  // to be looked through for each
+  found.clear();
+  const auto is_new = [&](VertexId v) {
+    return found.size() > few || std::find(found.begin(), found.end(), v) == found.end();
+  };
+  for (const ElementId element : lists.elements_of(vertex))
+    for (const VertexId v : elements[element])
+      if (v > vertex && is_new(v)) found.push_back(v);
+  if (found.size() <= few) return;
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+}
 
 /// Metric length of an edge, the ends of which may be one point.
 template <int Dim>
@@ -128,18 +98,17 @@ double length_of(const Site<Dim>& a, const Site<Dim>& b) {
 
 /// Of every edge once.
 template <int Dim>
-runtime::UnsetVector<double> edge_lengths(const Executor& executor,
-                                          const std::vector<Site<Dim>>& site_of,
-                                          const std::vector<Corners<Dim>>& elements) {
-  const HigherNeighbours<Dim> neighbours(executor, elements, site_of.size());
-  runtime::PerThread<std::vector<VertexId>> found(executor);
-  return runtime::parallel_collect<double>(executor, site_of.size(),
-                                           [&](std::size_t v, auto&& append) {
-                                             std::vector<VertexId>& higher = found.mine();
-                                             neighbours.find(static_cast<VertexId>(v), higher);
-                                             for (const VertexId other : higher)
-                                               append(length_of(site_of[v], site_of[other]));
-                                           });
+runtime::UnsetVector<double> edge_lengths(const AdjacentMesh& mesh,
+                                          const std::vector<Site<Dim>>& site_of) {
+  const VertexElements& lists = mesh.lists<Dim>();
+  const auto& elements = elements_in<Dim>(mesh.mesh()).vertices;
+  runtime::PerThread<std::vector<VertexId>> found(mesh.executor());
+  return runtime::parallel_collect<double>(
+      mesh.executor(), site_of.size(), [&](std::size_t v, auto&& append) {
+        std::vector<VertexId>& higher = found.mine();
+        find_higher_neighbours<Dim>(lists, elements, static_cast<VertexId>(v), higher);
+        for (const VertexId other : higher) append(length_of(site_of[v], site_of[other]));
+      });
 }
 
 template <int Dim>
@@ -175,10 +144,12 @@ std::size_t count_if_below(const Executor& executor, std::span<const double> val
 }
 
 template <int Dim>
-MeshStatistics measure_in(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
+MeshStatistics measure_in(const AdjacentMesh& adjacent, const AnyField* metric) {
+  const Executor& executor = adjacent.executor();
+  const AnyMesh& mesh = adjacent.mesh();
   const auto& elements = elements_in<Dim>(mesh).vertices;
   const std::vector<Site<Dim>> site_of = make_sites<Dim>(executor, mesh, metric);
-  const runtime::UnsetVector<double> lengths = edge_lengths<Dim>(executor, site_of, elements);
+  const runtime::UnsetVector<double> lengths = edge_lengths<Dim>(adjacent, site_of);
 
   MeshStatistics result;
   result.in_metric = metric != nullptr;
@@ -224,10 +195,13 @@ std::vector<double> element_qualities(const Executor& executor, const AnyMesh& m
                       elements_in<3>(mesh).vertices);
 }
 
+MeshStatistics measure(const AdjacentMesh& mesh, const AnyField* metric) {
+  expect_measurable(mesh.executor(), mesh.mesh(), metric);
+  return mesh.mesh().dimension == 2 ? measure_in<2>(mesh, metric) : measure_in<3>(mesh, metric);
+}
+
 MeshStatistics measure(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
-  expect_measurable(executor, mesh, metric);
-  return mesh.dimension == 2 ? measure_in<2>(executor, mesh, metric)
-                             : measure_in<3>(executor, mesh, metric);
+  return measure(AdjacentMesh(executor, mesh), metric);
 }
 
 }  // namespace ductile::meshadapt

@@ -10,6 +10,7 @@
 #include <limits>
 #include <span>
 
+#include "core/determinant.hpp"
 #include "core/lanes.hpp"
 #include "operators/base.hpp"
 #include "operators/cavity.hpp"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/determinant.hpp"
 #include "core/quality.hpp"
 
 namespace ductile::meshadapt {

@@ -9,6 +9,7 @@
 #include <boost/container/small_vector.hpp>
 #include <boost/container/static_vector.hpp>
 
+#include "core/determinant.hpp"
 #include "ductile/runtime/deferred_update.hpp"
 #include "geometry/surface.hpp"
 #include "mesh/mesh.hpp"

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "ductile/meshadapt/rules.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "operators/cavity.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "ductile/meshadapt/rules.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "operators/cavity.hpp"
 #include "operators/ring.hpp"
 

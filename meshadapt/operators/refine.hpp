@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ductile/meshadapt/rules.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "mesh/mesh.hpp"

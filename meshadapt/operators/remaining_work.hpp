@@ -5,7 +5,7 @@
 /// are poor elements that no move or swap makes better.
 #pragma once
 
-#include "ductile/meshadapt/rules.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "mesh/mesh.hpp"

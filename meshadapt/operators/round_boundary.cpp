@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/rounding.hpp"
 #include "geometry/surface.hpp"

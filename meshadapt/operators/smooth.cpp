@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/determinant.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
 #include "ductile/runtime/parallel_for.hpp"

@@ -6,7 +6,7 @@
 /// sweep is a Gauss-Seidel iteration. It runs in tiles.
 #pragma once
 
-#include "ductile/meshadapt/rules.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "operators/background.hpp"

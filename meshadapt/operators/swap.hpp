@@ -12,7 +12,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "ductile/meshadapt/rules.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/operator.hpp"

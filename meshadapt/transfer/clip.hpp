@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "mesh/walk.hpp"
 

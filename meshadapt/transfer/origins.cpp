@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/origins.hpp"
+#include "ductile/meshadapt/transfer.hpp"
 
 #include <algorithm>
 #include <compare>

@@ -9,10 +9,9 @@
 #include "bindings.hpp"
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/adapt_to_sizes.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 
 namespace ductile::python {
 

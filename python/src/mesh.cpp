@@ -9,11 +9,10 @@
 
 #include "bindings.hpp"
 
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/mesh_from_arrays.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 
 namespace ductile::python {

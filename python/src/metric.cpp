@@ -6,7 +6,6 @@
 
 #include "bindings.hpp"
 
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"

@@ -5,7 +5,6 @@
 
 #include "bindings.hpp"
 
-#include "ductile/meshadapt/origins.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 
 namespace ductile::python {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "adapt_report.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "program.hpp"
 
 namespace ductile::cli::adapt_command_test {
@@ -176,7 +176,7 @@ TEST(AdaptSummary, WarnsOfEdgesThatAreTooLong) {
   const runtime::Executor executor({.threads = 1});
   const auto warnings_for = [&](double size, bool expects_lengths) {
     const meshadapt::AdaptedMesh as_it_is{mesh, meshadapt::constant_metric(mesh, size), {}};
-    return summarise(executor, mesh, as_it_is.metric, as_it_is,
+    return summarise({executor, mesh}, as_it_is.metric, as_it_is, {executor, as_it_is.mesh},
                      {.before = false, .expects_lengths = expects_lengths})
         .report.warnings;
   };

@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "ductile/meshadapt/complexity.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "program.hpp"
 

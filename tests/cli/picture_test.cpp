@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "arguments.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "picture/draw.hpp"
 #include "picture/ellipses.hpp"

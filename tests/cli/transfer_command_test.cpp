@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "program.hpp"
 #include "support/meshes.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "oracle.hpp"
 

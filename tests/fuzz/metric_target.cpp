@@ -6,9 +6,9 @@
 #include <cstring>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/complexity.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "oracle.hpp"

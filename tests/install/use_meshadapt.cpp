@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 
 int main() {
   namespace meshadapt = ductile::meshadapt;

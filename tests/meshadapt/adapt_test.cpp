@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/bits.hpp"
 #include "support/meshes.hpp"

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/atomic_file.hpp"
+#include "io/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,6 @@
 #include <csignal>
 #include <string>
 
-#include "ductile/meshadapt/files.hpp"
 #include "io_support.hpp"
 
 namespace ductile::meshadapt::atomic_file_test {

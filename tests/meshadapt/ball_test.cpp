@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/determinant.hpp"
 #include "core/orientation.hpp"
 #include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"

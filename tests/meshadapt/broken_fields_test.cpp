@@ -11,12 +11,10 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/hessian.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "ductile/meshadapt/transfer.hpp"

@@ -8,13 +8,10 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/complexity.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "ductile/meshadapt/hessian.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/meshadapt/statistics.hpp"

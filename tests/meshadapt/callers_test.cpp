@@ -12,12 +12,12 @@
 #include <string>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/adapt_to_sizes.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "support/meshes.hpp"
 #include "support/random_case.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"

@@ -12,6 +12,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"

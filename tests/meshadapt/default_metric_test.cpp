@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "support/meshes.hpp"
 

@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 
 #include <gtest/gtest.h>
 

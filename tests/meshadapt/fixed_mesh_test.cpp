@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "support/meshes.hpp"
 

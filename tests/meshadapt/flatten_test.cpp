@@ -9,7 +9,6 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "io_support.hpp"
 

@@ -9,9 +9,9 @@
 #include <set>
 #include <string>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/simplex.hpp"

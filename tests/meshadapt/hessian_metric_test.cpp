@@ -8,7 +8,7 @@
 #include <string>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"

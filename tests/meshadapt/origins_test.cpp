@@ -1,4 +1,4 @@
-#include "ductile/meshadapt/origins.hpp"
+#include "ductile/meshadapt/transfer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/fields.hpp"
-#include "ductile/meshadapt/mesh_from_arrays.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
-#include "ductile/meshadapt/transfer.hpp"
 #include "support/broken_input.hpp"
 #include "support/random_case.hpp"
 #include "support/trials.hpp"

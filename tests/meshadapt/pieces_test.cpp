@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/determinant.hpp"
 #include "support/metrics.hpp"
 
 namespace ductile::meshadapt::pieces_test {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "support/bits.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"

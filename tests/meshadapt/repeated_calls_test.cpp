@@ -10,7 +10,7 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/determinant.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/executor.hpp"

@@ -11,7 +11,7 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "geometry/make_mesh.hpp"
 #include "geometry/rounding.hpp"

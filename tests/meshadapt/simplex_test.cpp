@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/determinant.hpp"
 #include "core/orientation.hpp"
 #include "support/meshes.hpp"
 

@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/fields.hpp"
-#include "ductile/meshadapt/local_sizes.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "io_support.hpp"

@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "io_support.hpp"
 #include "support/meshes.hpp"
 

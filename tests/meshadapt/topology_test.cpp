@@ -11,9 +11,9 @@
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "support/counted_topology.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"

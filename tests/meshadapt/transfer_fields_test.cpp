@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "mesh/walk.hpp"
 #include "support/broken_input.hpp"

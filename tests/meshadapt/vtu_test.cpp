@@ -1,5 +1,5 @@
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "io_support.hpp"
 
 namespace ductile::meshadapt::vtu_test {

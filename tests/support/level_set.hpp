@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt::test {
 

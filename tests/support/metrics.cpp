@@ -1,4 +1,5 @@
 #include "support/metrics.hpp"
+#include "core/determinant.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/determinant.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 

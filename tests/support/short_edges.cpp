@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::test {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/determinant.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::test {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/box_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::paper {

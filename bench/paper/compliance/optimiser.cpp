@@ -7,8 +7,8 @@
 
 #include "cantilever.hpp"
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 
 namespace ductile::paper {

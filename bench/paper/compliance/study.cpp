@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "ductile/meshadapt/atomic_file.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "picture/draw.hpp"
 #include "report/table.hpp"
 #include "shared/picture.hpp"
@@ -97,7 +97,7 @@ void draw_solids(const std::filesystem::path& path, const std::vector<Frame>& fr
     scene.panels.back().title = frame.title;
   }
   meshadapt::AtomicOutputs outputs;
-  outputs.stage(path).write(cli::draw(scene, cli::PictureFormat::png, size));
+  write_bytes(outputs, path, cli::draw(scene, cli::PictureFormat::png, size));
   outputs.commit();
 }
 

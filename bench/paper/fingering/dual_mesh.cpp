@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::paper {

@@ -6,8 +6,8 @@
 #include <ctime>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/fields.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/meshadapt/transfer.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "ductile/meshadapt/box_mesh.hpp"
-#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 
 namespace ductile::paper {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <numeric>
 
-#include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/files.hpp"
 
 namespace ductile::paper {
 
@@ -251,7 +251,7 @@ void write_png(const std::filesystem::path& path, const std::vector<FieldPanel>&
   if (cairo_surface_write_to_png_stream(page.get(), append, &bytes) != CAIRO_STATUS_SUCCESS)
     throw meshadapt::Error(path.string() + ": the picture could not be drawn");
   meshadapt::AtomicOutputs outputs;
-  outputs.stage(path).write(bytes);
+  write_bytes(outputs, path, bytes);
   outputs.commit();
 }
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-#include "ductile/meshadapt/atomic_file.hpp"
+#include "ductile/meshadapt/files.hpp"
 
 namespace ductile::paper {
 
@@ -34,13 +34,12 @@ void VtuSeries::add(double time, const meshadapt::AnyMesh& mesh,
 
 void VtuSeries::write_index() const {
   meshadapt::AtomicOutputs outputs;
-  meshadapt::OutputFile& file = outputs.stage(index_);
-  file.write(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (std::size_t i = 0; i < times_.size(); ++i)
-    file.write("<DataSet timestep=\"" + std::to_string(times_[i]) + "\" file=\"" +
-               member(index_, i).generic_string() + "\"/>\n");
-  file.write("</Collection>\n</VTKFile>\n");
+    text += "<DataSet timestep=\"" + std::to_string(times_[i]) + "\" file=\"" +
+            member(index_, i).generic_string() + "\"/>\n";
+  write_bytes(outputs, index_, text + "</Collection>\n</VTKFile>\n");
   outputs.commit();
 }
 

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "cases/psi.hpp"
-#include "ductile/meshadapt/atomic_file.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "picture/draw.hpp"
 #include "shared/picture.hpp"
 #include "shared/progress_line.hpp"
@@ -107,7 +107,7 @@ void draw_plane(Experiment& experiment, const std::vector<Frame>& frames) {
 void write_scene(const Experiment& experiment, const std::string& name, const cli::Scene& scene,
                  int size) {
   meshadapt::AtomicOutputs outputs;
-  outputs.stage(experiment.file(name)).write(cli::draw(scene, cli::PictureFormat::png, size));
+  write_bytes(outputs, experiment.file(name), cli::draw(scene, cli::PictureFormat::png, size));
   outputs.commit();
 }
 

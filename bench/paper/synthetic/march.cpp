@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "ductile/meshadapt/box_mesh.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "solution.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cases/psi.hpp"
-#include "ductile/meshadapt/fields.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::paper {

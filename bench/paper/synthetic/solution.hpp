@@ -7,7 +7,7 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::paper {

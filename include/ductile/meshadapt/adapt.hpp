@@ -6,63 +6,17 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/make_mesh_options.hpp"
-#include "ductile/meshadapt/rules.hpp"
-#include "ductile/meshadapt/statistics.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {
 
-/// What was done last and how the mesh stands; passed to AdaptOptions::progress.
-struct AdaptProgress {
-  const char* step = "";  ///< "coarsen", "refine", "swap", "smooth", ...
-  int iteration = 0;
-  std::size_t changes = 0;
-};
-
-/// adapt() refuses options that make no sense: iterations below 0, bounds on sizes that are neither
-/// 0 nor from 1e-75 to 1e75, a smallest size above the largest, a gradation between 0 and 1 or not
-/// finite, rules that are negative, above 1e6 or no numbers, or that split what they collapse.
-struct AdaptOptions {
-  int iterations = 16;       ///< at most this many rounds of the four kernels, but for those on
-                             ///< the way to a metric that is far from the mesh
-  double smallest_size = 0;  ///< no edge length below this is asked for; 0: no bound
-  double largest_size = 0;   ///< no edge length above this is asked for; 0: no bound
-  double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
-                             ///< limit_gradation), from what make.hausdorff_tolerance allows on
-                             ///< curved boundaries; 0 or less: as given. Mmg's default is 1.3
-  bool curved_sizes =
-      false;  ///< sizes on curved boundaries are bounded by what
-              ///< make.hausdorff_tolerance allows without a gradation, too; they grow
-              ///< from there by a factor of 1.3, or as given with one below 0. With
-              ///< coarsest_metric() they come from curvature alone, as with Mmg's -A
-  double required_gradation = 0;  ///< sizes at required facets, edges and elements, and at all
-                                  ///< facets with make.lock_boundary, are those that these have,
-                                  ///< whatever metric and bounds ask for; from there they grow, or
-                                  ///< fall, by at most this factor per unit of metric length; 0 or
-                                  ///< less: as given. Mmg's default is 2.3
-  std::size_t memory_limit =
-      0;                    ///< bytes that adapt() may take; metrics that ask for more elements
-                            ///< than certainly fit are refused before the work; 0: no limit
-  bool thorough = false;    ///< better elements and lengths for more time (docs/performance.md)
-  bool by_colours = false;  ///< as published: collapses, swaps and moves run class by class of a
-                            ///< colouring of vertices, and they and splits change lists by deferred
-                            ///< updates. Valid and deterministic too, but slower
-  bool move = true;         ///< smooth vertices
-  bool swap = true;         ///< swap edges and faces
-  bool insert = true;       ///< split and collapse edges
-  Rules rules = {};
-  MakeMeshOptions make = {};
-  /// Called on the calling thread after each step, many times a second in small meshes. If it
-  /// returns false, adapt() throws Cancelled; what it throws itself, adapt() throws.
-  std::function<bool(const AdaptProgress&)> progress = {};
-};
+struct Sizes;  // sizes.hpp
 
 /// Seconds and work of one kernel over the whole run.
 struct KernelReport {
@@ -131,5 +85,15 @@ struct AdaptedMesh {
 /// the work runs on the executor.
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options = {});
+
+/// Adapts `mesh` to sizes said by places. Sizes are evaluated at vertices, so a coarse mesh shows
+/// little of them: the result is adapted to sizes evaluated there, and the result again while at
+/// some vertex of it they ask for less than two thirds of what it was adapted to there; at most
+/// five times in all. Curved boundaries are measured from options.make.geometry, or from `mesh`,
+/// each time. The report is that of the last time, with the seconds and warnings of all; progress
+/// is told of all. Throws as size_field() and adapt() do. Thread safety: any thread; runs on the
+/// executor.
+AdaptedMesh adapt_to_sizes(const runtime::Executor& executor, const AnyMesh& mesh,
+                           const Sizes& sizes, const AdaptOptions& options = {});
 
 }  // namespace ductile::meshadapt

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/make_mesh_options.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {

@@ -8,13 +8,13 @@
 
 #include <bit>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
-#include "ductile/meshadapt/atomic_file.hpp"
 #include "ductile/meshadapt/error.hpp"
 
 namespace ductile::meshadapt {
@@ -104,11 +104,58 @@ void write_mesh(const std::filesystem::path& path, const AnyMesh& mesh,
 void write_field(const std::filesystem::path& path, const AnyField& field,
                  const WriteOptions& options = {});
 
-/// The same as one of several outputs that appear together.
+// ---- Outputs that appear whole, and together ----
+
+class OutputFile;
+
+/// Several output files that belong together and appear whole or not at all. Each one has no name
+/// while it is written, or, where the file system has no such files, a temporary one beside its
+/// place, `NAME.ductile-tmp-PID-N`; commit() gives all of them their names when every byte of every
+/// one is on disk. Until then, and after an error or an interrupt, the files that were there before
+/// are untouched. Signals that end the process remove temporary files, and wait while names are
+/// given (runtime/process.hpp). What is no regular file (/dev/null, a pipe) is written directly,
+/// and so is what a name such as /dev/stdout or /dev/fd/3 stands for. Thread safety: one thread.
+class AtomicOutputs {
+ public:
+  AtomicOutputs();
+  /// Removes the temporaries of what was not committed.
+  ~AtomicOutputs();
+  AtomicOutputs(const AtomicOutputs&) = delete;
+  AtomicOutputs& operator=(const AtomicOutputs&) = delete;
+
+  /// Opens an output for `path`, valid until commit(). A symbolic link is followed: the file that
+  /// it names is replaced. Throws InputError where check_writable would, or when `path` is staged.
+  OutputFile& stage(const std::filesystem::path& path);
+
+  /// Brings every file to disk, then moves each to its place. The old files of all but the first
+  /// that was staged are set aside before: a process that is killed meanwhile may leave the first
+  /// one, old or new, without the others, but never old ones beside new ones. Throws Error: if a
+  /// file could not be written to its end, or a rename fails, the old files are in place, except
+  /// where the text names what new ones are.
+  void commit();
+
+ private:
+  std::vector<std::unique_ptr<OutputFile>> files_;
+};
+
+/// The files beside `path` that hold what it held or was to hold, because a process that wrote it
+/// was killed.
+std::vector<std::filesystem::path> left_of(const std::filesystem::path& path);
+
+/// Whether a file could be written at `path`, to be asked before long work: throws InputError if
+/// the path is empty or a folder, or if its folder is missing or refuses a new file.
+void check_writable(const std::filesystem::path& path);
+
+/// The same of outputs that belong together, of which no two may be one file.
+void check_writable(const std::vector<std::filesystem::path>& paths);
+
+/// Writes a mesh as one of several outputs.
 void write_mesh(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                 const WriteOptions& options = {});
 /// The same for a field: the file appears with the other outputs.
 void write_field(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyField& field,
                  const WriteOptions& options = {});
+/// The same for any bytes.
+void write_bytes(AtomicOutputs& outputs, const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace ductile::meshadapt

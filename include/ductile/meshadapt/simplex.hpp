@@ -1,17 +1,61 @@
 /// @file
-/// What differs between triangles and tetrahedra: counts, tables, and the signed volume.
-/// Facet i of an element is the one opposite its corner i.
+/// Vector<Dim>, a point or a displacement; and what differs between triangles and tetrahedra:
+/// counts and tables. Facet i of an element is the one opposite its corner i.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-
-#include "ductile/meshadapt/vector.hpp"
 
 namespace ductile::meshadapt {
+
+/// A point, or a displacement, in Dim dimensions.
+template <int Dim>
+struct Vector {
+  std::array<double, Dim> x{};
+
+  double& operator[](int axis) { return x[static_cast<std::size_t>(axis)]; }
+  double operator[](int axis) const { return x[static_cast<std::size_t>(axis)]; }
+
+  Vector& operator+=(const Vector& b) {
+    for (int i = 0; i < Dim; ++i) (*this)[i] += b[i];
+    return *this;
+  }
+  Vector& operator-=(const Vector& b) {
+    for (int i = 0; i < Dim; ++i) (*this)[i] -= b[i];
+    return *this;
+  }
+  Vector& operator*=(double s) {
+    for (int i = 0; i < Dim; ++i) (*this)[i] *= s;
+    return *this;
+  }
+  friend Vector operator+(Vector a, const Vector& b) { return a += b; }
+  friend Vector operator-(Vector a, const Vector& b) { return a -= b; }
+  friend Vector operator*(Vector a, double s) { return a *= s; }
+  friend Vector operator*(double s, Vector a) { return a *= s; }
+  friend bool operator==(const Vector&, const Vector&) = default;
+};
+
+/// Scalar product.
+template <int Dim>
+double dot(const Vector<Dim>& a, const Vector<Dim>& b) {
+  double sum = 0;
+  for (int i = 0; i < Dim; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// Euclidean length.
+template <int Dim>
+double norm(const Vector<Dim>& a) {
+  return std::sqrt(dot(a, a));
+}
+
+/// Vector product.
+inline Vector<3> cross(const Vector<3>& a, const Vector<3>& b) {
+  return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
+}
+
+// ---- Elements ----
 
 using VertexId = std::uint32_t;
 using ElementId = std::uint32_t;
@@ -47,50 +91,6 @@ template <int Dim>
 using Corners = std::array<VertexId, Dim + 1>;
 template <int Dim>
 using Facet = std::array<VertexId, Dim>;
-
-/// Twice the signed area, positive when a, b, c turn counter-clockwise. A result whose sign
-/// rounding could have changed is returned as 0 (forward error bound: Shewchuk, Discrete Comput.
-/// Geom. 18, 1997), so a positive result proves a positive area.
-inline double certain_determinant(const Vector<2>& a, const Vector<2>& b, const Vector<2>& c) {
-  constexpr double bound = 3.5 * std::numeric_limits<double>::epsilon();
-  const double left = (b[0] - a[0]) * (c[1] - a[1]);
-  const double right = (b[1] - a[1]) * (c[0] - a[0]);
-  const double determinant = left - right;
-  return std::abs(determinant) > bound * (std::abs(left) + std::abs(right)) ? determinant : 0;
-}
-
-/// Six times the signed volume, positive when d sees a, b, c counter-clockwise; as in 2D.
-inline double certain_determinant(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c,
-                                  const Vector<3>& d) {
-  constexpr double bound = 8 * std::numeric_limits<double>::epsilon();
-  const Vector<3> u = b - a, v = c - a, w = d - a;
-  const double p = v[1] * w[2], q = v[2] * w[1], r = v[2] * w[0];
-  const double s = v[0] * w[2], t = v[0] * w[1], z = v[1] * w[0];
-  const double determinant = u[0] * (p - q) + u[1] * (r - s) + u[2] * (t - z);
-  const double permanent = std::abs(u[0]) * (std::abs(p) + std::abs(q)) +
-                           std::abs(u[1]) * (std::abs(r) + std::abs(s)) +
-                           std::abs(u[2]) * (std::abs(t) + std::abs(z));
-  return std::abs(determinant) > bound * permanent ? determinant : 0;
-}
-
-/// The same of the corners of an element.
-template <int Dim>
-double certain_determinant(const std::array<Vector<Dim>, Dim + 1>& p) {
-  if constexpr (Dim == 2)
-    return certain_determinant(p[0], p[1], p[2]);
-  else
-    return certain_determinant(p[0], p[1], p[2], p[3]);
-}
-
-/// Twice the signed area, as rounding leaves it.
-inline double plain_determinant(const std::array<Vector<2>, 3>& p) {
-  const Vector<2> u = p[1] - p[0], v = p[2] - p[0];
-  return u[0] * v[1] - u[1] * v[0];
-}
-/// Six times the signed volume, as rounding leaves it.
-inline double plain_determinant(const std::array<Vector<3>, 4>& p) {
-  return dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0]));
-}
 
 /// Outward normal; its length is the edge's length in 2D, twice the triangle's area in 3D.
 inline Vector<2> facet_normal(const std::array<Vector<2>, 2>& p) {
@@ -130,17 +130,6 @@ Facet<Dim> facet_of(const Corners<Dim>& corners, int i) {
     facet[static_cast<std::size_t>(k)] = corners[static_cast<std::size_t>(
         Simplex<Dim>::facet[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)])];
   return facet;
-}
-
-/// The facet opposite `vertex`, which is one of the corners; without branches, because which one it
-/// is cannot be foreseen.
-template <int Dim>
-[[gnu::always_inline]] inline Facet<Dim> facet_opposite(const Corners<Dim>& corners,
-                                                        VertexId vertex) {
-  int at = 0;
-  for (int i = 1; i <= Dim; ++i)
-    at += i * static_cast<int>(corners[static_cast<std::size_t>(i)] == vertex);
-  return facet_of<Dim>(corners, at);
 }
 
 }  // namespace ductile::meshadapt

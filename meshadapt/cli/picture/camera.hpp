@@ -2,7 +2,7 @@
 /// Camera: looks at a solid from far away, so that parallel lines stay parallel.
 #pragma once
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::cli {
 

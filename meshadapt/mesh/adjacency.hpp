@@ -1,0 +1,106 @@
+/// @file
+/// Adjacency<Dim>: what lies beside what in a mesh: the elements around each vertex and the element
+/// across each facet. It is made once from a mesh, in parallel; whatever asks for neighbours or for
+/// the boundary takes it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/simplex.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "mesh/neighbours.hpp"
+
+namespace ductile::meshadapt {
+
+/// A facet of an element.
+struct ElementFacet {
+  ElementId element = none;
+  int facet = 0;
+};
+
+/// The elements around each vertex.
+struct VertexElements {
+  std::vector<std::uint32_t> first_around;  // [vertex], and the end
+  std::vector<ElementId> around;            // one more than is used, so that its end has an address
+
+  /// In ascending order.
+  std::span<const ElementId> elements_of(VertexId vertex) const {
+    return {&around[first_around[vertex]], &around[first_around[vertex + 1]]};
+  }
+};
+
+template <int Dim>
+struct Adjacency : VertexElements {
+  std::span<const Corners<Dim>> corners_of;                  // [element]
+  std::vector<std::array<ElementId, Dim + 1>> neighbour_of;  // [element][facet]; `none`, `crowded`
+
+  ElementId across(ElementId element, int facet) const {
+    return neighbour_of[element][static_cast<std::size_t>(facet)];
+  }
+
+  /// Whether all of these are corners of an element.
+  bool has_all(ElementId element, std::span<const VertexId> vertices) const;
+
+  /// The first element that has these corners, and which of its facets they are; element `none`:
+  /// there is none.
+  ElementFacet find(const Facet<Dim>& corners) const;
+
+  /// The facet as that of the element across; element `none`: there is none, or it is crowded.
+  ElementFacet other_side(const ElementFacet& at) const;
+
+  /// Whether there is no element of the same region on the other side; region_of may be empty.
+  bool on_region_boundary(ElementId element, int facet,
+                          std::span<const std::uint32_t> region_of) const;
+};
+
+/// Precondition: corners are below vertex_count. Nearly linear; throws std::bad_alloc, and
+/// std::length_error if lists have more than 2^32 entries.
+/// Thread safety: one caller; runs on the executor. So does what follows.
+template <int Dim>
+VertexElements list_elements(const runtime::Executor& executor,
+                             std::span<const Corners<Dim>> corners_of, std::size_t vertex_count);
+
+/// Takes the lists, and refers to the corners.
+template <int Dim>
+Adjacency<Dim> make_adjacency(const runtime::Executor& executor,
+                              std::span<const Corners<Dim>> corners_of, VertexElements lists);
+
+/// A mesh, and what of its adjacency has been asked for, made then and kept. Refers to both.
+/// Precondition of asking: the mesh has this dimension, and the vertices that its elements name.
+class AdjacentMesh {
+ public:
+  AdjacentMesh(const runtime::Executor& executor, const AnyMesh& mesh)
+      : executor_(executor), mesh_(mesh) {}
+
+  const runtime::Executor& executor() const { return executor_; }
+  const AnyMesh& mesh() const { return mesh_; }
+
+  /// The elements around each vertex; takes less than half the time of all.
+  template <int Dim>
+  const VertexElements& lists() const;
+  template <int Dim>
+  const Adjacency<Dim>& adjacency() const;
+
+ private:
+  template <int Dim>
+  std::optional<Adjacency<Dim>>& kept() const {
+    return std::get<std::optional<Adjacency<Dim>>>(kept_);
+  }
+
+  const runtime::Executor& executor_;
+  const AnyMesh& mesh_;
+  mutable std::optional<VertexElements> lists_;  // until there is an adjacency, which takes them
+  mutable std::tuple<std::optional<Adjacency<2>>, std::optional<Adjacency<3>>> kept_;
+};
+
+extern template struct Adjacency<2>;
+extern template struct Adjacency<3>;
+
+}  // namespace ductile::meshadapt
