@@ -6,7 +6,8 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// Brings vertices of curved boundaries that were made on chords to the model of the surface.
+/// The vertices that one sweep looks at; to the model of the surface those come that were made on
+/// chords.
 template <int Dim>
 runtime::UnsetVector<VertexId> work_for(Workpiece<Dim>& work, const Step& step) {
   const runtime::Executor& executor = work.executor();
