@@ -149,9 +149,7 @@ class AnyMeshChecker {
         first_listed_.size(),
         [&](std::size_t i) {
           const auto [element, facet] = place(i);
-          return is_crowded({element, facet}) &&
-                 adjacency.find(facet_of<Dim>(elements().vertices[element], facet)).element ==
-                     element;
+          return is_crowded({element, facet}) && adjacency.is_first({element, facet});
         },
         [&](std::size_t i) {
           return "a " + facet + number(place(i).element) +
