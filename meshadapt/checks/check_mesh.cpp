@@ -138,23 +138,21 @@ class AnyMeshChecker {
     });
   }
 
+  bool is_crowded(const ElementFacet& at) const {
+    return adjacent_.adjacency<Dim>().across(at.element, at.facet) == crowded;
+  }
+  static std::string facet_of_element(ElementId element) {
+    return std::string("facet of ") + element_name + number(element);
+  }
+
   void check_facets() {
     const Adjacency<Dim>& adjacency = adjacent_.adjacency<Dim>();
     find_listed();
-    const std::string facet = std::string("facet of ") + element_name;
-    const auto is_crowded = [&](const ElementFacet& at) {
-      return adjacency.across(at.element, at.facet) == crowded;
-    };
     problems_.expect_none(
         first_listed_.size(),
+        [&](std::size_t i) { return is_crowded(place(i)) && adjacency.is_first(place(i)); },
         [&](std::size_t i) {
-          const auto [element, facet] = place(i);
-          return is_crowded({element, facet}) &&
-                 adjacency.find(facet_of<Dim>(elements().vertices[element], facet)).element ==
-                     element;
-        },
-        [&](std::size_t i) {
-          return "a " + facet + number(place(i).element) +
+          return "a " + facet_of_element(place(i).element) +
                  " has two elements on one side, or more than two";
         });
     problems_.expect_none(
@@ -164,11 +162,15 @@ class AnyMeshChecker {
           return first_listed_[i] == none && adjacency.across(element, facet) == none;
         },
         [&](std::size_t i) {
-          return "a boundary " + facet + number(place(i).element) + " is not listed";
+          return "a boundary " + facet_of_element(place(i).element) + " is not listed";
         });
     problems_.expect_none(
         place_of_.size(), [&](std::size_t f) { return place_of_[f].element == none; },
         [&](std::size_t f) { return facet_name + number(f) + " is no facet of an element"; });
+    check_listed_once();
+  }
+
+  void check_listed_once() {
     std::vector<std::uint8_t> again(place_of_.size(), 0);
     parallel_for(executor_, again.size(), [&](std::size_t f) {
       if (place_of_[f].element == none || is_crowded(place_of_[f])) return;
@@ -178,7 +180,9 @@ class AnyMeshChecker {
     problems_.expect_none(
         again.size(), [&](std::size_t f) { return again[f] != 0; },
         [&](std::size_t f) {
-          return "a " + facet + number(place_of_[f].element) + " is listed twice";
+          const ElementId other = adjacent_.adjacency<Dim>().other_side(place_of_[f]).element;
+          return "a " + facet_of_element(other == none ? place_of_[f].element : other) +
+                 " is listed twice";
         });
   }
 

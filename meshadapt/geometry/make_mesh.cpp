@@ -151,11 +151,6 @@ class MeshMaker {
     if (bad != no_index) fail_crowded(static_cast<ElementId>(bad));
   }
 
-  bool has_all(ElementId element, const Facet<Dim>& corners) const {
-    return std::all_of(corners.begin(), corners.end(),
-                       [&](VertexId v) { return contains(mesh_.corners_of[element], v); });
-  }
-
   [[noreturn]] void fail_crowded(ElementId element) const {
     const auto facet = corner_of(neighbours_[element], crowded);
     const Facet<Dim> corners = facet_of<Dim>(mesh_.corners_of[element], facet);
@@ -163,7 +158,7 @@ class MeshMaker {
     for (const ElementId e : mesh_.elements_of.of(corners[0])) {
       Corners<Dim> key = mesh_.corners_of[e];
       std::sort(key.begin(), key.end());
-      if (has_all(e, corners)) crowd.emplace_back(key, e);
+      if (has_facet<Dim>(mesh_.corners_of[e], corners)) crowd.emplace_back(key, e);
     }
     std::sort(crowd.begin(), crowd.end());
     const auto both = [](ElementId a, ElementId b) {

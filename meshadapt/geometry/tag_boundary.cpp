@@ -11,6 +11,7 @@
 #include "geometry/check_input.hpp"
 #include "mesh/flatten.hpp"
 #include "mesh/listed_twice.hpp"
+#include "mesh/neighbours.hpp"
 
 namespace ductile::meshadapt {
 
@@ -114,14 +115,14 @@ class BoundaryTagger {
 
   /// Finds the elements on both sides of a facet.
   void attach(TaggedFacet<Dim>& facet) const {
-    for (const ElementId e : making_.mesh.elements_of.of(facet.corners[0]))
-      if (facet.element == none && has_all(e, facet.corners)) {
-        facet.element = e;
-        facet.facet = facet_number(e, facet.corners);
-      }
+    const auto [element, number] = find_facet<Dim>(making_.mesh.elements_of.of(facet.corners[0]),
+                                                   making_.mesh.corners_of, facet.corners);
+    facet.element = element;
+    facet.facet = number;
     if (facet.element == none) return;
     facet.other = making_.neighbours[facet.element][static_cast<std::size_t>(facet.facet)];
-    if (facet.other != none) facet.other_facet = facet_number(facet.other, facet.corners);
+    if (facet.other != none)
+      facet.other_facet = facet_number<Dim>(making_.mesh.corners_of[facet.other], facet.corners);
   }
 
   /// Elements, and which of their facets is on the boundary or an interface and has no patch yet.
@@ -169,19 +170,6 @@ class BoundaryTagger {
     fail("the boundary " + std::string(facet_name<Dim>()) + " with vertices" + corners + " (of " +
          cell_word(element_name<Dim>(), element) + ") is not listed " + advice +
          " to give unlisted ones reference 0");
-  }
-
-  bool has_all(ElementId element, const Facet<Dim>& corners) const {
-    for (std::size_t i = 1; i < corners.size(); ++i)
-      if (!contains(making_.mesh.corners_of[element], corners[i])) return false;
-    return true;
-  }
-
-  int facet_number(ElementId element, const Facet<Dim>& corners) const {
-    for (int i = 0; i <= Dim; ++i)
-      if (!contains(corners, making_.mesh.corners_of[element][static_cast<std::size_t>(i)]))
-        return i;
-    return -1;
   }
 
   void report_loose_edges(std::size_t count, std::size_t first) {

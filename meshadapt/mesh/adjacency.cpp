@@ -10,37 +10,24 @@ namespace ductile::meshadapt {
 
 using runtime::Executor;
 
-namespace {
-
-/// Which facet of an element has these corners: that opposite the one that they lack.
-template <std::size_t N>
-int facet_number(const std::array<VertexId, N>& corners,
-                 const std::array<VertexId, N + 1>& element) {
-  int i = 0;
-  while (i < static_cast<int>(N) && contains(corners, element[static_cast<std::size_t>(i)])) ++i;
-  return i;
-}
-
-}  // namespace
-
-template <int Dim>
-bool Adjacency<Dim>::has_all(ElementId element, std::span<const VertexId> vertices) const {
-  return std::all_of(vertices.begin(), vertices.end(),
-                     [&](VertexId v) { return contains(corners_of[element], v); });
-}
-
 template <int Dim>
 ElementFacet Adjacency<Dim>::find(const Facet<Dim>& corners) const {
-  for (const ElementId element : elements_of(corners[0]))
-    if (has_all(element, corners)) return {element, facet_number(corners, corners_of[element])};
-  return {};
+  return find_facet<Dim>(this->elements_of(corners[0]), corners_of, corners);
 }
 
 template <int Dim>
 ElementFacet Adjacency<Dim>::other_side(const ElementFacet& at) const {
   const ElementId other = across(at.element, at.facet);
   if (other == none || other == crowded) return {};
-  return {other, facet_number(facet_of<Dim>(corners_of[at.element], at.facet), corners_of[other])};
+  const Facet<Dim> corners = facet_of<Dim>(corners_of[at.element], at.facet);
+  return {other, facet_number<Dim>(corners_of[other], corners)};
+}
+
+template <int Dim>
+bool Adjacency<Dim>::is_first(const ElementFacet& at) const {
+  const ElementId other = across(at.element, at.facet);
+  if (other != crowded) return at.element < other;
+  return find(facet_of<Dim>(corners_of[at.element], at.facet)).element == at.element;
 }
 
 template <int Dim>
@@ -53,9 +40,10 @@ bool Adjacency<Dim>::on_region_boundary(ElementId element, int facet,
   };
   if (other != crowded) return !is_like(other);
   const Facet<Dim> corners = facet_of<Dim>(corners_of[element], facet);
-  const auto here = elements_of(corners[0]);
-  return std::count_if(here.begin(), here.end(),
-                       [&](ElementId e) { return is_like(e) && has_all(e, corners); }) == 1;
+  const auto here = this->elements_of(corners[0]);
+  return std::count_if(here.begin(), here.end(), [&](ElementId e) {
+           return is_like(e) && has_facet<Dim>(corners_of[e], corners);
+         }) == 1;
 }
 
 template <int Dim>

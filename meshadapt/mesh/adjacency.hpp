@@ -19,12 +19,6 @@
 
 namespace ductile::meshadapt {
 
-/// A facet of an element.
-struct ElementFacet {
-  ElementId element = none;
-  int facet = 0;
-};
-
 /// The elements around each vertex.
 struct VertexElements {
   std::vector<std::uint32_t> first_around;  // [vertex], and the end
@@ -45,15 +39,15 @@ struct Adjacency : VertexElements {
     return neighbour_of[element][static_cast<std::size_t>(facet)];
   }
 
-  /// Whether all of these are corners of an element.
-  bool has_all(ElementId element, std::span<const VertexId> vertices) const;
-
   /// The first element that has these corners, and which of its facets they are; element `none`:
   /// there is none.
   ElementFacet find(const Facet<Dim>& corners) const;
 
   /// The facet as that of the element across; element `none`: there is none, or it is crowded.
   ElementFacet other_side(const ElementFacet& at) const;
+
+  /// Whether no element of a lower number has the facet.
+  bool is_first(const ElementFacet& at) const;
 
   /// Whether there is no element of the same region on the other side; region_of may be empty.
   bool on_region_boundary(ElementId element, int facet,

@@ -16,6 +16,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
+#include "mesh/adjacency.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/finite_values.hpp"
 #include "mesh/indices.hpp"
@@ -78,69 +79,41 @@ void take_cells(const Executor& executor, const GivenCells<Index>& given, const 
   cells.reference = references(given.reference, count);
 }
 
-/// A facet of an element: its corners in ascending order, by which it is found, and which it is.
-template <int Dim>
-struct ElementFacet {
-  Facet<Dim> corners;
-  ElementId element = none;
-  int number = 0;
-  friend auto operator<=>(const ElementFacet&, const ElementFacet&) = default;
-
-  bool is_same(const ElementFacet& other) const { return corners == other.corners; }
-};
-
-template <int Dim>
-Facet<Dim> ascending(Facet<Dim> corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
-
-/// Of all elements, sorted.
-template <int Dim>
-runtime::UnsetVector<ElementFacet<Dim>> all_facets(const Executor& executor, const AnyMesh& mesh) {
-  const auto& elements = elements_in<Dim>(mesh).vertices;
-  auto all = runtime::make_unset_vector<ElementFacet<Dim>>(executor, (Dim + 1) * elements.size());
-  runtime::parallel_for(executor, elements.size(), [&](std::size_t e) {
-    for (int i = 0; i <= Dim; ++i)
-      all[(Dim + 1) * e + static_cast<std::size_t>(i)] = {
-          ascending<Dim>(facet_of<Dim>(elements[e], i)), static_cast<ElementId>(e), i};
-  });
-  runtime::parallel_sort(executor, std::span(all));
-  return all;
-}
-
 /// Those to be listed, of the elements of lower numbers, in their order.
 template <int Dim>
-runtime::UnsetVector<ElementFacet<Dim>> unlisted_boundary(const Executor& executor,
-                                                          const AnyMesh& mesh) {
+runtime::UnsetVector<ElementFacet> unlisted_boundary(const Executor& executor,
+                                                     const AnyMesh& mesh) {
+  const auto ascending = [](Facet<Dim> corners) {
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  };
   const auto& listed_facets = facets_in<Dim>(mesh).vertices;
   std::vector<Facet<Dim>> listed(listed_facets.size());
   runtime::parallel_for(executor, listed.size(),
-                        [&](std::size_t f) { listed[f] = ascending<Dim>(listed_facets[f]); });
+                        [&](std::size_t f) { listed[f] = ascending(listed_facets[f]); });
   runtime::parallel_sort(executor, std::span(listed));
-  const auto all = all_facets<Dim>(executor, mesh);
   const auto& reference_of = elements_in<Dim>(mesh).reference;
-  const auto find = [&](std::size_t i, auto&& append) {
-    if (i != 0 && all[i].is_same(all[i - 1])) return;
-    const bool has_two = i + 1 < all.size() && all[i].is_same(all[i + 1]);
-    if (has_two && reference_of[all[i].element] == reference_of[all[i + 1].element]) return;
-    if (!std::binary_search(listed.begin(), listed.end(), all[i].corners)) append(all[i]);
-  };
-  auto found = runtime::parallel_collect<ElementFacet<Dim>>(executor, all.size(), find);
-  const auto comes_first = [](const ElementFacet<Dim>& a, const ElementFacet<Dim>& b) {
-    return std::pair(a.element, a.number) < std::pair(b.element, b.number);
-  };
-  std::sort(found.begin(), found.end(), comes_first);
-  return found;
+  const std::vector<std::uint32_t> region_of(reference_of.begin(), reference_of.end());
+  const AdjacentMesh adjacent(executor, mesh);
+  const Adjacency<Dim>& adjacency = adjacent.adjacency<Dim>();
+  return runtime::parallel_collect<ElementFacet>(
+      executor, reference_of.size(), [&](std::size_t e, auto&& append) {
+        for (ElementFacet at{static_cast<ElementId>(e), 0}; at.facet <= Dim; ++at.facet)
+          if (adjacency.is_first(at) &&
+              adjacency.on_region_boundary(at.element, at.facet, region_of) &&
+              !std::binary_search(listed.begin(), listed.end(),
+                                  ascending(facet_of<Dim>(adjacency.corners_of[e], at.facet))))
+            append(at);
+      });
 }
 
 /// The corners of an element's facet as they turn seen from outside.
 template <int Dim>
-Facet<Dim> outward(const AnyMesh& mesh, const ElementFacet<Dim>& facet) {
-  const Corners<Dim>& corners = elements_in<Dim>(mesh).vertices[facet.element];
+Facet<Dim> outward(const AnyMesh& mesh, const ElementFacet& at) {
+  const Corners<Dim>& corners = elements_in<Dim>(mesh).vertices[at.element];
   std::array<Vector<Dim>, Dim + 1> points;
   for (std::size_t i = 0; i <= Dim; ++i) points[i] = position_in<Dim>(mesh, corners[i]);
-  Facet<Dim> result = facet_of<Dim>(corners, facet.number);
+  Facet<Dim> result = facet_of<Dim>(corners, at.facet);
   if (orientation<Dim>(points) < 0) std::swap(result[0], result[1]);
   return result;
 }
@@ -151,8 +124,7 @@ std::size_t list_boundary_in(const Executor& executor, AnyMesh& mesh) {
   expect_all_vertices(mesh);
   expect_finite_coordinates(executor, mesh);
   const auto found = unlisted_boundary<Dim>(executor, mesh);
-  for (const ElementFacet<Dim>& facet : found)
-    facets_in<Dim>(mesh).add(outward<Dim>(mesh, facet), 0);
+  for (const ElementFacet& at : found) facets_in<Dim>(mesh).add(outward<Dim>(mesh, at), 0);
   return found.size();
 }
 

@@ -17,6 +17,36 @@
 
 namespace ductile::meshadapt {
 
+/// A facet of an element.
+struct ElementFacet {
+  ElementId element = none;
+  int facet = 0;
+};
+
+/// Whether an element has all corners of a facet.
+template <int Dim>
+bool has_facet(const Corners<Dim>& element, const Facet<Dim>& corners) {
+  return std::ranges::all_of(corners, [&](VertexId v) { return contains(element, v); });
+}
+
+/// Which facet of an element has these corners, of which it has all.
+template <int Dim>
+int facet_number(const Corners<Dim>& element, const Facet<Dim>& corners) {
+  int i = 0;
+  while (i < Dim && contains(corners, element[static_cast<std::size_t>(i)])) ++i;
+  return i;
+}
+
+/// Among the elements around a corner of a facet, the first that has it; element `none`: none has.
+template <int Dim>
+ElementFacet find_facet(std::span<const ElementId> around, std::span<const Corners<Dim>> corners_of,
+                        const Facet<Dim>& corners) {
+  for (const ElementId element : around)
+    if (has_facet<Dim>(corners_of[element], corners))
+      return {element, facet_number<Dim>(corners_of[element], corners)};
+  return {};
+}
+
 /// Stands for a neighbour where more than two elements have a facet, or two on one side of it.
 inline constexpr ElementId crowded = none - 1;
 
