@@ -67,6 +67,7 @@ TYPED_TEST(RulesIn, NoCollapseChangesARequiredElement) {
   const Coarsen<Dim> op(held, {});
   EXPECT_FALSE(op.keeps_required(0));
   EXPECT_FALSE(op.keeps_required(1));
+  EXPECT_FALSE(op.decide(1, plan));
   EXPECT_TRUE(op.keeps_required(2));
 }
 
