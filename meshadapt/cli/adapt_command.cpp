@@ -21,6 +21,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
+#include "json_report.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "run_in_team.hpp"
