@@ -113,7 +113,11 @@ int main(int word_count, char** word) {
   try {
     const Options options = options_from({word + 1, word + word_count});
     if (options.help) {
-      std::fputs(help_text, stdout);
+      std::printf(
+          "Measures serial codes and Ductile on irregular algorithms, alternating, and checks what "
+          "they\ngive. Programs of PBBS and Galois that are on the PATH run beside "
+          "them.\n\nOptions:\n%s",
+          ductile::cli::help_lines(known_options()).c_str());
       return 0;
     }
     return run(options) ? 0 : 1;

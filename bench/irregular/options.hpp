@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <stdexcept>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "arguments.hpp"
 
 namespace ductile::bench::irregular {
 
@@ -19,14 +21,11 @@ struct Options {
   bool help = false;
 };
 
-/// A word that is not understood.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using cli::UsageError;
+
+std::span<const cli::Option> known_options();
 
 /// Throws UsageError, with the word and what was expected.
 Options options_from(const std::vector<std::string>& words);
-
-extern const char* const help_text;
 
 }  // namespace ductile::bench::irregular

@@ -2,9 +2,10 @@
 
 #include <cstdio>
 #include <fstream>
-#include <iomanip>
 #include <stdexcept>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 namespace ductile::bench::irregular {
 
@@ -40,16 +41,15 @@ JsonFile::~JsonFile() {
 void JsonFile::write(const std::vector<Measurement>& measurements) {
   if (path_.empty()) return;
   std::ofstream out(unfinished_);
-  out << std::setprecision(9) << '[';
-  const char* before = "\n";
-  for (const Measurement& measurement : measurements) {
-    if (measurement.program != "Ductile") continue;
-    out << std::exchange(before, ",\n") << "  {\"algorithm\": \"" << measurement.algorithm
-        << "\", \"input\": \"" << measurement.input << "\", \"threads\": " << measurement.threads
-        << ", \"seconds\": " << measurement.seconds
-        << ", \"serial_seconds\": " << measurement.serial_seconds << '}';
-  }
-  out << "\n]\n";
+  nlohmann::ordered_json entries = nlohmann::ordered_json::array();
+  for (const Measurement& measurement : measurements)
+    if (measurement.program == "Ductile")
+      entries.push_back({{"algorithm", measurement.algorithm},
+                         {"input", measurement.input},
+                         {"threads", measurement.threads},
+                         {"seconds", measurement.seconds},
+                         {"serial_seconds", measurement.serial_seconds}});
+  out << entries.dump(2) << '\n';
   out.close();
   if (!out) throw std::runtime_error("cannot write '" + path_.string() + "'");
   std::filesystem::rename(unfinished_, path_);

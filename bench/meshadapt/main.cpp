@@ -130,10 +130,8 @@ int run(const Plan& plan) {
 }
 
 void print_help() {
-  std::printf("Measures mesh adaptation.\n\nOptions:\n");
-  for (const auto& option : plan_options())
-    std::printf("  %s %s\n      %s\n", std::string(option.name).c_str(),
-                std::string(option.value).c_str(), std::string(option.help).c_str());
+  std::printf("Measures mesh adaptation.\n\nOptions:\n%s",
+              ductile::cli::help_lines(plan_options()).c_str());
   std::printf("\nCases:\n");
   for (const CaseInfo& info : known_cases())
     std::printf("  %-16s %s\n", std::string(info.name).c_str(), std::string(info.what).c_str());

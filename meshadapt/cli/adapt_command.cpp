@@ -21,6 +21,7 @@
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
 #include "io/atomic_file.hpp"
+#include "json_report.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "run_in_team.hpp"
@@ -133,7 +134,7 @@ void set_output(Job& job, const Arguments& arguments) {
 
 /// Sizes are said in one way, or none: then a metric beside the mesh counts, if there is one.
 void set_sizes(Job& job, const Arguments& arguments) {
-  job.size = arguments.size("-hsiz");
+  job.size = size_option(arguments, "-hsiz");
   job.places = SizeOptions(arguments, "-hsiz");
   job.metric_in = arguments.text("-sol");
   job.keep_sizes = arguments.has("-optim");
@@ -186,8 +187,8 @@ double gradation_of(const Arguments& arguments, std::string_view option) {
 }
 
 void set_options(AdaptOptions& adapt, const Arguments& arguments) {
-  adapt.smallest_size = arguments.size("-hmin").value_or(0);
-  adapt.largest_size = arguments.size("-hmax").value_or(0);
+  adapt.smallest_size = size_option(arguments, "-hmin").value_or(0);
+  adapt.largest_size = size_option(arguments, "-hmax").value_or(0);
   if (adapt.largest_size > 0 && adapt.smallest_size > adapt.largest_size)
     throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");
   adapt.gradation = gradation_of(arguments, "-hgrad");
@@ -200,7 +201,7 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   adapt.swap = !arguments.has("-noswap");
   adapt.insert = !arguments.has("-noinsert");
   adapt.make.lock_boundary = arguments.has("-nosurf");
-  adapt.make.hausdorff_tolerance = arguments.size("-hausd").value_or(0);
+  adapt.make.hausdorff_tolerance = size_option(arguments, "-hausd").value_or(0);
   adapt.make.ridge_angle = arguments.positive("-ar").value_or(adapt.make.ridge_angle);
   if (adapt.make.ridge_angle >= 90)
     throw UsageError("option -ar: expected an angle of less than 90 degrees, found '" +

@@ -1,5 +1,6 @@
 /// @file
-/// What `ductile adapt` tells about a run: in a few lines for people, as JSON for programs.
+/// What `ductile adapt` tells about a run: in a few lines for people (json_report.hpp: for
+/// programs).
 #pragma once
 
 #include <optional>
@@ -39,6 +40,5 @@ AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::A
                        const SummaryOptions& options);
 
 std::string to_text(const AdaptSummary& summary, bool with_histograms);
-std::string to_json(const AdaptSummary& summary);
 
 }  // namespace ductile::cli

@@ -153,8 +153,8 @@ void set_sizes(Job& job, const Arguments& arguments) {
 
 void set_limits(Job& job, const Arguments& arguments) {
   auto& bounds = job.fit.goal.bounds;
-  bounds.smallest = arguments.size("-hmin").value_or(0);
-  bounds.largest = arguments.size("-hmax").value_or(0);
+  bounds.smallest = size_option(arguments, "-hmin").value_or(0);
+  bounds.largest = size_option(arguments, "-hmax").value_or(0);
   bounds.anisotropy = arguments.positive("--anisotropy").value_or(0);
   if (bounds.largest > 0 && bounds.smallest > bounds.largest)
     throw UsageError("options -hmin and -hmax: expected -hmin to be the smaller one");

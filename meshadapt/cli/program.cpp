@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "command.hpp"
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "mmg_options.hpp"
 #include "version.hpp"
 
 namespace ductile::cli {
@@ -47,13 +49,7 @@ void print_help(const Command& command) {
               std::string(command.operands).c_str(), std::string(command.summary).c_str());
   if (!command.details.empty()) std::printf("%s\n", std::string(command.details).c_str());
   std::printf("\nOptions (one or two dashes mean the same):\n");
-  for (const Option& option : command.options) {
-    if (option.help.empty()) continue;
-    std::string left(option.name);
-    if (!option.alias.empty()) left += ", " + std::string(option.alias);
-    if (!option.value.empty()) left += " " + std::string(option.value);
-    std::printf("  %-22s %s\n", left.c_str(), std::string(option.help).c_str());
-  }
+  std::printf("%s", help_lines(command.options).c_str());
   std::printf("  %-22s %s\n", "-h, --help", "shows its options");
 }
 
@@ -84,6 +80,17 @@ int run_help(std::span<const std::string> words) {
   return done;
 }
 
+/// Of an option of Mmg's that is refused, the error says what to do instead.
+Arguments arguments_of(const Command& command, std::span<const std::string> words) {
+  try {
+    return Arguments(command.options, words);
+  } catch (const UnknownOption& error) {
+    const std::string_view instead = instead_of_mmg_option(without_dashes(error.name));
+    if (instead.empty()) throw;
+    throw UnknownOption(error.name, instead);
+  }
+}
+
 int dispatch(std::span<const std::string> words) {
   if (words.empty()) {
     print_overview(stderr);
@@ -98,7 +105,7 @@ int dispatch(std::span<const std::string> words) {
   const Command* command = find_command(name);
   if (!command) refuse_command(name);
   if (asks_for_help(words.subspan(1))) return run_help(words.first(1));
-  return command->run(Arguments(command->options, words.subspan(1)));
+  return command->run(arguments_of(*command, words.subspan(1)));
 }
 
 /// Takes no memory, which there may be none of.
@@ -115,10 +122,9 @@ int run_words(std::span<const std::string> words) {
     return status;
   } catch (const UsageError& error) {
     const bool known = !words.empty() && find_command(words[0]);
-    return tell(((known ? words[0] + ": " : std::string()) + error.what() +
-                 (known ? " (ductile help " + words[0] + " lists the options)" : ""))
-                    .c_str(),
-                misused);
+    const std::string message = (known ? words[0] + ": " : std::string()) + error.what() +
+                                (known ? " (ductile help " + words[0] + " lists the options)" : "");
+    return tell(meshadapt::printable(message).c_str(), misused);
   } catch (const meshadapt::InputError& error) {
     return tell(error.in_file(), misused);
   }

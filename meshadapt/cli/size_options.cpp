@@ -108,8 +108,15 @@ meshadapt::SizePlace place_in(const AnyMesh& file, const AnyMesh& mesh, const st
 
 }  // namespace
 
+std::optional<double> size_option(const Arguments& arguments, std::string_view name) {
+  const std::optional<double> value = arguments.positive(name);
+  if (value && (*value < meshadapt::smallest_size || *value > meshadapt::largest_size))
+    refuse_value(name, "a size from 1e-75 to 1e75", *arguments.text(name));
+  return value;
+}
+
 SizeOptions::SizeOptions(const Arguments& arguments, std::string_view elsewhere)
-    : elsewhere_(arguments.size(elsewhere).value_or(0)) {
+    : elsewhere_(size_option(arguments, elsewhere).value_or(0)) {
   for (const char* option : {"--near", "--on", "--in", "--inside"})
     for (const std::string& value : arguments.texts(option)) words_.push_back(read(option, value));
 }

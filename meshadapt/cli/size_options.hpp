@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,9 @@
 #include "ductile/meshadapt/sizes.hpp"
 
 namespace ductile::cli {
+
+/// The option's value as a length that a metric may ask for. Throws UsageError.
+std::optional<double> size_option(const Arguments& arguments, std::string_view name);
 
 /// What --near, --on and --in, or --inside, say, and an option for the size elsewhere. Names and
 /// references are looked up when the mesh is known.

@@ -2,73 +2,76 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
-#include <stdexcept>
+#include <filesystem>
 #include <string>
+#include <vector>
 
+#include "arguments.hpp"
 #include "campaign.hpp"
 
 namespace ductile::campaign {
 namespace {
 
-const char* const help =
-    R"(campaign [OPTION]...: random adaptations, each checked; exit status 1 if any is wrong
-  --program FILE    ductile, to be tried
-  --minutes N       how long (1)
-  --seed S          other seeds, other cases (1)
-  --kind NAME       cases of one kind only
-  --case N          one case, with all checks; its folder is kept
-  --first N         number of the first case (0)
-  --cases N         no more than N cases
-  --limit SECONDS   a run that takes longer is a fault (20)
-  --restless SHARE  of cases that may change at the third call (0.05)
-  --workers N       cases side by side (one per core)
-  --folder FOLDER   where failing cases are kept
-)";
+constexpr std::array<cli::Option, 12> options{{
+    {"--program", "FILE", "ductile, to be tried"},
+    {"--minutes", "N", "how long (default: 1)"},
+    {"--seed", "S", "other seeds, other cases (default: 1)"},
+    {"--kind", "NAME", "cases of one kind only"},
+    {"--case", "N", "one case, with all checks; its folder is kept"},
+    {"--first", "N", "number of the first case (default: 0)"},
+    {"--cases", "N", "no more than N cases"},
+    {"--limit", "SECONDS", "a run that takes longer is a fault (default: 20)"},
+    {"--restless", "SHARE", "of cases that may change at the third call (default: 0.05)"},
+    {"--workers", "N", "cases side by side (default: one per core)"},
+    {"--folder", "FOLDER", "where failing cases are kept (default: campaign)"},
+    {"--help", "", "says this and lists the kinds", "-h"},
+}};
 
-Campaign read_arguments(int count, char** words) {
+/// Of an option that may be as large as can be.
+std::uint64_t count(const cli::Arguments& arguments, const char* name, std::uint64_t otherwise) {
+  const auto value = arguments.text(name);
+  if (!value) return otherwise;
+  std::uint64_t number = 0;
+  const char* const end = value->data() + value->size();
+  const auto [stop, error] = std::from_chars(value->data(), end, number);
+  if (error != std::errc() || stop != end) cli::refuse_value(name, "a whole number", *value);
+  return number;
+}
+
+Campaign campaign_from(const cli::Arguments& arguments) {
+  if (!arguments.operands().empty())
+    throw cli::UsageError("expected options only, found '" + arguments.operands()[0] + "'");
   Campaign campaign;
+  Settings& settings = campaign.settings;
+  settings.program = arguments.text("--program").value_or("ductile");
+  settings.limit_s = arguments.positive("--limit").value_or(settings.limit_s);
+  settings.all_checks = arguments.has("--case");
+  campaign.minutes = arguments.number("--minutes").value_or(campaign.minutes);
+  campaign.seed = count(arguments, "--seed", campaign.seed);
+  campaign.kind = arguments.text("--kind").value_or("");
+  campaign.first = count(arguments, "--case", count(arguments, "--first", campaign.first));
+  campaign.count = settings.all_checks ? 1 : count(arguments, "--cases", campaign.count);
+  campaign.restless_allowed = arguments.number("--restless").value_or(campaign.restless_allowed);
   campaign.workers = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
-  campaign.folder = "campaign";
-  campaign.settings.program = "ductile";
-  for (int i = 1; i < count; i += 2) {
-    const std::string name = words[i];
-    if (i + 1 == count) throw std::invalid_argument("expected a value after " + name);
-    const std::string value = words[i + 1];
-    if (name == "--program")
-      campaign.settings.program = value;
-    else if (name == "--minutes")
-      campaign.minutes = std::stod(value);
-    else if (name == "--seed")
-      campaign.seed = std::stoull(value);
-    else if (name == "--kind")
-      campaign.kind = value;
-    else if (name == "--first")
-      campaign.first = std::stoull(value);
-    else if (name == "--cases")
-      campaign.count = std::stoull(value);
-    else if (name == "--limit")
-      campaign.settings.limit_s = std::stod(value);
-    else if (name == "--restless")
-      campaign.restless_allowed = std::stod(value);
-    else if (name == "--workers")
-      campaign.workers = std::stoi(value);
-    else if (name == "--folder")
-      campaign.folder = value;
-    else if (name == "--case") {
-      campaign.first = std::stoull(value);
-      campaign.count = 1;
-      campaign.workers = 1;
-      campaign.settings.all_checks = true;
-    } else {
-      throw std::invalid_argument("expected an option, found '" + name + "'");
-    }
-  }
-  if (campaign.settings.program.has_parent_path())
-    campaign.settings.program = std::filesystem::absolute(campaign.settings.program);
-  campaign.folder = std::filesystem::absolute(campaign.folder);
+  campaign.workers = arguments.integer("--workers", 1, 4096).value_or(campaign.workers);
+  if (settings.all_checks) campaign.workers = 1;
+  campaign.folder = std::filesystem::absolute(arguments.text("--folder").value_or("campaign"));
+  if (settings.program.has_parent_path())
+    settings.program = std::filesystem::absolute(settings.program);
   return campaign;
+}
+
+void print_help() {
+  std::printf(
+      "Random adaptations, each checked; exit status 1 if any is wrong.\n\nOptions:\n%s\nKinds:",
+      cli::help_lines(options).c_str());
+  for (const std::string& name : kind_names()) std::printf(" %s", name.c_str());
+  std::printf("\n");
 }
 
 }  // namespace
@@ -76,15 +79,14 @@ Campaign read_arguments(int count, char** words) {
 
 int main(int count, char** words) {
   using namespace ductile::campaign;
-  if (count > 1 && std::string(words[1]) == "--help") {
-    std::fputs(help, stdout);
-    std::fputs("kinds:", stdout);
-    for (const std::string& name : kind_names()) std::printf(" %s", name.c_str());
-    std::fputs("\n", stdout);
-    return 0;
-  }
   try {
-    return run_campaign(read_arguments(count, words)) ? 0 : 1;
+    const ductile::cli::Arguments arguments(options,
+                                            std::vector<std::string>(words + 1, words + count));
+    if (arguments.has("--help")) {
+      print_help();
+      return 0;
+    }
+    return run_campaign(campaign_from(arguments)) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "campaign: %s\n", error.what());
     return 2;

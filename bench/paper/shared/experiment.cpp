@@ -34,10 +34,7 @@ bool asks_for_help(const std::vector<std::string>& words) {
 }
 
 void print_help(const ExperimentEntry& entry) {
-  std::printf("%s\n\nOptions:\n", entry.title);
-  for (const cli::Option& option : all_options(entry))
-    std::printf("  %s %s\n      %s\n", std::string(option.name).c_str(),
-                std::string(option.value).c_str(), std::string(option.help).c_str());
+  std::printf("%s\n\nOptions:\n%s", entry.title, cli::help_lines(all_options(entry)).c_str());
 }
 
 Experiment::Setup setup_from(const ExperimentEntry& entry, const std::vector<std::string>& words) {

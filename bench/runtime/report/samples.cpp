@@ -9,13 +9,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include <boost/property_tree/json_parser.hpp>
-#include <boost/property_tree/ptree.hpp>
+#include <nlohmann/json.hpp>
 
 namespace ductile::bench::report {
 namespace {
 
-using Tree = boost::property_tree::ptree;
+using Json = nlohmann::json;
 
 /// Nanoseconds of Google Benchmark's units.
 double ns_of(const std::string& unit) {
@@ -45,32 +44,31 @@ bool is_known(const std::string& key) {
   return known.count(key) > 0;
 }
 
-void add_counters(const Tree& benchmark, Sample& sample) {
-  for (const auto& [key, value] : benchmark) {
-    const auto number = value.get_value_optional<double>();
-    if (is_known(key) || !number) continue;
+void add_counters(const Json& benchmark, Sample& sample) {
+  for (const auto& [key, value] : benchmark.items()) {
+    if (is_known(key) || !value.is_number()) continue;
     if (key == "ping_before_ns") {
-      sample.ping_before_ns = *number;
+      sample.ping_before_ns = value;
     } else if (key == "ping_after_ns") {
-      sample.ping_after_ns = *number;
+      sample.ping_after_ns = value;
     } else {
-      sample.counters[key] = *number;
+      sample.counters[key] = value;
     }
   }
 }
 
-void add_benchmark(const Tree& benchmark, Samples& to) {
-  const auto full_name = benchmark.get<std::string>("name");
-  if (benchmark.get<std::string>("run_type", "iteration") != "iteration") return;
-  const auto name = parse_name(benchmark.get<std::string>("run_name", full_name));
+void add_benchmark(const Json& benchmark, Samples& to) {
+  const std::string full_name = benchmark.at("name");
+  if (benchmark.value("run_type", "iteration") != "iteration") return;
+  const auto name = parse_name(benchmark.value("run_name", full_name));
   if (!name) {
     to.failures.push_back({full_name, "its name is not SUBJECT/CASE/CANDIDATE/threads:N"});
-  } else if (benchmark.get<bool>("error_occurred", false)) {
-    to.failures.push_back({full_name, benchmark.get<std::string>("error_message", "failed")});
+  } else if (benchmark.value("error_occurred", false)) {
+    to.failures.push_back({full_name, benchmark.value("error_message", "failed")});
   } else {
     Sample sample;
     sample.name = *name;
-    sample.ns = benchmark.get<double>("real_time") * ns_of(benchmark.get<std::string>("time_unit"));
+    sample.ns = benchmark.at("real_time").get<double>() * ns_of(benchmark.at("time_unit"));
     if (!std::isfinite(sample.ns) || sample.ns <= 0) {
       to.failures.push_back({full_name, "its time is not above zero"});
       return;
@@ -80,45 +78,39 @@ void add_benchmark(const Tree& benchmark, Samples& to) {
   }
 }
 
-std::string cache_words(const Tree& caches) {
+std::string cache_words(const Json& caches) {
   std::ostringstream words;
-  for (const auto& [unused, cache] : caches)
-    words << (words.tellp() > 0 ? ", " : "") << 'L' << cache.get<int>("level", 0) << ' '
-          << cache.get<std::string>("type", "") << ' ' << cache.get<long>("size", 0) / 1024
-          << " KiB";
+  for (const Json& cache : caches)
+    words << (words.tellp() > 0 ? ", " : "") << 'L' << cache.value("level", 0) << ' '
+          << cache.value("type", "") << ' ' << cache.value("size", 0L) / 1024 << " KiB";
   return words.str();
 }
 
-void add_machine(const Tree& context, std::map<std::string, std::string>& to) {
+void add_machine(const Json& context, std::map<std::string, std::string>& to) {
   static const std::set<std::string> left_out = {"host_name", "executable", "load_avg"};
-  for (const auto& [key, value] : context)
+  for (const auto& [key, value] : context.items())
     if (key == "caches") {
       to.emplace(key, cache_words(value));
-    } else if (left_out.count(key) == 0 && !value.data().empty()) {
-      to.emplace(key, value.data());
+    } else if (left_out.count(key) == 0 && value.is_primitive() && value != "") {
+      to.emplace(key, value.is_string() ? value.get<std::string>() : value.dump());
     }
 }
 
 Samples read_file(const std::filesystem::path& file) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error("it cannot be read");
-  Tree tree;
-  read_json(in, tree);
+  const Json whole = Json::parse(in);
   Samples samples;
-  for (const auto& [unused, benchmark] : tree.get_child("benchmarks"))
-    add_benchmark(benchmark, samples);
-  add_machine(tree.get_child("context"), samples.machine);
+  for (const Json& benchmark : whole.at("benchmarks")) add_benchmark(benchmark, samples);
+  add_machine(whole.at("context"), samples.machine);
   return samples;
 }
 
 /// Why a file is left out.
 std::string reason(const std::exception& error) {
-  const std::string expected = "expected Google Benchmark's JSON, ";
-  if (const auto* wrong = dynamic_cast<const boost::property_tree::json_parser_error*>(&error))
-    return expected + "but line " + std::to_string(wrong->line()) +
-           " is wrong or the file breaks off there (" + wrong->message() + ')';
-  if (dynamic_cast<const boost::property_tree::ptree_error*>(&error) != nullptr)
-    return expected + "but: " + error.what();
+  if (dynamic_cast<const Json::exception*>(&error) != nullptr)
+    return std::string("expected Google Benchmark's JSON, but it is wrong or breaks off: ") +
+           error.what();
   return error.what();
 }
 

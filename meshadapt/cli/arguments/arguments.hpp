@@ -2,24 +2,28 @@
 /// Arguments: a command line taken apart by a table of options. One or two dashes mean the same, so
 /// what Mmg's users type (-hmin 0.1) and GNU's long form (--hmin=0.1) both work. Whatever is wrong
 /// is told by a UsageError that says what was expected and, for an unknown option, which it may be
-/// a slip of, or what to do instead if it is one of Mmg's.
+/// a slip of. The program, the benchmarks and the campaign share it; it needs no library.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "ductile/meshadapt/error.hpp"
-
 namespace ductile::cli {
 
 /// The command line is wrong.
-class UsageError : public meshadapt::InputError {
- public:
-  using meshadapt::InputError::InputError;
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// There is no such option.
+struct UnknownOption : UsageError {
+  UnknownOption(std::string_view option, std::string_view hint);
+  std::string name;  ///< as it was typed, with its dashes
 };
 
 struct Option {
@@ -45,8 +49,6 @@ class Arguments {
   /// Throw UsageError unless the value is such a number, inside the range.
   std::optional<double> positive(std::string_view name) const;
   std::optional<double> number(std::string_view name) const;
-  /// A length that a metric may ask for.
-  std::optional<double> size(std::string_view name) const;
   std::optional<int> integer(std::string_view name, int least, int most) const;
 
  private:
@@ -55,6 +57,20 @@ class Arguments {
   std::vector<std::string> operands_;
   std::map<std::string, std::vector<std::string>, std::less<>> values_of_;  // [as in the table]
 };
+
+/// The number that the option of this name was given. Throws UsageError unless it is a whole one in
+/// the range.
+int whole_number(std::string_view name, const std::string& value, int least, int most);
+
+/// A value of this option is not what was expected. Throws UsageError.
+[[noreturn]] void refuse_value(std::string_view name, const std::string& expected,
+                               const std::string& found);
+
+/// The part of a help page that lists options, a line each: those that have a line of help.
+std::string help_lines(std::span<const Option> options);
+
+/// The word without the dashes that it begins with.
+std::string_view without_dashes(std::string_view word);
 
 /// Least number of letters to insert, remove, replace or exchange with the next to turn a into b.
 std::size_t edit_distance(std::string_view a, std::string_view b);

@@ -4,18 +4,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "ductile/meshadapt/metric_field.hpp"
-#include "mmg_options.hpp"
-
 namespace ductile::cli {
 
 namespace {
-
-/// "--hmin" and "-hmin" are "hmin".
-std::string_view without_dashes(std::string_view word) {
-  word.remove_prefix(std::min(word.find_first_not_of('-'), word.size()));
-  return word;
-}
 
 template <class Number>
 std::optional<Number> parse(std::string_view text) {
@@ -59,21 +50,26 @@ std::string_view nearest_name(std::span<const Option> options, std::string_view 
 }
 
 [[noreturn]] void refuse_unknown(std::span<const Option> options, std::string_view word) {
-  const std::string message = "unknown option " + std::string(word);
-  const std::string_view instead = instead_of_mmg_option(without_dashes(word));
-  if (!instead.empty()) throw UsageError(message + "; " + std::string(instead));
   const std::string_view nearest = nearest_name(options, word);
-  if (nearest.empty()) throw UsageError(message);
-  throw UsageError(message + "; did you mean " + std::string(nearest) + "?");
+  throw UnknownOption(word, nearest.empty() ? "" : "did you mean " + std::string(nearest) + "?");
 }
 
-[[noreturn]] void refuse_value(std::string_view name, const std::string& expected,
-                               const std::string& found) {
+}  // namespace
+
+UnknownOption::UnknownOption(std::string_view option, std::string_view hint)
+    : UsageError("unknown option " + std::string(option) + (hint.empty() ? "" : "; ") +
+                 std::string(hint)),
+      name(option) {}
+
+void refuse_value(std::string_view name, const std::string& expected, const std::string& found) {
   throw UsageError("option " + std::string(name) + ": expected " + expected + ", found '" + found +
                    "'");
 }
 
-}  // namespace
+std::string_view without_dashes(std::string_view word) {
+  word.remove_prefix(std::min(word.find_first_not_of('-'), word.size()));
+  return word;
+}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -160,22 +156,33 @@ std::optional<double> Arguments::positive(std::string_view name) const {
   return parsed;
 }
 
-std::optional<double> Arguments::size(std::string_view name) const {
-  const std::optional<double> value = positive(name);
-  if (value && (*value < meshadapt::smallest_size || *value > meshadapt::largest_size))
-    refuse_value(name, "a size from 1e-75 to 1e75", *text(name));
-  return value;
-}
-
 std::optional<int> Arguments::integer(std::string_view name, int least, int most) const {
   const std::optional<std::string> value = text(name);
   if (!value) return std::nullopt;
-  const std::optional<int> parsed = parse<int>(*value);
+  return whole_number(name, *value, least, most);
+}
+
+int whole_number(std::string_view name, const std::string& value, int least, int most) {
+  const std::optional<int> parsed = parse<int>(value);
   if (!parsed || *parsed < least || *parsed > most)
     refuse_value(name,
                  "a whole number from " + std::to_string(least) + " to " + std::to_string(most),
-                 *value);
-  return parsed;
+                 value);
+  return *parsed;
+}
+
+std::string help_lines(std::span<const Option> options) {
+  constexpr std::size_t width = 22;
+  std::string text;
+  for (const Option& option : options) {
+    if (option.help.empty()) continue;
+    std::string left(option.name);
+    if (!option.alias.empty()) left.append(", ").append(option.alias);
+    if (!option.value.empty()) left.append(" ").append(option.value);
+    left.resize(std::max(width, left.size()), ' ');
+    text.append("  ").append(left).append(" ").append(option.help).append("\n");
+  }
+  return text;
 }
 
 }  // namespace ductile::cli
