@@ -88,7 +88,7 @@ int ductile_geometry_create(const ductile_mesh* mesh, const ductile_options* opt
     made->executor = options->executor;
     made->geometry = std::make_shared<const meshadapt::Geometry>(
         executor, mesh->mesh,
-        meshadapt::GeometryOptions{.tolerance = make.surface_tolerance,
+        meshadapt::GeometryOptions{.tolerance = make.hausdorff_tolerance,
                                    .ridge_angle = make.ridge_angle,
                                    .complete_boundary = make.complete_boundary,
                                    .functions = make.functions});
@@ -104,7 +104,7 @@ int ductile_options_set_geometry(ductile_options* options, const ductile_geometr
     auto& make = options->adapt.make;
     make.geometry = geometry == nullptr ? nullptr : geometry->geometry;
     if (geometry == nullptr) return;
-    make.surface_tolerance = geometry->geometry->tolerance();
+    make.hausdorff_tolerance = geometry->geometry->tolerance();
     make.functions.clear();
   });
 }

@@ -47,7 +47,7 @@ constexpr std::array<Named, 18> all_options{{
     {"hmax", [](Options& o, const Text&, double x) { o.adapt.largest_size = x; }},
     {"hgrad", [](Options& o, const Text&, double x) { o.adapt.gradation = x; }},
     {"hgradreq", [](Options& o, const Text&, double x) { o.adapt.required_gradation = x; }},
-    {"hausd", [](Options& o, const Text&, double x) { o.adapt.make.surface_tolerance = x; }},
+    {"hausd", [](Options& o, const Text&, double x) { o.adapt.make.hausdorff_tolerance = x; }},
     {"A", [](Options& o, const Text& n, double x) { o.adapt.curved_sizes = flag(n, x); }},
     {"ar", [](Options& o, const Text&, double x) { o.adapt.make.ridge_angle = x; }},
     {"iterations",

@@ -28,7 +28,7 @@ Parameters parameters_of(const Communicator& comm, DM dm) {
   adapt.required_gradation = 2.3;
   const double hausdorff = parameter<PetscReal>(dm, DMPlexMetricGetHausdorffNumber);
   if (comm.size() == 1 && hausdorff != hausdorff_of_nobody)
-    adapt.make.surface_tolerance = hausdorff;
+    adapt.make.hausdorff_tolerance = hausdorff;
   const double smallest = parameter<PetscReal>(dm, DMPlexMetricGetMinimumMagnitude);
   const double largest = parameter<PetscReal>(dm, DMPlexMetricGetMaximumMagnitude);
   if (smallest > no_smallest) adapt.smallest_size = smallest;

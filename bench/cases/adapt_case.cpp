@@ -57,7 +57,7 @@ int start_cells(std::string_view name) {
 
 /// How far curved boundaries may go astray: twice as far as chords as long as asked for are from
 /// the arc that bends most.
-double surface_tolerance(std::string_view name) {
+double hausdorff_tolerance(std::string_view name) {
   if (name == "ring2d") return 2e-4;
   return name == "dome3d" ? 5e-3 : 0;
 }
@@ -138,8 +138,8 @@ AdaptCase make_case_in(const runtime::Executor& executor, const CaseInfo& info, 
   made.complexity = factor * info.complexity;
   made.calls = info.calls;
   made.has_peers = info.has_peers;
-  made.surface_tolerance = surface_tolerance(info.name) / (growth * growth);
-  made.start = made.surface_tolerance > 0 ? curved_mesh(Dim, cells) : regular_mesh(Dim, cells);
+  made.hausdorff_tolerance = hausdorff_tolerance(info.name) / (growth * growth);
+  made.start = made.hausdorff_tolerance > 0 ? curved_mesh(Dim, cells) : regular_mesh(Dim, cells);
   if (info.name == "layer3d") made.start = layer_mesh<Dim>(made.start, formula);
   made.start.name = "start";
   made.metric_on = [formula](const runtime::Executor& on, const AnyMesh& mesh) {
@@ -163,7 +163,7 @@ AdaptCase make_case(const runtime::Executor& given, const std::string& name) {
 }
 
 bool is_sound(const runtime::Executor& executor, const AdaptCase& adapt_case, const AnyMesh& mesh) {
-  const double tolerance = adapt_case.surface_tolerance;
+  const double tolerance = adapt_case.hausdorff_tolerance;
   return check_mesh(executor, mesh).empty() &&
          check_domain(executor, adapt_case.start, mesh, tolerance).empty() &&
          (tolerance == 0 || check_boundary(executor, mesh).empty());

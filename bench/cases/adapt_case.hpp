@@ -32,7 +32,7 @@ struct AdaptCase {
   double complexity = 0;
   int calls = 1;
   bool has_peers = false;
-  double surface_tolerance = 0;  ///< of MakeMeshOptions
+  double hausdorff_tolerance = 0;  ///< of MakeMeshOptions
   meshadapt::AnyMesh start;
   /// The formula at the vertices of a mesh: one symmetric field.
   std::function<meshadapt::AnyField(const runtime::Executor&, const meshadapt::AnyMesh&)> metric_on;

@@ -77,9 +77,9 @@ std::vector<Pair> run_pairs(const AdaptCase& made, const fs::path& mmg,
       "--threads",     "1",     "--no-metric", "-v",   "0"};
   std::vector<std::string> mmg_words{mmg,    "-in",    mesh, "-sol", metric, "-out",
                                      theirs, "-hgrad", "-1", "-v",   "0"};
-  if (made.surface_tolerance > 0) {
+  if (made.hausdorff_tolerance > 0) {
     std::ostringstream tolerance;  // however small
-    tolerance << made.surface_tolerance;
+    tolerance << made.hausdorff_tolerance;
     for (auto* words : {&ductile_words, &mmg_words})
       words->insert(words->end(), {"-hausd", tolerance.str()});
   }

@@ -93,7 +93,7 @@ Sampler::Sampler(const AdaptCase& adapt_case)
 
 meshadapt::AdaptOptions Sampler::options(Mode mode) const {
   return {.by_colours = mode == Mode::colours,
-          .make = {.surface_tolerance = case_.surface_tolerance}};
+          .make = {.hausdorff_tolerance = case_.hausdorff_tolerance}};
 }
 
 double Sampler::first_call_alone() const {

@@ -22,8 +22,8 @@ namespace {
 
 void expect_rules(const Rules& rules) {
   for (const double rule :
-       {rules.short_edge, rules.long_edge, rules.stretched_edge, rules.accepted_shape,
-        rules.kept_shape, rules.poor_shape, rules.layer_split_keeps, rules.split_keeps,
+       {rules.short_edge, rules.long_edge, rules.stretched_edge, rules.accepted_quality,
+        rules.kept_quality, rules.poor_quality, rules.layer_split_keeps, rules.split_keeps,
         rules.overlong_edge, rules.shortest_split})
     if (!(rule >= 0 && rule <= 1e6))
       throw InputError("rules: expected thresholds from 0 to 1e6, found " + number(rule));
@@ -64,11 +64,11 @@ void expect_options(const AdaptOptions& options) {
   expect_gradation(options.gradation);
   expect_gradation(options.required_gradation);
   expect_rules(options.rules);
-  if (options.make.geometry && !(options.make.surface_tolerance > 0))
-    throw InputError("geometry: expected a surface_tolerance with it, " +
+  if (options.make.geometry && !(options.make.hausdorff_tolerance > 0))
+    throw InputError("geometry: expected a hausdorff_tolerance with it, " +
                      number(options.make.geometry->tolerance()) + ", found none");
-  if (options.curved_sizes && !(options.make.surface_tolerance > 0))
-    throw InputError("curved_sizes: expected a surface_tolerance with it, found none");
+  if (options.curved_sizes && !(options.make.hausdorff_tolerance > 0))
+    throw InputError("curved_sizes: expected a hausdorff_tolerance with it, found none");
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ template <int Dim>
 void limit_growth(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                   const SizeLimits& limits, std::vector<Metric<Dim>>& metric_of) {
   const auto& [options, name, warnings] = limits;
-  if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.surface_tolerance, metric_of);
+  if (mesh.surface) bound_curved_sizes(executor, mesh, options.make.hausdorff_tolerance, metric_of);
   const double factor = growth_of(options);
   if (factor == 0) return;
   const auto report = limit_gradation(executor, metric_of, mesh, {.factor = factor});
@@ -121,7 +121,8 @@ void expect_possible(const runtime::Executor& executor, const Mesh<Dim>& mesh,
 template <int Dim>
 std::size_t fixed_vertices(const runtime::Executor& executor, const Mesh<Dim>& mesh) {
   const auto is_fixed = [&](std::size_t v) {
-    return std::size_t{mesh.kind_of[v].freedom == 0 && mesh.vertex_alive(static_cast<VertexId>(v))};
+    return std::size_t{mesh.kind_of[v].class_dimension == 0 &&
+                       mesh.vertex_alive(static_cast<VertexId>(v))};
   };
   return runtime::parallel_reduce(executor, mesh.vertex_slots(), std::size_t{0}, is_fixed,
                                   std::plus<>());
@@ -172,9 +173,9 @@ struct Attempt {
 };
 
 template <int Dim>
-bool has_faced_patches(const Mesh<Dim>& mesh) {
+bool has_crack_sides(const Mesh<Dim>& mesh) {
   return std::any_of(mesh.patches.begin(), mesh.patches.end(),
-                     [](const Patch<Dim>& patch) { return patch.faced; });
+                     [](const Patch<Dim>& patch) { return patch.crack_side; });
 }
 
 /// Adapts; a mesh that came adapted, and is better than what came out, is set up again and kept.
@@ -247,7 +248,7 @@ Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const 
     warnings.clear();
     Neighbours<Dim> neighbours;
     Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
-    may_meet = mesh.surface || has_faced_patches(mesh);
+    may_meet = mesh.surface || has_crack_sides(mesh);
     fixed = fixed_vertices(executor, mesh);
     auto metric_of = metrics_of<Dim>(executor, metric, mesh, options, warnings);
     expect_possible(executor, mesh, metric_of, metric.name, options);

@@ -79,10 +79,10 @@ Sizes lasting(const AnyMesh& mesh, const Sizes& sizes) {
 MakeMeshOptions with_geometry_of(const Executor& executor, const AnyMesh& mesh,
                                  MakeMeshOptions options) {
   options.keep_facets_at.clear();  // of vertices of the first mesh
-  if (options.surface_tolerance > 0 && !options.geometry)
+  if (options.hausdorff_tolerance > 0 && !options.geometry)
     options.geometry = std::make_shared<const Geometry>(
         executor, mesh,
-        GeometryOptions{.tolerance = options.surface_tolerance,
+        GeometryOptions{.tolerance = options.hausdorff_tolerance,
                         .ridge_angle = options.ridge_angle,
                         .complete_boundary = options.complete_boundary,
                         .functions = std::exchange(options.functions, {})});

@@ -72,7 +72,7 @@ Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& opt
       options_(options),
       mesh_(with_metrics(executor, std::move(mesh), metric_of, neighbours)),
       background_(executor, mesh_, std::move(neighbours)) {
-  update_shapes(executor_, mesh_);
+  update_qualities(executor_, mesh_);
 }
 
 template <int Dim>
@@ -136,9 +136,9 @@ Standing Adapter<Dim>::standing() const {
 
 template <int Dim>
 std::size_t Adapter<Dim>::elements_below(double mean_ratio) const {
-  const double shape = shape_of_mean_ratio<Dim>(mean_ratio);
+  const double quality = quality_of_mean_ratio<Dim>(mean_ratio);
   const auto is_below = [&](std::size_t e) -> std::size_t {
-    return mesh_.alive(static_cast<ElementId>(e)) && mesh_.shape_of[e] < shape;
+    return mesh_.alive(static_cast<ElementId>(e)) && mesh_.quality_of[e] < quality;
   };
   return runtime::parallel_reduce(executor_, mesh_.element_slots(), std::size_t{0}, is_below,
                                   std::plus<>());
@@ -195,7 +195,7 @@ void Adapter<Dim>::take_metrics() {
     mesh_.host_of[v] = host;
     mesh_.site_of[v] = make_site(mesh_.site_of[v].position, metric);
   });
-  update_shapes(executor_, mesh_);
+  update_qualities(executor_, mesh_);
   survey_.forget();
   seen_by_coarsen_ = seen_by_refine_ = seen_by_swap_ = seen_by_smooth_ = 0;
 }
@@ -247,7 +247,7 @@ double Adapter<Dim>::share(std::size_t changes) const {
 template <int Dim>
 Rules Adapter<Dim>::rules() const {
   Rules rules = options_.rules;
-  if (aim_ == Aim::approach) rules.kept_shape *= Tuning<Dim>::kept_shape;
+  if (aim_ == Aim::approach) rules.kept_quality *= Tuning<Dim>::kept_quality;
   if (aim_ == Aim::rearrange) {
     rules.stretched_edge = Tuning<Dim>::stretched_edge;
     rules.short_edge *= eager;
@@ -378,8 +378,8 @@ std::size_t Adapter<Dim>::coarsen() {
   std::size_t changes = 0;
   for (int sweep = 0; sweep < 8; ++sweep) {
     const std::uint32_t after = end_epoch(seen_by_coarsen_);
-    const auto work = Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey_for(long_edge()),
-                                                     rules().short_edge, after);
+    const auto work = Coarsen<Dim>::short_edge_vertices(executor_, mesh_, survey_for(long_edge()),
+                                                        rules().short_edge, after);
     Coarsen<Dim> op(mesh_, rules());
     if (options_.by_colours) op.defer_lists(executor_);
     const RoundsReport rounds = run_by_conflicts(op, work);

@@ -91,10 +91,10 @@ class HeldEdges {
   /// May a vertex be moved onto another, as far as required entities and the boundary, along which
   /// it stays, are concerned?
   bool may_go(VertexId gone, VertexId kept) const {
-    const int freedom = mesh_.kind_of[gone].freedom;
-    if (freedom == 0 || is_required(gone)) return false;
-    if (freedom == Dim) return true;
-    if (Dim == 3 && freedom == 1) return mesh_.curve_of(gone, kept) != 0;
+    const int class_dimension = mesh_.kind_of[gone].class_dimension;
+    if (class_dimension == 0 || is_required(gone)) return false;
+    if (class_dimension == Dim) return true;
+    if (Dim == 3 && class_dimension == 1) return mesh_.curve_of(gone, kept) != 0;
     bool on_patch = false;
     visit_shell(mesh_, gone, kept, [&](ElementId e) {
       each_patch(

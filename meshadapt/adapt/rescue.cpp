@@ -22,8 +22,8 @@ Rescue<Dim>::Rescue(const runtime::Executor& executor, const AnyMesh& input,
       input_(input),
       options_(options),
       from_(options.complete_boundary ? BoundaryFrom::elements : BoundaryFrom::listed_facets),
-      tolerance_(options.surface_tolerance),
-      distance_(options.surface_tolerance) {}
+      tolerance_(options.hausdorff_tolerance),
+      distance_(options.hausdorff_tolerance) {}
 
 template <int Dim>
 bool Rescue<Dim>::accepts(const AnyMesh& adapted) {
@@ -32,10 +32,10 @@ bool Rescue<Dim>::accepts(const AnyMesh& adapted) {
   is_right_ = faults.empty();
   if (is_right_ || options_.lock_boundary) return true;
   if (first_fault_.empty()) first_fault_ = faults.front();
-  if (options_.surface_tolerance == 0)
+  if (options_.hausdorff_tolerance == 0)
     options_.lock_boundary = true;
   else if (attempts_ >= most_local_attempts || !keeps_more(adapted))
-    options_.surface_tolerance = 0;
+    options_.hausdorff_tolerance = 0;
   return false;
 }
 
@@ -58,7 +58,7 @@ template <int Dim>
 void Rescue<Dim>::warn(std::vector<std::string>& warnings) const {
   if (attempts_ < 2 || !is_right_) return;
   std::string kept = "all facets of the boundary";
-  if (options_.surface_tolerance > 0)
+  if (options_.hausdorff_tolerance > 0)
     kept = "facets at " + std::to_string(options_.keep_facets_at.size()) +
            " vertices of curved boundaries";
   else if (!options_.lock_boundary)

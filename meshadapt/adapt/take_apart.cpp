@@ -170,7 +170,7 @@ MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
     (arrays.release(spent), ...);
     spent.give_back(executor);
   };
-  release(mesh.shape_of, mesh.changed_at, mesh.host_of, mesh.entity_of);
+  release(mesh.quality_of, mesh.changed_at, mesh.host_of, mesh.entity_of);
   MeshWithMetric result;
   result.mesh.dimension = Dim;
   const Ids vertices = order_of_vertices(executor, mesh, none);

@@ -8,7 +8,7 @@
 
 namespace ductile::meshadapt {
 
-/// How much is done for better shapes.
+/// How much is done for better qualities.
 struct Care {
   double calm;   ///< share of changes below which the mesh is near the metric
   int polishes;  ///< passes
@@ -25,7 +25,7 @@ struct Tuning<2> {
   static constexpr double stages[] = {1};
   static constexpr Care normal{.calm = 0.03, .polishes = 1, .far = 0.16};
   static constexpr Care thorough{.calm = 0.03, .polishes = 2, .far = 0.08};
-  static constexpr double kept_shape = 0.5;      ///< of Rules, on the way to the metric
+  static constexpr double kept_quality = 0.5;    ///< of Rules, on the way to the metric
   static constexpr double stretched_edge = 1.7;  ///< as far as rearranging may lengthen edges
   static constexpr int rearrangements = 4;       ///< passes
   static constexpr double swap_below = 0.9;      ///< mean ratio of elements that are swapped
@@ -42,7 +42,7 @@ struct Tuning<3> {
   static constexpr double stages[] = {std::numeric_limits<double>::infinity(), 2.5, 1.7, 1.25, 1};
   static constexpr Care normal{.calm = 0.1, .polishes = 1, .far = 0.2};
   static constexpr Care thorough{.calm = 0.05, .polishes = 2, .far = 0.08};
-  static constexpr double kept_shape = 0.2;
+  static constexpr double kept_quality = 0.2;
   static constexpr double stretched_edge = 1.55;
   static constexpr int rearrangements = 2;
   static constexpr double swap_below = 0.8;

@@ -155,7 +155,7 @@ double rough_measure(const AnyMesh& mesh, double roughness) {
 /// How long the pinches are, where more than two facets of the boundary meet, in 2D how many there
 /// are; each as often as there is a pair of facets too many.
 template <int Dim>
-double pinched_length(const Executor& executor, const AnyMesh& mesh, BoundaryFrom from) {
+double non_manifold_length(const Executor& executor, const AnyMesh& mesh, BoundaryFrom from) {
   const BoundarySurface<Dim> surface(executor, sides_of<Dim>(executor, mesh, from));
   double sum = 0;
   surface.each_meeting([&](std::span<const BoundaryJoint> joints) {
@@ -173,11 +173,11 @@ template <int Dim>
 class DomainChecker {
  public:
   DomainChecker(const Executor& executor, const AnyMesh& before, const AnyMesh& after,
-                double surface_tolerance)
+                double hausdorff_tolerance)
       : executor_(executor),
         before_(before),
         after_(after),
-        surface_tolerance_(surface_tolerance),
+        hausdorff_tolerance_(hausdorff_tolerance),
         old_(measures<Dim>(before)),
         now_(measures<Dim>(after)) {}
 
@@ -200,7 +200,7 @@ class DomainChecker {
     std::vector<std::string> faults;
     const double allowed = 1e-9 * domain + slack * boundary;
     compare("the domain measures ", total(now_.regions), domain,
-            allowed + surface_tolerance_ * boundary, faults);
+            allowed + hausdorff_tolerance_ * boundary, faults);
     compare_regions(allowed, faults);
     // The rim of a patch of facets: two points in 2D, in 3D a line about as long as the mesh.
     const double rim = Dim == 2 ? 2 : 4 * scale.extent;
@@ -211,7 +211,7 @@ class DomainChecker {
     auto found = faults_of_facets(old_.facets, of_facets);
     if (!found.empty()) found = faults_of_facets(measures_listed_once<Dim>(before_), of_facets);
     faults.insert(faults.end(), found.begin(), found.end());
-    compare_pinches(faults);
+    compare_non_manifold(faults);
     return faults;
   }
 
@@ -220,7 +220,7 @@ class DomainChecker {
                            old_.regions.begin()->first == now_.regions.begin()->first;
     if (is_domain) return;
     std::map<std::int32_t, double> boundary_of;
-    if (surface_tolerance_ > 0) boundary_of = boundary_measures<Dim>(executor_, before_);
+    if (hausdorff_tolerance_ > 0) boundary_of = boundary_measures<Dim>(executor_, before_);
     std::map<std::int32_t, double> expected = old_.regions;
     for (const auto& [reference, value] : now_.regions) expected.try_emplace(reference, 0.0);
     for (const auto& [reference, value] : expected) {
@@ -229,7 +229,7 @@ class DomainChecker {
         faults.push_back(what + " are gone");
       else
         compare(what + " measure ", now_.regions[reference], value,
-                allowed + surface_tolerance_ * boundary_of[reference], faults);
+                allowed + hausdorff_tolerance_ * boundary_of[reference], faults);
     }
   }
 
@@ -239,7 +239,7 @@ class DomainChecker {
     std::vector<std::string> faults;
     for (auto [reference, value] : expected) {
       const std::string what = "facets of reference " + std::to_string(reference);
-      if (surface_tolerance_ > 0) {
+      if (hausdorff_tolerance_ > 0) {
         if (!(now_.facets[reference] > 0)) faults.push_back(what + " are gone");
         continue;
       }
@@ -253,11 +253,11 @@ class DomainChecker {
 
   /// Curves along which the boundary met itself before may be shorter now, or end elsewhere by
   /// rounding; those that bend may be longer.
-  void compare_pinches(std::vector<std::string>& faults) const {
-    const double now = pinched_length<Dim>(executor_, after_, BoundaryFrom::listed_facets);
+  void compare_non_manifold(std::vector<std::string>& faults) const {
+    const double now = non_manifold_length<Dim>(executor_, after_, BoundaryFrom::listed_facets);
     if (now == 0) return;
-    const double expected = pinched_length<Dim>(executor_, before_, BoundaryFrom::elements);
-    if (now <= expected * (surface_tolerance_ == 0 ? 1 + 1e-6 : 1.5)) return;
+    const double expected = non_manifold_length<Dim>(executor_, before_, BoundaryFrom::elements);
+    if (now <= expected * (hausdorff_tolerance_ == 0 ? 1 + 1e-6 : 1.5)) return;
     std::ostringstream text;
     text << "the boundary meets itself " << (Dim == 2 ? "at vertices, " : "along edges, ") << now
          << " in all, expected " << expected;
@@ -267,14 +267,14 @@ class DomainChecker {
   const Executor& executor_;
   const AnyMesh& before_;
   const AnyMesh& after_;
-  double surface_tolerance_;
+  double hausdorff_tolerance_;
   Measures old_, now_;
 };
 
 }  // namespace
 
 std::vector<std::string> check_domain(const Executor& executor, const AnyMesh& before,
-                                      const AnyMesh& after, double surface_tolerance) {
+                                      const AnyMesh& after, double hausdorff_tolerance) {
   for (const AnyMesh* mesh : {&before, &after}) {
     expect_coordinates(*mesh);
     expect_references(*mesh);
@@ -284,8 +284,8 @@ std::vector<std::string> check_domain(const Executor& executor, const AnyMesh& b
     throw InputError(after.name + ": expected dimension " + std::to_string(before.dimension) +
                      ", that of " + before.name + ", found " + std::to_string(after.dimension));
   if (before.dimension == 2)
-    return DomainChecker<2>(executor, before, after, surface_tolerance).run();
-  return DomainChecker<3>(executor, before, after, surface_tolerance).run();
+    return DomainChecker<2>(executor, before, after, hausdorff_tolerance).run();
+  return DomainChecker<3>(executor, before, after, hausdorff_tolerance).run();
 }
 
 }  // namespace ductile::meshadapt

@@ -23,7 +23,7 @@ class StructureChecker {
 
   std::vector<std::string> run() {
     if (!check_corners() || !check_lists()) return problems_.take();
-    check_shapes();
+    check_qualities();
     check_facets();
     if (!check_numbers()) return problems_.take();
     check_flatness();
@@ -102,7 +102,7 @@ class StructureChecker {
            good;
   }
 
-  void check_shapes() {
+  void check_qualities() {
     no_element(
         [&](ElementId e) {
           std::array<Vector<Dim>, Dim + 1> p;
@@ -113,11 +113,11 @@ class StructureChecker {
         " has no positive volume");
     no_element(
         [&](ElementId e) {
-          const auto now = static_cast<float>(mesh_.shape_at(mesh_.corners_of[e]));
+          const auto now = static_cast<float>(mesh_.quality_at(mesh_.corners_of[e]));
           return std::isfinite(now) &&
-                 !(std::abs(mesh_.shape_of[e] - now) <= 1e-5F * std::abs(now));
+                 !(std::abs(mesh_.quality_of[e] - now) <= 1e-5F * std::abs(now));
         },
-        "'s shape is not up to date");
+        "'s quality is not up to date");
   }
 
   // ---- Facets ----
@@ -379,14 +379,15 @@ class StructureChecker {
 
   bool misjudged(VertexId v) const {
     const VertexKind& kind = mesh_.kind_of[v];
-    if (kind.freedom == 0) return false;
+    if (kind.class_dimension == 0) return false;
     const Surroundings around = surroundings(v);
     if (kind.corner || kind.required || around.required) return true;
     std::size_t links = 0;
     if constexpr (Dim == 3) links = mesh_.links_of.of(v).size();
-    if (kind.freedom == Dim) return !around.patches.empty() || links != 0;
-    if (kind.freedom == Dim - 1) return around.patches != Ids{mesh_.entity_of[v]} || links != 0;
-    return kind.freedom != 1 || misjudged_on_curve(v, around.patches);
+    if (kind.class_dimension == Dim) return !around.patches.empty() || links != 0;
+    if (kind.class_dimension == Dim - 1)
+      return around.patches != Ids{mesh_.entity_of[v]} || links != 0;
+    return kind.class_dimension != 1 || misjudged_on_curve(v, around.patches);
   }
 
   /// A vertex that moves along a curve: the curve goes on straight, between the same patches.

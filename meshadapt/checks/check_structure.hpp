@@ -11,9 +11,9 @@
 namespace ductile::meshadapt {
 
 /// As check_mesh() of an AnyMesh for a mesh that is being adapted, entities numbered from 0 as in
-/// memory. Checked as well: the lists of vertices agree with the corners of elements, shapes are up
-/// to date, facets carry the same patch on both sides, patches are flat, curves straight, and what
-/// vertices may do fits what they lie on. Slower; for tests and debugging.
+/// memory. Checked as well: the lists of vertices agree with the corners of elements, qualities are
+/// up to date, facets carry the same patch on both sides, patches are flat, curves straight, and
+/// what vertices may do fits what they lie on. Slower; for tests and debugging.
 template <int Dim>
 std::vector<std::string> check_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
 

@@ -51,11 +51,11 @@ std::vector<std::string> check_topology(const runtime::Executor& executor, const
 }
 
 std::vector<std::string> check_adapted(const runtime::Executor& executor, const AnyMesh& before,
-                                       const AnyMesh& after, double surface_tolerance) {
+                                       const AnyMesh& after, double hausdorff_tolerance) {
   auto faults = check_mesh(executor, after);
-  if (faults.empty()) faults = check_domain(executor, before, after, surface_tolerance);
+  if (faults.empty()) faults = check_domain(executor, before, after, hausdorff_tolerance);
   if (faults.empty()) faults = check_topology(executor, before, after);
-  if (!faults.empty() || surface_tolerance == 0) return faults;
+  if (!faults.empty() || hausdorff_tolerance == 0) return faults;
   faults = check_boundary(executor, after);
   if (!faults.empty() && !check_boundary(executor, before).empty()) faults.clear();
   return faults;

@@ -200,7 +200,7 @@ void set_options(AdaptOptions& adapt, const Arguments& arguments) {
   adapt.swap = !arguments.has("-noswap");
   adapt.insert = !arguments.has("-noinsert");
   adapt.make.lock_boundary = arguments.has("-nosurf");
-  adapt.make.surface_tolerance = arguments.size("-hausd").value_or(0);
+  adapt.make.hausdorff_tolerance = arguments.size("-hausd").value_or(0);
   adapt.make.ridge_angle = arguments.positive("-ar").value_or(adapt.make.ridge_angle);
   if (adapt.make.ridge_angle >= 90)
     throw UsageError("option -ar: expected an angle of less than 90 degrees, found '" +
@@ -310,7 +310,7 @@ AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const 
                                           : meshadapt::adapt_to_sizes(executor, mesh, sizes, adapt);
   if (adapted.report.checked) return adapted;
   const auto faults =
-      meshadapt::check_adapted(executor, mesh, adapted.mesh, job.adapt.make.surface_tolerance);
+      meshadapt::check_adapted(executor, mesh, adapted.mesh, job.adapt.make.hausdorff_tolerance);
   if (!faults.empty())
     throw meshadapt::Error("the adapted mesh is not valid (" + faults.front() +
                            "); nothing was written; please report this with its input");
@@ -366,7 +366,7 @@ std::shared_ptr<const meshadapt::Geometry> read_geometry(const Executor& executo
   const MakeMeshOptions& make = job.adapt.make;
   return std::make_shared<const meshadapt::Geometry>(
       executor, meshadapt::read_mesh(*job.geometry, &warnings),
-      meshadapt::GeometryOptions{.tolerance = make.surface_tolerance,
+      meshadapt::GeometryOptions{.tolerance = make.hausdorff_tolerance,
                                  .ridge_angle = make.ridge_angle,
                                  .complete_boundary = make.complete_boundary});
 }
@@ -394,8 +394,9 @@ int work(const Executor& executor, Job job) {
       {.before = job.json || job.verbosity > 1,
        .after = job.json || job.verbosity > 0,
        .expects_lengths = job.adapt.insert,
-       .keeps_surface = job.adapt.make.surface_tolerance == 0 && !job.adapt.make.lock_boundary,
-       .surface_tolerance = job.adapt.make.lock_boundary ? 0 : job.adapt.make.surface_tolerance});
+       .keeps_surface = job.adapt.make.hausdorff_tolerance == 0 && !job.adapt.make.lock_boundary,
+       .hausdorff_tolerance =
+           job.adapt.make.lock_boundary ? 0 : job.adapt.make.hausdorff_tolerance});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   const std::string said = job.verbosity > 0 ? what_was_done(job, summary) : std::string();
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string(), warnings);

@@ -159,8 +159,8 @@ std::vector<std::string> advice(const meshadapt::MeshStatistics& statistics,
   const AdaptReport& report = after.report;
   std::vector<std::string> all{advice_on_lengths(statistics)};
   if (options.keeps_surface) all.push_back(advice_on_surface(statistics, report));
-  if (options.surface_tolerance > 0) {
-    all.push_back(advice_on_tolerance(statistics, report, options.surface_tolerance));
+  if (options.hausdorff_tolerance > 0) {
+    all.push_back(advice_on_tolerance(statistics, report, options.hausdorff_tolerance));
     all.push_back(advice_on_ridges(statistics, report, after.mesh.vertex_count()));
   }
   std::erase(all, "");

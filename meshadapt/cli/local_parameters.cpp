@@ -50,13 +50,13 @@ bool has(const AnyMesh& mesh, const LocalSize& local) {
 }
 
 void warn(const std::string& file, const std::vector<LocalSize>& local_sizes, const AnyMesh& mesh,
-          double surface_tolerance, Warnings& warnings) {
+          double hausdorff_tolerance, Warnings& warnings) {
   std::string missing;
   bool tolerances = false;
   for (const LocalSize& local : local_sizes) {
     if (!has(mesh, local))
       missing += (missing.empty() ? "" : ", ") + std::to_string(local.reference);
-    tolerances |= local.surface_tolerance > 0 && local.surface_tolerance != surface_tolerance;
+    tolerances |= local.hausdorff_tolerance > 0 && local.hausdorff_tolerance != hausdorff_tolerance;
   }
   if (!missing.empty())
     warnings.push_back(file + ": nothing in the mesh has the references " + missing);
@@ -87,7 +87,7 @@ std::vector<LocalSize> local_parameters(const std::optional<fs::path>& given, co
       throw meshadapt::InputError(file->string() + ": expected entities of a mesh of dimension " +
                                   std::to_string(mesh.dimension) + ", found tetrahedra");
   if (!given) warnings.push_back(file->string() + ": local parameters found; they bound sizes");
-  warn(file->string(), local_sizes, mesh, adapt.make.surface_tolerance, warnings);
+  warn(file->string(), local_sizes, mesh, adapt.make.hausdorff_tolerance, warnings);
   return local_sizes;
 }
 

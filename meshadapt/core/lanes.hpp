@@ -16,8 +16,8 @@ namespace ductile::meshadapt {
 inline constexpr std::size_t lane_count = 8;
 template <class Number>
 using LanesIn = std::array<Number, lane_count>;
-using Lanes = LanesIn<double>;      ///< one number of each of so many elements
-using ShapeLanes = LanesIn<float>;  ///< their shapes, as a mesh keeps them
+using Lanes = LanesIn<double>;        ///< one number of each of so many elements
+using QualityLanes = LanesIn<float>;  ///< their qualities, as a mesh keeps them
 template <int Size>
 using LanesOf = std::array<Lanes, Size>;  ///< a vector or tensor of each
 
@@ -31,9 +31,9 @@ template <int Dim>
 }
 
 /// 1 in the first lanes, 0 in those after them.
-inline ShapeLanes first_lanes(std::size_t count) {
+inline QualityLanes first_lanes(std::size_t count) {
   static constexpr std::array<float, 2 * lane_count> steps{1, 1, 1, 1, 1, 1, 1, 1};
-  ShapeLanes lanes;
+  QualityLanes lanes;
   std::copy_n(steps.begin() + (lane_count - std::min(count, lane_count)), lane_count,
               lanes.begin());
   return lanes;

@@ -1,6 +1,6 @@
 /// @file
 /// Quality of elements, and lengths of edges, in the metric. A quality of 1 is ideal, towards 0 the
-/// element is degenerate. The kernels compare it as shape(), which needs no cubic root; reports
+/// element is degenerate. The kernels compare it as quality(), which needs no cubic root; reports
 /// show mean_ratio(), which orders elements alike.
 #pragma once
 
@@ -82,7 +82,7 @@ template <int Dim>
   return Dim == 2 ? square * square : square * square * square;
 }
 
-/// The metric that an element is judged by, up to a factor, which shapes do not depend on.
+/// The metric that an element is judged by, up to a factor, which qualities do not depend on.
 template <int Dim>
 struct ElementMetric {
   Metric<Dim> metric;
@@ -123,9 +123,9 @@ template <int Dim>
   return (Dim + 1) * squares - squared_length(metric, sum);
 }
 
-/// Shape from the metric volume, times 2 in 2D or 6 in 3D, and the sum of squared edge lengths.
+/// Quality from the metric volume, times 2 in 2D or 6 in 3D, and the sum of squared edge lengths.
 template <int Dim, std::floating_point Number>
-Number shape_from(Number volume, Number squares) {
+Number quality_from(Number volume, Number squares) {
   constexpr auto root3 = std::numbers::sqrt3_v<Number>;
   if constexpr (Dim == 2)
     return 2 * root3 * volume / squares;
@@ -133,29 +133,29 @@ Number shape_from(Number volume, Number squares) {
     return 12 * root3 * volume / (squares * std::sqrt(squares));
 }
 
-/// Shape of an element in its mean metric: 4 sqrt(3) A / (sum of squared lengths) in 2D; the
+/// Quality of an element in its mean metric: 4 sqrt(3) A / (sum of squared lengths) in 2D; the
 /// volume-length ratio 72 sqrt(3) V / (sum of squared lengths)^(3/2) in 3D (Parthasarathy, Graichen
 /// & Hathaway, Finite Elem. Anal. Des. 15, 1994). At most 1, for a regular element whose corners'
 /// metrics differ by factors; 0 or less for one that is not certain to have a positive volume.
 template <int Dim>
-double shape(const std::array<const Site<Dim>*, Dim + 1>& corner) {
+double quality(const std::array<const Site<Dim>*, Dim + 1>& corner) {
   std::array<Vector<Dim>, Dim + 1> p;
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
   const double determinant = certain_determinant<Dim>(p);
   if (!(determinant > 0)) return determinant;
   const auto [metric, scale] = mean_metric<Dim>(corner);
-  return shape_from<Dim>(metric_volume<Dim>(determinant, scale),
-                         sum_of_squared_lengths<Dim>(metric, corner));
+  return quality_from<Dim>(metric_volume<Dim>(determinant, scale),
+                           sum_of_squared_lengths<Dim>(metric, corner));
 }
 
-/// What shape() is made of; a volume of 0 if shape(corner) > bar does not hold, which is decided
-/// without the root and the division; bar is not negative.
+/// What quality() is made of; a volume of 0 if quality(corner) > bar does not hold, which is
+/// decided without the root and the division; bar is not negative.
 struct VolumeAndSquares {
   double volume = 0, squares = 0;
 };
 /// See VolumeAndSquares.
 template <int Dim>
-[[gnu::always_inline]] inline VolumeAndSquares if_shape_above(
+[[gnu::always_inline]] inline VolumeAndSquares if_quality_above(
     const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
   std::array<Vector<Dim>, Dim + 1> p;
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = corner[i]->position;
@@ -169,29 +169,29 @@ template <int Dim>
   return above ? VolumeAndSquares{volume, squares} : VolumeAndSquares{};
 }
 
-/// shape(corner) > bar, decided without the root and the division; bar is not negative.
+/// quality(corner) > bar, decided without the root and the division; bar is not negative.
 template <int Dim>
-bool shape_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
-  return if_shape_above<Dim>(corner, bar).volume > 0;
+bool quality_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
+  return if_quality_above<Dim>(corner, bar).volume > 0;
 }
 
-/// shape(corner) if that is above a bar that is not negative, 0 otherwise.
+/// quality(corner) if that is above a bar that is not negative, 0 otherwise.
 template <int Dim>
-double shape_if_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
-  const auto [volume, squares] = if_shape_above<Dim>(corner, bar);
-  return volume > 0 ? shape_from<Dim>(volume, squares) : 0;
+double quality_if_above(const std::array<const Site<Dim>*, Dim + 1>& corner, double bar) {
+  const auto [volume, squares] = if_quality_above<Dim>(corner, bar);
+  return volume > 0 ? quality_from<Dim>(volume, squares) : 0;
 }
 
-/// Mean ratio from shape: 12 (3V)^(2/3) / (sum of the six squared lengths) in 3D (Liu & Joe, BIT
-/// 34, 1994), shape itself in 2D.
+/// Mean ratio from quality: 12 (3V)^(2/3) / (sum of the six squared lengths) in 3D (Liu & Joe, BIT
+/// 34, 1994), quality itself in 2D.
 template <int Dim>
-double mean_ratio(double shape) {
-  return Dim == 2 || shape <= 0 ? shape : std::cbrt(shape * shape);
+double mean_ratio(double quality) {
+  return Dim == 2 || quality <= 0 ? quality : std::cbrt(quality * quality);
 }
 
-/// The shape whose mean ratio is this.
+/// The quality whose mean ratio is this.
 template <int Dim>
-double shape_of_mean_ratio(double ratio) {
+double quality_of_mean_ratio(double ratio) {
   return Dim == 2 ? ratio : ratio * std::sqrt(ratio);
 }
 

@@ -153,7 +153,7 @@ class BendsMaker {
   /// Is the side a corner in 2D, or an edge of a curve?
   bool is_fixed(const Side& side) const {
     const VertexId a = nodes_[side.low].vertex, b = nodes_[side.high].vertex;
-    if constexpr (Dim == 2) return mesh_.kind_of[a].freedom == 0;
+    if constexpr (Dim == 2) return mesh_.kind_of[a].class_dimension == 0;
     return mesh_.curve_of(a, b) != 0;
   }
 

@@ -38,9 +38,9 @@ class InputChecker {
   }
 
   void check_options() const {
-    const double tolerance = options_.surface_tolerance, angle = options_.ridge_angle;
+    const double tolerance = options_.hausdorff_tolerance, angle = options_.ridge_angle;
     if (!(tolerance == 0 || (tolerance >= smallest_size && tolerance <= largest_size)))
-      throw InputError("surface_tolerance: expected 0, or a length from 1e-75 to 1e75, found " +
+      throw InputError("hausdorff_tolerance: expected 0, or a length from 1e-75 to 1e75, found " +
                        number(tolerance));
     if (!(angle > 0 && angle < 90))
       throw InputError("ridge_angle: expected an angle between 0 and 90 degrees, found " +
@@ -61,8 +61,8 @@ class InputChecker {
     if (functions.empty()) return;
     if (options_.geometry)
       throw InputError("functions: expected none beside a geometry, which has its own");
-    if (!(options_.surface_tolerance > 0))
-      throw InputError("functions: expected a surface_tolerance with them, found none");
+    if (!(options_.hausdorff_tolerance > 0))
+      throw InputError("functions: expected a hausdorff_tolerance with them, found none");
     const auto& found = Dim == 2 ? any_.edges.reference : any_.triangles.reference;
     for (const SurfaceFunction& function : functions)
       if (!(options_.complete_boundary && function.reference == 0) &&
@@ -73,13 +73,13 @@ class InputChecker {
 
   void check_geometry() const {
     if (!options_.geometry) return;
-    const double tolerance = options_.surface_tolerance;
+    const double tolerance = options_.hausdorff_tolerance;
     if (options_.geometry->dimension() != Dim)
       throw InputError("geometry: expected one of dimension " + std::to_string(Dim) +
                        ", as the mesh is, found dimension " +
                        std::to_string(options_.geometry->dimension()));
     if (tolerance != 0 && tolerance != options_.geometry->tolerance())
-      throw InputError("surface_tolerance: expected that of the geometry, " +
+      throw InputError("hausdorff_tolerance: expected that of the geometry, " +
                        number(options_.geometry->tolerance()) + ", found " + number(tolerance));
   }
 

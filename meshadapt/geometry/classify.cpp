@@ -15,7 +15,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "ductile/runtime/worklist.hpp"
-#include "geometry/faced.hpp"
+#include "geometry/crack_sides.hpp"
 #include "geometry/facet_sides.hpp"
 #include "geometry/reference_surface.hpp"
 #include "geometry/rough_parts.hpp"
@@ -58,10 +58,10 @@ class Classifier {
         extent_(extent(executor, mesh)),
         tolerance_(flatness * extent_),
         options_(options),
-        surface_tolerance_(options.surface_tolerance),
+        hausdorff_tolerance_(options.hausdorff_tolerance),
         least_turn_(std::cos(options.ridge_angle * std::numbers::pi / 180)),
         sides_(executor, facets_) {
-    if (options.geometry && surface_tolerance_ > 0) reference_ = options.geometry->surface<Dim>();
+    if (options.geometry && hausdorff_tolerance_ > 0) reference_ = options.geometry->surface<Dim>();
     if (reference_ != nullptr) sheet_of_ = reference_->sheets_of(executor, mesh, facets_);
     if constexpr (Dim == 3)
       for (const ListedEdge& edge : edges) listed_.emplace(edge_key(edge.a, edge.b), edge);
@@ -70,18 +70,18 @@ class Classifier {
 
   void run() {
     find_patches();
-    if (surface_tolerance_ > 0) {
+    if (hausdorff_tolerance_ > 0) {
       find_kept(options_.keep_facets_at);
       wide_normals_ = wide_normals<Dim>(executor_, mesh_, facets_, std::span(beside_),
-                                        {surface_tolerance_, least_turn_});
+                                        {hausdorff_tolerance_, least_turn_});
       join_patches();
     }
     if constexpr (Dim == 3) find_curves();
     const bool is_rough = rounding_ && !(rounding_->plane_of.empty() && rounding_->line_of.empty());
-    mark_faced_patches(executor_, mesh_, facets_, sides_,
-                       is_rough ? rounding_->tolerance : tolerance_);
+    mark_crack_sides(executor_, mesh_, facets_, sides_,
+                     is_rough ? rounding_->tolerance : tolerance_);
     store_patches();
-    if (surface_tolerance_ > 0) keep_surface();
+    if (hausdorff_tolerance_ > 0) keep_surface();
     classify_vertices();
     if (is_rough) mesh_.rounding = std::move(rounding_);
   }
@@ -318,7 +318,7 @@ class Classifier {
       edges.push_back({e.a, e.b, e.curve, first_two(e.patches)});
     mesh_.surface =
         make_surface<Dim>(executor_, mesh_, {facets_, plane_of_, wide_normals_, edges},
-                          {surface_tolerance_, tolerance_, least_turn_, options_.functions});
+                          {hausdorff_tolerance_, tolerance_, least_turn_, options_.functions});
   }
 
   /// Of sorted patches two that differ, 0 where there is no other.
@@ -416,7 +416,7 @@ class Classifier {
         if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed])) break;
         if (edge.sheet != none && !edge.data.required) {
           curve.smooth = true;
-        } else if (reference_ == nullptr && surface_tolerance_ > 0 && !edge.data.required) {
+        } else if (reference_ == nullptr && hausdorff_tolerance_ > 0 && !edge.data.required) {
           // By no more than 60 degrees in all, so that a closed curve keeps three ends.
           if (!(along > least_turn_ * norm(step)) || !(dot(step, towards) > 0.5 * norm(step)))
             break;
@@ -542,21 +542,21 @@ class Classifier {
 
   void classify_vertex(VertexId v, const std::vector<PatchId>& patches, std::size_t facet_count) {
     VertexKind& kind = mesh_.kind_of[v];
-    kind.freedom = 0;
+    kind.class_dimension = 0;
     mesh_.entity_of[v] = 0;
     if (kind.corner || kind.required || touches_required(v, patches)) return;
     std::uint32_t links = 0;
     if constexpr (Dim == 3) links = static_cast<std::uint32_t>(mesh_.links_of.of(v).size());
     if (patches.empty() && links == 0) {
-      kind.freedom = Dim;
+      kind.class_dimension = Dim;
     } else if (patches.size() == 1 && links == 0 &&
                (Dim == 3 ? is_met_once(v, facet_count)
                          : facet_count == 2 && !is_sharp(sides_.at(v)))) {
-      kind.freedom = Dim - 1;
+      kind.class_dimension = Dim - 1;
       mesh_.entity_of[v] = patches[0];
     } else if constexpr (Dim == 3) {
       if (!on_one_curve(v, patches) || !is_met_once(v, facet_count)) return;
-      kind.freedom = 1;
+      kind.class_dimension = 1;
       mesh_.entity_of[v] = mesh_.links_of.of(v)[0].curve;
     }
   }
@@ -572,7 +572,7 @@ class Classifier {
   /// Are all facets around a vertex connected there, by facets or along its curve? What bends may
   /// touch itself at a vertex; what is flat has another patch there.
   bool is_met_once(VertexId v, std::size_t facet_count) const {
-    if (surface_tolerance_ == 0 || facet_count == 0) return true;
+    if (hausdorff_tolerance_ == 0 || facet_count == 0) return true;
     if constexpr (Dim == 3) {
       const auto links = mesh_.links_of.of(v);
       if (!links.empty()) {
@@ -611,8 +611,8 @@ class Classifier {
   double tolerance_;                         // of flatness
   std::shared_ptr<Rounding<Dim>> rounding_;  // null until it is known, see rounding()
   const MakeMeshOptions& options_;
-  double surface_tolerance_;  // of what is not flat; 0 if nothing is to be smooth
-  double least_turn_;         // cosine of the angle from which on edges are ridges
+  double hausdorff_tolerance_;  // of what is not flat; 0 if nothing is to be smooth
+  double least_turn_;           // cosine of the angle from which on edges are ridges
   FacetSides<Dim> sides_;
   const ReferenceSurface<Dim>* reference_ = nullptr;  // null where the mesh is its own
   std::vector<std::uint32_t> sheet_of_;               // [facet], of the reference

@@ -27,10 +27,10 @@ struct ListedEdge {
   bool required = false, ridge = false;
 };
 
-/// Sets mesh.patches, curves, links_of, patches_of, kind_of.freedom and entity_of from the facets
-/// (and, in 3D, the listed edges). kind_of.corner and .required and the regions are already set.
-/// With options.surface_tolerance patches and curves may be smooth; mesh.surface is set if one is.
-/// Thread safety: one caller; runs on the executor.
+/// Sets mesh.patches, curves, links_of, patches_of, kind_of.class_dimension and entity_of from the
+/// facets (and, in 3D, the listed edges). kind_of.corner and .required and the regions are already
+/// set. With options.hausdorff_tolerance patches and curves may be smooth; mesh.surface is set if
+/// one is. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void classify(const runtime::Executor& executor, Mesh<Dim>& mesh,
               std::vector<TaggedFacet<Dim>> facets, const std::vector<ListedEdge>& edges,

@@ -178,7 +178,7 @@ void bound_on_curves(const runtime::Executor& executor, const Mesh<3>& mesh, dou
                      std::vector<Metric<3>>& metric_of) {
   runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
     const auto vertex = static_cast<VertexId>(v);
-    if (mesh.kind_of[v].freedom > 1 || !mesh.vertex_alive(vertex)) return;
+    if (mesh.kind_of[v].class_dimension > 1 || !mesh.vertex_alive(vertex)) return;
     for (const CurveLink& link : mesh.links_of.of(vertex)) {
       if (!mesh.curves[link.curve].smooth) continue;
       const double largest = 1 / std::sqrt(smallest_value(metric_of[v]));

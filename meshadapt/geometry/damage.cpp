@@ -48,8 +48,8 @@ void find_crossings(const Executor& executor, const AnyMesh& before, const AnyMe
 
 /// Where a boundary meets itself.
 template <int Dim>
-void find_pinches(const AnyMesh& mesh, BoundarySurface<Dim>& surface,
-                  std::vector<Box<Dim>>& places) {
+void find_non_manifold(const AnyMesh& mesh, BoundarySurface<Dim>& surface,
+                       std::vector<Box<Dim>>& places) {
   const auto add = [&](std::size_t side) {
     places.push_back(box_of<Dim>(mesh, surface.side(side).corners));
   };
@@ -144,7 +144,7 @@ std::vector<Box<Dim>> damaged_places(const Executor& executor, const AnyMesh& be
   find_crossings<Dim>(executor, before, after, places);
   BoundarySurface<Dim> old(executor, sides_of<Dim>(executor, before, from));
   BoundarySurface<Dim> now(executor, sides_of<Dim>(executor, after, BoundaryFrom::listed_facets));
-  find_pinches<Dim>(after, now, places);
+  find_non_manifold<Dim>(after, now, places);
   find_inner_facets<Dim>(before, after, now, places);
   if (places.empty()) find_lost_parts(parts_of(before, old), parts_of(after, now), places);
   return places;

@@ -17,7 +17,7 @@ std::shared_ptr<const ReferenceSurface<Dim>> reference_surface(const runtime::Ex
                                                                const AnyMesh& any,
                                                                const GeometryOptions& options) {
   MakeMeshOptions make;
-  make.surface_tolerance = options.tolerance;
+  make.hausdorff_tolerance = options.tolerance;
   make.ridge_angle = options.ridge_angle;
   make.complete_boundary = options.complete_boundary;
   make.functions = options.functions;

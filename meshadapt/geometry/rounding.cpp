@@ -99,14 +99,15 @@ bool explains(const std::array<Vector<Dim>, Dim>& facet, const Vector<Dim>& poin
 }
 
 template <int Dim>
-Vector<Dim> Rounding<Dim>::rounded(Vector<Dim> position, int freedom, std::uint32_t entity) const {
+Vector<Dim> Rounding<Dim>::rounded(Vector<Dim> position, int class_dimension,
+                                   std::uint32_t entity) const {
   const auto flat_of = [&](const auto& flats) {
     return entity < flats.size() ? flats[entity] : std::nullopt;
   };
-  if (freedom == Dim - 1) {
+  if (class_dimension == Dim - 1) {
     if (const auto plane = flat_of(plane_of))
       position -= dot(position - plane->origin, plane->direction) * plane->direction;
-  } else if (freedom == 1) {
+  } else if (class_dimension == 1) {
     if (const auto line = flat_of(line_of)) position -= aside(*line, position);
   }
   for (double& x : position.x) x = precision.rounded(x);

@@ -78,7 +78,7 @@ class Reader {
       local.largest = size("hmax");
       if (local.largest > 0 && local.smallest > local.largest)
         cursor_.fail("expected hmin not to be above hmax");
-      local.surface_tolerance = size("hausd");
+      local.hausdorff_tolerance = size("hausd");
       local_sizes_.push_back(local);
     }
   }

@@ -20,7 +20,7 @@ void Mesh<Dim>::grow(const Executor& executor, std::size_t vertices, std::size_t
   const auto resize = [&](std::size_t n, auto&... arrays) {
     (arrays.resize_for_overwrite(n, fresh), ...);
   };
-  resize(elements, corners_of, patches_of, region_of, shape_of, changed_at);
+  resize(elements, corners_of, patches_of, region_of, quality_of, changed_at);
   resize(vertices, site_of, kind_of, entity_of, reference_of, host_of);
   elements_of.grow(vertices, fresh);
   if constexpr (Dim == 3) links_of.grow(vertices, fresh);
@@ -94,10 +94,10 @@ runtime::UnsetVector<std::uint8_t> mark_changed(const Executor& executor, const 
 }
 
 template <int Dim>
-void update_shapes(const Executor& executor, Mesh<Dim>& mesh) {
+void update_qualities(const Executor& executor, Mesh<Dim>& mesh) {
   parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
     if (mesh.alive(static_cast<ElementId>(e)))
-      mesh.shape_of[e] = static_cast<float>(mesh.shape_at(mesh.corners_of[e]));
+      mesh.quality_of[e] = static_cast<float>(mesh.quality_at(mesh.corners_of[e]));
   });
 }
 
@@ -109,7 +109,7 @@ template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const 
                                                          std::uint32_t);
 template runtime::UnsetVector<std::uint8_t> mark_changed(const Executor&, const Mesh<3>&,
                                                          std::uint32_t);
-template void update_shapes(const Executor&, Mesh<2>&);
-template void update_shapes(const Executor&, Mesh<3>&);
+template void update_qualities(const Executor&, Mesh<2>&);
+template void update_qualities(const Executor&, Mesh<3>&);
 
 }  // namespace ductile::meshadapt

@@ -30,7 +30,7 @@ using CurveId = std::uint32_t;
 
 /// A maximal flat set of facets that share everything below: part of the boundary or of an
 /// interface between regions. In 2D, a straight chain of edges. A smooth one may bend, and be
-/// replaced by another close to it (MakeMeshOptions::surface_tolerance).
+/// replaced by another close to it (MakeMeshOptions::hausdorff_tolerance).
 template <int Dim>
 struct Patch {
   Vector<Dim> normal;  ///< unit length; of no use if smooth
@@ -39,7 +39,8 @@ struct Patch {
   bool required = false;  ///< its facets may not change
   bool ridge = false;     ///< 2D: its edges were listed as ridges
   bool smooth = false;
-  bool faced = false;  ///< another lies against it between the same rims: a side of a closed crack
+  bool crack_side =
+      false;  ///< another lies against it between the same rims: a side of a closed crack
   std::uint32_t sheet = 0;  ///< its number in Mesh::surface
 };
 
@@ -66,11 +67,11 @@ struct CurveLink {
 template <int Dim>
 using Neighbours = GrowingArray<std::array<ElementId, Dim + 1>>;
 
-/// What a vertex may do. `freedom` is its class dimension, that of the geometric entity in which it
-/// may move: 0 never moves and is never removed (corner or required), 1 moves along a curve, 2 in a
-/// patch or, in 2D, anywhere, 3 anywhere.
+/// What a vertex may do. `class_dimension` is its class dimension, that of the geometric entity in
+/// which it may move: 0 never moves and is never removed (corner or required), 1 moves along a
+/// curve, 2 in a patch or, in 2D, anywhere, 3 anywhere.
 struct VertexKind {
-  std::uint8_t freedom = 0;
+  std::uint8_t class_dimension = 0;
   bool corner = false;    ///< listed as a corner
   bool required = false;  ///< listed as required
   friend bool operator==(const VertexKind&, const VertexKind&) = default;
@@ -97,9 +98,9 @@ struct Mesh {
   GrowingArray<Corners<Dim>> corners_of;                  // [element], positively oriented
   GrowingArray<std::array<PatchId, Dim + 1>> patches_of;  // [element][facet], 0 inside
   GrowingArray<std::uint32_t> region_of;                  // [element], index into regions
-  // [element]. Cached quality; may differ from shape() in the last bits, because kernels store the
-  // value that they computed while planning.
-  GrowingArray<float> shape_of;
+  // [element]. Cached quality; may differ from quality() in the last bits, because kernels store
+  // the value that they computed while planning.
+  GrowingArray<float> quality_of;
   GrowingArray<std::uint32_t> changed_at;  // [element], epoch of its last change
   std::uint32_t epoch = 1;  ///< what changes now is marked with this; a scan ends an epoch
 
@@ -132,13 +133,13 @@ struct Mesh {
     return result;
   }
   double length(VertexId a, VertexId b) const { return edge_length(site_of[a], site_of[b]); }
-  double shape_at(const Corners<Dim>& corners) const { return shape<Dim>(sites(corners)); }
+  double quality_at(const Corners<Dim>& corners) const { return quality<Dim>(sites(corners)); }
 
   bool required_element(ElementId element) const { return regions[region_of[element]].required; }
 
   /// The curve that the edge a-b belongs to, or 0. 3D only.
   CurveId curve_of(VertexId a, VertexId b) const {
-    if (kind_of[a].freedom > 1 || kind_of[b].freedom > 1) return 0;
+    if (kind_of[a].class_dimension > 1 || kind_of[b].class_dimension > 1) return 0;
     for (const CurveLink& link : links_of.of(a))
       if (link.to == b) return link.curve;
     return 0;
@@ -163,9 +164,9 @@ inline constexpr std::uint32_t list_block = 64;
 template <int Dim>
 void rebuild_elements_of(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
-/// Recomputes shape_of. Thread safety: as above.
+/// Recomputes quality_of. Thread safety: as above.
 template <int Dim>
-void update_shapes(const runtime::Executor& executor, Mesh<Dim>& mesh);
+void update_qualities(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
 /// Removes what is gone and renumbers what is left along a space-filling curve, so that what is
 /// near in space is near in memory. Rebuilds elements_of: on entry lists may be out of date, but an
@@ -202,7 +203,7 @@ void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
     if (stage == 1) {
       __builtin_prefetch(&mesh.corners_of[e]);
       __builtin_prefetch(&mesh.patches_of[e]);
-      __builtin_prefetch(&mesh.shape_of[e]);
+      __builtin_prefetch(&mesh.quality_of[e]);
       continue;
     }
     for (const VertexId v : mesh.corners_of[e]) prefetch_site(mesh, v);

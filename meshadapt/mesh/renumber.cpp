@@ -130,7 +130,7 @@ void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& ord
   Permutation permute(executor, order, 2 * sizeof(VertexId));
   permute.by_pairs(mesh.corners_of);
   permute.by_pairs(mesh.patches_of);
-  permute(mesh.region_of, mesh.shape_of);
+  permute(mesh.region_of, mesh.quality_of);
   permute(mesh.changed_at);
   if (neighbours == nullptr) return;
   const Ids new_element = places_in(executor, order, neighbours->size());

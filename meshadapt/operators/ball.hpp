@@ -1,7 +1,7 @@
 /// @file
 /// Ball: the elements around a vertex as bases under an apex that may move (base.hpp), eight side
 /// by side (lanes.hpp). Determinants and sums of squared lengths are double, as terms may cancel in
-/// them; what follows from these is float, like the shapes that a mesh keeps.
+/// them; what follows from these is float, like the qualities that a mesh keeps.
 #pragma once
 
 #include <algorithm>
@@ -26,19 +26,19 @@ struct BaseLanes {
   LanesOf<size> metric;  // the mean_metric() of their corners
   Lanes scale;           // of that
   Lanes unit;            // inverses of their corners' largest scales
-  ShapeLanes shape;      // as the mesh has it
-  ShapeLanes counts;     // 1, or 0 where there is no element but a copy of another
+  QualityLanes quality;  // as the mesh has it
+  QualityLanes counts;   // 1, or 0 where there is no element but a copy of another
 };
 
-/// The shapes of the elements around a vertex, in the order of its list; of more than `most`,
+/// The qualities of the elements around a vertex, in the order of its list; of more than `most`,
 /// which is rare, the first. Copied as a whole, as it is small.
 template <int Dim>
-struct BallShapes {
+struct BallQualities {
   static constexpr std::size_t blocks = Dim == 2 ? 1 : 5, most = blocks * lane_count;
-  std::array<ShapeLanes, blocks> lanes{};
+  std::array<QualityLanes, blocks> lanes{};
 
   float operator[](std::size_t i) const { return lanes[i / lane_count][i % lane_count]; }
-  friend bool operator==(const BallShapes&, const BallShapes&) = default;
+  friend bool operator==(const BallQualities&, const BallQualities&) = default;
 };
 
 template <int Dim>
@@ -48,7 +48,7 @@ class Ball {
     double worst = 0, sum = 0;
     double volume = 0;  ///< the least, times 2 in 2D or 6 in 3D, as rounding leaves it
   };
-  using Shapes = BallShapes<Dim>;
+  using Qualities = BallQualities<Dim>;
 
   Ball(const Mesh<Dim>& mesh, VertexId vertex)
       : vertex_(vertex),
@@ -61,36 +61,37 @@ class Ball {
   VertexId vertex() const { return vertex_; }
   std::size_t size() const { return size_; }
 
-  /// Worst and sum of all shapes as the mesh has them.
+  /// Worst and sum of all qualities as the mesh has them.
   Score present() const {
     float worst = 1;
-    ShapeLanes sum{};
+    QualityLanes sum{};
     for (const Block& block : blocks_) {
-      worst = std::min(worst, least(block.shape));
-      for (std::size_t l = 0; l < lane_count; ++l) sum[l] += block.counts[l] * block.shape[l];
+      worst = std::min(worst, least(block.quality));
+      for (std::size_t l = 0; l < lane_count; ++l) sum[l] += block.counts[l] * block.quality[l];
     }
     return {worst, total(sum)};
   }
 
-  /// Worst and sum of all shapes with this apex; just a worst of -1 if one is below the bound, has
-  /// no positive volume or is not a number.
+  /// Worst and sum of all qualities with this apex; just a worst of -1 if one is below the bound,
+  /// has no positive volume or is not a number.
   Score score(const Site<Dim>& apex, double bound) const {
-    Shapes shapes;
-    return score(apex, bound, shapes);
+    Qualities qualities;
+    return score(apex, bound, qualities);
   }
-  /// The same; sets the shapes, too.
-  Score score(const Site<Dim>& apex, double bound, Shapes& shapes) const {
+  /// The same; sets the qualities, too.
+  Score score(const Site<Dim>& apex, double bound, Qualities& qualities) const {
     if (!(apex.scale > 0)) return {-1, 0};
     float worst = 1;
     double volume = std::numeric_limits<double>::infinity();
-    ShapeLanes sum{};
+    QualityLanes sum{};
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Judged judged = judge(blocks_[b], apex);
-      worst = std::min(worst, least(judged.shape));
+      worst = std::min(worst, least(judged.quality));
       volume = std::min(volume, least(judged.determinant));
       if (!(worst > 0) || worst < bound) return {-1, 0};
-      if (b < Shapes::blocks) shapes.lanes[b] = judged.shape;
-      for (std::size_t l = 0; l < lane_count; ++l) sum[l] += blocks_[b].counts[l] * judged.shape[l];
+      if (b < Qualities::blocks) qualities.lanes[b] = judged.quality;
+      for (std::size_t l = 0; l < lane_count; ++l)
+        sum[l] += blocks_[b].counts[l] * judged.quality[l];
     }
     const float all = total(sum);
     if (!(all > 0) || std::isinf(all)) return {-1, 0};  // least() may overlook what is no number
@@ -106,19 +107,19 @@ class Ball {
     return volume > scale;
   }
 
-  /// Calls visit(i, shape) for each element.
-  void visit_shapes(const Site<Dim>& apex, auto&& visit) const {
+  /// Calls visit(i, quality) for each element.
+  void visit_qualities(const Site<Dim>& apex, auto&& visit) const {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const ShapeLanes shape = judge(blocks_[b], apex).shape;
+      const QualityLanes quality = judge(blocks_[b], apex).quality;
       const std::size_t begin = b * lane_count, end = std::min(size_, begin + lane_count);
-      for (std::size_t i = begin; i < end; ++i) visit(i, static_cast<double>(shape[i - begin]));
+      for (std::size_t i = begin; i < end; ++i) visit(i, static_cast<double>(quality[i - begin]));
     }
   }
 
   /// Every element pulls its apex to where it would be regular over its base, or half-way from
   /// there to where its edges have unit length, by the metric of this site; bad elements pull
-  /// harder, by the inverse of their shapes. The mean pull, from where the vertex is. As it is no
-  /// more than a guess, roots are taken of numbers without a unit, in single precision.
+  /// harder, by the inverse of their qualities. The mean pull, from where the vertex is. As it is
+  /// no more than a guess, roots are taken of numbers without a unit, in single precision.
   Vector<Dim> mean_pull(const Site<Dim>& site) const {
     const Metric<Dim> dual = inverse(site.metric);
     const double density = metric_volume<Dim>(1, site.scale);
@@ -126,7 +127,7 @@ class Ball {
     Lanes weights{};
     for (const Block& block : blocks_)
       for (std::size_t l = 0; l < lane_count; ++l) {
-        const double weight = block.counts[l] / std::max(0.01F, block.shape[l]);
+        const double weight = block.counts[l] / std::max(0.01F, block.quality[l]);
         // the geometric mean of the facet's size and 1
         const double square =
             contraction(site.metric, tensor_at<Dim>(block.spread, l)) / (2 * Dim - 3);
@@ -145,9 +146,9 @@ class Ball {
     return (1 / total(weights)) * (centre + product(dual, normal));
   }
 
-  /// Gradient of an element's shape, which is this, by the position of its apex, as if the metric
+  /// Gradient of an element's quality, which is this, by the position of its apex, as if the metric
   /// that judges it stayed what it is.
-  Vector<Dim> gradient(std::size_t element, const Site<Dim>& apex, double shape) const {
+  Vector<Dim> gradient(std::size_t element, const Site<Dim>& apex, double quality) const {
     const Block& block = blocks_[element / lane_count];
     const std::size_t l = element % lane_count;
     const Vector<Dim> up = apex.position - origin_ - at(block.centre, l);
@@ -157,7 +158,7 @@ class Ball {
     const double squares = contraction(metric, all);
     const Vector<Dim> normal = at(block.normal, l);
     constexpr double power = Dim == 2 ? 1.0 : 1.5;
-    return shape *
+    return quality *
            ((1 / dot(normal, up)) * normal - (2 * power * Dim / squares) * product(metric, up));
   }
 
@@ -183,10 +184,10 @@ class Ball {
 
   struct Judged {
     Lanes determinant;
-    ShapeLanes shape;
+    QualityLanes quality;
   };
 
-  /// shape() of each, but for rounding.
+  /// quality() of each, but for rounding.
   Judged judge(const Block& block, const Site<Dim>& apex) const {
     const Vector<Dim> offset = apex.position - origin_;
     Judged judged;
@@ -200,7 +201,8 @@ class Ball {
       const double scale = weight * apex.scale + block.scale[l];
       const double volume = metric_volume<Dim>(determinant, scale);
       judged.determinant[l] = determinant;
-      judged.shape[l] = shape_from<Dim>(static_cast<float>(volume), static_cast<float>(squares));
+      judged.quality[l] =
+          quality_from<Dim>(static_cast<float>(volume), static_cast<float>(squares));
     }
     return judged;
   }
@@ -244,7 +246,7 @@ class Ball {
     for (std::size_t l = 0; l < lane_count; ++l) {
       const std::size_t i = b * lane_count + l;
       const ElementId e = elements[std::min(i, elements.size() - 1)];
-      block.shape[l] = mesh.shape_of[e];
+      block.quality[l] = mesh.quality_of[e];
       const Facet<Dim> facet = facet_opposite<Dim>(mesh.corners_of[e], vertex);
       for (std::size_t k = 0; k < Dim; ++k) site[k][l] = &mesh.site_of[facet[k]];
     }

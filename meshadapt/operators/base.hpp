@@ -57,11 +57,11 @@ struct Base {
           1 / std::max({corner[0]->scale, corner[1]->scale, corner[2]->scale})};
 }
 
-/// The square of shape() of the tetrahedron with this apex, but for rounding; -1 if its volume is
+/// The square of quality() of the tetrahedron with this apex, but for rounding; -1 if its volume is
 /// not positive. `side` is 1 if the apex shall be above the base, -1 if it shall be underneath. To
 /// be confirmed by certain_determinant() before it is acted on.
-[[gnu::always_inline]] inline double squared_shape_over(const Base& base, const Site<3>& apex,
-                                                        double side) {
+[[gnu::always_inline]] inline double squared_quality_over(const Base& base, const Site<3>& apex,
+                                                          double side) {
   const Vector<3> up = apex.position - base.centre;
   const double weight = corner_weight<3>(base.unit * apex.scale);
   const Metric<3> metric = base.mean.metric + weight * apex.metric;

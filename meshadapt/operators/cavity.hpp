@@ -92,7 +92,7 @@ void change_list(Mesh<Dim>& mesh, VertexId owner, const ListChange& change) {
 /// Renews what is derived from an element's corners after they, or their sites, changed.
 template <int Dim>
 void update_element(Mesh<Dim>& mesh, ElementId element) {
-  mesh.shape_of[element] = static_cast<float>(mesh.shape_at(mesh.corners_of[element]));
+  mesh.quality_of[element] = static_cast<float>(mesh.quality_at(mesh.corners_of[element]));
   mesh.changed_at[element] = mesh.epoch;
 }
 
@@ -158,7 +158,7 @@ class SharedLists {
 /// opposite to the vertex of one element?
 template <int Dim>
 bool is_in_a_ring(const Mesh<Dim>& mesh, VertexId vertex) {
-  return Dim == 2 && mesh.kind_of[vertex].freedom == Dim;
+  return Dim == 2 && mesh.kind_of[vertex].class_dimension == Dim;
 }
 
 /// Those corners of a triangle from which the other two follow in descending order: two, or one
@@ -180,7 +180,8 @@ void visit_neighbours(const Mesh<Dim>& mesh, VertexId vertex, auto&& visit) {
     return;
   }
   if constexpr (Dim == 3)
-    if (mesh.kind_of[vertex].freedom == Dim) {  // inside, where there is a ring around every edge
+    if (mesh.kind_of[vertex].class_dimension ==
+        Dim) {  // inside, where there is a ring around every edge
       for (const ElementId element : mesh.elements_of.of(vertex))
         for (const VertexId other :
              before_descents(facet_opposite<Dim>(mesh.corners_of[element], vertex)))
@@ -218,7 +219,7 @@ void move_element(Mesh<Dim>& mesh, ElementId from, ElementId to) {
   mesh.corners_of[to] = mesh.corners_of[from];
   mesh.patches_of[to] = mesh.patches_of[from];
   mesh.region_of[to] = mesh.region_of[from];
-  mesh.shape_of[to] = mesh.shape_of[from];
+  mesh.quality_of[to] = mesh.quality_of[from];
   mesh.changed_at[to] = mesh.changed_at[from];
   mesh.corners_of[from].fill(none);
 }
@@ -246,14 +247,15 @@ PatchId patch_of_edge(const Mesh<Dim>& mesh, ElementId element, VertexId a, Vert
 /// May the vertex only move along a curve that bends?
 template <int Dim>
 bool on_smooth_curve(const Mesh<Dim>& mesh, VertexId vertex) {
-  return Dim == 3 && mesh.kind_of[vertex].freedom == 1 &&
+  return Dim == 3 && mesh.kind_of[vertex].class_dimension == 1 &&
          mesh.curves[mesh.entity_of[vertex]].smooth;
 }
 
 /// May the vertex only move in a patch that bends?
 template <int Dim>
 bool on_smooth_patch(const Mesh<Dim>& mesh, VertexId vertex) {
-  return mesh.kind_of[vertex].freedom == Dim - 1 && mesh.patches[mesh.entity_of[vertex]].smooth;
+  return mesh.kind_of[vertex].class_dimension == Dim - 1 &&
+         mesh.patches[mesh.entity_of[vertex]].smooth;
 }
 
 /// Do the element's facets on smooth patches, and those that end at a smooth curve, stay close to

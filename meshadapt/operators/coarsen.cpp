@@ -9,15 +9,17 @@
 namespace ductile::meshadapt {
 
 template <int Dim>
-runtime::UnsetVector<VertexId> Coarsen<Dim>::crowded_vertices(const runtime::Executor& executor,
-                                                              const Mesh<Dim>& mesh,
-                                                              EdgeSurvey<Dim>& survey,
-                                                              double short_edge,
-                                                              std::uint32_t after) {
+runtime::UnsetVector<VertexId> Coarsen<Dim>::short_edge_vertices(const runtime::Executor& executor,
+                                                                 const Mesh<Dim>& mesh,
+                                                                 EdgeSurvey<Dim>& survey,
+                                                                 double short_edge,
+                                                                 std::uint32_t after) {
   const auto marked = mark_changed(executor, mesh, after);
-  const auto crowded = mark_ends_of_short_edges(executor, mesh, survey, marked, short_edge);
+  const auto short_edge_vertices =
+      mark_ends_of_short_edges(executor, mesh, survey, marked, short_edge);
   const auto find = [&](std::size_t v, auto&& append) {
-    if (crowded[v] && mesh.kind_of[v].freedom != 0) append(static_cast<VertexId>(v));
+    if (short_edge_vertices[v] && mesh.kind_of[v].class_dimension != 0)
+      append(static_cast<VertexId>(v));
   };
   return runtime::parallel_collect<VertexId>(executor, mesh.vertex_slots(), find,
                                              runtime::few_nanoseconds.serial_below);
@@ -33,7 +35,7 @@ Coarsen<Dim>::Coarsen(Mesh<Dim>& mesh, const Rules& rules)
 template <int Dim>
 bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
   const auto ball = mesh_.elements_of.of(gone);
-  if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].freedom == 0)
+  if (ball.empty() || ball.size() > mesh_.largest_ball || mesh_.kind_of[gone].class_dimension == 0)
     return false;
   const Ring ring = ring_around(gone);
   const auto choices = candidates(gone, ring);
@@ -42,7 +44,7 @@ bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
   double worst = 1;
   for (const ElementId e : ball) {
     if (has_required_elements_ && mesh_.required_element(e)) return false;
-    worst = std::min<double>(worst, mesh_.shape_of[e]);
+    worst = std::min<double>(worst, mesh_.quality_of[e]);
   }
   plan.gone = gone;
   for (const Candidate& choice : choices) {
@@ -50,7 +52,7 @@ bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
     if (!keeps_edges_short(plan, ring, longest) || !keeps_shapes(plan, worst) ||
         !keeps_surface(plan) || !keeps_sides_apart(plan))
       continue;
-    note_crowded(plan, ring);
+    note_short_edges(plan, ring);
     return true;
   }
   return false;
@@ -83,13 +85,14 @@ auto Coarsen<Dim>::candidates(VertexId gone, const Ring& ring) const -> Buffer<C
 /// element is flat but for rounding).
 template <int Dim>
 bool Coarsen<Dim>::keeps_geometry(VertexId gone, VertexId kept) const {
-  const int freedom = mesh_.kind_of[gone].freedom;
-  if (freedom == Dim) return true;
+  const int class_dimension = mesh_.kind_of[gone].class_dimension;
+  if (class_dimension == Dim) return true;
   for (const ElementId e : mesh_.elements_of.of(gone)) {
     const int at_kept = corner_of(mesh_.corners_of[e], kept);
     if (at_kept >= 0 && mesh_.patches_of[e][static_cast<std::size_t>(at_kept)] != 0) return false;
   }
-  if (Dim == 3 && freedom == 1) return mesh_.curve_of(gone, kept) != 0 && keeps_patches(gone, kept);
+  if (Dim == 3 && class_dimension == 1)
+    return mesh_.curve_of(gone, kept) != 0 && keeps_patches(gone, kept);
   for (const ElementId e : mesh_.elements_of.of(gone))
     if (contains(mesh_.corners_of[e], kept) &&
         patch_of_edge(mesh_, e, gone, kept) == mesh_.entity_of[gone])
@@ -100,9 +103,9 @@ bool Coarsen<Dim>::keeps_geometry(VertexId gone, VertexId kept) const {
 /// Between the ends of two smooth curves there may be a last triangle of a patch.
 template <int Dim>
 bool Coarsen<Dim>::keeps_patches(VertexId gone, VertexId kept) const {
-  if (!on_smooth_curve(mesh_, gone) || mesh_.kind_of[kept].freedom != 0) return true;
+  if (!on_smooth_curve(mesh_, gone) || mesh_.kind_of[kept].class_dimension != 0) return true;
   for (const CurveLink& link : mesh_.links_of.of(gone)) {
-    if (link.to == kept || mesh_.kind_of[link.to].freedom != 0) continue;
+    if (link.to == kept || mesh_.kind_of[link.to].class_dimension != 0) continue;
     for (const ElementId e : mesh_.elements_of.of(gone)) {
       const Corners<Dim>& corners = mesh_.corners_of[e];
       if (!contains(corners, kept) || !contains(corners, link.to)) continue;
@@ -139,12 +142,12 @@ bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const Ring& ring, double 
   });
 }
 
-/// Notes the shapes in the plan.
+/// Notes the qualities in the plan.
 template <int Dim>
 bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
-  plan.shapes.clear();
-  const double least = std::min(rules_.kept_shape * worst_before, rules_.accepted_shape);
-  const bool on_boundary = mesh_.kind_of[plan.gone].freedom < Dim;
+  plan.qualities.clear();
+  const double least = std::min(rules_.kept_quality * worst_before, rules_.accepted_quality);
+  const bool on_boundary = mesh_.kind_of[plan.gone].class_dimension < Dim;
   const Site<Dim>& kept = mesh_.site_of[plan.kept];
   for (const ElementId e : mesh_.elements_of.of(plan.gone)) {
     const Corners<Dim>& corners = mesh_.corners_of[e];
@@ -152,9 +155,9 @@ bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
     if (on_boundary && !keeps_facets_turned(mesh_, e, plan.gone, kept.position)) return false;
     auto sites = mesh_.sites(corners);
     sites[static_cast<std::size_t>(corner_of(corners, plan.gone))] = &kept;
-    const double shape = shape_if_above<Dim>(sites, least);
-    if (!(shape > 0)) return false;
-    plan.shapes.push_back(static_cast<float>(shape));
+    const double quality = quality_if_above<Dim>(sites, least);
+    if (!(quality > 0)) return false;
+    plan.qualities.push_back(static_cast<float>(quality));
   }
   return true;
 }
@@ -162,7 +165,7 @@ bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
 /// Last, as it takes the longest.
 template <int Dim>
 bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
-  if (!mesh_.surface || mesh_.kind_of[plan.gone].freedom == Dim) return true;
+  if (!mesh_.surface || mesh_.kind_of[plan.gone].class_dimension == Dim) return true;
   const Vector<Dim>& kept = mesh_.site_of[plan.kept].position;
   if (on_smooth_curve(mesh_, plan.gone))
     for (const CurveLink& link : mesh_.links_of.of(plan.gone))
@@ -183,8 +186,8 @@ bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
 /// to rim, which might be all that is left of both.
 template <int Dim>
 bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
-  const auto on_rim = [&](VertexId v) { return mesh_.kind_of[v].freedom < Dim - 1; };
-  if (mesh_.kind_of[plan.gone].freedom == Dim || !on_rim(plan.kept)) return true;
+  const auto on_rim = [&](VertexId v) { return mesh_.kind_of[v].class_dimension < Dim - 1; };
+  if (mesh_.kind_of[plan.gone].class_dimension == Dim || !on_rim(plan.kept)) return true;
   if (ends_curve(plan)) return false;
   const auto ball = mesh_.elements_of.of(plan.gone);
   const auto is_joined = [&](VertexId v) {  // by a facet at the edge, or along a curve
@@ -201,7 +204,7 @@ bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
   };
   for (const ElementId e : ball)
     for (std::size_t i = 0; i <= Dim; ++i) {
-      if (mesh_.corners_of[e][i] == plan.gone || !mesh_.patches[mesh_.patches_of[e][i]].faced)
+      if (mesh_.corners_of[e][i] == plan.gone || !mesh_.patches[mesh_.patches_of[e][i]].crack_side)
         continue;
       std::size_t joined = 0;
       bool at_kept = false;
@@ -220,14 +223,14 @@ bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
 /// same ends might as well, as do the lips of a crack.
 template <int Dim>
 bool Coarsen<Dim>::ends_curve(const Plan& plan) const {
-  const auto is_end = [&](VertexId v) { return mesh_.kind_of[v].freedom == 0; };
-  if (Dim == 2 || mesh_.kind_of[plan.gone].freedom != 1 || !is_end(plan.kept)) return false;
+  const auto is_end = [&](VertexId v) { return mesh_.kind_of[v].class_dimension == 0; };
+  if (Dim == 2 || mesh_.kind_of[plan.gone].class_dimension != 1 || !is_end(plan.kept)) return false;
   for (const CurveLink& link : mesh_.links_of.of(plan.gone))
     if (!is_end(link.to)) return false;
   const auto ball = mesh_.elements_of.of(plan.gone);
   return std::any_of(ball.begin(), ball.end(), [&](ElementId e) {
     for (std::size_t i = 0; i <= Dim; ++i)
-      if (mesh_.corners_of[e][i] != plan.gone && mesh_.patches[mesh_.patches_of[e][i]].faced)
+      if (mesh_.corners_of[e][i] != plan.gone && mesh_.patches[mesh_.patches_of[e][i]].crack_side)
         return true;
     return false;
   });
@@ -237,19 +240,19 @@ bool Coarsen<Dim>::ends_curve(const Plan& plan) const {
 /// then? It may be that of a triangle that is all of the patch, and of the other one.
 template <int Dim>
 bool Coarsen<Dim>::joins_rim(const Plan& plan, ElementId element, std::size_t facet) const {
-  if (Dim == 2 || mesh_.kind_of[plan.gone].freedom != 1) return false;
+  if (Dim == 2 || mesh_.kind_of[plan.gone].class_dimension != 1) return false;
   for (const VertexId v : facet_of<Dim>(mesh_.corners_of[element], static_cast<int>(facet)))
     if (v != plan.gone && v != plan.kept && mesh_.curve_of(plan.gone, v) != 0) return true;
   return false;
 }
 
 template <int Dim>
-void Coarsen<Dim>::note_crowded(Plan& plan, const Ring& ring) const {
-  plan.crowded.clear();
+void Coarsen<Dim>::note_short_edges(Plan& plan, const Ring& ring) const {
+  plan.short_edge_vertices.clear();
   for (const VertexId v : ring.vertices)
-    if (v != plan.kept && mesh_.kind_of[v].freedom != 0 &&
+    if (v != plan.kept && mesh_.kind_of[v].class_dimension != 0 &&
         shorter_than(mesh_.site_of[v], mesh_.site_of[plan.kept], rules_.short_edge))
-      plan.crowded.push_back(v);
+      plan.short_edge_vertices.push_back(v);
 }
 
 template <int Dim>
@@ -262,13 +265,13 @@ void Coarsen<Dim>::collapse(const Plan& plan, const SharedLists<Dim>& lists) {
     const ElementId e = stretched[i];
     Corners<Dim>& corners = mesh_.corners_of[e];
     corners[static_cast<std::size_t>(corner_of(corners, plan.gone))] = plan.kept;
-    mesh_.shape_of[e] = plan.shapes[i];
+    mesh_.quality_of[e] = plan.qualities[i];
     mesh_.changed_at[e] = mesh_.epoch;
   }
   for (const ElementId e : removed) remove_element(e, plan, lists);
   lists.replace(plan.kept, std::span(removed.data(), removed.size()),
                 std::span(stretched.data(), stretched.size()));
-  if (Dim == 3 && mesh_.kind_of[plan.gone].freedom == 1) join_links(plan, lists);
+  if (Dim == 3 && mesh_.kind_of[plan.gone].class_dimension == 1) join_links(plan, lists);
   mesh_.elements_of.clear(plan.gone);
 }
 

@@ -16,8 +16,9 @@ namespace ductile::meshadapt {
 
 struct EdgeCollapse {
   VertexId gone, kept;
-  Buffer<VertexId, 8> crowded;  ///< vertices that it gives an edge shorter than the rules want
-  Buffer<float, 40> shapes;     ///< of the elements that stay, in the order of the list of `gone`
+  Buffer<VertexId, 8>
+      short_edge_vertices;      ///< vertices that it gives an edge shorter than the rules want
+  Buffer<float, 40> qualities;  ///< of the elements that stay, in the order of the list of `gone`
   friend bool operator==(const EdgeCollapse&, const EdgeCollapse&) = default;
 };
 
@@ -36,10 +37,10 @@ class Coarsen {
 
   /// The vertices with an edge shorter than `short_edge` that could go, next to elements changed
   /// after an epoch.
-  static runtime::UnsetVector<VertexId> crowded_vertices(const runtime::Executor& executor,
-                                                         const Mesh<Dim>& mesh,
-                                                         EdgeSurvey<Dim>& survey, double short_edge,
-                                                         std::uint32_t after);
+  static runtime::UnsetVector<VertexId> short_edge_vertices(const runtime::Executor& executor,
+                                                            const Mesh<Dim>& mesh,
+                                                            EdgeSurvey<Dim>& survey,
+                                                            double short_edge, std::uint32_t after);
 
   // ---- Plan: the shortest edge that no rule refuses. Reads only. ----
   bool plan(VertexId gone, Plan& plan, auto& reach) const {
@@ -57,8 +58,8 @@ class Coarsen {
   // edge. All new conflicts are with the vertex that is kept, so that one is postponed. ----
   void apply(VertexId, const Plan& plan, auto& commit) {
     collapse(plan, SharedLists<Dim>(mesh_, deferred_ ? &*deferred_ : nullptr));
-    for (const VertexId v : plan.crowded) commit.wake(v);
-    if (mesh_.kind_of[plan.kept].freedom != 0) commit.postpone(plan.kept);
+    for (const VertexId v : plan.short_edge_vertices) commit.wake(v);
+    if (mesh_.kind_of[plan.kept].class_dimension != 0) commit.postpone(plan.kept);
   }
   std::size_t commit() { return deferred_ ? commit_lists(mesh_, *deferred_) : 0; }
 
@@ -87,7 +88,7 @@ class Coarsen {
   bool ends_curve(const Plan& plan) const;
   bool joins_rim(const Plan& plan, ElementId element, std::size_t facet) const;
 
-  void note_crowded(Plan& plan, const Ring& ring) const;
+  void note_short_edges(Plan& plan, const Ring& ring) const;
 
   void collapse(const Plan& plan, const SharedLists<Dim>& lists);
   void remove_element(ElementId element, const Plan& plan, const SharedLists<Dim>& lists);

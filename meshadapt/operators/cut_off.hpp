@@ -16,8 +16,8 @@ namespace ductile::meshadapt {
 /// The smooth patch on which a poor element has the two facets that are opposite to p and to q; 0
 /// if it is not poor, or has not, or must stay.
 inline PatchId patch_above(const Mesh<3>& mesh, ElementId element, VertexId p, VertexId q) {
-  static const auto poor = static_cast<float>(shape_of_mean_ratio<3>(0.15));
-  if (!(mesh.shape_of[element] < poor)) return 0;
+  static const auto poor = static_cast<float>(quality_of_mean_ratio<3>(0.15));
+  if (!(mesh.quality_of[element] < poor)) return 0;
   const auto patch_opposite = [&](VertexId v) {
     const int place = corner_of(mesh.corners_of[element], v);
     return mesh.patches_of[element][static_cast<std::size_t>(place)];

@@ -1,7 +1,7 @@
 /// @file
-/// EdgeRange: the lengths that a kernel may give to edges where it aims at shapes alone. Moves and
-/// swaps that lead no edge out of the range, or farther out of it, undo nothing of what collapses
-/// and splits have reached, so that the end of a run cannot go in circles.
+/// EdgeRange: the lengths that a kernel may give to edges where it aims at qualities alone. Moves
+/// and swaps that lead no edge out of the range, or farther out of it, undo nothing of what
+/// collapses and splits have reached, so that the end of a run cannot go in circles.
 #pragma once
 
 #include <algorithm>

@@ -61,8 +61,8 @@ bool Refine<Dim>::splits(const LongEdge& edge) const {
     Points points = points_of(element, cuts);
     points[middle_of<Dim>(k)] = &split.site;
     Pieces<Dim> pieces;
-    Shapes shapes{mesh_.shape_of[element]};
-    return cut(pieces, shapes, k, split, points);
+    Qualities qualities{mesh_.quality_of[element]};
+    return cut(pieces, qualities, k, split, points);
   });
 }
 
@@ -171,7 +171,7 @@ bool Refine<Dim>::locate(const LongEdge& edge, const Shell& shell, Split& split)
   const Site<Dim>& a = mesh_.site_of[edge.a];
   const Site<Dim>& b = mesh_.site_of[edge.b];
   // Off the middle by up to 5 %, lest a regular mesh be refined into a regular mesh of worse
-  // shapes, in which no single change is an improvement.
+  // qualities, in which no single change is an improvement.
   const double chance = runtime::mix32(edge.a * 31 + edge.b) * (2.0 / 4294967296.0) - 1;
   const double t = metric_middle(a, b) + 0.05 * chance;
   const Vector<Dim> position = (1 - t) * a.position + t * b.position;
@@ -206,27 +206,27 @@ bool Refine<Dim>::may_split(const LongEdge& edge, const Shell& shell) const {
 
 template <int Dim>
 void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& split) const {
-  split.kind = {.freedom = Dim};
+  split.kind = {.class_dimension = Dim};
   split.entity = 0;
   split.length = edge.length;
   split.worst_around = 1;
   for (const ElementId e : shell) {
-    split.worst_around = std::min(split.worst_around, mesh_.shape_of[e]);
+    split.worst_around = std::min(split.worst_around, mesh_.quality_of[e]);
     if (const PatchId patch = patch_of_edge(mesh_, e, edge.a, edge.b)) {
       split.entity = patch;
-      split.kind.freedom = Dim - 1;
+      split.kind.class_dimension = Dim - 1;
     }
   }
   if constexpr (Dim == 3)
     if (const CurveId curve = mesh_.curve_of(edge.a, edge.b)) {
       split.entity = curve;
-      split.kind.freedom = 1;
+      split.kind.class_dimension = 1;
     }
   const auto is_fine_or_spans = [&](ElementId e) {
-    return mesh_.shape_of[e] >= rules_.poor_shape || spans_layer(e);
+    return mesh_.quality_of[e] >= rules_.poor_quality || spans_layer(e);
   };
   split.in_layer =
-      split.kind.freedom < Dim && std::all_of(shell.begin(), shell.end(), is_fine_or_spans);
+      split.kind.class_dimension < Dim && std::all_of(shell.begin(), shell.end(), is_fine_or_spans);
   const std::int32_t reference = mesh_.reference_of[edge.a];
   split.reference = reference == mesh_.reference_of[edge.b] ? reference : 0;
 }
@@ -236,7 +236,7 @@ template <int Dim>
 bool Refine<Dim>::spans_layer(ElementId element) const {
   const Corners<Dim>& corners = mesh_.corners_of[element];
   return std::none_of(corners.begin(), corners.end(),
-                      [&](VertexId v) { return mesh_.kind_of[v].freedom == Dim; });
+                      [&](VertexId v) { return mesh_.kind_of[v].class_dimension == Dim; });
 }
 
 // ---- Who refuses ----
@@ -350,10 +350,10 @@ void Refine<Dim>::look(std::size_t place) {
   cuts.asks = 0;
   if (cut_freely(cuts, order, points)) return;
   Pieces<Dim> pieces;
-  cuts.shape[0] = mesh_.shape_of[element];
+  cuts.quality[0] = mesh_.quality_of[element];
   for (std::size_t i = 0; i < order.size; ++i) {
     const std::uint32_t number = cuts.split[order.edge[i]] - 1;
-    if (cut(pieces, cuts.shape, order.edge[i], splits_[number], points)) continue;
+    if (cut(pieces, cuts.quality, order.edge[i], splits_[number], points)) continue;
     cuts.asks |= 1U << order.edge[i];
     runtime::atomic_mark(asked_[number]);
   }
@@ -400,34 +400,34 @@ bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& point
     pieces.cut(order.edge[i]);
   }
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    cuts.shape[p] = static_cast<float>(shape<Dim>(sites_of<Dim>(pieces[p], points)));
-    if (!(cuts.shape[p] >= rules_.accepted_shape)) return false;
+    cuts.quality[p] = static_cast<float>(quality<Dim>(sites_of<Dim>(pieces[p], points)));
+    if (!(cuts.quality[p] >= rules_.accepted_quality)) return false;
   }
   cuts.pieces = static_cast<std::uint32_t>(pieces.size());
   return true;
 }
 
-/// Cuts pieces along one edge, unless that makes an edge or a shape that the rules refuse; they
+/// Cuts pieces along one edge, unless that makes an edge or a quality that the rules refuse; they
 /// stay as they are then.
 template <int Dim>
-bool Refine<Dim>::cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const Split& split,
-                      const Points& points) const {
+bool Refine<Dim>::cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edge,
+                      const Split& split, const Points& points) const {
   if (!keeps_distance(pieces, edge, points)) return false;
   Pieces<Dim> halves = pieces;
   halves.cut(edge);
-  Shapes after = shapes;
+  Qualities after = qualities;
   const auto is_fine = [&](std::size_t half, double before) {
-    const double value = shape<Dim>(sites_of<Dim>(halves[half], points));
+    const double value = quality<Dim>(sites_of<Dim>(halves[half], points));
     after[half] = static_cast<float>(value);
-    return value > 0 && value >= least_shape(std::min<double>(before, split.worst_around), split);
+    return value > 0 && value >= least_quality(std::min<double>(before, split.worst_around), split);
   };
   std::size_t second = pieces.size();
   for (std::size_t first = 0; first < pieces.size(); ++first)
     if (pieces.has_edge(first, edge) &&
-        (!is_fine(first, shapes[first]) || !is_fine(second++, shapes[first])))
+        (!is_fine(first, qualities[first]) || !is_fine(second++, qualities[first])))
       return false;
   pieces = halves;
-  shapes = after;
+  qualities = after;
   return true;
 }
 
@@ -445,13 +445,14 @@ bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
   return true;
 }
 
-/// Shapes tell little of elements over which the metric changes a lot, as those of overlong edges.
+/// Qualities tell little of elements over which the metric changes a lot, as those of overlong
+/// edges.
 template <int Dim>
-double Refine<Dim>::least_shape(double before, const Split& split) const {
-  if (before < rules_.poor_shape)
+double Refine<Dim>::least_quality(double before, const Split& split) const {
+  if (before < rules_.poor_quality)
     return split.in_layer ? rules_.layer_split_keeps * before : before;
   const double excess = std::max(1.0, split.length / rules_.overlong_edge);
-  return std::min(rules_.split_keeps * before, rules_.accepted_shape) / (excess * excess);
+  return std::min(rules_.split_keeps * before, rules_.accepted_quality) / (excess * excess);
 }
 
 template class Refine<2>;

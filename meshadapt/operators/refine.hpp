@@ -62,7 +62,7 @@ class Refine {
     VertexKind kind;
     bool in_layer;       // the edge lies on a side of a thin layer, if elements around it are poor
     float length;        // of the edge
-    float worst_around;  // shape of the worst element around the edge
+    float worst_around;  // quality of the worst element around the edge
   };
   /// An element around a long edge.
   struct Around {
@@ -72,7 +72,7 @@ class Refine {
   /// How an element is cut; in 3D one line of the cache.
   struct alignas(Dim == 3 ? 64 : alignof(std::uint32_t)) Cuts {
     std::array<std::uint32_t, Simplex<Dim>::edges> split;  // [edge], its number plus one, or 0
-    std::array<float, Pieces<Dim>::most> shape;            // [piece]
+    std::array<float, Pieces<Dim>::most> quality;          // [piece]
     std::uint32_t pieces;
     std::uint32_t asks;  // a bit for each edge that the element asks to refuse
   };
@@ -82,7 +82,7 @@ class Refine {
     std::size_t size = 0;
   };
   using Points = std::array<const Site<Dim>*, points_of_cut<Dim>>;
-  using Shapes = std::array<float, Pieces<Dim>::most>;
+  using Qualities = std::array<float, Pieces<Dim>::most>;
 
   // ---- 1. Where the new vertices go, and which elements each edge cuts ----
   void plan();
@@ -106,10 +106,10 @@ class Refine {
   Order order_of(const Cuts& cuts) const;
   Points points_of(ElementId element, const Cuts& cuts) const;
   bool cut_freely(Cuts& cuts, const Order& order, const Points& points) const;
-  bool cut(Pieces<Dim>& pieces, Shapes& shapes, std::size_t edge, const Split& split,
+  bool cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edge, const Split& split,
            const Points& points) const;
   bool keeps_distance(const Pieces<Dim>& pieces, std::size_t edge, const Points& points) const;
-  double least_shape(double before, const Split& split) const;
+  double least_quality(double before, const Split& split) const;
 
   // ---- 3. New vertices and elements take numbers in order; each element is cut on its own: in
   // refine_write.cpp ----

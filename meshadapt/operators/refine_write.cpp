@@ -102,7 +102,7 @@ void Refine<Dim>::write_vertex(std::uint32_t number) {
 template <int Dim>
 void Refine<Dim>::write_links(std::uint32_t number, auto&& defer) {
   const Split& split = splits_[number];
-  if (split.kind.freedom != 1) return;
+  if (split.kind.class_dimension != 1) return;
   using Kind = ListChange::Kind;
   const LongEdge& edge = edges_[number];
   const VertexId middle = vertex_of(number);
@@ -142,7 +142,7 @@ void Refine<Dim>::write_pieces(std::size_t place, auto&& defer) {
       if (p == 0 && v != before[c]) defer(before[c], {ListChange::Kind::remove_element, element});
     }
     mesh_.region_of[to] = mesh_.region_of[element];
-    mesh_.shape_of[to] = cuts.shape[p];
+    mesh_.quality_of[to] = cuts.quality[p];
     mesh_.changed_at[to] = mesh_.epoch;
   }
 }

@@ -32,16 +32,16 @@ std::size_t RemainingWork<Dim>::changes_of_lengths(EdgeSurvey<Dim>& survey) cons
   const Coarsen<Dim> coarsening(mesh_, rules);
   const Refine<Dim> refinement(executor_, mesh_, background_, rules);
   ++mesh_.epoch;  // the survey can tell what is there from what will change
-  const auto crowded =
-      Coarsen<Dim>::crowded_vertices(executor_, mesh_, survey, rules.short_edge, 0);
+  const auto short_edge_vertices =
+      Coarsen<Dim>::short_edge_vertices(executor_, mesh_, survey, rules.short_edge, 0);
   const auto edges = long_edges(executor_, mesh_, survey, rules.long_edge, 0);
-  const std::size_t all = crowded.size() + edges.size(), step = 1 + all / 4096;
+  const std::size_t all = short_edge_vertices.size() + edges.size(), step = 1 + all / 4096;
   const auto changes_at = [&](std::size_t k) -> std::size_t {
-    if (k < crowded.size()) {
+    if (k < short_edge_vertices.size()) {
       EdgeCollapse collapse{};
-      return coarsening.decide(crowded[k], collapse) ? 1 : 0;
+      return coarsening.decide(short_edge_vertices[k], collapse) ? 1 : 0;
     }
-    const LongEdge& edge = edges[k - crowded.size()];
+    const LongEdge& edge = edges[k - short_edge_vertices.size()];
     return refinement.splits(edge) ? splits_of(edge, rules.long_edge) : 0;
   };
   std::size_t changes = 0;
@@ -61,13 +61,13 @@ std::size_t RemainingWork<Dim>::changes_of_lengths(EdgeSurvey<Dim>& survey) cons
 template <int Dim>
 bool RemainingWork<Dim>::is_raised(const Smooth<Dim>& smoothing, VertexId vertex) const {
   const auto elements = mesh_.elements_of.of(vertex);
-  if (elements.size() > BallShapes<Dim>::most) return false;
+  if (elements.size() > BallQualities<Dim>::most) return false;
   VertexMove<Dim> move;
   if (!smoothing.decide(vertex, move)) return false;
   float before = 1, after = 1;
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    before = std::min(before, mesh_.shape_of[elements[i]]);
-    after = std::min(after, move.shapes[i]);
+    before = std::min(before, mesh_.quality_of[elements[i]]);
+    after = std::min(after, move.qualities[i]);
   }
   return after > 1.1F * before + 0.01F;
 }

@@ -26,7 +26,7 @@ bool may_be_at(Mesh<Dim>& mesh, VertexId vertex, const Vector<Dim>& place) {
     for (std::size_t i = 0; i < corner.size(); ++i)
       corner[i] = mesh.site_of[mesh.corners_of[e][i]].position;
     return certain_determinant<Dim>(corner) > 0 &&
-           mesh.shape_at(mesh.corners_of[e]) > 0.7 * mesh.shape_of[e];
+           mesh.quality_at(mesh.corners_of[e]) > 0.7 * mesh.quality_of[e];
   };
   const bool all = std::all_of(around.begin(), around.end(), is_good);
   if (!all) mesh.site_of[vertex].position = before;
@@ -39,13 +39,13 @@ template <int Dim>
 void round_boundary(Mesh<Dim>& mesh) {
   if (!mesh.rounding) return;
   for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
-    const int freedom = mesh.kind_of[v].freedom;
-    if (!mesh.vertex_alive(v) || freedom == 0 || freedom == Dim) continue;
+    const int class_dimension = mesh.kind_of[v].class_dimension;
+    if (!mesh.vertex_alive(v) || class_dimension == 0 || class_dimension == Dim) continue;
     const Vector<Dim> from = mesh.site_of[v].position;
     Vector<Dim> same = from;
     for (double& x : same.x) x = mesh.rounding->precision.rounded(x);
     if (same == from) continue;  // as it was
-    const Vector<Dim> place = mesh.rounding->rounded(from, freedom, mesh.entity_of[v]);
+    const Vector<Dim> place = mesh.rounding->rounded(from, class_dimension, mesh.entity_of[v]);
     if (!may_be_at(mesh, v, place)) continue;
     for (const ElementId e : mesh.elements_of.of(v)) update_element(mesh, e);
   }

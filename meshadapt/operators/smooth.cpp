@@ -36,7 +36,7 @@ template <int Dim>
 runtime::UnsetVector<VertexId> movable_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                                           const runtime::UnsetVector<std::uint8_t>& marked) {
   const auto find = [&](std::size_t v, auto&& append) {
-    if (marked[v] != 0 && mesh.kind_of[v].freedom != 0) append(static_cast<VertexId>(v));
+    if (marked[v] != 0 && mesh.kind_of[v].class_dimension != 0) append(static_cast<VertexId>(v));
   };
   return runtime::parallel_collect<VertexId>(executor, marked.size(), find,
                                              runtime::few_nanoseconds.serial_below);
@@ -55,10 +55,10 @@ template <int Dim>
 runtime::UnsetVector<VertexId> Smooth<Dim>::movable_vertices_of_poor(
     const runtime::Executor& executor, const Mesh<Dim>& mesh, double mean_ratio,
     std::uint32_t after) {
-  const double bound = shape_of_mean_ratio<Dim>(mean_ratio);
+  const double bound = quality_of_mean_ratio<Dim>(mean_ratio);
   auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
   runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
-    if (mesh.shape_of[e] >= bound || mesh.changed_at[e] <= after) return;
+    if (mesh.quality_of[e] >= bound || mesh.changed_at[e] <= after) return;
     if (!mesh.alive(static_cast<ElementId>(e))) return;
     for (const VertexId v : mesh.corners_of[e]) runtime::atomic_set(marked[v]);
   });
@@ -87,9 +87,9 @@ bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
     Place best;
     return settle(vertex, best) && follow(vertex, best, plan);
   }
-  constexpr double sound = 1e-6;  // the inverse of a shape tells something
-  const double good_enough = shape_of_mean_ratio<Dim>(options_.optimise_below);
-  const auto is_good = [&](ElementId e) { return mesh_.shape_of[e] >= good_enough; };
+  constexpr double sound = 1e-6;  // the inverse of a quality tells something
+  const double good_enough = quality_of_mean_ratio<Dim>(options_.optimise_below);
+  const auto is_good = [&](ElementId e) { return mesh_.quality_of[e] >= good_enough; };
   if (!options_.laplacian && std::all_of(elements.begin(), elements.end(), is_good)) return false;
   background_.prefetch_corners(mesh_.host_of[vertex]);
   const Ball<Dim> ball(mesh_, vertex);
@@ -97,7 +97,7 @@ bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
   bool moved = options_.laplacian && relax(vertex, ball, places[0], places[1]);
   Place& best = places[moved ? 1 : 0];
   if (best.score.worst < good_enough) {
-    const double poor = shape_of_mean_ratio<Dim>(options_.mean_below);
+    const double poor = quality_of_mean_ratio<Dim>(options_.mean_below);
     const bool all_poor =
         best.score.worst > sound && best.score.sum < poor * static_cast<double>(ball.size());
     moved = optimise(vertex, ball, all_poor ? Aim::mean : Aim::worst, best) || moved;
@@ -110,7 +110,7 @@ template <int Dim>
 bool Smooth<Dim>::follow(VertexId vertex, const Place& best, Plan& plan) const {
   const Vector<Dim> step = best.site.position - mesh_.site_of[vertex].position;
   const bool far = squared_length(best.site.metric, step) > options_.far * options_.far;
-  plan = {best.host, best.site, best.shapes, far};
+  plan = {best.host, best.site, best.qualities, far};
   return true;
 }
 
@@ -127,7 +127,7 @@ bool Smooth<Dim>::follows_function(VertexId vertex) const {
 template <int Dim>
 bool Smooth<Dim>::settle(VertexId vertex, Place& best) const {
   const double close = follows_function(vertex) ? 1e-10 : 0.01;  // of the tolerance
-  constexpr double kept = 0.7;                                   // of the worst shape
+  constexpr double kept = 0.7;                                   // of the worst quality
   const Vector<Dim> from = mesh_.site_of[vertex].position;
   const auto target = stepped(vertex, from, {});
   if (!target) return false;
@@ -145,7 +145,7 @@ bool Smooth<Dim>::settle(VertexId vertex, Place& best) const {
 /// that its facets on patches keep their turn?
 template <int Dim>
 bool Smooth<Dim>::keeps_volumes(VertexId vertex, const Vector<Dim>& position) const {
-  const bool on_boundary = mesh_.kind_of[vertex].freedom < Dim;
+  const bool on_boundary = mesh_.kind_of[vertex].class_dimension < Dim;
   for (const ElementId e : mesh_.elements_of.of(vertex)) {
     std::array<Vector<Dim>, Dim + 1> p;
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -203,9 +203,9 @@ bool Smooth<Dim>::place(const Ball<Dim>& ball, const Vector<Dim>& position, cons
   const auto sample = background_.sample(position, near.host);
   result.site = make_site(position, sample.metric);
   result.host = sample.host;
-  result.score = ball.score(result.site, bar.worst, result.shapes);
+  result.score = ball.score(result.site, bar.worst, result.qualities);
   const auto is_certain = [&] {
-    return mesh_.kind_of[ball.vertex()].freedom == Dim &&
+    return mesh_.kind_of[ball.vertex()].class_dimension == Dim &&
            ball.is_certain(result.score.volume, position);
   };
   return beats_bar(result.score) && keeps_lengths(ball.vertex(), result.site) &&
@@ -250,9 +250,9 @@ Vector<Dim> Smooth<Dim>::normal(VertexId vertex) const {
 /// The part of a displacement that keeps the vertex on its patch or curve, or along it.
 template <int Dim>
 Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) const {
-  const int freedom = mesh_.kind_of[vertex].freedom;
-  if (freedom == Dim) return displacement;
-  if (Dim == 3 && freedom == 1) {
+  const int class_dimension = mesh_.kind_of[vertex].class_dimension;
+  if (class_dimension == Dim) return displacement;
+  if (Dim == 3 && class_dimension == 1) {
     const Vector<Dim> along = tangent(vertex);
     return dot(displacement, along) * along;
   }
@@ -276,13 +276,13 @@ std::optional<Vector<Dim>> Smooth<Dim>::stepped(VertexId vertex, const Vector<Di
   return to;
 }
 
-/// Goes towards where the elements want it as far as their shapes get better.
+/// Goes towards where the elements want it as far as their qualities get better.
 template <int Dim>
 bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, const Place& from,
                         Place& to) const {
   const Vector<Dim> step = allowed(vertex, ball.mean_pull(from.site));
   if (squared_length(from.site.metric, step) < 1e-4) return false;
-  const Score bar{std::min(from.score.worst, shape_of_mean_ratio<Dim>(0.7)),
+  const Score bar{std::min(from.score.worst, quality_of_mean_ratio<Dim>(0.7)),
                   from.score.sum * (1 + 1e-4)};
   for (const double fraction : {1.0, 0.5, 0.25}) {
     const auto position = stepped(vertex, from.site.position, fraction * step);
@@ -292,17 +292,17 @@ bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, const Place& fro
 }
 
 /// A direction in which all of the worst elements get better, or nearly 0 if there is none; or that
-/// in which the harmonic mean of all shapes rises most. It is sought in the space where the metric
-/// is the identity, lest the thin direction hide the others.
+/// in which the harmonic mean of all qualities rises most. It is sought in the space where the
+/// metric is the identity, lest the thin direction hide the others.
 template <int Dim>
 Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim,
                                 const Place& at) const {
   const PrincipalAxes<Dim> axes = principal_axes(at.site.metric);
   Buffer<Vector<Dim>, 16> gradients;
-  ball.visit_shapes(at.site, [&](std::size_t element, double shape) {
-    if (aim == Aim::worst && shape > at.score.worst * 1.15 + 0.01) return;
-    const double weight = aim == Aim::worst ? 1 : 1 / (shape * shape);
-    const Vector<Dim> free = allowed(vertex, ball.gradient(element, at.site, shape));
+  ball.visit_qualities(at.site, [&](std::size_t element, double quality) {
+    if (aim == Aim::worst && quality > at.score.worst * 1.15 + 0.01) return;
+    const double weight = aim == Aim::worst ? 1 : 1 / (quality * quality);
+    const Vector<Dim> free = allowed(vertex, ball.gradient(element, at.site, quality));
     Vector<Dim> unit;
     for (int i = 0; i < Dim; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -324,15 +324,15 @@ Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim,
   return allowed(vertex, direction);
 }
 
-/// The sum of the inverse shapes around the vertex if it were at this site.
+/// The sum of the inverse qualities around the vertex if it were at this site.
 template <int Dim>
-double Smooth<Dim>::inverse_shapes(const Ball<Dim>& ball, const Site<Dim>& site) {
+double Smooth<Dim>::inverse_qualities(const Ball<Dim>& ball, const Site<Dim>& site) {
   double sum = 0;
-  ball.visit_shapes(site, [&](std::size_t, double shape) { sum += 1 / shape; });
+  ball.visit_qualities(site, [&](std::size_t, double quality) { sum += 1 / quality; });
   return sum;
 }
 
-/// Climbs the worst shape around the vertex, or the harmonic mean of all, by line searches.
+/// Climbs the worst quality around the vertex, or the harmonic mean of all, by line searches.
 template <int Dim>
 bool Smooth<Dim>::optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const {
   constexpr int climbs = 4, halvings = 5;
@@ -345,13 +345,13 @@ bool Smooth<Dim>::optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Plac
     if (!(length > 0) || !std::isfinite(length)) break;
     bool better = false;
     const double bar = aim == Aim::worst ? best.score.worst * 1.001 : 0;
-    const double most = aim == Aim::worst ? 0 : inverse_shapes(ball, best.site) * 0.999;
+    const double most = aim == Aim::worst ? 0 : inverse_qualities(ball, best.site) * 0.999;
     for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
       // What is left of a direction that was nearly normal to its patch is rounding, still normal.
       const Vector<Dim> step = allowed(vertex, (reach / length) * direction);
       const auto position = stepped(vertex, best.site.position, step);
       if (!position || !place(ball, *position, best, {bar, 0}, trial)) continue;
-      if (aim == Aim::mean && inverse_shapes(ball, trial.site) > most) continue;
+      if (aim == Aim::mean && inverse_qualities(ball, trial.site) > most) continue;
       best = trial;
       better = moved = true;
     }
@@ -368,9 +368,9 @@ void Smooth<Dim>::move(VertexId vertex, const Plan& plan) {
   const auto elements = mesh_.elements_of.of(vertex);
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const ElementId e = elements[i];
-    mesh_.shape_of[e] = i < BallShapes<Dim>::most
-                            ? plan.shapes[i]
-                            : static_cast<float>(mesh_.shape_at(mesh_.corners_of[e]));
+    mesh_.quality_of[e] = i < BallQualities<Dim>::most
+                              ? plan.qualities[i]
+                              : static_cast<float>(mesh_.quality_at(mesh_.corners_of[e]));
     if (plan.far) mesh_.changed_at[elements[i]] = mesh_.epoch;  // else it is too little to matter
   }
 }

@@ -19,8 +19,8 @@ template <int Dim>
 struct VertexMove {
   ElementId host;
   Site<Dim> site;
-  BallShapes<Dim> shapes;  // of the elements around, as they will be
-  bool far;                // far enough for its neighbours to be worth another look
+  BallQualities<Dim> qualities;  // of the elements around, as they will be
+  bool far;                      // far enough for its neighbours to be worth another look
   friend bool operator==(const VertexMove&, const VertexMove&) = default;
 };
 
@@ -77,18 +77,18 @@ class Smooth {
     if (stage == 1) background_.prefetch(mesh_.host_of[vertex]);
   }
 
-  // ---- Apply: move it, renew the shapes around it ----
+  // ---- Apply: move it, renew the qualities around it ----
   void apply(VertexId vertex, const Plan& plan, auto&) { move(vertex, plan); }
 
  private:
-  /// What is climbed: the worst shape around, or the harmonic mean of all.
+  /// What is climbed: the worst quality around, or the harmonic mean of all.
   enum class Aim : std::uint8_t { worst, mean };
   using Score = typename Ball<Dim>::Score;
   struct Place {
     Site<Dim> site;
     ElementId host;
     Score score;
-    BallShapes<Dim> shapes{};
+    BallQualities<Dim> qualities{};
   };
   void move(VertexId vertex, const Plan& plan);
   bool follow(VertexId vertex, const Place& best, Plan& plan) const;
@@ -107,7 +107,7 @@ class Smooth {
   bool relax(VertexId vertex, const Ball<Dim>& ball, const Place& from, Place& to) const;
   bool optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const;
   Vector<Dim> ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim, const Place& at) const;
-  static double inverse_shapes(const Ball<Dim>& ball, const Site<Dim>& site);
+  static double inverse_qualities(const Ball<Dim>& ball, const Site<Dim>& site);
 
   Mesh<Dim>& mesh_;
   const Background<Dim>& background_;

@@ -14,8 +14,8 @@ Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
   const auto look = [&](std::size_t i) -> Standing {
     const auto e = static_cast<ElementId>(i);
     if (!mesh.alive(e)) return {};
-    const double ratio = std::max(0.0, mean_ratio<Dim>(mesh.shape_of[e]));
-    Standing one{.elements = 1, .shapes = 1 - ratio, .poor = ratio < poor ? 1.0 : 0};
+    const double ratio = std::max(0.0, mean_ratio<Dim>(mesh.quality_of[e]));
+    Standing one{.elements = 1, .qualities = 1 - ratio, .poor = ratio < poor ? 1.0 : 0};
     for (std::size_t k = 0; k < Simplex<Dim>::edges; ++k) {
       const auto [a, b] = ends_of_edge<Dim>(mesh.corners_of[e], k);
       const EndSquares edge = end_squares(mesh.site_of[a], mesh.site_of[b]);
@@ -26,8 +26,8 @@ Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
     return one;
   };
   const auto add = [](const Standing& a, const Standing& b) -> Standing {
-    return {a.elements + b.elements, a.shapes + b.shapes, a.lengths + b.lengths, a.poor + b.poor,
-            a.far + b.far};
+    return {a.elements + b.elements, a.qualities + b.qualities, a.lengths + b.lengths,
+            a.poor + b.poor, a.far + b.far};
   };
   return runtime::parallel_reduce(executor, mesh.element_slots(), Standing{}, look, add);
 }
@@ -44,10 +44,10 @@ bool is_better(const Standing& after, const Standing& before, const Clearly& cle
     }
     bool is_at_most(double times) const { return after <= times * before; }
   };
-  const Fault shapes{per_element(after, after.shapes), per_element(before, before.shapes)};
+  const Fault qualities{per_element(after, after.qualities), per_element(before, before.qualities)};
   const Fault lengths{per_element(after, after.lengths), per_element(before, before.lengths)};
-  return (shapes.is_less(clearly) && lengths.is_at_most(hardly)) ||
-         (lengths.is_less(clearly) && shapes.is_at_most(clearly.shapes)) ||
+  return (qualities.is_less(clearly) && lengths.is_at_most(hardly)) ||
+         (lengths.is_less(clearly) && qualities.is_at_most(clearly.qualities)) ||
          per_element(after, after.poor + chance) < 0.5 * per_element(before, before.poor) ||
          per_element(after, after.far + chance) < 0.5 * per_element(before, before.far);
 }

@@ -13,10 +13,10 @@ namespace ductile::meshadapt {
 
 struct Standing {
   std::size_t elements = 0;
-  double shapes = 0;   ///< sum of what the elements' mean ratios lack of 1
-  double lengths = 0;  ///< sum of the share of each element's edges that are out of the range
-  double poor = 0;     ///< elements of a mean ratio below that which counts as poor
-  double far = 0;      ///< elements with an edge above twice the range, or below half of it
+  double qualities = 0;  ///< sum of what the elements' mean ratios lack of 1
+  double lengths = 0;    ///< sum of the share of each element's edges that are out of the range
+  double poor = 0;       ///< elements of a mean ratio below that which counts as poor
+  double far = 0;        ///< elements with an edge above twice the range, or below half of it
 };
 
 /// Thread safety: one caller; runs on the executor.
@@ -25,16 +25,16 @@ Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                      const EdgeRange& range, double poor);
 
 /// How much less of a fault is clearly less: at most this part of it, and for each element less by
-/// more than `least`. Where lengths are clearly better, `shapes` may be this many times as much.
+/// more than `least`. Where lengths are clearly better, `qualities` may be this many times as much.
 struct Clearly {
-  double part, least, shapes;
+  double part, least, qualities;
 };
 /// What differs by chance from run to run is not clear.
-inline constexpr Clearly after_a_run{.part = 0.85, .least = 0.01, .shapes = 1.02};
-/// What was mended differs only where it was, and lengths come first: shapes that were made for
+inline constexpr Clearly after_a_run{.part = 0.85, .least = 0.01, .qualities = 1.02};
+/// What was mended differs only where it was, and lengths come first: qualities that were made for
 /// other lengths are better than those that are made for these.
 inline constexpr Clearly after_mending{
-    .part = 0.9, .least = 0, .shapes = std::numeric_limits<double>::infinity()};
+    .part = 0.9, .least = 0, .qualities = std::numeric_limits<double>::infinity()};
 
 /// Is the one clearly better than the other? So it is, too, if less than half as many elements are
 /// poor, or far from the range.

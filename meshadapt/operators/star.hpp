@@ -21,7 +21,7 @@ class Star {
   struct Edge {
     VertexId to;
     std::uint32_t count;  // of elements around it
-    float worst_shape;
+    float worst_quality;
     std::uint16_t worst;  // of those elements, the first; as in Around
     bool changed;         // is one of them
     /// Exclusive or of the elements' other corners: 0 if each is in two of them, that is, inside.
@@ -46,7 +46,7 @@ class Star {
         higher[count] = {v, static_cast<std::uint16_t>(i)};
         count += v > vertex;
       }
-      elements[i] = {mesh.shape_of[e], others, mesh.changed_at[e] > after};
+      elements[i] = {mesh.quality_of[e], others, mesh.changed_at[e] > after};
     }
     for (std::size_t k = 0; k < count; ++k) note(higher[k], elements[higher[k].element]);
   }
@@ -59,7 +59,7 @@ class Star {
   static constexpr Edge no_edge{none, 0, std::numeric_limits<float>::infinity(), 0, false, 0};
 
   struct Element {
-    float shape;
+    float quality;
     VertexId others;  // exclusive or of the corners other than the vertex
     bool changed;
   };
@@ -80,8 +80,8 @@ class Star {
     edge.to = to;
     around_[i][edge.count % most_around] = place;
     ++edge.count;
-    edge.worst = element.shape < edge.worst_shape ? place : edge.worst;
-    edge.worst_shape = std::min(edge.worst_shape, element.shape);
+    edge.worst = element.quality < edge.worst_quality ? place : edge.worst;
+    edge.worst_quality = std::min(edge.worst_quality, element.quality);
     edge.changed = edge.changed || element.changed;
     edge.ends ^= element.others ^ to;
     size_ += fresh;

@@ -1,10 +1,10 @@
 /// @file
-/// Swap: reconnects vertices where that raises the worst shape of the elements concerned. In 2D it
-/// flips the edge between two triangles. In 3D it removes an edge, with the best triangulation of
-/// the ring around it (3-2, 4-4 and so on up to seven elements, also on flat boundary), or replaces
-/// the face between two tetrahedra by an edge (2-3); below a smooth patch it cuts poor elements off
-/// (cut_off.hpp). It runs by reservations of elements, because few of all edges
-/// and faces act (or by colours, see swap_by_vertex.hpp); lists of vertices are read where nobody
+/// Swap: reconnects vertices where that raises the worst quality of the elements concerned. In 2D
+/// it flips the edge between two triangles. In 3D it removes an edge, with the best triangulation
+/// of the ring around it (3-2, 4-4 and so on up to seven elements, also on flat boundary), or
+/// replaces the face between two tetrahedra by an edge (2-3); below a smooth patch it cuts poor
+/// elements off (cut_off.hpp). It runs by reservations of elements, because few of all edges and
+/// faces act (or by colours, see swap_by_vertex.hpp); lists of vertices are read where nobody
 /// writes.
 #pragma once
 
@@ -24,7 +24,7 @@ namespace ductile::meshadapt {
 /// An edge a-b to remove, or in 3D a face a-b-c to pierce; c is none for an edge.
 struct Swappable {
   VertexId a, b, c = none;
-  float worst = 0;  ///< worst shape around it when it was found; the worst goes first
+  float worst = 0;  ///< worst quality around it when it was found; the worst goes first
   friend auto operator<=>(const Swappable&, const Swappable&) = default;
 };
 

@@ -29,9 +29,9 @@ bool worth_a_flip(const Mesh<2>& mesh, const Kite& kite, const EdgeRange& range)
   if (mesh.region_of[first] != mesh.region_of[second] || mesh.required_element(first) ||
       patch_of_edge(mesh, first, a, b) != 0)
     return false;
-  const double least = Swap<2>::bar(std::min(mesh.shape_of[first], mesh.shape_of[second]));
-  return shape_above<2>(mesh.sites({a, d, c}), least) &&
-         shape_above<2>(mesh.sites({d, b, c}), least) &&
+  const double least = Swap<2>::bar(std::min(mesh.quality_of[first], mesh.quality_of[second]));
+  return quality_above<2>(mesh.sites({a, d, c}), least) &&
+         quality_above<2>(mesh.sites({d, b, c}), least) &&
          (!range.is_bounded() || range.accepts(end_squares(mesh.site_of[c], mesh.site_of[d]),
                                                end_squares(mesh.site_of[a], mesh.site_of[b])));
 }
@@ -85,7 +85,7 @@ class FlipSearch {
       : mesh_(mesh),
         after_(after),
         range_(range),
-        bound_(static_cast<float>(shape_of_mean_ratio<2>(below))),
+        bound_(static_cast<float>(quality_of_mean_ratio<2>(below))),
         marked_(mark_changed(executor, mesh, after)) {}
 
   void find(std::size_t begin, std::size_t end, auto&& append) const {
@@ -118,7 +118,7 @@ class FlipSearch {
   static std::size_t next(int corner) { return static_cast<std::size_t>(corner + 1) % 3; }
 
   bool is_poor(ElementId e) const {
-    return static_cast<int>(mesh_.shape_of[e] < bound_) & static_cast<int>(mesh_.alive(e));
+    return static_cast<int>(mesh_.quality_of[e] < bound_) & static_cast<int>(mesh_.alive(e));
   }
 
   bool near_changes(ElementId e) const {
@@ -137,7 +137,7 @@ class FlipSearch {
       if (at >= 0 && mesh_.corners_of[other][static_cast<std::size_t>(at)] == kite.d) return;
     }
     if (!worth_a_flip(mesh_, kite, range_)) return;
-    const float worst = std::min(mesh_.shape_of[e], mesh_.shape_of[other]);
+    const float worst = std::min(mesh_.quality_of[e], mesh_.quality_of[other]);
     append(Swappable{std::min(kite.a, kite.b), std::max(kite.a, kite.b), none, worst});
   }
 

@@ -80,7 +80,8 @@ class RingTriangulation {
   /// Of the worse of a ring triangle's two elements.
   double triangle(std::size_t i, std::size_t k, std::size_t j) const {
     const Base base = make_base({site_[i], site_[j], site_[k]});
-    return std::min(squared_shape_over(base, *site_b_, 1), squared_shape_over(base, *site_a_, -1));
+    return std::min(squared_quality_over(base, *site_b_, 1),
+                    squared_quality_over(base, *site_a_, -1));
   }
 
   void collect(std::size_t i, std::size_t j, Replacement<3>& plan) const {
@@ -99,7 +100,7 @@ class RingTriangulation {
   const Site<3>* site_a_;
   const Site<3>* site_b_;
   double bar_;                                                          // as worst_, squared
-  std::array<std::array<double, largest_ring>, largest_ring> worst_{};  // shape, squared
+  std::array<std::array<double, largest_ring>, largest_ring> worst_{};  // quality, squared
   std::array<std::array<std::uint8_t, largest_ring>, largest_ring> apex_{};
 };
 
@@ -116,7 +117,8 @@ std::optional<Replacement<3>> triangulate(const Mesh<3>& mesh, const Swappable& 
 /// May this be an edge of a patch? Not if it is there already, on the other side of a boundary that
 /// touches itself, nor if both sides of a closed crack could get it at the same time.
 bool stays_apart(const Mesh<3>& mesh, VertexId a, VertexId b, PatchId patch) {
-  if (mesh.patches[patch].faced && mesh.kind_of[a].freedom < 2 && mesh.kind_of[b].freedom < 2)
+  if (mesh.patches[patch].crack_side && mesh.kind_of[a].class_dimension < 2 &&
+      mesh.kind_of[b].class_dimension < 2)
     return false;
   bool found = false;
   visit_shell(mesh, a, b, [&](ElementId) { found = true; });
@@ -131,7 +133,7 @@ bool accept_edge_removal(const Mesh<3>& mesh, const Swappable& edge, const Shell
   // A patch on a closed ring is an interface or a sheet inside a region: its edges stay.
   if (ring.open != (patch != 0)) return false;
   for (const Corners<3>& corners : result.new_elements)
-    if (!(mesh.shape_at(corners) > 0)) return false;
+    if (!(mesh.quality_at(corners) > 0)) return false;
   result.old_elements.assign(shell.begin(), shell.end());
   if (ring.open) {
     const VertexId first = ring.vertices.front(), last = ring.vertices.back();
@@ -153,7 +155,7 @@ bool worth_piercing(const Mesh<3>& mesh, const Swappable& face, VertexId p, Vert
                     double bar) {
   const auto elements = elements_around(face, p, q);
   return std::all_of(elements.begin(), elements.end(), [&](const Corners<3>& corners) {
-    return shape_above<3>(mesh.sites(corners), bar);
+    return quality_above<3>(mesh.sites(corners), bar);
   });
 }
 
@@ -188,7 +190,7 @@ bool Swap<3>::decide(const Swappable& item, const Shell& shell, Plan& plan) cons
     return found.has_value();
   };
   float worst = 1;
-  for (const ElementId e : shell) worst = std::min(worst, mesh_.shape_of[e]);
+  for (const ElementId e : shell) worst = std::min(worst, mesh_.quality_of[e]);
   if (item.c != none)
     return shell.size() == 2 && take(plan_face_swap(mesh_, item, shell, bar(worst), range_));
   Ring ring;
@@ -239,7 +241,7 @@ class EdgeSearch {
   void run(auto&& append) {
     for (std::size_t i = 0; i < star_.size(); ++i)
       if ((worth_a_look(star_.edge(i)) && worth_removing(i)) || worth_cutting_off(star_.edge(i)))
-        append(Swappable{vertex_, star_.edge(i).to, none, star_.edge(i).worst_shape});
+        append(Swappable{vertex_, star_.edge(i).to, none, star_.edge(i).worst_quality});
   }
 
  private:
@@ -254,12 +256,12 @@ class EdgeSearch {
     static_assert(slope.size() == Star::most_around + 1);
     const std::size_t around = edge.count * (edge.ends == 0 ? 1U : 2U);
     if (around >= slope.size()) return never;
-    const double shape = std::max(0.0F, edge.worst_shape);
-    return 0.4 + slope[around] * (shape * shape);
+    const double quality = std::max(0.0F, edge.worst_quality);
+    return 0.4 + slope[around] * (quality * quality);
   }
 
   bool worth_a_look(const Star::Edge& edge) {
-    if (!edge.changed || !(edge.worst_shape < good_enough_)) return false;
+    if (!edge.changed || !(edge.worst_quality < good_enough_)) return false;
     const double limit = long_edge(edge);
     if (limit > longest) return false;
     Gauge& gauge = gauge_of_[edge.worst];
@@ -280,7 +282,7 @@ class EdgeSearch {
     const auto corners = [&](std::size_t k) { return mesh_.corners_of[element(k)]; };
     Ring ring;
     if (!ring.close(edge.count, vertex_, edge.to, corners)) return false;
-    const double bar = Swap<3>::bar(edge.worst_shape);
+    const double bar = Swap<3>::bar(edge.worst_quality);
     auto result = triangulate(mesh_, {vertex_, edge.to}, ring, bar);
     if (!result) return false;
     Shell shell;
@@ -308,7 +310,7 @@ class EdgeSearch {
   if (vertex + step < wanted.size() && wanted[vertex + step] != 0)
     for (const ElementId e : mesh.elements_of.of(static_cast<VertexId>(vertex + step))) {
       __builtin_prefetch(&mesh.corners_of[e]);
-      __builtin_prefetch(&mesh.shape_of[e]);
+      __builtin_prefetch(&mesh.quality_of[e]);
       __builtin_prefetch(&mesh.changed_at[e]);
     }
 }
@@ -337,9 +339,9 @@ std::optional<Swappable> face_to_pierce(const Mesh<3>& mesh, ElementId element, 
   const Gauge gauge(mesh, corners);
   const int apex = lowest_corner(mesh, corners, gauge.metric);
   const ElementId other = neighbour(mesh, element, apex);
-  const float worst = mesh.shape_of[element];
+  const float worst = mesh.quality_of[element];
   if (other == none || (mesh.changed_at[element] <= after && mesh.changed_at[other] <= after) ||
-      std::pair(mesh.shape_of[other], other) < std::pair(worst, element))
+      std::pair(mesh.quality_of[other], other) < std::pair(worst, element))
     return {};
   Facet<3> face = facet_of<3>(corners, apex);
   std::sort(face.begin(), face.end());
@@ -360,9 +362,9 @@ template <>
 runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& executor,
                                                       Mesh<3>& mesh, std::uint32_t after,
                                                       double below, const EdgeRange& range) {
-  const auto good_enough = static_cast<float>(shape_of_mean_ratio<3>(below));
-  const auto poor = [&](ElementId e) { return mesh.shape_of[e] < good_enough; };
-  const double flat = std::min<double>(good_enough, shape_of_mean_ratio<3>(0.5));
+  const auto good_enough = static_cast<float>(quality_of_mean_ratio<3>(below));
+  const auto poor = [&](ElementId e) { return mesh.quality_of[e] < good_enough; };
+  const double flat = std::min<double>(good_enough, quality_of_mean_ratio<3>(0.5));
   const auto near_change = mark_changed(executor, mesh, after);
   const auto find_edges = [&](std::size_t v, auto&& append) {
     prefetch_stars_after(mesh, near_change, v);
@@ -374,7 +376,7 @@ runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& e
   };
   const auto find_faces = [&](std::size_t e, auto&& append) {
     const auto element = static_cast<ElementId>(e);
-    if (!(mesh.shape_of[e] < flat) || !mesh.alive(element)) return;
+    if (!(mesh.quality_of[e] < flat) || !mesh.alive(element)) return;
     const auto is_near = [&](VertexId v) { return near_change[v] != 0; };
     const Corners<3>& corners = mesh.corners_of[e];
     if (std::count_if(corners.begin(), corners.end(), is_near) < 3) return;

@@ -131,7 +131,7 @@ def field_type(components: int, dimension: int) -> FieldType | None:
 _CELLS = {2: "triangles", 3: "tetrahedra"}
 _FACETS = {2: "edges", 3: "triangles"}
 _OPTIONS = {"gradation": "hgrad", "required_gradation": "hgradreq", "smallest_size": "hmin",
-            "largest_size": "hmax", "surface_tolerance": "hausd", "ridge_angle": "ar"}
+            "largest_size": "hmax", "hausdorff_tolerance": "hausd", "ridge_angle": "ar"}
 
 
 @contextmanager

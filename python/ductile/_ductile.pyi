@@ -120,7 +120,7 @@ class Options:
     swap: bool
     insert: bool
     lock_boundary: bool
-    surface_tolerance: float
+    hausdorff_tolerance: float
     geometry: Optional[GeometryData]
     ridge_angle: float
 

@@ -316,7 +316,7 @@ class Mesh:
                            gradation=number(hgrad, "hgrad"),
                            curved_sizes=curved_sizes,
                            required_gradation=number(hgradreq, "hgradreq"),
-                           surface_tolerance=number(hausd, "hausd") or (geometry.hausd if geometry else 0),
+                           hausdorff_tolerance=number(hausd, "hausd") or (geometry.hausd if geometry else 0),
                            geometry=geometry and geometry._data, ridge_angle=number(ar, "ar"),
                            iterations=iterations, thorough=thorough, move=not nomove,
                            swap=not noswap, insert=not noinsert, lock_boundary=nosurf,
@@ -331,7 +331,7 @@ class Mesh:
                 result = _ductile.remesh(data, rows, options, executor, progress)
         out = Mesh._of(result[0])
         out.metric, out.report = result[1:]
-        out._source, out._tolerance = data, options.surface_tolerance
+        out._source, out._tolerance = data, options.hausdorff_tolerance
         return out
 
     @property

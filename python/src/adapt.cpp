@@ -119,8 +119,8 @@ void bind_options(py::module_& module) {
           "lock_boundary", [](const AdaptOptions& o) { return o.make.lock_boundary; },
           [](AdaptOptions& o, bool lock) { o.make.lock_boundary = lock; })
       .def_property(
-          "surface_tolerance", [](const AdaptOptions& o) { return o.make.surface_tolerance; },
-          [](AdaptOptions& o, double tolerance) { o.make.surface_tolerance = tolerance; })
+          "hausdorff_tolerance", [](const AdaptOptions& o) { return o.make.hausdorff_tolerance; },
+          [](AdaptOptions& o, double tolerance) { o.make.hausdorff_tolerance = tolerance; })
       .def_property(
           "geometry", [](const AdaptOptions& o) { return o.make.geometry; },
           [](AdaptOptions& o, std::shared_ptr<meshadapt::Geometry> geometry) {

@@ -64,7 +64,7 @@ TEST(AdaptCase, HasTheComplexityThatItTells) {
   for (const CaseInfo& info : known_cases()) {
     SCOPED_TRACE(info.name);
     const AdaptCase made = make_case(executor, small(info));
-    const auto& mesh = made.surface_tolerance > 0
+    const auto& mesh = made.hausdorff_tolerance > 0
                            ? made.start
                            : fine[static_cast<std::size_t>(info.dimension) - 2];
     const AnyField metric = made.metric_on(executor, mesh);
@@ -135,7 +135,7 @@ TEST(AdaptCase, IsNotSoundOnceTheDomainIsLeft) {
     const AdaptCase made = make_case(executor, name);
     EXPECT_TRUE(is_sound(executor, made, made.start));
     meshadapt::AnyMesh moved = made.start;
-    for (double& x : moved.coordinates) x *= made.surface_tolerance == 0 ? 1 + 1e-6 : 2;
+    for (double& x : moved.coordinates) x *= made.hausdorff_tolerance == 0 ? 1 + 1e-6 : 2;
     EXPECT_FALSE(is_sound(executor, made, moved));
     moved = made.start;
     (made.dimension == 2 ? moved.edges.vertices.back()[0] : moved.triangles.vertices.back()[0]) = 0;

@@ -195,7 +195,7 @@ void keep_elements(Mesh& mesh, const std::function<bool(const Point&)>& keep) {
   if (std::count(kept.begin(), kept.end(), 1) >= 2) filter(mesh, kept);
 }
 
-void remove_pinches(Mesh& mesh) {
+void remove_non_manifold(Mesh& mesh) {
   keep_largest_part(mesh);
   for (;;) {
     const std::set<int> found = pinches(mesh, facets_of(mesh));

@@ -31,7 +31,7 @@ Mesh make_grid(Random& random, const Grid& grid);
 void keep_elements(Mesh& mesh, const std::function<bool(const Point&)>& keep);
 
 /// Takes elements away until the boundary meets itself nowhere, and all but the largest part.
-void remove_pinches(Mesh& mesh);
+void remove_non_manifold(Mesh& mesh);
 
 /// Doubles vertices so that the facets between elements that fulfil `is_cut` become boundary on
 /// both sides, apart everywhere but at their rim. Returns, for each vertex, which it was.

@@ -188,13 +188,14 @@ TEST_P(Checker, SeesWhereTheBoundaryMeetsItself) {
   grid.keep = [](const std::array<int, 3>& cell) { return cell[0] == cell[1]; };
   Mesh pinched = make_grid(random, grid);
   const Topology topology = topology_of(pinched);
-  EXPECT_EQ(topology.pinched_vertices, GetParam() == 2 ? 1 : 0);
-  EXPECT_EQ(topology.pinched_lines, GetParam() == 2 ? 0 : 1);
+  EXPECT_EQ(topology.non_manifold_vertices, GetParam() == 2 ? 1 : 0);
+  EXPECT_EQ(topology.non_manifold_lines, GetParam() == 2 ? 0 : 1);
   Topology other = topology;
-  other.pinched_vertices = other.pinched_lines = 0;
+  other.non_manifold_vertices = other.non_manifold_lines = 0;
   EXPECT_TRUE(mentions(differences(topology, other), "where the boundary meets itself"));
-  remove_pinches(pinched);
-  EXPECT_EQ(topology_of(pinched).pinched_vertices + topology_of(pinched).pinched_lines, 0);
+  remove_non_manifold(pinched);
+  EXPECT_EQ(topology_of(pinched).non_manifold_vertices + topology_of(pinched).non_manifold_lines,
+            0);
 }
 
 TEST_P(Checker, SeesMeasuresThatChange) {

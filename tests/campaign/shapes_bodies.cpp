@@ -54,7 +54,7 @@ void carve(Random& random, Mesh& mesh) {
     default:
       break;
   }
-  if (random.chance(0.88)) remove_pinches(mesh);
+  if (random.chance(0.88)) remove_non_manifold(mesh);
 }
 
 // ---- Maps of space ----
@@ -164,7 +164,7 @@ Shape tiny_body(Random& random) {
   if (random.chance(0.6)) {
     const Point direction = {random.normal(), random.normal(), random.normal()};
     keep_elements(shape.mesh, [&](const Point& x) { return dot(x, direction) > 0.2; });
-    remove_pinches(shape.mesh);
+    remove_non_manifold(shape.mesh);
   }
   return shape;
 }

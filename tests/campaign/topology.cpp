@@ -89,7 +89,7 @@ PartTopology part_topology(const Mesh& mesh, const std::vector<Facet>& facets,
 }
 
 /// Edges of the boundary with other than two facets, in 3D.
-std::vector<Cell> pinched_edges(const Mesh& mesh, const std::vector<Facet>& facets) {
+std::vector<Cell> non_manifold_edges(const Mesh& mesh, const std::vector<Facet>& facets) {
   std::map<std::array<int, 2>, int> count;
   if (mesh.dimension == 3)
     for (const Facet& facet : facets)
@@ -155,12 +155,12 @@ Topology topology_of(const Mesh& mesh) {
   topology.whole = part_topology(mesh, facets, all);
   for (const auto& [region, list] : members)
     topology.by_region[region] = part_topology(mesh, facets, list);
-  const std::vector<Cell> edges = pinched_edges(mesh, facets);
-  topology.pinched_lines = components_by_vertices(edges, mesh.points.size());
+  const std::vector<Cell> edges = non_manifold_edges(mesh, facets);
+  topology.non_manifold_lines = components_by_vertices(edges, mesh.points.size());
   std::set<int> several = vertices_of_several_fans(mesh, facets);
   for (const Cell& edge : edges)
     for (const int vertex : edge) several.erase(vertex);
-  topology.pinched_vertices = static_cast<int>(several.size());
+  topology.non_manifold_vertices = static_cast<int>(several.size());
   return topology;
 }
 
@@ -177,10 +177,10 @@ std::vector<std::string> differences(const Topology& before, const Topology& aft
   for (const auto& entry : after.by_region)
     if (before.by_region.count(entry.first) == 0)
       lines.push_back("topology: region " + std::to_string(entry.first) + " is new");
-  compare("topology: vertices where the boundary meets itself", before.pinched_vertices,
-          after.pinched_vertices, lines);
-  compare("topology: lines where the boundary meets itself", before.pinched_lines,
-          after.pinched_lines, lines);
+  compare("topology: vertices where the boundary meets itself", before.non_manifold_vertices,
+          after.non_manifold_vertices, lines);
+  compare("topology: lines where the boundary meets itself", before.non_manifold_lines,
+          after.non_manifold_lines, lines);
   return lines;
 }
 

@@ -104,7 +104,7 @@ void make(const AnyMesh& mesh) {
   for (const double tolerance : {0.0, 0.01}) {
     meshadapt::MakeMeshOptions options;
     options.complete_boundary = true;
-    options.surface_tolerance = tolerance;
+    options.hausdorff_tolerance = tolerance;
     meshadapt::Neighbours<Dim> neighbours;
     meshadapt::Warnings warnings;
     try {

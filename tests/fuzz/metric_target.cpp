@@ -113,7 +113,7 @@ meshadapt::AdaptOptions some_options(Numbers& numbers) {
   if (numbers.byte() % 4 == 0) options.smallest_size = numbers.number();
   if (numbers.byte() % 4 == 0) options.largest_size = numbers.number();
   if (numbers.byte() % 4 == 0) options.gradation = numbers.number();
-  if (numbers.byte() % 4 == 0) options.make.surface_tolerance = numbers.number();
+  if (numbers.byte() % 4 == 0) options.make.hausdorff_tolerance = numbers.number();
   if (numbers.byte() % 4 == 0) options.make.ridge_angle = numbers.number();
   return options;
 }
@@ -126,7 +126,7 @@ void adapt(Numbers& numbers, const AnyMesh& mesh, const AnyField& metric) {
     if (options.gradation >= 1 && options.gradation < 1.2) return;
     const auto adapted = meshadapt::adapt(executor(), mesh, metric, options);
     expect(meshadapt::check_mesh(executor(), adapted.mesh).empty(), "an adapted mesh is no mesh");
-    expect(meshadapt::check_domain(executor(), mesh, adapted.mesh, options.make.surface_tolerance)
+    expect(meshadapt::check_domain(executor(), mesh, adapted.mesh, options.make.hausdorff_tolerance)
                .empty(),
            "an adapted mesh has another domain");
     meshadapt::metric_of(adapted.metric, adapted.mesh);

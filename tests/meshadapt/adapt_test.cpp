@@ -215,7 +215,7 @@ TEST_P(Adapt, LeavesClosedCracksOpen) {
     for (const double tolerance : {0.0, 0.01, 0.1}) {
       const auto run = [&](int threads) {
         return adapt(Executor({.threads = threads}), mesh, constant_metric(mesh, size),
-                     {.make = {.surface_tolerance = tolerance}});
+                     {.make = {.hausdorff_tolerance = tolerance}});
       };
       const AdaptedMesh adapted = run(2);
       SCOPED_TRACE(testing::Message() << size << " " << tolerance);
@@ -397,7 +397,7 @@ TEST_P(Adapt, OnlyDoesWhatItMay) {
   EXPECT_EQ(swapped.mesh.vertex_count(), mesh.vertex_count());
 }
 
-TEST_P(Adapt, MakesBetterShapesIfThorough) {
+TEST_P(Adapt, MakesBetterElementsIfThorough) {
   const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 8));
   const AnyField metric = layered(mesh, dimension() == 2 ? 10000 : 3000);
   const Executor executor({.threads = 2});

@@ -82,7 +82,7 @@ test::RandomCase random_arc(std::uint64_t seed) {
   arc.metric = test::wild_field(arc.mesh, random, 1.5, test::uniform(random, 1, 6));
   test::scale_to(arc.metric, arc.mesh,
                  (dimension == 2 ? 200 : 100) * test::uniform(random, 0.01, 2));
-  arc.options.make.surface_tolerance = std::pow(10, test::uniform(random, -3, 0));
+  arc.options.make.hausdorff_tolerance = std::pow(10, test::uniform(random, -3, 0));
   if (test::chance(random, 0.3)) arc.options.gradation = test::uniform(random, 1.2, 3);
   return arc;
 }
@@ -100,7 +100,7 @@ TEST(Adapter, EachKernelLeavesCurvedBoundariesSound) {
     const AdaptedMesh result = adapt(executor, random.mesh, random.metric, random.options);
     EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
     EXPECT_EQ(test::joined(check_domain(executor, random.mesh, result.mesh,
-                                        random.options.make.surface_tolerance)),
+                                        random.options.make.hausdorff_tolerance)),
               "");
     EXPECT_TRUE(!check_boundary(executor, random.mesh).empty() ||
                 check_boundary(executor, result.mesh).empty());

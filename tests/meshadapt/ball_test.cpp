@@ -36,7 +36,7 @@ Mesh<Dim> wild_mesh(Random& random) {
     for (double& h : sizes) h = std::pow(10.0, uniform(random, -1.5, 0));
     site = make_site(site.position, test::random_metric<Dim>(random, sizes));
   }
-  update_shapes(executor, mesh);
+  update_qualities(executor, mesh);
   return mesh;
 }
 
@@ -49,20 +49,20 @@ Site<Dim> moved(const Mesh<Dim>& mesh, VertexId vertex, Random& random, double f
   return site;
 }
 
-/// The shapes around a vertex by the definition.
+/// The qualities around a vertex by the definition.
 template <int Dim>
-std::vector<double> shapes_by_definition(const Mesh<Dim>& mesh, VertexId vertex,
-                                         const Site<Dim>& apex) {
+std::vector<double> qualities_by_definition(const Mesh<Dim>& mesh, VertexId vertex,
+                                            const Site<Dim>& apex) {
   std::vector<double> result;
   for (const ElementId e : mesh.elements_of.of(vertex)) {
     auto sites = mesh.sites(mesh.corners_of[e]);
     sites[static_cast<std::size_t>(corner_of(mesh.corners_of[e], vertex))] = &apex;
-    result.push_back(shape<Dim>(sites));
+    result.push_back(quality<Dim>(sites));
   }
   return result;
 }
 
-TYPED_TEST(BallOf, GivesTheShapesOfTheElementsAround) {
+TYPED_TEST(BallOf, GivesTheQualitiesOfTheElementsAround) {
   constexpr int Dim = TypeParam::value;
   Random random(31);
   std::size_t positive = 0, inverted = 0;
@@ -71,7 +71,7 @@ TYPED_TEST(BallOf, GivesTheShapesOfTheElementsAround) {
     for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
       const Ball<Dim> ball(mesh, v);
       const Site<Dim> apex = moved(mesh, v, random, v % 2 == 0 ? 0.03 : 0.4);
-      const auto expected = shapes_by_definition(mesh, v, apex);
+      const auto expected = qualities_by_definition(mesh, v, apex);
       ASSERT_EQ(ball.size(), expected.size());
       const double worst = *std::min_element(expected.begin(), expected.end());
       const auto score = ball.score(apex, 0);
@@ -84,25 +84,25 @@ TYPED_TEST(BallOf, GivesTheShapesOfTheElementsAround) {
       EXPECT_NEAR(score.worst, worst, 1e-6 * worst);
       EXPECT_NEAR(score.sum, std::accumulate(expected.begin(), expected.end(), 0.0), 1e-5);
       EXPECT_LT(ball.score(apex, worst * 1.01).worst, 0);
-      typename Ball<Dim>::Shapes shapes;
-      ball.score(apex, 0, shapes);
-      for (std::size_t i = 0; i < std::min(expected.size(), shapes.most); ++i)
-        EXPECT_NEAR(shapes[i], expected[i], 1e-6 * expected[i]);
+      typename Ball<Dim>::Qualities qualities;
+      ball.score(apex, 0, qualities);
+      for (std::size_t i = 0; i < std::min(expected.size(), qualities.most); ++i)
+        EXPECT_NEAR(qualities[i], expected[i], 1e-6 * expected[i]);
     }
   }
   EXPECT_GT(positive, 50U);
   EXPECT_GT(inverted, 50U);
 }
 
-TYPED_TEST(BallOf, KnowsTheShapesThatThereAre) {
+TYPED_TEST(BallOf, KnowsTheQualitiesThatThereAre) {
   constexpr int Dim = TypeParam::value;
   Random random(35);
   const Mesh<Dim> mesh = wild_mesh<Dim>(random);
   for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
     double worst = 1, sum = 0;
     for (const ElementId e : mesh.elements_of.of(v)) {
-      worst = std::min<double>(worst, mesh.shape_of[e]);
-      sum += mesh.shape_of[e];
+      worst = std::min<double>(worst, mesh.quality_of[e]);
+      sum += mesh.quality_of[e];
     }
     const auto present = Ball<Dim>(mesh, v).present();
     EXPECT_EQ(present.worst, worst);
@@ -176,7 +176,7 @@ TYPED_TEST(BallOf, RefusesAnApexThatIsNowhere) {
     EXPECT_LT(Ball<Dim>(mesh, 0).score(apex, 0).worst, 0);
 }
 
-TYPED_TEST(BallOf, GivesTheGradientsOfShapes) {
+TYPED_TEST(BallOf, GivesTheGradientsOfQualities) {
   constexpr int Dim = TypeParam::value;
   constexpr double step = 1e-6;
   Random random(32);
@@ -184,16 +184,17 @@ TYPED_TEST(BallOf, GivesTheGradientsOfShapes) {
   for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
     const Ball<Dim> ball(mesh, v);
     const Site<Dim>& here = mesh.site_of[v];
-    const auto shapes = shapes_by_definition(mesh, v, here);
+    const auto qualities = qualities_by_definition(mesh, v, here);
     for (int axis = 0; axis < Dim; ++axis) {
       Site<Dim> up = here, down = here;
       up.position[axis] += step;
       down.position[axis] -= step;
-      const auto above = shapes_by_definition(mesh, v, up),
-                 below = shapes_by_definition(mesh, v, down);
-      for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const auto above = qualities_by_definition(mesh, v, up),
+                 below = qualities_by_definition(mesh, v, down);
+      for (std::size_t i = 0; i < qualities.size(); ++i) {
         const double slope = (above[i] - below[i]) / (2 * step);
-        EXPECT_NEAR(ball.gradient(i, here, shapes[i])[axis], slope, 1e-3 + 1e-3 * std::abs(slope));
+        EXPECT_NEAR(ball.gradient(i, here, qualities[i])[axis], slope,
+                    1e-3 + 1e-3 * std::abs(slope));
       }
     }
   }

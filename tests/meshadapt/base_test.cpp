@@ -37,11 +37,11 @@ struct RandomElement {
 };
 
 template <class Dimension>
-class ShapeOf : public testing::Test {};
+class QualityOf : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(ShapeOf, Dimensions);
+TYPED_TEST_SUITE(QualityOf, Dimensions);
 
-TEST(Base, GivesTheShapeOfTheElementOnEitherSide) {
+TEST(Base, GivesTheQualityOfTheElementOnEitherSide) {
   Random random(21);
   for (int trial = 0; trial < 5000; ++trial) {
     RandomElement<3> made(random);
@@ -51,25 +51,25 @@ TEST(Base, GivesTheShapeOfTheElementOnEitherSide) {
     for (std::size_t k = 0; k < 3; ++k)
       facet[k] = element[static_cast<std::size_t>(Simplex<3>::facet[apex][k])];
     const Base base = make_base(facet);
-    const double side = shape<3>(element) > 0 ? 1 : -1;
-    EXPECT_EQ(squared_shape_over(base, made.sites[apex], -side), -1);
+    const double side = quality<3>(element) > 0 ? 1 : -1;
+    EXPECT_EQ(squared_quality_over(base, made.sites[apex], -side), -1);
     if (side < 0) std::swap(element[0], element[1]);
-    EXPECT_NEAR(std::sqrt(squared_shape_over(base, made.sites[apex], side)), shape<3>(element),
+    EXPECT_NEAR(std::sqrt(squared_quality_over(base, made.sites[apex], side)), quality<3>(element),
                 1e-12);
   }
 }
 
-TYPED_TEST(ShapeOf, AgreesThatAShapeIsAboveABar) {
+TYPED_TEST(QualityOf, AgreesThatAQualityIsAboveABar) {
   constexpr int Dim = TypeParam::value;
   Random random(22);
   for (int trial = 0; trial < 5000; ++trial) {
     const RandomElement<Dim> made(random);
     const auto& element = made.corners;
-    const double value = shape<Dim>(element);
-    EXPECT_EQ(shape_above<Dim>(element, 0), value > 0);
+    const double value = quality<Dim>(element);
+    EXPECT_EQ(quality_above<Dim>(element, 0), value > 0);
     if (value <= 0) continue;
-    EXPECT_TRUE(shape_above<Dim>(element, value * (1 - 1e-9)));
-    EXPECT_FALSE(shape_above<Dim>(element, value * (1 + 1e-9)));
+    EXPECT_TRUE(quality_above<Dim>(element, value * (1 - 1e-9)));
+    EXPECT_FALSE(quality_above<Dim>(element, value * (1 + 1e-9)));
   }
 }
 

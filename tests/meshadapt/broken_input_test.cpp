@@ -117,7 +117,7 @@ TYPED_TEST(BrokenInputIn, OptionsOutOfRangeAreRefused) {
     };
     refuses({.smallest_size = bad});
     refuses({.largest_size = bad});
-    refuses({.make = {.surface_tolerance = bad}});
+    refuses({.make = {.hausdorff_tolerance = bad}});
     refuses({.rules = {.long_edge = bad}});
     if (!(bad > 0 && bad < 90)) refuses({.make = {.ridge_angle = bad}});
     if (!(bad <= 0 || (bad > 1 && bad < inf))) refuses({.gradation = bad});

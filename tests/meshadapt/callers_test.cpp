@@ -306,12 +306,12 @@ TEST(Callers, GetWarningsOfEachTimeAndMayCancelAnyTime) {
     last = now.iteration;
     return true;
   };
-  options.make.surface_tolerance = 0.01;
+  options.make.hausdorff_tolerance = 0.01;
   sizes.sources.pop_back();
   adapt_to_sizes(executor, mesh, sizes, options);
   EXPECT_GE(falls, 1);
   options.progress = {};
-  options.make.surface_tolerance = 0;
+  options.make.hausdorff_tolerance = 0;
   options.largest_size = 0.1;  // which is finer than what is asked for
   const Sizes even{.elsewhere = 0.2};
   EXPECT_EQ(adapt_to_sizes(executor, mesh, even, options).mesh,

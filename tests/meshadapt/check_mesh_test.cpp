@@ -33,7 +33,7 @@ Mesh<Dim> made(const AnyMesh& any) {
   std::vector<std::string> warnings;
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, {}, neighbours, warnings);
   for (auto& site : mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
-  update_shapes(executor, mesh);
+  update_qualities(executor, mesh);
   return mesh;
 }
 
@@ -159,8 +159,8 @@ void expect_finds_faults_of_structure() {
   const AnyMesh any = box(Dim);
   int facet = 0;
   Mesh<Dim> mesh = made<Dim>(any);
-  mesh.shape_of[3] *= 1.01F;
-  EXPECT_FINDS(mesh, "element 3's shape is not up to date");
+  mesh.quality_of[3] *= 1.01F;
+  EXPECT_FINDS(mesh, "element 3's quality is not up to date");
   mesh = made<Dim>(any);
   mesh.elements_of.erase(mesh.corners_of[3][0], 3);
   EXPECT_FINDS(mesh, "element 3 is missing in the list of one of its vertices");
@@ -176,7 +176,7 @@ void expect_finds_faults_of_structure() {
   mesh.patches_of[e][static_cast<std::size_t>(facet)] += 1;
   EXPECT_FINDS(mesh, "has a facet that does not lie in the plane of its patch");
   mesh = made<Dim>(any);
-  mesh.kind_of[0].freedom = Dim;
+  mesh.kind_of[0].class_dimension = Dim;
   EXPECT_FINDS(mesh, "vertex 0 may move or go in a way that does not fit what it lies on");
   mesh = made<Dim>(any);
   mesh.region_of[3] = 7;

@@ -25,7 +25,7 @@ template <int Dim>
 std::vector<Metric<Dim>> bounded(const AnyMesh& any, double tolerance) {
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
-  const auto mesh = make_mesh<Dim>(executor, any, {.surface_tolerance = 1}, neighbours, warnings);
+  const auto mesh = make_mesh<Dim>(executor, any, {.hausdorff_tolerance = 1}, neighbours, warnings);
   std::vector<Metric<Dim>> metric_of(any.vertex_count(), isotropic<Dim>(asked));
   bound_curved_sizes(executor, mesh, tolerance, metric_of);
   return metric_of;
@@ -212,7 +212,7 @@ MantleEdges mantle_edges(const AnyMesh& any) {
 TEST(CurvedSizes, AloneMakeACylinderOfLongElements) {
   const AnyMesh any = test::truncated_cone(16, 1);
   AdaptOptions options;
-  options.make.surface_tolerance = 0.01;
+  options.make.hausdorff_tolerance = 0.01;
   options.curved_sizes = true;
   const AdaptedMesh result = adapt(executor, any, coarsest_metric(any), options);
   const MantleEdges edges = mantle_edges(result.mesh);
@@ -231,11 +231,11 @@ TEST(CurvedSizes, AloneMakeACylinderOfLongElements) {
 TEST(CurvedSizes, AloneLeaveABoxAsCoarseAsMayBe) {
   const AnyMesh any = test::make_grid(test::unit_grid(3, 6));
   AdaptOptions options;
-  options.make.surface_tolerance = 0.01;
+  options.make.hausdorff_tolerance = 0.01;
   options.curved_sizes = true;
   const AdaptedMesh result = adapt(executor, any, coarsest_metric(any), options);
   EXPECT_LT(result.mesh.tetrahedra.size(), 30U);
-  options.make.surface_tolerance = 0;
+  options.make.hausdorff_tolerance = 0;
   EXPECT_THROW(adapt(executor, any, coarsest_metric(any), options), InputError);
 }
 
@@ -245,7 +245,7 @@ TEST(CurvedSizes, MakeBetterShapesWithGradation) {
   AnyMesh any = test::make_grid(test::unit_grid(3, 10));
   test::bend(any, 2);
   AdaptOptions options;
-  options.make.surface_tolerance = 2e-3;
+  options.make.hausdorff_tolerance = 2e-3;
   const AnyField metric = constant_metric(any, 0.5);
   const auto quality = [&] {
     const AdaptedMesh result = adapt(executor, any, metric, options);

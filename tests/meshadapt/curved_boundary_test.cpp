@@ -74,7 +74,7 @@ TEST_P(CurvedBoundary, IsCoarsenedWithinTheTolerance) {
   for (const double tolerance : {0.05, 0.02}) {
     SCOPED_TRACE(tolerance);
     AdaptOptions options;
-    options.make.surface_tolerance = tolerance;
+    options.make.hausdorff_tolerance = tolerance;
     const AnyField metric = constant_metric(mesh, dimension() == 2 ? 0.15 : 0.3);
     const AdaptedMesh result = adapt(executor, mesh, metric, options);
     EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
@@ -112,7 +112,7 @@ TEST_P(CurvedBoundary, IsReportedByItsEdges) {
   const Executor executor({.threads = 2});
   AdaptOptions options;
   for (const double tolerance : {0.0, 1e-4}) {
-    options.make.surface_tolerance = tolerance;
+    options.make.hausdorff_tolerance = tolerance;
     for (const double size : {1e-9, 1e9}) {  // in which all edges are long, or short
       options.iterations = 1;
       options.insert = false;
@@ -133,7 +133,7 @@ TEST_P(CurvedBoundary, MayBeListedInAnyDirection) {
     for (std::size_t f = 0; f < turned.triangles.size(); f += 2)
       std::swap(turned.triangles.vertices[f][0], turned.triangles.vertices[f][1]);
   AdaptOptions options;
-  options.make.surface_tolerance = 0.03;
+  options.make.hausdorff_tolerance = 0.03;
   const Executor executor({.threads = 1});
   const AnyField metric = constant_metric(mesh, 0.4);
   EXPECT_EQ(test::bits(adapt(executor, mesh, metric, options).mesh.coordinates),
@@ -144,7 +144,7 @@ TEST_P(CurvedBoundary, IsRefinedOnItsFacets) {
   const AnyMesh mesh = arc(dimension(), 4, 1.5);
   const Executor executor({.threads = 2});
   AdaptOptions options;
-  options.make.surface_tolerance = 1e-3;
+  options.make.hausdorff_tolerance = 1e-3;
   const AnyField metric = constant_metric(mesh, dimension() == 2 ? 0.02 : 0.08);
   const AdaptedMesh result = adapt(executor, mesh, metric, options);
   EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
@@ -158,7 +158,7 @@ TEST_P(CurvedBoundary, KeepsWhatIsFlat) {
   const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 40 : 10, 1.5);
   const Executor executor({.threads = 2});
   AdaptOptions options;
-  options.make.surface_tolerance = 0.03;
+  options.make.hausdorff_tolerance = 0.03;
   const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 0.3), options);
   const auto farthest = [&](const AnyMesh& of, std::size_t axis, std::int32_t reference) {
     const auto size = static_cast<std::size_t>(of.dimension);
@@ -205,7 +205,7 @@ TEST_P(CurvedBoundary, DoesNotCrossANarrowGap) {
   for (const double tolerance : {0.006, 0.02, 0.2}) {
     SCOPED_TRACE(tolerance);
     AdaptOptions options;
-    options.make.surface_tolerance = tolerance;
+    options.make.hausdorff_tolerance = tolerance;
     const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 0.4), options);
     EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
     EXPECT_EQ(test::joined(check_boundary(executor, result.mesh)), "");
@@ -234,7 +234,7 @@ TEST_P(CurvedBoundary, StaysWhereItIsInManyCalls) {
   const auto at_first = std::array{radii(mesh, 1), radii(mesh, 2)};
   const Executor executor({.threads = 2});
   AdaptOptions options;
-  options.make.surface_tolerance = tolerance;
+  options.make.hausdorff_tolerance = tolerance;
   AnyMesh now = mesh;
   for (int call = 0; call < calls; ++call) {
     AnyField metric = constant_metric(now, 1);
@@ -266,7 +266,7 @@ TEST_P(CurvedBoundary, GivesTheSameBytesAtEachThreadCount) {
   AnyField metric = test::layer_field(mesh, random, 0.2);
   test::scale_to(metric, mesh, dimension() == 2 ? 100 : 60);
   AdaptOptions options;
-  options.make.surface_tolerance = 0.02;
+  options.make.hausdorff_tolerance = 0.02;
   const AdaptedMesh first = adapt(Executor({.threads = 1}), mesh, metric, options);
   for (const int threads : {1, 2, 3, 4, 8}) {
     const AdaptedMesh other = adapt(Executor({.threads = threads}), mesh, metric, options);
@@ -284,7 +284,7 @@ TEST(CurvedBoundaries, ALidSmallerThanTheToleranceStays) {
     const AnyMesh mesh = test::truncated_cone(6, lid);
     for (const bool move : {true, false}) {
       AdaptOptions options{.move = move};
-      options.make.surface_tolerance = 0.05;
+      options.make.hausdorff_tolerance = 0.05;
       const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 5), options);
       EXPECT_EQ(test::joined(check_mesh(executor, result.mesh)), "");
       EXPECT_EQ(test::joined(check_domain(executor, mesh, result.mesh, 0.05)), "");

@@ -142,7 +142,7 @@ class CurvedPart : public testing::TestWithParam<Case> {
   double tolerance() const { return fine() ? part().tolerance / 3 : part().tolerance; }
   AdaptOptions options_on(const AnyMesh& mesh) const {
     AdaptOptions options;
-    options.make.surface_tolerance = tolerance();
+    options.make.hausdorff_tolerance = tolerance();
     options.gradation = 1.5;
     if (std::get<2>(GetParam()))
       options.make.geometry = std::make_shared<const Geometry>(

@@ -171,8 +171,9 @@ TYPED_TEST(EdgesIn, AreMeasuredAnewWhenForgotten) {
 template <int Dim>
 void remove_some(const Executor& executor, Mesh<Dim>& mesh, test::Random& random) {
   for (Corners<Dim>& corners : mesh.corners_of) {
-    const bool inside = std::all_of(corners.begin(), corners.end(),
-                                    [&](VertexId v) { return mesh.kind_of[v].freedom > 1; });
+    const bool inside = std::all_of(corners.begin(), corners.end(), [&](VertexId v) {
+      return mesh.kind_of[v].class_dimension > 1;
+    });
     if (inside && test::chance(random, 0.3)) corners.fill(none);
   }
   rebuild_elements_of(executor, mesh);

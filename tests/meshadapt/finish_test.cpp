@@ -52,23 +52,23 @@ TEST(EdgeRange, LetsEdgesComeCloserButNotGoAway) {
 }
 
 TEST(Standing, IsBetterOnlyIfItClearlyIs) {
-  const Standing before{.elements = 1000, .shapes = 100, .lengths = 50, .poor = 40};
-  const Standing hardly{.elements = 1000, .shapes = 100, .lengths = 44, .poor = 40};
+  const Standing before{.elements = 1000, .qualities = 100, .lengths = 50, .poor = 40};
+  const Standing hardly{.elements = 1000, .qualities = 100, .lengths = 44, .poor = 40};
   EXPECT_FALSE(is_better(hardly, before, after_a_run));
   EXPECT_TRUE(is_better(hardly, before, after_mending));
   EXPECT_FALSE(is_better(before, before, after_a_run));
-  EXPECT_FALSE(
-      is_better({.elements = 1000, .shapes = 95, .lengths = 47, .poor = 36}, before, after_a_run));
-  EXPECT_TRUE(
-      is_better({.elements = 1000, .shapes = 80, .lengths = 50, .poor = 40}, before, after_a_run));
-  EXPECT_TRUE(
-      is_better({.elements = 1000, .shapes = 100, .lengths = 30, .poor = 40}, before, after_a_run));
-  EXPECT_FALSE(
-      is_better({.elements = 1000, .shapes = 110, .lengths = 30, .poor = 40}, before, after_a_run));
-  EXPECT_TRUE(
-      is_better({.elements = 1000, .shapes = 100, .lengths = 50, .poor = 10}, before, after_a_run));
-  EXPECT_TRUE(
-      is_better({.elements = 2000, .shapes = 160, .lengths = 60, .poor = 80}, before, after_a_run));
+  EXPECT_FALSE(is_better({.elements = 1000, .qualities = 95, .lengths = 47, .poor = 36}, before,
+                         after_a_run));
+  EXPECT_TRUE(is_better({.elements = 1000, .qualities = 80, .lengths = 50, .poor = 40}, before,
+                        after_a_run));
+  EXPECT_TRUE(is_better({.elements = 1000, .qualities = 100, .lengths = 30, .poor = 40}, before,
+                        after_a_run));
+  EXPECT_FALSE(is_better({.elements = 1000, .qualities = 110, .lengths = 30, .poor = 40}, before,
+                         after_a_run));
+  EXPECT_TRUE(is_better({.elements = 1000, .qualities = 100, .lengths = 50, .poor = 10}, before,
+                        after_a_run));
+  EXPECT_TRUE(is_better({.elements = 2000, .qualities = 160, .lengths = 60, .poor = 80}, before,
+                        after_a_run));
 }
 
 }  // namespace

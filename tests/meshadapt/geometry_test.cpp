@@ -105,7 +105,7 @@ class GeometryOf : public testing::TestWithParam<int> {
   }
   AdaptOptions options_on(const AnyMesh& mesh) const {
     AdaptOptions options;
-    options.make.surface_tolerance = tolerance;
+    options.make.hausdorff_tolerance = tolerance;
     options.make.geometry = std::make_shared<const Geometry>(
         Executor({.threads = 2}), mesh, GeometryOptions{.tolerance = tolerance});
     return options;
@@ -177,10 +177,10 @@ TEST_P(GeometryOf, AnotherDomainIsRefused) {
   const AnyMesh flat = ball(5 - dimension(), 8, true);
   EXPECT_NE(message(flat, options).find("dimension"), std::string::npos);
   AdaptOptions wider = options;
-  wider.make.surface_tolerance *= 2;
-  EXPECT_NE(message(mesh, wider).find("surface_tolerance"), std::string::npos);
-  wider.make.surface_tolerance = 0;
-  EXPECT_NE(message(mesh, wider).find("surface_tolerance"), std::string::npos);
+  wider.make.hausdorff_tolerance *= 2;
+  EXPECT_NE(message(mesh, wider).find("hausdorff_tolerance"), std::string::npos);
+  wider.make.hausdorff_tolerance = 0;
+  EXPECT_NE(message(mesh, wider).find("hausdorff_tolerance"), std::string::npos);
 }
 
 TEST_P(GeometryOf, TheSameBallGivesTheSameBytesAtAnyNumberOfThreads) {
@@ -189,7 +189,7 @@ TEST_P(GeometryOf, TheSameBallGivesTheSameBytesAtAnyNumberOfThreads) {
   for (const int threads : {1, 2, 3, 4, 8}) {
     const Executor executor({.threads = threads});
     AdaptOptions options;
-    options.make.surface_tolerance = tolerance;
+    options.make.hausdorff_tolerance = tolerance;
     options.make.geometry =
         std::make_shared<const Geometry>(executor, first, GeometryOptions{.tolerance = tolerance});
     AnyMesh mesh = first;
@@ -207,7 +207,7 @@ TEST_P(GeometryOf, ABoxHasNothingThatIsCurved) {
   const AdaptOptions options = options_on(mesh);
   EXPECT_FALSE(options.make.geometry->closest({0.5, 0.5, 0}, 1));
   AdaptOptions without;
-  without.make.surface_tolerance = tolerance;
+  without.make.hausdorff_tolerance = tolerance;
   const AnyField metric = constant_metric(mesh, 0.1);
   EXPECT_EQ(test::bits(adapt(executor, mesh, metric, options).mesh.coordinates),
             test::bits(adapt(executor, mesh, metric, without).mesh.coordinates));
@@ -232,7 +232,7 @@ TEST(Geometry, OfACircleOnAFlatSideFitsItsMesh) {
   }
   const Executor executor({.threads = 2});
   AdaptOptions options;
-  options.make.surface_tolerance = 0.01;
+  options.make.hausdorff_tolerance = 0.01;
   options.make.geometry =
       std::make_shared<const Geometry>(executor, mesh, GeometryOptions{.tolerance = 0.01});
   const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, 0.2), options);

@@ -45,12 +45,12 @@ struct Case {
       std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric_of[v].m.begin());
     Neighbours<Dim> neighbours;
     std::vector<std::string> warnings;
-    auto mesh = make_mesh<Dim>(executor, any, {.surface_tolerance = 0.05}, neighbours, warnings);
+    auto mesh = make_mesh<Dim>(executor, any, {.hausdorff_tolerance = 0.05}, neighbours, warnings);
     for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
       mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
       mesh.host_of[v] = mesh.elements_of.of(v).front();
     }
-    update_shapes(executor, mesh);
+    update_qualities(executor, mesh);
     auto background = std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours));
     return {std::move(mesh), std::move(background)};
   }
@@ -83,7 +83,7 @@ TYPED_TEST(KernelsChecked, CoarsenKeepsItsContract) {
     const Rules rules;
     EdgeSurvey<Dim> survey({.shorter = rules.short_edge, .longer = rules.long_edge});
     expect_sound(mesh, Coarsen<Dim>(mesh, rules),
-                 Coarsen<Dim>::crowded_vertices(executor, mesh, survey, rules.short_edge, 0),
+                 Coarsen<Dim>::short_edge_vertices(executor, mesh, survey, rules.short_edge, 0),
                  runtime::Strategy::tiles);
   }
 }

@@ -25,7 +25,7 @@ using runtime::Executor;
 
 AdaptedMesh adapted(const AnyMesh& mesh, double size, double tolerance, int threads = 2) {
   AdaptOptions options;
-  options.make.surface_tolerance = tolerance;
+  options.make.hausdorff_tolerance = tolerance;
   options.gradation = 1.3;
   const Executor executor({.threads = threads});
   AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, size), options);

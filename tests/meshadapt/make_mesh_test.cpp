@@ -25,24 +25,24 @@ struct Made {
   std::vector<std::string> warnings;
 };
 
-/// Makes the mesh and checks all but its shapes, which need a metric.
+/// Makes the mesh and checks all but its qualities, which need a metric.
 template <int Dim>
 Made<Dim> make(const AnyMesh& any, const MakeMeshOptions& options = {}) {
   const Executor executor({.threads = 2});
   Made<Dim> made;
   made.mesh = make_mesh<Dim>(executor, any, options, made.neighbours, made.warnings);
   for (auto& site : made.mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
-  update_shapes(executor, made.mesh);
+  update_qualities(executor, made.mesh);
   const auto faults = check_mesh(executor, made.mesh);
   EXPECT_TRUE(faults.empty()) << test::joined(faults);
   return made;
 }
 
 template <int Dim>
-std::array<int, 4> vertices_by_freedom(const Mesh<Dim>& mesh) {
+std::array<int, 4> vertices_by_class_dimension(const Mesh<Dim>& mesh) {
   std::array<int, 4> count{};
   for (VertexId v = 0; v < mesh.vertex_slots(); ++v)
-    if (mesh.vertex_alive(v)) ++count[mesh.kind_of[v].freedom];
+    if (mesh.vertex_alive(v)) ++count[mesh.kind_of[v].class_dimension];
   return count;
 }
 
@@ -69,14 +69,14 @@ AnyMesh cube(int n) { return test::make_grid(test::unit_grid(3, n)); }
 TEST(MakeMesh, FindsTheSidesAndCornersOfASquare) {
   const auto made = make<2>(square(4));
   EXPECT_EQ(made.mesh.patches.size(), 1U + 4);
-  EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{4, 12, 9, 0}));
+  EXPECT_EQ(vertices_by_class_dimension(made.mesh), (std::array{4, 12, 9, 0}));
 }
 
 TEST(MakeMesh, FindsTheSidesRidgesAndCornersOfACube) {
   const auto made = make<3>(cube(4));
   EXPECT_EQ(made.mesh.patches.size(), 1U + 6);
   EXPECT_EQ(made.mesh.curves.size(), 1U + 12);
-  EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{8, 36, 54, 27}));
+  EXPECT_EQ(vertices_by_class_dimension(made.mesh), (std::array{8, 36, 54, 27}));
 }
 
 TEST(MakeMesh, FindsTheSameInAnyDirectionOfSpace) {
@@ -85,8 +85,8 @@ TEST(MakeMesh, FindsTheSameInAnyDirectionOfSpace) {
     AnyMesh flat = square(4), solid = cube(4);
     test::place(flat, random, 1e-3, offset * 1e-3);
     test::place(solid, random, 1e3, offset * 1e3);
-    EXPECT_EQ(vertices_by_freedom(make<2>(flat).mesh), (std::array{4, 12, 9, 0}));
-    EXPECT_EQ(vertices_by_freedom(make<3>(solid).mesh), (std::array{8, 36, 54, 27}));
+    EXPECT_EQ(vertices_by_class_dimension(make<2>(flat).mesh), (std::array{4, 12, 9, 0}));
+    EXPECT_EQ(vertices_by_class_dimension(make<3>(solid).mesh), (std::array{8, 36, 54, 27}));
   }
 }
 
@@ -98,7 +98,7 @@ TEST(MakeMesh, FindsInterfacesBetweenRegionsListedOrNot) {
     EXPECT_EQ(made.mesh.regions.size(), 2U);
     EXPECT_EQ(made.mesh.patches.size(), 1U + 2 + 8 + 1);  // ends, halved sides, interface
     EXPECT_EQ(made.mesh.curves.size(), 1U + 8 + 8 + 4);
-    EXPECT_EQ(vertices_by_freedom(made.mesh)[0], 12);
+    EXPECT_EQ(vertices_by_class_dimension(made.mesh)[0], 12);
   }
 }
 
@@ -118,7 +118,7 @@ TEST(MakeMesh, GivesEachFacetOfACurvedBoundaryItsOwnPatch) {
   std::fill(any.triangles.reference.begin(), any.triangles.reference.end(), 1);
   const auto made = make<3>(any);
   EXPECT_EQ(made.mesh.patches.size(), 1 + any.triangles.size());
-  EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{98, 0, 0, 27}));
+  EXPECT_EQ(vertices_by_class_dimension(made.mesh), (std::array{98, 0, 0, 27}));
 }
 
 // ---- Smooth patches and curves ----
@@ -130,10 +130,10 @@ AnyMesh bent(int dimension, int n, double angle) {
 }
 
 TEST(MakeMesh, JoinsFacetsThatTurnLittleIfCurvedBoundariesMayChange) {
-  const auto flat = make<2>(bent(2, 4, 1), {.surface_tolerance = 0.01});
-  EXPECT_EQ(vertices_by_freedom(flat.mesh), (std::array{4, 12, 9, 0}));
-  const auto solid = make<3>(bent(3, 4, 1), {.surface_tolerance = 0.01});
-  EXPECT_EQ(vertices_by_freedom(solid.mesh), (std::array{8, 36, 54, 27}));
+  const auto flat = make<2>(bent(2, 4, 1), {.hausdorff_tolerance = 0.01});
+  EXPECT_EQ(vertices_by_class_dimension(flat.mesh), (std::array{4, 12, 9, 0}));
+  const auto solid = make<3>(bent(3, 4, 1), {.hausdorff_tolerance = 0.01});
+  EXPECT_EQ(vertices_by_class_dimension(solid.mesh), (std::array{8, 36, 54, 27}));
   const auto is_smooth = [](const auto& entity) { return entity.smooth; };
   EXPECT_EQ(std::count_if(solid.mesh.curves.begin(), solid.mesh.curves.end(), is_smooth), 4);
 }
@@ -143,8 +143,9 @@ TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
     for (const int dimension : {2, 3}) {
       const AnyMesh any = bent(dimension, 2, 2 * angle / 1.5);
       const auto fixed =
-          dimension == 2 ? vertices_by_freedom(make<2>(any, {.surface_tolerance = 0.01}).mesh)[0]
-                         : vertices_by_freedom(make<3>(any, {.surface_tolerance = 0.01}).mesh)[0];
+          dimension == 2
+              ? vertices_by_class_dimension(make<2>(any, {.hausdorff_tolerance = 0.01}).mesh)[0]
+              : vertices_by_class_dimension(make<3>(any, {.hausdorff_tolerance = 0.01}).mesh)[0];
       const bool joined = angle < 1.5 * 0.785;
       EXPECT_EQ(fixed, dimension == 2 ? (joined ? 4 : 6) : (joined ? 8 : 12));
     }
@@ -153,24 +154,24 @@ TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
 TEST(MakeMesh, TellsRidgesByTheAngleGiven) {
   const AnyMesh flat = bent(2, 4, 1.3), solid = bent(3, 4, 1.3);  // by 18.6 degrees a cell
   for (const double angle : {18.0, 19.0, 89.0}) {
-    const MakeMeshOptions options{.surface_tolerance = 0.01, .ridge_angle = angle};
+    const MakeMeshOptions options{.hausdorff_tolerance = 0.01, .ridge_angle = angle};
     const bool joined = angle > 18.6;
-    EXPECT_EQ(vertices_by_freedom(make<2>(flat, options).mesh)[0], joined ? 4 : 10);
-    EXPECT_EQ(vertices_by_freedom(make<3>(solid, options).mesh)[0], joined ? 8 : 20);
+    EXPECT_EQ(vertices_by_class_dimension(make<2>(flat, options).mesh)[0], joined ? 4 : 10);
+    EXPECT_EQ(vertices_by_class_dimension(make<3>(solid, options).mesh)[0], joined ? 8 : 20);
   }
 }
 
 TEST(MakeMesh, RefusesTolerancesAndAnglesThatAreNone) {
   for (const double tolerance : {-0.1, std::nan(""), double{INFINITY}})
-    EXPECT_THROW(make<2>(square(2), {.surface_tolerance = tolerance}), InputError) << tolerance;
+    EXPECT_THROW(make<2>(square(2), {.hausdorff_tolerance = tolerance}), InputError) << tolerance;
   for (const double angle : {-1.0, 0.0, 90.0, 180.0, std::nan("")})
     EXPECT_THROW(make<2>(square(2), {.ridge_angle = angle}), InputError) << angle;
 }
 
 /// At the rims of its lid and its base.
 TEST(MakeMesh, ClosedCurvesKeepThreeVertices) {
-  const auto made = make<3>(test::truncated_cone(6, 0.5), {.surface_tolerance = 0.01});
-  const auto count = vertices_by_freedom(made.mesh);
+  const auto made = make<3>(test::truncated_cone(6, 0.5), {.hausdorff_tolerance = 0.01});
+  const auto count = vertices_by_class_dimension(made.mesh);
   EXPECT_GE(count[0], 6);
   EXPECT_LE(count[0], 12);
   EXPECT_EQ(count[0] + count[1], 2 * 24);
@@ -193,9 +194,9 @@ TEST(MakeMesh, ACornerOfASmoothPatchStays) {
     any.triangles.add({0, b, a}, 1);
     any.edges.add({b, a}, 1);
   }
-  const auto made = make<2>(any, {.surface_tolerance = 0.01});
-  EXPECT_EQ(made.mesh.kind_of[1].freedom, 0);
-  EXPECT_EQ(vertices_by_freedom(made.mesh), (std::array{1, n - 1, 1, 0}));
+  const auto made = make<2>(any, {.hausdorff_tolerance = 0.01});
+  EXPECT_EQ(made.mesh.kind_of[1].class_dimension, 0);
+  EXPECT_EQ(vertices_by_class_dimension(made.mesh), (std::array{1, n - 1, 1, 0}));
 }
 
 TEST(MakeMesh, RequiredEntitiesFixTheirVertices) {
@@ -203,9 +204,10 @@ TEST(MakeMesh, RequiredEntitiesFixTheirVertices) {
   any.required_triangles = {12};
   any.required_edges = {0};
   const auto made = make<2>(any);
-  for (const VertexId v : any.triangles.vertices[12]) EXPECT_EQ(made.mesh.kind_of[v].freedom, 0);
-  for (const VertexId v : any.edges.vertices[0]) EXPECT_EQ(made.mesh.kind_of[v].freedom, 0);
-  EXPECT_EQ(vertices_by_freedom(make<2>(square(4), {.lock_boundary = true}).mesh)[0], 16);
+  for (const VertexId v : any.triangles.vertices[12])
+    EXPECT_EQ(made.mesh.kind_of[v].class_dimension, 0);
+  for (const VertexId v : any.edges.vertices[0]) EXPECT_EQ(made.mesh.kind_of[v].class_dimension, 0);
+  EXPECT_EQ(vertices_by_class_dimension(make<2>(square(4), {.lock_boundary = true}).mesh)[0], 16);
 }
 
 /// Lines that only rounding or a far-away vertex without elements could make look flat.
@@ -253,9 +255,9 @@ TEST(MakeMesh, TheTipOfASlitIsACorner) {
        {std::array{outer, middle}, {middle, tip}, {tip, middle_twin}, {middle_twin, outer_twin}})
     any.edges.add(edge, 9);
   const auto made = make<2>(any);
-  EXPECT_EQ(made.mesh.kind_of[tip].freedom, 0);
-  EXPECT_EQ(made.mesh.kind_of[middle].freedom, 1);
-  EXPECT_EQ(made.mesh.kind_of[middle_twin].freedom, 1);
+  EXPECT_EQ(made.mesh.kind_of[tip].class_dimension, 0);
+  EXPECT_EQ(made.mesh.kind_of[middle].class_dimension, 1);
+  EXPECT_EQ(made.mesh.kind_of[middle_twin].class_dimension, 1);
 }
 
 // ---- What is wrong ----

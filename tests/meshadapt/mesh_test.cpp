@@ -44,7 +44,7 @@ Mesh<Dim> made(const AnyMesh& any, int threads) {
   MakeMeshOptions options;
   Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options, neighbours, warnings);
   for (auto& site : mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
-  update_shapes(executor, mesh);
+  update_qualities(executor, mesh);
   return mesh;
 }
 
@@ -115,7 +115,7 @@ WithNeighbours<Dim> renumbered(const Executor& executor, const AnyMesh& any) {
   std::vector<std::string> warnings;
   result.mesh = make_mesh<Dim>(executor, any, {}, result.neighbours, warnings);
   for (auto& site : result.mesh.site_of) site = make_site(site.position, isotropic<Dim>(1));
-  update_shapes(executor, result.mesh);
+  update_qualities(executor, result.mesh);
   renumber(executor, result.mesh, result.neighbours);
   return result;
 }

@@ -15,10 +15,10 @@ template <int Dim>
 using Sites = std::array<Site<Dim>, Dim + 1>;
 
 template <int Dim>
-double shape_of(const Sites<Dim>& sites) {
+double quality_of(const Sites<Dim>& sites) {
   std::array<const Site<Dim>*, Dim + 1> corner;
   for (std::size_t i = 0; i < corner.size(); ++i) corner[i] = &sites[i];
-  return shape<Dim>(corner);
+  return quality<Dim>(corner);
 }
 
 Sites<2> triangle(double height) {
@@ -33,25 +33,25 @@ Sites<3> tetrahedron(double height) {
           make_site<3>({{0.5, h, 0}}, unit), make_site<3>({{0.5, h / 3, height}}, unit)};
 }
 
-TEST(Shape, IsOneForRegularElementsAndFallsToZeroOrLess) {
-  EXPECT_NEAR(shape_of<2>(triangle(std::sqrt(3.0) / 2)), 1, 1e-14);
-  EXPECT_NEAR(shape_of<3>(tetrahedron(std::sqrt(2.0 / 3))), 1, 1e-14);
-  EXPECT_EQ(shape_of<2>(triangle(0)), 0);
-  EXPECT_EQ(shape_of<3>(tetrahedron(0)), 0);
-  EXPECT_LT(shape_of<2>(triangle(-1)), 0);
-  EXPECT_LT(shape_of<3>(tetrahedron(-1)), 0);
+TEST(Quality, IsOneForRegularElementsAndFallsToZeroOrLess) {
+  EXPECT_NEAR(quality_of<2>(triangle(std::sqrt(3.0) / 2)), 1, 1e-14);
+  EXPECT_NEAR(quality_of<3>(tetrahedron(std::sqrt(2.0 / 3))), 1, 1e-14);
+  EXPECT_EQ(quality_of<2>(triangle(0)), 0);
+  EXPECT_EQ(quality_of<3>(tetrahedron(0)), 0);
+  EXPECT_LT(quality_of<2>(triangle(-1)), 0);
+  EXPECT_LT(quality_of<3>(tetrahedron(-1)), 0);
   // Right isosceles triangle: 4 sqrt(3) / 2 / (1 + 1 + 2); corner of a cube: 12 sqrt(3) / 9^(3/2).
   const auto unit2 = isotropic<2>(1);
-  EXPECT_NEAR(shape_of<2>({make_site<2>({{0, 0}}, unit2), make_site<2>({{1, 0}}, unit2),
-                           make_site<2>({{0, 1}}, unit2)}),
+  EXPECT_NEAR(quality_of<2>({make_site<2>({{0, 0}}, unit2), make_site<2>({{1, 0}}, unit2),
+                             make_site<2>({{0, 1}}, unit2)}),
               std::sqrt(3.0) / 2, 1e-14);
   const auto unit3 = isotropic<3>(1);
   const double corner =
-      shape_of<3>({make_site<3>({{0, 0, 0}}, unit3), make_site<3>({{1, 0, 0}}, unit3),
-                   make_site<3>({{0, 1, 0}}, unit3), make_site<3>({{0, 0, 1}}, unit3)});
+      quality_of<3>({make_site<3>({{0, 0, 0}}, unit3), make_site<3>({{1, 0, 0}}, unit3),
+                     make_site<3>({{0, 1, 0}}, unit3), make_site<3>({{0, 0, 1}}, unit3)});
   EXPECT_NEAR(corner, 12 * std::sqrt(3.0) / 27, 1e-14);
   EXPECT_NEAR(mean_ratio<3>(corner), 12 * std::pow(0.5, 2.0 / 3) / 9, 1e-14);
-  EXPECT_NEAR(shape_of_mean_ratio<3>(mean_ratio<3>(corner)), corner, 1e-14);
+  EXPECT_NEAR(quality_of_mean_ratio<3>(mean_ratio<3>(corner)), corner, 1e-14);
 }
 
 /// What is regular after the metric's own stretching is regular in the metric.
@@ -70,24 +70,24 @@ void expect_regular_in(const Sites<Dim>& regular, double anisotropy) {
         p += (regular[i].position.x[k] / std::sqrt(axes.value[k])) * axes.vector[k];
       sites[i] = make_site(p, metric);
     }
-    EXPECT_NEAR(std::abs(shape_of<Dim>(sites)), 1, 1e-6);
+    EXPECT_NEAR(std::abs(quality_of<Dim>(sites)), 1, 1e-6);
     EXPECT_NEAR(edge_length(sites[0], sites[1]), 1, 1e-6);
   }
 }
 
-TEST(Shape, IsMeasuredInTheMetric) {
+TEST(Quality, IsMeasuredInTheMetric) {
   expect_regular_in<2>(triangle(std::sqrt(3.0) / 2), 1e3);
   expect_regular_in<3>(tetrahedron(std::sqrt(2.0 / 3)), 1e3);
 }
 
-TEST(Shape, IsJudgedInTheDensestMetricWhereOneIsMuchDenser) {
+TEST(Quality, IsJudgedInTheDensestMetricWhereOneIsMuchDenser) {
   Sites<2> sites = triangle(std::sqrt(3.0) / 2);
   Metric<2> stretched = isotropic<2>(0.1);
   stretched.m[0] *= 100;
   sites[2] = make_site(sites[2].position, stretched);
-  const double judged = shape_of<2>(sites);
+  const double judged = quality_of<2>(sites);
   for (auto& site : sites) site = make_site(site.position, stretched);
-  EXPECT_NEAR(judged, shape_of<2>(sites), 1e-8);
+  EXPECT_NEAR(judged, quality_of<2>(sites), 1e-8);
 }
 
 template <int Dim>
@@ -111,11 +111,11 @@ template <int Dim>
 void expect_no_more_than_one(Random& random) {
   for (int trial = 0; trial < 5000; ++trial) {
     Sites<Dim> sites = random_sites<Dim>(random, std::pow(10.0, uniform(random, 0, 3)));
-    EXPECT_LE(std::abs(shape_of<Dim>(sites)), 1 + 1e-9);
+    EXPECT_LE(std::abs(quality_of<Dim>(sites)), 1 + 1e-9);
   }
 }
 
-TEST(Shape, IsNoMoreThanOneWhateverTheMetricsAre) {
+TEST(Quality, IsNoMoreThanOneWhateverTheMetricsAre) {
   Random random(21);
   expect_no_more_than_one<2>(random);
   expect_no_more_than_one<3>(random);
@@ -127,11 +127,11 @@ void expect_one_if_metrics_differ_by_factors(Random& random, const Sites<Dim>& r
     Sites<Dim> sites = regular;
     for (Site<Dim>& site : sites)
       site = make_site(site.position, isotropic<Dim>(std::pow(10.0, uniform(random, -3, 3))));
-    EXPECT_NEAR(std::abs(shape_of<Dim>(sites)), 1, 1e-9);
+    EXPECT_NEAR(std::abs(quality_of<Dim>(sites)), 1, 1e-9);
   }
 }
 
-TEST(Shape, OfARegularElementIsOneHoweverSizesGrow) {
+TEST(Quality, OfARegularElementIsOneHoweverSizesGrow) {
   Random random(22);
   expect_one_if_metrics_differ_by_factors<2>(random, triangle(std::sqrt(3.0) / 2));
   expect_one_if_metrics_differ_by_factors<3>(random, tetrahedron(std::sqrt(2.0 / 3)));
@@ -147,19 +147,19 @@ void expect_little_from_little(Random& random) {
     for (std::size_t i = 0; i < sites.size(); ++i)
       other[i] =
           make_site(sites[i].position, (1 + uniform(random, -little, little)) * sites[i].metric);
-    const double before = shape_of<Dim>(sites);
-    EXPECT_NEAR(shape_of<Dim>(other), before, 20 * little * std::abs(before));
+    const double before = quality_of<Dim>(sites);
+    EXPECT_NEAR(quality_of<Dim>(other), before, 20 * little * std::abs(before));
   }
 }
 
-TEST(Shape, HardlyDependsOnWhichCornerIsDensest) {
+TEST(Quality, HardlyDependsOnWhichCornerIsDensest) {
   Random random(23);
   expect_little_from_little<2>(random);
   expect_little_from_little<3>(random);
 }
 
 template <int Dim>
-void expect_shapes_if_above(Random& random) {
+void expect_qualities_if_above(Random& random) {
   int above = 0;
   for (int i = 0; i < 2000; ++i) {
     Sites<Dim> sites;
@@ -170,18 +170,18 @@ void expect_shapes_if_above(Random& random) {
       sites[k] = make_site(position, isotropic<Dim>(uniform(random, 0.1, 1)));
       corner[k] = &sites[k];
     }
-    const double value = shape<Dim>(corner), bar = uniform(random, 0, 1);
-    EXPECT_EQ(shape_above<Dim>(corner, bar), value > bar);
-    EXPECT_DOUBLE_EQ(shape_if_above<Dim>(corner, bar), value > bar ? value : 0);
+    const double value = quality<Dim>(corner), bar = uniform(random, 0, 1);
+    EXPECT_EQ(quality_above<Dim>(corner, bar), value > bar);
+    EXPECT_DOUBLE_EQ(quality_if_above<Dim>(corner, bar), value > bar ? value : 0);
     above += value > bar;
   }
   EXPECT_GT(above, 20);
 }
 
-TEST(ShapeIfAbove, SaysWhatTheShapeSays) {
+TEST(QualityIfAbove, SaysWhatTheQualitySays) {
   Random random(17);
-  expect_shapes_if_above<2>(random);
-  expect_shapes_if_above<3>(random);
+  expect_qualities_if_above<2>(random);
+  expect_qualities_if_above<3>(random);
 }
 
 TEST(ShorterThan, SaysWhatTheLengthSays) {

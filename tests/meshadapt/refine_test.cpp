@@ -42,13 +42,13 @@ Mesh<Dim> wild_mesh(const Executor& executor, Random& random, Neighbours<Dim>& n
     for (double& size : sizes) size = 3.0 / n * std::pow(10.0, test::uniform(random, -1.5, 0.5));
     site = make_site(site.position, test::random_metric<Dim>(random, sizes));
   }
-  update_shapes(executor, mesh);
+  update_qualities(executor, mesh);
   return mesh;
 }
 
-/// Where the metric changes a lot along an edge, the shapes before and after a split have little to
-/// do with each other: edges much too long must not wait for good ones.
-TYPED_TEST(RefineIn, SplitsOverlongEdgesIntoWorseShapes) {
+/// Where the metric changes a lot along an edge, the qualities before and after a split have little
+/// to do with each other: edges much too long must not wait for good ones.
+TYPED_TEST(RefineIn, SplitsOverlongEdgesIntoWorseQualities) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 1});
   Random random(11);
@@ -160,7 +160,7 @@ TYPED_TEST(RefineIn, LeavesASoundMesh) {
       for (const LongEdge& edge : refined.edges) whole += left.count({edge.a, edge.b});
       EXPECT_EQ(whole, refined.edges.size() - refined.report.applied);
       for (ElementId e = 0; e < mesh.element_slots(); ++e)
-        EXPECT_EQ(mesh.shape_of[e], static_cast<float>(mesh.shape_at(mesh.corners_of[e])));
+        EXPECT_EQ(mesh.quality_of[e], static_cast<float>(mesh.quality_at(mesh.corners_of[e])));
     }
 }
 
@@ -217,7 +217,7 @@ TYPED_TEST(RefineIn, DoesNotDependOnThreads) {
       const Refined<Dim> many(7, threads, most);
       EXPECT_EQ(many.mesh.corners_of, one.mesh.corners_of);
       EXPECT_EQ(many.mesh.patches_of, one.mesh.patches_of);
-      EXPECT_EQ(many.mesh.shape_of, one.mesh.shape_of);
+      EXPECT_EQ(many.mesh.quality_of, one.mesh.quality_of);
       EXPECT_EQ(many.mesh.site_of, one.mesh.site_of);
       EXPECT_EQ(many.mesh.host_of, one.mesh.host_of);
       EXPECT_EQ(many.mesh.kind_of, one.mesh.kind_of);

@@ -115,7 +115,7 @@ struct Request {
 void settles(AnyMesh mesh, const Request& request) {
   AdaptOptions options;
   options.gradation = request.gradation;
-  options.make.surface_tolerance = request.tolerance;
+  options.make.hausdorff_tolerance = request.tolerance;
   std::size_t first = 0;
   std::string counts;
   for (int call = 0; call < 10; ++call) {

@@ -250,12 +250,12 @@ std::size_t patch_count(const AnyMesh& any) {
 }
 
 /// Of patches that face another one.
-std::size_t faced_count(const AnyMesh& any) {
+std::size_t crack_side_count(const AnyMesh& any) {
   Neighbours<3> neighbours;
   std::vector<std::string> warnings;
   const auto patches = make_mesh<3>(executor, any, {}, neighbours, warnings).patches;
-  return static_cast<std::size_t>(
-      std::count_if(patches.begin(), patches.end(), [](const auto& patch) { return patch.faced; }));
+  return static_cast<std::size_t>(std::count_if(
+      patches.begin(), patches.end(), [](const auto& patch) { return patch.crack_side; }));
 }
 
 /// What bends by rounding alone encloses nothing.
@@ -265,7 +265,7 @@ TEST(Rounding, MakesNoPatchFaceAnother) {
     SCOPED_TRACE("seed " + std::to_string(2 * seed + 1) + ": " + random.what);
     const AnyMesh rounded = written(random.exact, random.format);
     if (!check_mesh(executor, rounded).empty()) continue;
-    EXPECT_EQ(faced_count(rounded), faced_count(random.exact));
+    EXPECT_EQ(crack_side_count(rounded), crack_side_count(random.exact));
   }
 }
 

@@ -347,7 +347,7 @@ TEST(LocalSizes, AreReadFromMmgsFiles) {
   EXPECT_EQ(found[0].reference, 38);
   EXPECT_EQ(found[0].smallest, 1.8);
   EXPECT_EQ(found[0].largest, 2.2);
-  EXPECT_EQ(found[0].surface_tolerance, 0.01);
+  EXPECT_EQ(found[0].hausdorff_tolerance, 0.01);
   EXPECT_EQ(found[1].dimension, 3);
   EXPECT_EQ(found[1].reference, -7);
   EXPECT_EQ(found[1].largest, 0.1);

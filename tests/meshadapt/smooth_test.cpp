@@ -36,8 +36,8 @@ Metric<Dim> layer(const Vector<Dim>& normal, double thin) {
   return metric;
 }
 
-/// Where shapes would gain most by leaving the patch, what rounding leaves of the direction within
-/// it must not be scaled up to a step.
+/// Where qualities would gain most by leaving the patch, what rounding leaves of the direction
+/// within it must not be scaled up to a step.
 TYPED_TEST(SmoothIn, KeepsVerticesOnTheirPatches) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 1});
@@ -55,12 +55,12 @@ TYPED_TEST(SmoothIn, KeepsVerticesOnTheirPatches) {
         mesh.vertex_slots(), layer<Dim>(normal, std::pow(10.0, test::uniform(random, -3, 0))));
     for (std::size_t v = 0; v < mesh.vertex_slots(); ++v)
       mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
-    update_shapes(executor, mesh);
+    update_qualities(executor, mesh);
     const Background<Dim> background(executor, mesh, std::move(neighbours));
     const Smooth<Dim> op(mesh, background, {.laplacian = trial % 2 == 0, .optimise_below = 1});
     for (std::size_t i = 0; i < mesh.vertex_slots(); ++i) {
       const auto v = static_cast<VertexId>(i);
-      if (mesh.kind_of[v].freedom != Dim - 1) continue;
+      if (mesh.kind_of[v].class_dimension != Dim - 1) continue;
       VertexMove<Dim> move;
       if (!op.decide(v, move)) continue;
       ++moves;
@@ -85,7 +85,7 @@ struct SmoothScene {
       mesh.site_of[v] = make_site(mesh.site_of[v].position, isotropic<Dim>(1));
       mesh.host_of[v] = mesh.elements_of.of(v).front();
     }
-    update_shapes(executor, mesh);
+    update_qualities(executor, mesh);
     background = std::make_unique<Background<Dim>>(executor, mesh, std::move(neighbours));
   }
 };
@@ -140,12 +140,12 @@ AnyMesh wheel() {
   return any;
 }
 
-/// More elements than a plan has room for the shapes of.
-TYPED_TEST(SmoothIn, KeepsTheShapesOfALargeBallUpToDate) {
+/// More elements than a plan has room for the qualities of.
+TYPED_TEST(SmoothIn, KeepsTheQualitiesOfALargeBallUpToDate) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 1});
   SmoothScene<Dim> scene(executor, wheel<Dim>());
-  ASSERT_GT(scene.mesh.elements_of.of(0).size(), std::size_t{BallShapes<Dim>::most});
+  ASSERT_GT(scene.mesh.elements_of.of(0).size(), std::size_t{BallQualities<Dim>::most});
   const Vector<Dim> before = scene.mesh.site_of[0].position;
   Smooth<Dim> op(scene.mesh, *scene.background, {});
   for (int sweep = 0; sweep < 10; ++sweep)

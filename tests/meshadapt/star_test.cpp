@@ -13,14 +13,14 @@ namespace {
 
 const runtime::Executor executor({.threads = 1});
 
-/// A grid whose elements have shapes and epochs at random.
+/// A grid whose elements have qualities and epochs at random.
 Mesh<3> random_grid(test::Random& random) {
   const AnyMesh any = test::make_grid(test::unit_grid(3, 4));
   Neighbours<3> neighbours;
   std::vector<std::string> warnings;
   auto mesh = make_mesh<3>(executor, any, {}, neighbours, warnings);
   for (std::size_t e = 0; e < mesh.element_slots(); ++e) {
-    mesh.shape_of[e] = static_cast<float>(test::uniform(random, 0, 1));
+    mesh.quality_of[e] = static_cast<float>(test::uniform(random, 0, 1));
     mesh.changed_at[e] = static_cast<std::uint32_t>(test::below(random, 8));
   }
   return mesh;
@@ -45,13 +45,13 @@ void expect_edge(const Mesh<3>& mesh, const Star& star, VertexId vertex, std::si
   bool changed = false, inside = true;
   for (std::size_t k = 0; k < shell.size(); ++k) {
     EXPECT_EQ(ball[star.around(i)[k]], shell[k]);
-    if (mesh.shape_of[shell[k]] < mesh.shape_of[worst]) worst = shell[k];
+    if (mesh.quality_of[shell[k]] < mesh.quality_of[worst]) worst = shell[k];
     changed = changed || mesh.changed_at[shell[k]] > 6;
   }
   for (const auto& [v, count] : counts_around(mesh, shell))
     inside = inside && (count == 2 || v == vertex || v == edge.to);
   EXPECT_EQ(ball[edge.worst], worst);
-  EXPECT_EQ(edge.worst_shape, mesh.shape_of[worst]);
+  EXPECT_EQ(edge.worst_quality, mesh.quality_of[worst]);
   EXPECT_EQ(edge.changed, changed);
   EXPECT_EQ(edge.ends == 0, inside);
 }

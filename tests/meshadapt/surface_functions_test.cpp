@@ -135,7 +135,7 @@ AnyField front(const AnyMesh& mesh, int call) {
 AdaptOptions options_with(const Executor& executor, const AnyMesh& mesh,
                           const std::vector<SurfaceFunction>& functions) {
   AdaptOptions options;
-  options.make.surface_tolerance = tolerance;
+  options.make.hausdorff_tolerance = tolerance;
   options.make.geometry = std::make_shared<const Geometry>(
       executor, mesh, GeometryOptions{.tolerance = tolerance, .functions = functions});
   return options;
@@ -164,7 +164,7 @@ TEST_P(SurfaceFunctions, NeedNoGeometry) {
   const Executor executor({.threads = 2});
   AnyMesh mesh = mesh_of(GetParam());
   AdaptOptions options;
-  options.make.surface_tolerance = tolerance;
+  options.make.hausdorff_tolerance = tolerance;
   options.make.functions = {{1, GetParam().closest}};
   for (int call = 1; call <= 2; ++call)
     mesh = adapt(executor, mesh, front(mesh, call), options).mesh;

@@ -23,7 +23,7 @@ Mesh<Dim> in_unit_metric(const AnyMesh& any, const MakeMeshOptions& options) {
   Metric<Dim> unit;
   for (std::size_t i = 0, k = 0; i < Dim; k += ++i + 1) unit.m[k] = 1;
   for (auto& site : mesh.site_of) site = make_site(site.position, unit);
-  update_shapes(executor, mesh);
+  update_qualities(executor, mesh);
   return mesh;
 }
 
@@ -67,7 +67,7 @@ Mesh<3> half_orange(double height, double tolerance, bool covered = false) {
     any.tetrahedra.add({1, 2, 3, top}, 2);
   }
   any.vertex_reference.assign(any.coordinates.size() / 3, 0);
-  return in_unit_metric<3>(any, {.complete_boundary = true, .surface_tolerance = tolerance});
+  return in_unit_metric<3>(any, {.complete_boundary = true, .hausdorff_tolerance = tolerance});
 }
 
 template <int Dim>

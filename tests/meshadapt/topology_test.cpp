@@ -33,7 +33,7 @@ std::vector<std::string> counted(const AnyMesh& mesh) {
 int try_case(const test::ThinCase& thin) {
   const AnyField metric = constant_metric(thin.mesh, thin.size);
   AdaptOptions options;
-  options.make.surface_tolerance = thin.tolerance;
+  options.make.hausdorff_tolerance = thin.tolerance;
   const Executor one({.threads = 1}), two({.threads = 2});
   if (const char* folder = std::getenv("DUCTILE_TRIAL_FOLDER"))
     write_mesh(std::string(folder) + "/in.mesh", thin.mesh);

@@ -55,7 +55,7 @@ std::vector<Some> subsets(const Some& cell, std::size_t size) {
 }
 
 /// How often facets around one vertex are not connected by what they have in common but it.
-std::size_t pinched_vertices(const std::vector<Some>& boundary, std::size_t dimension) {
+std::size_t non_manifold_vertices(const std::vector<Some>& boundary, std::size_t dimension) {
   std::map<Corner, std::vector<Some>> around;
   for (const Some& facet : boundary)
     for (const Corner v : facet) around[v].push_back(facet);
@@ -97,7 +97,7 @@ std::string line(const std::string& what, const std::vector<Some>& elements,
   return what + ": Euler " + std::to_string(euler) + ", parts " +
          std::to_string(parts(elements, facets)) + " " + std::to_string(parts(elements, corners)) +
          ", around " + std::to_string(parts(boundary, corners)) + ", pinched " +
-         std::to_string(dimension == 2 ? 0 : pinched_vertices(boundary, dimension));
+         std::to_string(dimension == 2 ? 0 : non_manifold_vertices(boundary, dimension));
 }
 
 }  // namespace

@@ -97,8 +97,8 @@ void choose_options(RestCase& made, Random& random) {
   AnyMesh& mesh = made.mesh;
   if (chance(random, 0.3)) {
     bend(mesh, uniform(random, 0.5, 2));
-    made.options.make.surface_tolerance = std::pow(10.0, -uniform(random, 1, 3));
-    made.what += ", bent, tolerance " + std::to_string(made.options.make.surface_tolerance);
+    made.options.make.hausdorff_tolerance = std::pow(10.0, -uniform(random, 1, 3));
+    made.what += ", bent, tolerance " + std::to_string(made.options.make.hausdorff_tolerance);
   } else if (chance(random, 0.2)) {
     made.options.gradation = uniform(random, 1.2, 2);
     made.what += ", gradation";

@@ -33,11 +33,11 @@ struct AdaptOptions {
   double smallest_size = 0;  ///< no edge length below this is asked for; 0: no bound
   double largest_size = 0;   ///< no edge length above this is asked for; 0: no bound
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
-                             ///< limit_gradation), from what make.surface_tolerance allows on
+                             ///< limit_gradation), from what make.hausdorff_tolerance allows on
                              ///< curved boundaries; 0 or less: as given. Mmg's default is 1.3
   bool curved_sizes =
       false;  ///< sizes on curved boundaries are bounded by what
-              ///< make.surface_tolerance allows without a gradation, too; they grow
+              ///< make.hausdorff_tolerance allows without a gradation, too; they grow
               ///< from there by a factor of 1.3, or as given with one below 0. With
               ///< coarsest_metric() they come from curvature alone, as with Mmg's -A
   double required_gradation = 0;  ///< sizes at required facets, edges and elements, and at all
@@ -48,7 +48,7 @@ struct AdaptOptions {
   std::size_t memory_limit =
       0;                    ///< bytes that adapt() may take; metrics that ask for more elements
                             ///< than certainly fit are refused before the work; 0: no limit
-  bool thorough = false;    ///< better shapes and lengths for more time (docs/performance.md)
+  bool thorough = false;    ///< better elements and lengths for more time (docs/performance.md)
   bool by_colours = false;  ///< as published: collapses, swaps and moves run class by class of a
                             ///< colouring of vertices, and they and splits change lists by deferred
                             ///< updates. Valid and deterministic too, but slower
@@ -81,7 +81,7 @@ struct AdaptReport {
   /// boundaries that keep their facets.
   std::size_t fixed_vertices = 0;
   /// Edges of the adapted mesh on curved boundaries that may change
-  /// (MakeMeshOptions::surface_tolerance), and those of them that are shorter than 1/sqrt 2.
+  /// (MakeMeshOptions::hausdorff_tolerance), and those of them that are shorter than 1/sqrt 2.
   std::size_t curved_edges = 0, curved_edges_short = 0;
   /// Edges of the adapted mesh that are longer than Rules::long_edge, or shorter than
   /// Rules::short_edge, because required entities hold them: a long one belongs to a required

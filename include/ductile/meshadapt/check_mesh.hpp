@@ -33,7 +33,7 @@ std::vector<std::string> check_mesh(const runtime::Executor& executor, const Any
 /// Linear in the meshes but for a logarithm in the facets. Thread safety: one caller; runs on the
 /// executor.
 std::vector<std::string> check_domain(const runtime::Executor& executor, const AnyMesh& before,
-                                      const AnyMesh& after, double surface_tolerance = 0);
+                                      const AnyMesh& after, double hausdorff_tolerance = 0);
 
 /// Which listed facets cross each other: a line that names the first two, empty if none do. Those
 /// that only touch, or lie in one plane, or do so but for rounding, do not cross: so it is if one
@@ -61,7 +61,7 @@ std::vector<std::string> check_topology(const runtime::Executor& executor, const
 /// unless the boundary of `before` crosses itself, too. Throws what they throw.
 /// Thread safety: one caller; runs on the executor.
 std::vector<std::string> check_adapted(const runtime::Executor& executor, const AnyMesh& before,
-                                       const AnyMesh& after, double surface_tolerance = 0);
+                                       const AnyMesh& after, double hausdorff_tolerance = 0);
 
 /// Throws InputError, as adapt() with these options does, unless the mesh can be adapted; returns
 /// what adapt() would warn of. Thread safety: one caller; runs on the executor.

@@ -24,7 +24,7 @@ struct ReferenceSurface;
 /// How a Geometry is made of a mesh.
 struct GeometryOptions {
   /// How far facets of adapted meshes may be from the geometry, a length above 0; that of
-  /// MakeMeshOptions::surface_tolerance wherever the geometry is used.
+  /// MakeMeshOptions::hausdorff_tolerance wherever the geometry is used.
   double tolerance = 0;
   double ridge_angle = 45;                      ///< as MakeMeshOptions::ridge_angle
   bool complete_boundary = false;               ///< as MakeMeshOptions::complete_boundary

@@ -19,7 +19,7 @@ struct LocalSize {
   int dimension = 0;  ///< 0, vertices; 1, edges; 2, triangles; 3, tetrahedra
   std::int32_t reference = 0;
   double smallest = 0, largest = 0;  ///< 0: those that hold elsewhere
-  double surface_tolerance = 0;      ///< Mmg's hausd; 0: none. No function here reads it
+  double hausdorff_tolerance = 0;    ///< Mmg's hausd; 0: none. No function here reads it
 };
 
 /// Reads a file of Mmg's, NAME.mmg2d or NAME.mmg3d: the word Parameters, a count, and so many times

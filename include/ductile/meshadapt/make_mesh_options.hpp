@@ -29,13 +29,13 @@ struct MakeMeshOptions {
   bool lock_boundary = false;  ///< treat every boundary and interface facet as required
   /// Hausdorff tolerance: how far curved boundaries, interfaces and the curves between them may be
   /// from a smooth model of the input, a length; 0: they keep the facets they have.
-  double surface_tolerance = 0;
+  double hausdorff_tolerance = 0;
   /// Degrees, more than 0 and less than 90. Two facets whose normals differ by this angle or more
   /// meet in a ridge, two edges of a curve in a corner; both are kept. What turns by less is
   /// curved.
   double ridge_angle = 45;
-  /// Where distances are measured from; null: from a model of this mesh. Wants a surface_tolerance,
-  /// which must be the geometry's.
+  /// Where distances are measured from; null: from a model of this mesh. Wants a
+  /// hausdorff_tolerance, which must be the geometry's.
   std::shared_ptr<const Geometry> geometry = nullptr;
   /// Surfaces that are known by functions: new and moved vertices of curved boundaries lie on them,
   /// and not on the model. Not with a geometry, which has its own.

@@ -1,4 +1,4 @@
-#include "geometry/faced.hpp"
+#include "geometry/crack_sides.hpp"
 
 #include <algorithm>
 #include <compare>
@@ -26,7 +26,7 @@ void mark_pairs(Mesh<Dim>& mesh, runtime::UnsetVector<Meeting> meetings, Visit v
     const auto [p, q, key] = meetings[begin];
     while (end < meetings.size() && meetings[end].p == p && meetings[end].q == q) ++end;
     if (visit(std::span(meetings).subspan(begin, end - begin)))
-      mesh.patches[p].faced = mesh.patches[q].faced = true;
+      mesh.patches[p].crack_side = mesh.patches[q].crack_side = true;
   }
 }
 
@@ -115,9 +115,9 @@ runtime::UnsetVector<Meeting> meetings_against(const runtime::Executor& executor
 }  // namespace
 
 template <int Dim>
-void mark_faced_patches(const runtime::Executor& executor, Mesh<Dim>& mesh,
-                        const std::vector<TaggedFacet<Dim>>& facets, const FacetSides<Dim>& sides,
-                        double straight) {
+void mark_crack_sides(const runtime::Executor& executor, Mesh<Dim>& mesh,
+                      const std::vector<TaggedFacet<Dim>>& facets, const FacetSides<Dim>& sides,
+                      double straight) {
   mark_pairs(mesh, meetings_at_sides(executor, mesh, facets, sides),
              [&](std::span<const Meeting> rim) { return encloses(mesh, rim, straight); });
   if constexpr (Dim == 3)
@@ -126,9 +126,9 @@ void mark_faced_patches(const runtime::Executor& executor, Mesh<Dim>& mesh,
     });
 }
 
-template void mark_faced_patches(const runtime::Executor&, Mesh<2>&,
-                                 const std::vector<TaggedFacet<2>>&, const FacetSides<2>&, double);
-template void mark_faced_patches(const runtime::Executor&, Mesh<3>&,
-                                 const std::vector<TaggedFacet<3>>&, const FacetSides<3>&, double);
+template void mark_crack_sides(const runtime::Executor&, Mesh<2>&,
+                               const std::vector<TaggedFacet<2>>&, const FacetSides<2>&, double);
+template void mark_crack_sides(const runtime::Executor&, Mesh<3>&,
+                               const std::vector<TaggedFacet<3>>&, const FacetSides<3>&, double);
 
 }  // namespace ductile::meshadapt
