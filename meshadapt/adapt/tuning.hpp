@@ -8,7 +8,7 @@
 
 namespace ductile::meshadapt {
 
-/// How much is done for better qualities.
+/// How much is done for better elements.
 struct Care {
   double calm;   ///< share of changes below which the mesh is near the metric
   int polishes;  ///< passes

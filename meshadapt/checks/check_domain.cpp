@@ -152,8 +152,8 @@ double rough_measure(const AnyMesh& mesh, double roughness) {
   return sum;
 }
 
-/// How long the pinches are, where more than two facets of the boundary meet, in 2D how many there
-/// are; each as often as there is a pair of facets too many.
+/// How long the non-manifold edges are, where more than two facets of the boundary meet, in 2D how
+/// many such vertices there are; each as often as there is a pair of facets too many.
 template <int Dim>
 double non_manifold_length(const Executor& executor, const AnyMesh& mesh, BoundaryFrom from) {
   const BoundarySurface<Dim> surface(executor, sides_of<Dim>(executor, mesh, from));

@@ -17,7 +17,7 @@ inline constexpr std::size_t lane_count = 8;
 template <class Number>
 using LanesIn = std::array<Number, lane_count>;
 using Lanes = LanesIn<double>;        ///< one number of each of so many elements
-using QualityLanes = LanesIn<float>;  ///< their qualities, as a mesh keeps them
+using QualityLanes = LanesIn<float>;  ///< their quality, as a mesh keeps them
 template <int Size>
 using LanesOf = std::array<Lanes, Size>;  ///< a vector or tensor of each
 

@@ -15,7 +15,8 @@
 
 namespace ductile::meshadapt {
 
-/// Vertex state: what a kernel needs to know of a vertex to judge the elements around it.
+/// A site: what a kernel needs to know of a vertex to compute the quality of the elements around
+/// it.
 template <int Dim>
 struct Site {
   Vector<Dim> position;

@@ -1,7 +1,8 @@
 /// @file
 /// BoundarySurface: the facets around the regions of a mesh as a surface of its own, in 2D curves:
 /// which of them hang together at which of their joints, which are edges, in 2D vertices. Where not
-/// two but more facets of one region have a joint, the surface meets itself, a pinch.
+/// two but more facets of one region have a joint, the surface meets itself: the joint is
+/// non-manifold.
 #pragma once
 
 #include <array>

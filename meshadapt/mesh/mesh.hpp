@@ -39,8 +39,7 @@ struct Patch {
   bool required = false;  ///< its facets may not change
   bool ridge = false;     ///< 2D: its edges were listed as ridges
   bool smooth = false;
-  bool crack_side =
-      false;  ///< another lies against it between the same rims: a side of a closed crack
+  bool crack_side = false;  ///< another patch lies against it between the same rims
   std::uint32_t sheet = 0;  ///< its number in Mesh::surface
 };
 
@@ -67,7 +66,7 @@ struct CurveLink {
 template <int Dim>
 using Neighbours = GrowingArray<std::array<ElementId, Dim + 1>>;
 
-/// What a vertex may do. `class_dimension` is its class dimension, that of the geometric entity in
+/// What a vertex may do. `class_dimension` is the dimension of the geometric entity in
 /// which it may move: 0 never moves and is never removed (corner or required), 1 moves along a
 /// curve, 2 in a patch or, in 2D, anywhere, 3 anywhere.
 struct VertexKind {

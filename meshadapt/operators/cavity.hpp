@@ -180,8 +180,8 @@ void visit_neighbours(const Mesh<Dim>& mesh, VertexId vertex, auto&& visit) {
     return;
   }
   if constexpr (Dim == 3)
-    if (mesh.kind_of[vertex].class_dimension ==
-        Dim) {  // inside, where there is a ring around every edge
+    // Inside there is a ring around every edge.
+    if (mesh.kind_of[vertex].class_dimension == Dim) {
       for (const ElementId element : mesh.elements_of.of(vertex))
         for (const VertexId other :
              before_descents(facet_opposite<Dim>(mesh.corners_of[element], vertex)))

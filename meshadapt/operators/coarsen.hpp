@@ -16,8 +16,7 @@ namespace ductile::meshadapt {
 
 struct EdgeCollapse {
   VertexId gone, kept;
-  Buffer<VertexId, 8>
-      short_edge_vertices;      ///< vertices that it gives an edge shorter than the rules want
+  Buffer<VertexId, 8> short_edge_vertices;  ///< get an edge shorter than the rules want
   Buffer<float, 40> qualities;  ///< of the elements that stay, in the order of the list of `gone`
   friend bool operator==(const EdgeCollapse&, const EdgeCollapse&) = default;
 };

@@ -1,5 +1,5 @@
 /// @file
-/// EdgeRange: the lengths that a kernel may give to edges where it aims at qualities alone. Moves
+/// EdgeRange: the lengths that a kernel may give to edges where it aims at quality alone. Moves
 /// and swaps that lead no edge out of the range, or farther out of it, undo nothing of what
 /// collapses and splits have reached, so that the end of a run cannot go in circles.
 #pragma once

@@ -101,7 +101,7 @@ class GridMaker {
 };
 
 /// Vertices whose elements no facets connect, and ends of boundary edges of more than two facets.
-std::set<int> pinches(const Mesh& mesh, const std::vector<Facet>& facets) {
+std::set<int> non_manifold_vertices(const Mesh& mesh, const std::vector<Facet>& facets) {
   const auto& elements = mesh.elements().corners;
   Groups groups(elements.size() * 4);
   const auto member = [&](int element, int vertex) {
@@ -198,7 +198,7 @@ void keep_elements(Mesh& mesh, const std::function<bool(const Point&)>& keep) {
 void remove_non_manifold(Mesh& mesh) {
   keep_largest_part(mesh);
   for (;;) {
-    const std::set<int> found = pinches(mesh, facets_of(mesh));
+    const std::set<int> found = non_manifold_vertices(mesh, facets_of(mesh));
     if (found.empty()) return;
     std::vector<char> kept;
     for (const Cell& element : mesh.elements().corners)

@@ -186,15 +186,15 @@ TEST_P(Checker, SeesWhereTheBoundaryMeetsItself) {
   grid.dimension = GetParam();
   for (auto& lines : grid.lines) lines = even_lines(2);
   grid.keep = [](const std::array<int, 3>& cell) { return cell[0] == cell[1]; };
-  Mesh pinched = make_grid(random, grid);
-  const Topology topology = topology_of(pinched);
+  Mesh touching = make_grid(random, grid);
+  const Topology topology = topology_of(touching);
   EXPECT_EQ(topology.non_manifold_vertices, GetParam() == 2 ? 1 : 0);
   EXPECT_EQ(topology.non_manifold_lines, GetParam() == 2 ? 0 : 1);
   Topology other = topology;
   other.non_manifold_vertices = other.non_manifold_lines = 0;
   EXPECT_TRUE(mentions(differences(topology, other), "where the boundary meets itself"));
-  remove_non_manifold(pinched);
-  EXPECT_EQ(topology_of(pinched).non_manifold_vertices + topology_of(pinched).non_manifold_lines,
+  remove_non_manifold(touching);
+  EXPECT_EQ(topology_of(touching).non_manifold_vertices + topology_of(touching).non_manifold_lines,
             0);
 }
 

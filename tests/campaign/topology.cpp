@@ -95,10 +95,10 @@ std::vector<Cell> non_manifold_edges(const Mesh& mesh, const std::vector<Facet>&
     for (const Facet& facet : facets)
       if (facet.on_boundary())
         for (const auto& edge : edges_of({facet.corners}, 3)) ++count[edge];
-  std::vector<Cell> pinched;
+  std::vector<Cell> found;
   for (const auto& [edge, uses] : count)
-    if (uses != 2) pinched.push_back({edge[0], edge[1], -1, -1});
-  return pinched;
+    if (uses != 2) found.push_back({edge[0], edge[1], -1, -1});
+  return found;
 }
 
 /// Vertices whose elements form several fans that no facet connects.

@@ -23,7 +23,7 @@ struct PartTopology {
 struct Topology {
   PartTopology whole;
   std::map<int, PartTopology> by_region;
-  int non_manifold_vertices = 0;  ///< whose elements are not connected by facets, off pinched edges
+  int non_manifold_vertices = 0;  ///< whose elements are not connected by facets, off those lines
   int non_manifold_lines = 0;  ///< connected parts of edges with more than two boundary facets (3D)
 };
 
