@@ -126,8 +126,8 @@ bool Smooth<Dim>::follows_function(VertexId vertex) const {
 /// Goes to the closest point of the surface's model, or towards it, unless it is there.
 template <int Dim>
 bool Smooth<Dim>::settle(VertexId vertex, Place& best) const {
-  constexpr double close = 0.01;  // of the tolerance
-  constexpr double kept = 0.7;    // of the worst quality
+  const double close = follows_function(vertex) ? 1e-10 : 0.01;  // of the tolerance
+  constexpr double kept = 0.7;                                   // of the worst quality
   const Vector<Dim> from = mesh_.site_of[vertex].position;
   const auto target = stepped(vertex, from, {});
   if (!target) return false;
