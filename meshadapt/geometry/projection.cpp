@@ -57,19 +57,24 @@ struct OnBoth {
 
   Vector<3> operator()(Vector<3> point) const {
     constexpr int steps = 12;
+    constexpr double rounding = 4e-16, little = 1e-3;
     for (int step = 0; step < steps; ++step) {
       const Vector<3> a = first(point), b = second(point);
-      const Vector<3> a_of_b = first(b), b_of_a = second(a);
-      const Vector<3> u = b - a_of_b, v = a - b_of_a;
-      const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), area = uu * vv - uv * uv;
-      if (!(area > 1e-4 * uu * vv)) return b;  // it is on both, or they touch
-      const double p = dot(a_of_b - point, u), q = dot(b_of_a - point, v);
-      const Vector<3> move = ((vv * p - uv * q) / area) * u + ((uu * q - uv * p) / area) * v;
-      point += move;
-      constexpr double rounding = 1e-15;
-      if (norm(move) <= rounding * norm(point)) break;
+      const double off_a = norm(a - point), off_b = norm(b - point);
+      if (std::max(off_a, off_b) <= rounding * norm(point)) break;
+      const Vector<3> u = b - first(b), v = a - second(a);
+      if (norm(v) <= little * off_a) {
+        point = a;  // which is on both, nearly
+      } else if (norm(u) <= little * off_b) {
+        point = b;
+      } else {
+        const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), area = uu * vv - uv * uv;
+        if (!(area > 1e-4 * uu * vv)) return b;  // they touch
+        const double p = dot(b - u - point, u), q = dot(a - v - point, v);
+        point += ((vv * p - uv * q) / area) * u + ((uu * q - uv * p) / area) * v;
+      }
     }
-    return second(point);
+    return point;
   }
 };
 

@@ -81,7 +81,7 @@ void place(const Shape& shape, double* x) {
   x[0] = radius * u;
   x[1] = radius * v;
   if (shape.closest != on_torus) return;
-  const double far = ring + tube * u, turn = std::numbers::pi * x[2];
+  const double far = ring + tube * u, turn = 0.5 * std::numbers::pi * x[2];
   x[0] = far * std::cos(turn);
   x[1] = -far * std::sin(turn);
   x[2] = tube * v;
@@ -145,7 +145,7 @@ class SurfaceFunctions : public testing::TestWithParam<Shape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, SurfaceFunctions,
                          testing::Values(Shape{"Disk", 2, on_ball}, Shape{"Ball", 3, on_ball},
                                          Shape{"Cylinder", 3, on_cylinder},
-                                         Shape{"HalfTorus", 3, on_torus}),
+                                         Shape{"QuarterTorus", 3, on_torus}),
                          [](const auto& at) { return std::string(at.param.name); });
 
 TEST_P(SurfaceFunctions, HaveAllVerticesOnThemInTenCalls) {
