@@ -131,6 +131,36 @@ module ductile
       character(kind=c_char), intent(in) :: name(*)
       real(c_double), value :: value
     end function
+    integer(c_int) function ductile_options_set_surface(options, reference, surface, context) &
+        bind(C)
+      import :: c_int, c_int32_t, c_funptr, c_ptr
+      type(c_ptr), value :: options, context
+      integer(c_int32_t), value :: reference
+      type(c_funptr), value :: surface
+    end function
+    integer(c_int) function ductile_options_set_geometry(options, geometry) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: options, geometry
+    end function
+    integer(c_int) function ductile_geometry_create(mesh, options, geometry) bind(C)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: mesh, options
+      type(c_ptr), intent(out) :: geometry
+    end function
+    subroutine ductile_geometry_destroy(geometry) bind(C)
+      import :: c_ptr
+      type(c_ptr), value :: geometry
+    end subroutine
+    ! normals and references may be c_null_ptr.
+    integer(c_int) function ductile_geometry_closest(geometry, count, points, reach, closest, &
+        normals, references) bind(C)
+      import :: c_int, c_int64_t, c_double, c_ptr
+      type(c_ptr), value :: geometry, normals, references
+      integer(c_int64_t), value :: count
+      real(c_double), intent(in) :: points(*)
+      real(c_double), value :: reach
+      real(c_double), intent(out) :: closest(*)
+    end function
     integer(c_int) function ductile_options_set_progress(options, progress, context) bind(C)
       import :: c_int, c_funptr, c_ptr
       type(c_ptr), value :: options, context

@@ -32,6 +32,7 @@ enum {
 
 typedef struct ductile_mesh ductile_mesh;
 typedef struct ductile_options ductile_options;
+typedef struct ductile_geometry ductile_geometry;
 typedef struct ductile_sizes ductile_sizes;
 typedef struct ductile_transfer ductile_transfer;
 
@@ -129,6 +130,36 @@ typedef int (*ductile_progress)(const char* step, int iteration, int64_t changes
 /** Sets the function that is called after each step; NULL is none. */
 int ductile_options_set_progress(ductile_options* options, ductile_progress progress,
                                  void* context);
+
+/* ---- Curved boundaries, with the option "hausd" ---- */
+
+/** The closest point of a surface, in 2D a curve, to a point that is near it; both have three
+ * coordinates, of which the third is 0 in 2D. Surfaces may go on beyond their ridges: a cylinder
+ * need not end. Must tell the same whenever it is asked. Called by several threads at a time, also
+ * by such that the caller has not made; must not throw or jump. Returns 0 if it fails, which ends
+ * the call that it was needed for with DUCTILE_FAILED. */
+typedef int (*ductile_surface)(const double* point, double* closest, void* context);
+/** Says that facets of a reference lie on a surface: new and moved vertices are put on it. Ridges
+ * are those of the mesh; where two such surfaces meet, or one and a flat side, points go to both.
+ * In place of what was set for the reference; NULL is none. */
+int ductile_options_set_surface(ductile_options* options, int32_t reference,
+                                ductile_surface surface, void* context);
+
+/** What the curved boundaries of a mesh are like, taken once and kept while meshes of the domain
+ * come and go. Of the options "hausd", which must be above 0, "ar", "threads" and surfaces are
+ * used; what surfaces use must live as long. */
+int ductile_geometry_create(const ductile_mesh* mesh, const ductile_options* options,
+                            ductile_geometry** geometry);
+/** NULL is fine. Options that have it keep what they need. */
+void ductile_geometry_destroy(ductile_geometry* geometry);
+/** Has curved boundaries measured from a geometry, not from the mesh that is adapted, with the
+ * "hausd" and the surfaces of the geometry in place of those set before; NULL is none. */
+int ductile_options_set_geometry(ductile_options* options, const ductile_geometry* geometry);
+/** The closest points of a geometry, nearly, that are within `reach` of `count` points, and the unit
+ * normals and references there, unless these are NULL: points[point * dimension + axis], the same
+ * of closest and normals. NaN and 0 where there is none. */
+int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, const double* points,
+                             double reach, double* closest, double* normals, int32_t* references);
 
 /* ---- Sizes by places, without tensors. Where several hold, the finest one does ---- */
 

@@ -85,7 +85,8 @@ MakeMeshOptions with_geometry_of(const Executor& executor, const AnyMesh& mesh,
         executor, mesh,
         GeometryOptions{.tolerance = options.hausdorff_tolerance,
                         .ridge_angle = options.ridge_angle,
-                        .complete_boundary = options.complete_boundary});
+                        .complete_boundary = options.complete_boundary,
+                        .functions = std::exchange(options.functions, {})});
   return options;
 }
 

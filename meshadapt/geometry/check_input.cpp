@@ -8,6 +8,7 @@
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "geometry/projection.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/flatten.hpp"
 
@@ -44,6 +45,7 @@ class InputChecker {
     if (!(angle > 0 && angle < 90))
       throw InputError("ridge_angle: expected an angle between 0 and 90 degrees, found " +
                        number(angle));
+    check_functions();
     check_geometry();
     const auto& kept = options_.keep_facets_at;
     for (std::size_t i = 0; i < kept.size(); ++i)
@@ -51,6 +53,22 @@ class InputChecker {
         throw InputError("keep_facets_at[" + std::to_string(i) + "]: expected a vertex below " +
                          std::to_string(any_.vertex_count()) + ", found " +
                          std::to_string(kept[i]));
+  }
+
+  void check_functions() const {
+    const auto& functions = options_.functions;
+    expect_functions(functions);
+    if (functions.empty()) return;
+    if (options_.geometry)
+      throw InputError("functions: expected none beside a geometry, which has its own");
+    if (!(options_.hausdorff_tolerance > 0))
+      throw InputError("functions: expected a hausdorff_tolerance with them, found none");
+    const auto& found = Dim == 2 ? any_.edges.reference : any_.triangles.reference;
+    for (const SurfaceFunction& function : functions)
+      if (!(options_.complete_boundary && function.reference == 0) &&
+          std::find(found.begin(), found.end(), function.reference) == found.end())
+        throw InputError("functions: no facet has the reference " +
+                         std::to_string(function.reference));
   }
 
   void check_geometry() const {

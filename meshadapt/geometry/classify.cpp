@@ -314,9 +314,17 @@ class Classifier {
     }
     std::vector<SurfaceEdge> edges;
     edges.reserve(curve_edges_.size());
-    for (const CurveEdge& e : curve_edges_) edges.push_back({e.a, e.b, e.curve});
-    mesh_.surface = make_surface<Dim>(executor_, mesh_, {facets_, plane_of_, wide_normals_, edges},
-                                      {hausdorff_tolerance_, tolerance_, least_turn_});
+    for (const CurveEdge& e : curve_edges_)
+      edges.push_back({e.a, e.b, e.curve, first_two(e.patches)});
+    mesh_.surface =
+        make_surface<Dim>(executor_, mesh_, {facets_, plane_of_, wide_normals_, edges},
+                          {hausdorff_tolerance_, tolerance_, least_turn_, options_.functions});
+  }
+
+  /// Of sorted patches two that differ, 0 where there is no other.
+  static std::array<PatchId, 2> first_two(const std::vector<PatchId>& patches) {
+    if (patches.empty()) return {};
+    return {patches.front(), patches.back() == patches.front() ? 0 : patches.back()};
   }
 
   void store_patches() {

@@ -20,6 +20,7 @@ std::shared_ptr<const ReferenceSurface<Dim>> reference_surface(const runtime::Ex
   make.hausdorff_tolerance = options.tolerance;
   make.ridge_angle = options.ridge_angle;
   make.complete_boundary = options.complete_boundary;
+  make.functions = options.functions;
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
   const Mesh<Dim> mesh = make_mesh<Dim>(executor, any, make, neighbours, warnings);

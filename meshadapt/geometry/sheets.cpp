@@ -245,8 +245,9 @@ struct Sheets<Dim, Corners>::Search {
 
 template <int Dim, std::size_t Corners>
 Sheets<Dim, Corners>::Sheets(const std::vector<Part>& parts, double tolerance,
-                             const std::vector<std::optional<Curved>>& curved)
-    : tolerance_(tolerance) {
+                             const std::vector<std::optional<Curved>>& curved,
+                             std::vector<Projection<Dim>> projection_of)
+    : tolerance_(tolerance), projection_of_(std::move(projection_of)) {
   divide(parts, curved);
   shape_of_.reserve(parts_.size());
   box_of_.reserve(parts_.size());

@@ -14,6 +14,7 @@
 
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/divided.hpp"
+#include "geometry/projection.hpp"
 #include "mesh/box.hpp"
 
 namespace ductile::meshadapt {
@@ -35,14 +36,21 @@ class Sheets {
   };
 
   /// `curved` is what parts are curved into, nothing where they are flat; or empty if all are.
+  /// `projection_of` is [sheet], empty where curved pieces are all that is known of it; or empty.
   /// Throws std::bad_alloc. Linear in the parts but for a logarithm.
   Sheets(const std::vector<Part>& parts, double tolerance,
-         const std::vector<std::optional<Curved>>& curved = {});
+         const std::vector<std::optional<Curved>>& curved = {},
+         std::vector<Projection<Dim>> projection_of = {});
   ~Sheets();
   Sheets(const Sheets&) = delete;
   Sheets& operator=(const Sheets&) = delete;
 
   double tolerance() const { return tolerance_; }
+
+  /// Is the sheet known by a function?
+  bool is_exact(std::uint32_t sheet) const {
+    return !projection_of_.empty() && projection_of_[sheet];
+  }
 
   /// Is every point of this simplex within the tolerance of the sheet, and half the radius of the
   /// simplex, where it is turned by less than 45 degrees against it? And is none that close to what
@@ -109,6 +117,8 @@ class Sheets {
   std::optional<typename Curved::Weights> weights_at(const Vector<Dim>& point,
                                                      const Closest& closest) const;
   Vector<Dim> on_model(const Vector<Dim>& point, const Closest& closest) const;
+  Vector<Dim> on_sheet(const Vector<Dim>& point, const Vector<Dim>& model,
+                       std::uint32_t sheet) const;
   std::optional<Nearest> nearest_of(const Vector<Dim>& point, double reach, auto&& is_wanted) const;
 
   void each_meeting(const Box<Dim>& box, auto&& visit) const;
@@ -120,6 +130,7 @@ class Sheets {
   std::vector<Shape> shape_of_;   // [part]
   std::vector<Box<Dim>> box_of_;  // [part], read by itself most of the time
   double tolerance_;
+  std::vector<Projection<Dim>> projection_of_;  // [sheet], or empty
   std::unique_ptr<const Tree> tree_;
 };
 

@@ -68,6 +68,20 @@ Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Close
   return weights ? curved_[origin_of_[closest.part].curved].at(*weights) : closest.point;
 }
 
+/// The closest point of a sheet that is a function, if it is near the closest one of the model, and
+/// not beyond where the sheet ends: then that of this one.
+template <int Dim, std::size_t Corners>
+Vector<Dim> Sheets<Dim, Corners>::on_sheet(const Vector<Dim>& point, const Vector<Dim>& model,
+                                           std::uint32_t sheet) const {
+  if (!is_exact(sheet)) return model;
+  constexpr double near = 1.0 / 4;  // of the tolerance
+  if (norm(point - model) <= near * tolerance_) {
+    const Vector<Dim> there = projection_of_[sheet](point);
+    if (norm(there - model) <= near * tolerance_) return there;
+  }
+  return projection_of_[sheet](model);
+}
+
 /// Looks nearby first, because it is likely there, and the tolerance may be large.
 template <int Dim, std::size_t Corners>
 std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
@@ -81,7 +95,7 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
       if (parts_[part].sheet == sheet) near.push_back(part);
     });
     const Closest best = near.closest(*this, point);
-    if (best.distance <= within) return on_model(point, best);
+    if (best.distance <= within) return on_sheet(point, on_model(point, best), sheet);
   }
   return {};
 }
@@ -106,6 +120,7 @@ auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
       nearest.point = curved.at(*weights);
       nearest.direction = direction_along<Dim, Corners>(curved.tangents(*weights));
     }
+    nearest.point = on_sheet(point, nearest.point, nearest.sheet);
     nearest.distance = norm(nearest.point - point);
     return nearest;
   }
@@ -139,6 +154,7 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, const Vector<Dim>& 
 template std::optional<Sheets<2, 2>::Curved::Weights> Sheets<2, 2>::weights_at(
     const Vector<2>&, const Closest&) const;
 template Vector<2> Sheets<2, 2>::on_model(const Vector<2>&, const Closest&) const;
+template Vector<2> Sheets<2, 2>::on_sheet(const Vector<2>&, const Vector<2>&, std::uint32_t) const;
 template std::optional<Vector<2>> Sheets<2, 2>::closest(const Vector<2>&, std::uint32_t,
                                                         double) const;
 template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest(const Vector<2>&, double) const;
@@ -149,6 +165,7 @@ template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest(const Vector
 template std::optional<Sheets<3, 2>::Curved::Weights> Sheets<3, 2>::weights_at(
     const Vector<3>&, const Closest&) const;
 template Vector<3> Sheets<3, 2>::on_model(const Vector<3>&, const Closest&) const;
+template Vector<3> Sheets<3, 2>::on_sheet(const Vector<3>&, const Vector<3>&, std::uint32_t) const;
 template std::optional<Vector<3>> Sheets<3, 2>::closest(const Vector<3>&, std::uint32_t,
                                                         double) const;
 template std::optional<Sheets<3, 2>::Nearest> Sheets<3, 2>::nearest(const Vector<3>&, double) const;
@@ -159,6 +176,7 @@ template std::optional<Sheets<3, 2>::Nearest> Sheets<3, 2>::nearest(const Vector
 template std::optional<Sheets<3, 3>::Curved::Weights> Sheets<3, 3>::weights_at(
     const Vector<3>&, const Closest&) const;
 template Vector<3> Sheets<3, 3>::on_model(const Vector<3>&, const Closest&) const;
+template Vector<3> Sheets<3, 3>::on_sheet(const Vector<3>&, const Vector<3>&, std::uint32_t) const;
 template std::optional<Vector<3>> Sheets<3, 3>::closest(const Vector<3>&, std::uint32_t,
                                                         double) const;
 template std::optional<Sheets<3, 3>::Nearest> Sheets<3, 3>::nearest(const Vector<3>&, double) const;

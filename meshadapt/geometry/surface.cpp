@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <tuple>
 
+#include "core/first_bad.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "geometry/projection.hpp"
 #include "geometry/sheets_parts.hpp"
 #include "mesh/box_index.hpp"
 #include "mesh/distance.hpp"
@@ -12,6 +16,9 @@
 namespace ductile::meshadapt {
 
 namespace {
+
+/// Of the tolerance: as far as vertices may be from the function of their surface.
+constexpr double fitting = 2;
 
 template <int Dim>
 class SurfaceMaker {
@@ -42,15 +49,58 @@ class SurfaceMaker {
           {points(std::array{edges_[e].a, edges_[e].b}), edges_[e].curve, true, {}});
       edge_pieces.push_back(model.edges[e]);
     }
+    const auto on_patches = projections_of_patches(mesh_, options_.functions, reach());
+    expect_on(on_patches);
     return std::shared_ptr<const Surface<Dim>>(
-        new Surface<Dim>{{facet_parts, options_.tolerance, model.facets},
-                         {edge_parts, options_.tolerance, edge_pieces}});
+        new Surface<Dim>{{facet_parts, options_.tolerance, model.facets, on_patches},
+                         {edge_parts, options_.tolerance, edge_pieces, on_curves(on_patches)}});
   }
 
  private:
   /// Outwards, however the file has them.
   Facet<Dim> corners(const TaggedFacet<Dim>& facet) const {
     return facet_of<Dim>(mesh_.corners_of[facet.element], facet.facet);
+  }
+
+  // ---- Surfaces that are functions ----
+
+  /// How far points of the model may be from them: as far as its largest facet goes, because that
+  /// may be part of a small ball.
+  double reach() const {
+    double longest = 0;
+    if (options_.functions.empty()) return longest;
+    for (const TaggedFacet<Dim>& facet : facets_) {
+      const auto p = points(facet.corners);
+      for (std::size_t i = 1; i < p.size(); ++i) longest = std::max(longest, norm(p[i] - p[i - 1]));
+    }
+    return longest + fitting * options_.tolerance;
+  }
+
+  /// Are the vertices of the mesh on them?
+  void expect_on(const std::vector<Projection<Dim>>& on_patches) const {
+    if (on_patches.empty()) return;
+    for (const TaggedFacet<Dim>& facet : facets_) {
+      if (!on_patches[facet.patch]) continue;
+      for (const VertexId v : facet.corners) {
+        const Vector<Dim>& at = mesh_.site_of[v].position;
+        const double distance = norm(on_patches[facet.patch](at) - at);
+        if (distance > fitting * options_.tolerance)
+          throw InputError("the function of the surface with the reference " +
+                           std::to_string(facet.data.reference) + ": expected vertex " +
+                           std::to_string(v + 1) + " of its facets within " +
+                           number(fitting * options_.tolerance) + " of it, found " +
+                           number(distance));
+      }
+    }
+  }
+
+  std::vector<Projection<Dim>> on_curves(const std::vector<Projection<Dim>>& on_patches) const {
+    if constexpr (Dim == 3) {
+      std::vector<EdgeBetween> edges;
+      for (const SurfaceEdge& edge : edges_) edges.push_back({edge.a, edge.curve, edge.patches});
+      return projections_of_curves(mesh_, on_patches, edges);
+    }
+    return {};
   }
 
   /// 0 if it is the facet's own.

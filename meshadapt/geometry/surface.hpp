@@ -3,6 +3,7 @@
 /// it was adapted, and how far from it adaptation may go.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <utility>
@@ -29,12 +30,14 @@ struct Surface {
 struct SurfaceEdge {
   VertexId a, b;
   CurveId curve;
+  std::array<PatchId, 2> patches;  ///< that meet there; the second is 0 if there is no other
 };
 
 struct SurfaceOptions {
   double tolerance;   ///< how far facets may be from the model, and the model from facets
   double flat;        ///< what is within this distance of one line is straight
   double least_turn;  ///< cosine of the angle from which on curves have corners
+  std::span<const SurfaceFunction> functions;  ///< see MakeMeshOptions
 };
 
 /// The facets and curves of a mesh, all of which have their patches.

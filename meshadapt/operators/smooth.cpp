@@ -115,11 +115,20 @@ bool Smooth<Dim>::follow(VertexId vertex, const Place& best, Plan& plan) const {
   return true;
 }
 
+/// Is what the vertex may move along known by a function?
+template <int Dim>
+bool Smooth<Dim>::follows_function(VertexId vertex) const {
+  const std::uint32_t entity = mesh_.entity_of[vertex];
+  return on_smooth_curve(mesh_, vertex)
+             ? mesh_.surface->edges.is_exact(mesh_.curves[entity].sheet)
+             : mesh_.surface->facets.is_exact(mesh_.patches[entity].sheet);
+}
+
 /// Goes to the closest point of the surface's model, or towards it, unless it is there.
 template <int Dim>
 bool Smooth<Dim>::settle(VertexId vertex, Place& best) const {
-  constexpr double close = 0.01;  // of the tolerance
-  constexpr double kept = 0.7;    // of the worst quality
+  const double close = follows_function(vertex) ? 1e-10 : 0.01;  // of the tolerance
+  constexpr double kept = 0.7;                                   // of the worst quality
   const Vector<Dim> from = mesh_.site_of[vertex].position;
   const auto target = stepped(vertex, from, {});
   if (!target) return false;

@@ -104,6 +104,7 @@ class Smooth {
   Vector<Dim> normal(VertexId vertex) const;
   std::optional<Vector<Dim>> stepped(VertexId vertex, const Vector<Dim>& from,
                                      const Vector<Dim>& step) const;
+  bool follows_function(VertexId vertex) const;
   bool settle(VertexId vertex, Place& best) const;
   bool relax(VertexId vertex, const Ball<Dim>& ball, const Place& from, Place& to) const;
   bool optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const;

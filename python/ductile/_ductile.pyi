@@ -127,7 +127,7 @@ class Options:
 
 class GeometryData:
     def __init__(self, mesh: MeshData, tolerance: float, ridge_angle: float,
-                 threads: Executor) -> None: ...
+                 surfaces: Sequence[tuple[int, Callable]], threads: Executor) -> None: ...
     dimension: int
     tolerance: float
     def closest(self, points: _Floats, reach: float,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -25,6 +25,31 @@ class Closest(NamedTuple):
     """``(n,)``, the references of the facets there; 0 where none is within reach."""
 
 
+def _refs(mesh: Mesh, key: Union[int, str]) -> list[int]:
+    """The references of facets that a key of `surfaces` stands for."""
+    if not isinstance(key, str):
+        return [int(key)]
+    refs = [ref for name, dim, ref in mesh.names if name == key and dim == mesh.dim - 1]
+    if not refs:
+        raise InputError(f"surfaces: no facets have the name {key!r}")
+    return refs
+
+
+def _checked(surface: Callable, ref: int, dim: int) -> Callable:
+    """The function with three coordinates, of which C++ knows."""
+    if not callable(surface):
+        raise InputError(f"surfaces[{ref}]: expected a function, found {surface!r}")
+
+    def closest(point: list[float]) -> list[float]:
+        result = floats(surface(np.array(point[:dim])), f"surfaces[{ref}]")
+        if result.shape != (dim,):
+            raise InputError(f"surfaces[{ref}]: expected a point of {dim} coordinates, found an "
+                             f"array of shape {result.shape}")
+        return [*result, 0.0][:3]
+
+    return closest
+
+
 class Geometry:
     """The curved boundaries and interfaces of a domain, taken once from a mesh of it.
 
@@ -39,6 +64,11 @@ class Geometry:
         How far facets of adapted meshes may be from it.
     ar : float, optional
         Facets that turn by as many degrees meet at a ridge, which stays.
+    surfaces : dict of int or str to callable, optional
+        What facets of a reference, or a name, truly lie on: a function of a point, an array
+        ``(d,)``, that returns the closest point of the surface. New and moved vertices are put on it.
+        It may go on beyond its ridges, which are those of the mesh. As Python runs one function at a
+        time, threads wait for each other there; from C++ and C they do not.
     threads : int, optional
         0: as many as there are cores.
 
@@ -49,10 +79,13 @@ class Geometry:
     ...     mesh = mesh.remesh(wanted(mesh), geometry=geometry)
     """
 
-    def __init__(self, mesh: Mesh, hausd: float, *, ar: float = 45, threads: int = 0) -> None:
+    def __init__(self, mesh: Mesh, hausd: float, *, ar: float = 45,
+                 surfaces: Optional[Mapping[Union[int, str], Callable]] = None, threads: int = 0) -> None:
+        functions = [(ref, _checked(surface, ref, mesh.dim))
+                     for key, surface in (surfaces or {}).items() for ref in _refs(mesh, key)]
         with named(mesh.dim):
             self._data = _ductile.GeometryData(mesh._data, number(hausd, "hausd"),
-                                               number(ar, "ar"), _ductile.Executor(threads, True))
+                                               number(ar, "ar"), functions, _ductile.Executor(threads, True))
 
     def __repr__(self) -> str:
         return f"Geometry(dim={self.dim}, hausd={self.hausd:g})"

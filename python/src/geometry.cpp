@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "bindings.hpp"
@@ -21,13 +22,32 @@ namespace {
 using meshadapt::Geometry;
 using meshadapt::GeometryPoint;
 
-std::shared_ptr<Geometry> make_geometry(const meshadapt::AnyMesh& mesh, double tolerance,
-                                        double ridge_angle,
-                                        const runtime::ExecutorOptions& threads) {
+/// A function of Python for what C++ calls on any thread: one caller at a time has the interpreter.
+/// It goes with the last geometry that has it, maybe where nobody has the interpreter.
+meshadapt::SurfaceFunction surface_function(std::int32_t reference, py::function given) {
+  const std::shared_ptr<py::function> function(new py::function(std::move(given)),
+                                               [](py::function* old) {
+                                                 const py::gil_scoped_acquire locked;
+                                                 delete old;
+                                               });
+  return {reference, [function](const std::array<double, 3>& point) {
+            const py::gil_scoped_acquire locked;
+            return (*function)(point).cast<std::array<double, 3>>();
+          }};
+}
+
+std::shared_ptr<Geometry> make_geometry(
+    const meshadapt::AnyMesh& mesh, double tolerance, double ridge_angle,
+    const std::vector<std::pair<std::int32_t, py::function>>& surfaces,
+    const runtime::ExecutorOptions& threads) {
+  std::vector<meshadapt::SurfaceFunction> functions;
+  for (const auto& [reference, function] : surfaces)
+    functions.push_back(surface_function(reference, function));
   return work(threads, [&](const runtime::Executor& executor) {
     return std::make_shared<Geometry>(
         executor, mesh,
-        meshadapt::GeometryOptions{.tolerance = tolerance, .ridge_angle = ridge_angle});
+        meshadapt::GeometryOptions{
+            .tolerance = tolerance, .ridge_angle = ridge_angle, .functions = functions});
   });
 }
 

@@ -256,12 +256,17 @@ def test_processes_that_fork_adapt_too(mesh):
             assert same(result, expected)
 
 
-def test_geometry_has_points_and_normals():
+def disk():
+    """A polygon of 40 edges of the reference 1 in the unit circle."""
     x = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     rim = np.stack((np.cos(x), np.sin(x)), axis=1)
     fan = np.stack((np.arange(40), (np.arange(40) + 1) % 40, np.full(40, 40)), axis=1)
-    disk = ductile.Mesh(np.concatenate((rim, [[0, 0]])), fan)
-    geometry = ductile.Geometry(disk, hausd=0.01)
+    return ductile.Mesh(np.concatenate((rim, [[0, 0]])), fan, facets=fan[:, :2], facet_refs=np.ones(40, int))
+
+
+def test_geometry_has_points_and_normals():
+    polygon = disk()
+    geometry = ductile.Geometry(polygon, hausd=0.01)
     assert geometry.dim == 2 and geometry.hausd == 0.01
     found = geometry.closest([[2, 0], [0, -0.5], [0, 5]], reach=1.5)
     assert found.points[:2] == pytest.approx(np.array([[1, 0], [0, -1]]), abs=5e-3)
@@ -272,9 +277,43 @@ def test_geometry_has_points_and_normals():
         with pytest.raises(ductile.InputError):
             geometry.closest(**wrong)
     with pytest.raises(ductile.InputError, match="tolerance"):
-        ductile.Geometry(disk, hausd=0)
+        ductile.Geometry(polygon, hausd=0)
     with pytest.raises(ductile.InputError, match="geometry: expected a ductile.Geometry"):
-        disk.remesh(0.1, geometry=disk)
+        polygon.remesh(0.1, geometry=polygon)
+
+
+def rounded(x, radius=1.0):
+    """The closest point of the unit circle or sphere."""
+    return radius * x / np.linalg.norm(x)
+
+
+def test_surfaces_are_functions(dim):
+    box = ductile.box((2,) * dim, (16 if dim == 2 else 6,) * dim)
+    x = box.points - 1
+    far = np.maximum(np.abs(x).max(axis=1), 1e-30)
+    ball = ductile.Mesh(x * (far / np.maximum(np.linalg.norm(x, axis=1), 1e-30))[:, None], box.cells,
+                        facets=box.facets, facet_refs=np.full(len(box.facets), 3),
+                        names={"wall": (dim - 1, 3)})
+    for surfaces in ({3: rounded}, {"wall": rounded}):
+        geometry = ductile.Geometry(ball, hausd=0.04, surfaces=surfaces, threads=2)
+        out = ball.remesh(0.2, geometry=geometry, threads=2).remesh(0.3, geometry=geometry, threads=1)
+        radius = np.linalg.norm(out.points[np.unique(out.facets)], axis=1)
+        assert np.abs(radius - 1).max() < 1e-12 and out.check() == []
+    same = [ball.remesh(0.2, geometry=geometry, threads=threads).points for threads in (1, 2, 4)]
+    assert all((points == same[0]).all() for points in same)
+    near = geometry.closest([[1.01] + [0.2] * (dim - 1)]).points
+    assert np.linalg.norm(near) == pytest.approx(1, abs=1e-15)
+
+
+def test_surfaces_that_are_wrong():
+    for surfaces, text in (({77: rounded}, "no facet has the reference 77"),
+                           ({"nothing": rounded}, "no facets have the name 'nothing'"),
+                           ({1: 5}, "expected a function"),
+                           ({1: lambda x: [1, 2, 3]}, "expected a point of 2 coordinates")):
+        with pytest.raises(ductile.InputError, match=text):
+            ductile.Geometry(disk(), hausd=0.01, surfaces=surfaces)
+    with pytest.raises(ZeroDivisionError):
+        ductile.Geometry(disk(), hausd=0.01, surfaces={1: lambda x: 1 / 0})
 
 
 def test_curved_boundaries_are_followed(dim):

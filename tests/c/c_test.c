@@ -322,6 +322,89 @@ static void test_sizes(void) {
   ductile_mesh_destroy(mesh);
 }
 
+/* Fails if the context says 0. */
+static int on_circle(const double* point, double* closest, void* context) {
+  const double length = hypot(point[0], point[1]);
+  closest[0] = point[0] / length;
+  closest[1] = point[1] / length;
+  closest[2] = point[2];
+  return *(const int*)context;
+}
+
+enum { RIM = 24 };
+
+/* A polygon in the unit circle, as a fan. */
+static ductile_mesh* make_disk(void) {
+  ductile_mesh* mesh = NULL;
+  double points[2 * RIM + 2] = {0};
+  int32_t fan[3 * RIM], rim[2 * RIM], references[RIM];
+  for (int i = 0; i < RIM; ++i) {
+    points[2 * i + 2] = cos(i * 6.283185307179586 / RIM);
+    points[2 * i + 3] = sin(i * 6.283185307179586 / RIM);
+    fan[3 * i] = 0;
+    fan[3 * i + 1] = rim[2 * i] = i + 1;
+    fan[3 * i + 2] = rim[2 * i + 1] = (i + 1) % RIM + 1;
+    references[i] = 4;
+  }
+  EXPECT(ductile_mesh_create(2, &mesh) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_vertices(mesh, RIM + 1, points, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_elements(mesh, RIM, fan, NULL) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_facets(mesh, RIM, rim, references) == DUCTILE_OK);
+  return mesh;
+}
+
+static double off_circle(const ductile_mesh* mesh) {
+  const double* x = ductile_mesh_coordinates(mesh);
+  const int32_t* corners = ductile_mesh_corners(mesh, DUCTILE_FACETS);
+  double most = 0;
+  for (int64_t i = 0; i < 2 * ductile_mesh_count(mesh, DUCTILE_FACETS); ++i)
+    most = fmax(most, fabs(hypot(x[2 * corners[i]], x[2 * corners[i] + 1]) - 1));
+  return most;
+}
+
+static void test_geometry(void) {
+  ductile_mesh *mesh = make_disk(), *adapted = NULL, *again = NULL;
+  ductile_options* options = NULL;
+  ductile_geometry* geometry = NULL;
+  int works = 1, fails = 0;
+  double sizes[1000];
+  for (int i = 0; i < 1000; ++i) sizes[i] = .1;
+  EXPECT(ductile_options_create(&options) == DUCTILE_OK);
+  EXPECT(ductile_options_set(options, "threads", 2) == DUCTILE_OK);
+  EXPECT(ductile_geometry_create(mesh, options, &geometry) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set(options, "hausd", .01) == DUCTILE_OK);
+  EXPECT(ductile_options_set_surface(options, 9, on_circle, &works) == DUCTILE_OK);
+  EXPECT(ductile_geometry_create(mesh, options, &geometry) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("functions: no facet has the reference 9");
+  EXPECT(ductile_options_set_surface(options, 9, NULL, NULL) == DUCTILE_OK);
+  EXPECT(ductile_options_set_surface(options, 4, on_circle, &fails) == DUCTILE_OK);
+  EXPECT(ductile_geometry_create(mesh, options, &geometry) == DUCTILE_FAILED);
+  EXPECT_TEXT("the function of the surface with the reference 4 has failed");
+  EXPECT(ductile_options_set_surface(options, 4, on_circle, &works) == DUCTILE_OK);
+  EXPECT(ductile_adapt(mesh, 1, sizes, options, &adapted) == DUCTILE_OK);
+  EXPECT(off_circle(adapted) < 1e-12);
+  EXPECT(ductile_geometry_create(mesh, options, &geometry) == DUCTILE_OK);
+  EXPECT(ductile_options_set_geometry(options, geometry) == DUCTILE_OK);
+  const double points[] = {1.1, 0, 0, 7};
+  double closest[4], normals[4];
+  int32_t references[2];
+  EXPECT(ductile_geometry_closest(geometry, 2, points, .2, closest, normals, references) ==
+         DUCTILE_OK);
+  EXPECT(fabs(closest[0] - 1) < 1e-15 && fabs(normals[0] - 1) < 1e-3 && references[0] == 4);
+  EXPECT(closest[2] != closest[2] && normals[3] != normals[3] && references[1] == 0);
+  EXPECT(ductile_geometry_closest(geometry, 1, points, 0, closest, NULL, NULL) ==
+         DUCTILE_WRONG_INPUT);
+  ductile_geometry_destroy(geometry);
+  ductile_geometry_destroy(NULL);
+  EXPECT(ductile_mesh_count(adapted, DUCTILE_VERTICES) < 1000);
+  EXPECT(ductile_adapt(adapted, 1, sizes, options, &again) == DUCTILE_OK);
+  EXPECT(off_circle(again) < 1e-12);
+  ductile_options_destroy(options);
+  ductile_mesh_destroy(again);
+  ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(mesh);
+}
+
 int main(void) {
   EXPECT(strcmp(ductile_last_error(), "") == 0 && strlen(ductile_version()) >= 5);
   test_meshes();
@@ -331,6 +414,7 @@ int main(void) {
   test_solution_metric();
   test_names();
   test_sizes();
+  test_geometry();
   printf("%d failures\n", failures);
   return failures != 0;
 }

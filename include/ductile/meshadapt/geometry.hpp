@@ -9,8 +9,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/adapt_options.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {
@@ -24,8 +26,9 @@ struct GeometryOptions {
   /// How far facets of adapted meshes may be from the geometry, a length above 0; that of
   /// MakeMeshOptions::hausdorff_tolerance wherever the geometry is used.
   double tolerance = 0;
-  double ridge_angle = 45;         ///< as MakeMeshOptions::ridge_angle
-  bool complete_boundary = false;  ///< as MakeMeshOptions::complete_boundary
+  double ridge_angle = 45;                      ///< as MakeMeshOptions::ridge_angle
+  bool complete_boundary = false;               ///< as MakeMeshOptions::complete_boundary
+  std::vector<SurfaceFunction> functions = {};  ///< as MakeMeshOptions::functions
 };
 
 /// A point of a geometry.

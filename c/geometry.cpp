@@ -1,0 +1,132 @@
+/// @file
+/// What curved boundaries are like, for ductile.h: a geometry, and surfaces that are functions.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/geometry.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "handles.hpp"
+
+struct ductile_geometry {
+  std::shared_ptr<const ductile::meshadapt::Geometry> geometry;
+  ductile::runtime::ExecutorOptions executor;
+};
+
+namespace ductile::c {
+
+namespace {
+
+using meshadapt::SurfaceFunction;
+using Point = std::array<double, 3>;
+
+SurfaceFunction function_of(int32_t reference, ductile_surface surface, void* context) {
+  return {reference, [=](const Point& point) {
+            Point closest{};
+            if (surface(point.data(), closest.data(), context) != 0) return closest;
+            throw meshadapt::Error("the function of the surface with the reference " +
+                                   std::to_string(reference) + " has failed");
+          }};
+}
+
+/// Writes points and so on of those that are closest, NaN and 0 where there is none.
+struct Closest {
+  const ductile_geometry& geometry;
+  double reach;
+  double* positions;
+  double* normals;
+  int32_t* references;
+
+  void write(std::size_t i, const double* points) const {
+    const auto d = static_cast<std::size_t>(geometry.geometry->dimension());
+    Point from{};
+    std::copy_n(points + d * i, d, from.begin());
+    const auto found = geometry.geometry->closest(from, reach);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t k = 0; k < d; ++k) {
+      positions[d * i + k] = found ? found->position[k] : nan;
+      if (normals != nullptr) normals[d * i + k] = found ? found->normal[k] : nan;
+    }
+    if (references != nullptr) references[i] = found ? found->reference : 0;
+  }
+};
+
+}  // namespace
+}  // namespace ductile::c
+
+using namespace ductile;  // NOLINT: the functions for C are in no namespace
+
+extern "C" {
+
+int ductile_options_set_surface(ductile_options* options, int32_t reference,
+                                ductile_surface surface, void* context) {
+  return c::guarded([&] {
+    c::expect_given(options, "options");
+    auto& functions = options->adapt.make.functions;
+    functions.erase(std::remove_if(functions.begin(), functions.end(),
+                                   [&](const auto& f) { return f.reference == reference; }),
+                    functions.end());
+    if (surface != nullptr) functions.push_back(c::function_of(reference, surface, context));
+  });
+}
+
+int ductile_geometry_create(const ductile_mesh* mesh, const ductile_options* options,
+                            ductile_geometry** geometry) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    c::expect_given(options, "options");
+    c::expect_given(geometry, "geometry");
+    const auto& make = options->adapt.make;
+    const runtime::Executor executor(options->executor);
+    auto made = std::make_unique<ductile_geometry>();
+    made->executor = options->executor;
+    made->geometry = std::make_shared<const meshadapt::Geometry>(
+        executor, mesh->mesh,
+        meshadapt::GeometryOptions{.tolerance = make.hausdorff_tolerance,
+                                   .ridge_angle = make.ridge_angle,
+                                   .complete_boundary = make.complete_boundary,
+                                   .functions = make.functions});
+    *geometry = made.release();
+  });
+}
+
+void ductile_geometry_destroy(ductile_geometry* geometry) { delete geometry; }
+
+int ductile_options_set_geometry(ductile_options* options, const ductile_geometry* geometry) {
+  return c::guarded([&] {
+    c::expect_given(options, "options");
+    auto& make = options->adapt.make;
+    make.geometry = geometry == nullptr ? nullptr : geometry->geometry;
+    if (geometry == nullptr) return;
+    make.hausdorff_tolerance = geometry->geometry->tolerance();
+    make.functions.clear();
+  });
+}
+
+int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, const double* points,
+                             double reach, double* closest, double* normals, int32_t* references) {
+  return c::guarded([&] {
+    c::expect_given(geometry, "geometry");
+    c::expect_array(points, count, "points");
+    c::expect_array(closest, count, "closest");
+    const auto n =
+        static_cast<std::size_t>(count) * static_cast<std::size_t>(geometry->geometry->dimension());
+    if (!std::all_of(points, points + n, [](double x) { return std::isfinite(x); }))
+      throw meshadapt::InputError("points: expected finite coordinates");
+    if (!(reach > 0))
+      throw meshadapt::InputError("reach: expected a distance above 0, found " +
+                                  std::to_string(reach));
+    const c::Closest all{*geometry, reach, closest, normals, references};
+    const runtime::Executor executor(geometry->executor);
+    runtime::parallel_for(executor, static_cast<std::size_t>(count),
+                          [&](std::size_t i) { all.write(i, points); });
+  });
+}
+
+}  // extern "C"
