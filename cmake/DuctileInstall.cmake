@@ -37,6 +37,13 @@ if(TARGET ductile_petsc)
   install(TARGETS ductile_petsc COMPONENT petsc LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
+if(TARGET ductile_mpi)
+  file(RELATIVE_PATH ductile_libraries_from_program
+    ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(ductile_mpi PROPERTIES
+    INSTALL_RPATH "$ORIGIN/${ductile_libraries_from_program}")
+  install(TARGETS ductile_mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT petsc)
+endif()
 if(TARGET ductile)
   file(RELATIVE_PATH ductile_libraries_from_program
     ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})

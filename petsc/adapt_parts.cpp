@@ -30,8 +30,10 @@ class Parts {
     std::vector<PassReport> reports;
     find_interfaces();
     balance(beforehand);
+    end(Phase::balance);
     for (int pass = 1;; ++pass) {
       reports.push_back(adapt(pass));
+      reports.back().costs = take_costs();
       if (options_.told) options_.told(reports.back());
       if (pass >= options_.passes || !is_worthwhile(reports.back())) break;
       const std::vector<int> target_of = comm_.on_all([&] {
@@ -39,16 +41,40 @@ class Parts {
       });
       part_ = migrate<Dim>(comm_, part_, target_of);
       find_interfaces();
+      end(Phase::migration);
     }
     find_interfaces();
     balance(at_the_end);
     const std::int64_t own = number_vertices(comm_, interfaces_, part_);
-    return {std::move(part_), std::move(interfaces_), own, std::move(reports)};
+    end(Phase::balance);
+    return {std::move(part_), std::move(interfaces_), own, std::move(reports), take_costs()};
   }
 
  private:
   static constexpr double beforehand = 1.2, at_the_end = 1.05;  // the imbalance that may be
   static constexpr std::uint8_t layers = 3;  // around what was held, that are adapted with it
+
+  /// What was done since the last phase ended is this phase's.
+  void end(Phase phase) {
+    const Costs now = comm_.costs();
+    Costs& costs = costs_[static_cast<std::size_t>(phase)];
+    costs.seconds += now.seconds - before_.seconds;
+    costs.bytes += now.bytes - before_.bytes;
+    before_ = now;
+  }
+
+  /// Of all ranks, since they were taken last.
+  std::array<Costs, phase_count> take_costs() {
+    std::vector<std::int64_t> all;
+    for (const Costs& costs : costs_) {
+      all.push_back(static_cast<std::int64_t>(1e6 * costs.seconds));
+      all.push_back(costs.bytes);
+    }
+    all = comm_.sums(std::move(all));
+    for (std::size_t p = 0; p < phase_count; ++p)
+      costs_[p] = {1e-6 * static_cast<double>(all[2 * p]), all[2 * p + 1]};
+    return std::exchange(costs_, {});
+  }
 
   void find_interfaces() {
     comm_.on_all([&] { list_boundary(executor_, part_); });
@@ -76,6 +102,7 @@ class Parts {
     const double begin = MPI_Wtime();
     if (comm_.size() > 1 && options_.adapt.gradation > 0)
       grade<Dim>(comm_, executor_, part_, interfaces_, options_.adapt.gradation);
+    end(Phase::gradation);
     auto adapted = comm_.on_all([&] {
       if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_.adapt);
       return adapt_zone<Dim>(executor_, part_, interfaces_, held_elements<Dim>(part_, layers),
@@ -92,6 +119,7 @@ class Parts {
     const auto elements = static_cast<std::int64_t>(part_.element_count());
     const auto sums = comm_.sums({elements, edges.all, edges.blocked});
     const std::int64_t most = comm_.largest(elements);
+    end(Phase::adaptation);
     const std::int64_t microseconds =
         comm_.largest(static_cast<std::int64_t>(1e6 * (MPI_Wtime() - begin)));
     return {pass,
@@ -100,7 +128,8 @@ class Parts {
             sums[2],
             static_cast<double>(most * comm_.size()) /
                 static_cast<double>(std::max<std::int64_t>(1, sums[0])),
-            1e-6 * static_cast<double>(microseconds)};
+            1e-6 * static_cast<double>(microseconds),
+            {}};
   }
 
   /// A second pass always is: the interfaces of the first were there before. Without insertion no
@@ -117,6 +146,8 @@ class Parts {
   const AdaptPartsOptions& options_;
   Part part_;
   Interfaces interfaces_;
+  std::array<Costs, phase_count> costs_ = {};  // [phase], of this rank
+  Costs before_ = comm_.costs();
 };
 
 }  // namespace

@@ -5,6 +5,8 @@
 /// are shared out anew.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -17,6 +19,10 @@
 
 namespace ductile::petsc {
 
+/// What passes consist of.
+enum class Phase : std::uint8_t { balance, migration, gradation, adaptation };
+inline constexpr std::size_t phase_count = 4;
+
 /// How the mesh stands after a pass; figures of all ranks.
 struct PassReport {
   int pass = 0;  ///< from 1
@@ -25,6 +31,8 @@ struct PassReport {
   std::int64_t blocked = 0;  ///< of these, far from what is wanted (see EdgesAtInterfaces)
   double imbalance = 1;      ///< the largest number of elements of a rank over the mean
   double seconds = 0;        ///< of this pass, on the slowest rank
+  /// [phase] Of all ranks together, since the last pass.
+  std::array<Costs, phase_count> costs = {};
 };
 
 struct AdaptPartsOptions {
@@ -39,6 +47,7 @@ struct AdaptedParts {
   Interfaces interfaces;
   std::int64_t own = 0;  ///< vertices that this rank has numbered
   std::vector<PassReport> passes;
+  std::array<Costs, phase_count> last = {};  ///< after the last pass
 };
 
 /// Adapts the part of each rank. On one rank the result is that of adapt(). The same number of

@@ -10,6 +10,7 @@
 #include "plex.hpp"
 #include "read_plex.hpp"
 #include "threads.hpp"
+#include "vectors.hpp"
 #include "write_plex.hpp"
 
 namespace ductile::petsc {
@@ -45,7 +46,9 @@ DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cell
       read.part.mesh.dimension == 2
           ? adapt_parts<2>(comm, executor, std::move(read.part), parameters.options)
           : adapt_parts<3>(comm, executor, std::move(read.part), parameters.options);
-  return write_plex(comm, parts, labels);
+  DM adapted = write_plex(comm, parts, labels);
+  compose_vectors(comm, executor, dm, parts, adapted);
+  return adapted;
 }
 
 }  // namespace

@@ -21,6 +21,12 @@
 
 namespace ductile::petsc {
 
+/// What went wrong on one rank, thrown on all.
+class AgreedError : public meshadapt::Error {
+ public:
+  using meshadapt::Error::Error;
+};
+
 /// What came from each rank.
 template <class T>
 struct Received {
@@ -36,6 +42,12 @@ struct Received {
 /// A list for each rank.
 template <class T>
 using PerRank = std::vector<std::vector<T>>;
+
+/// What a rank has done since it made its Communicator.
+struct Costs {
+  double seconds = 0;      ///< processor time of work between messages, on all threads
+  std::int64_t bytes = 0;  ///< of lists, sent to other ranks
+};
 
 class Communicator {
  public:
@@ -53,7 +65,13 @@ class Communicator {
   /// Sums of several values, each over the ranks.
   std::vector<std::int64_t> sums(std::vector<std::int64_t> values) const;
 
-  /// Throws meshadapt::Error on all ranks if `failure` is set on any, with the words of the first.
+  const Costs& costs() const { return costs_; }
+  /// Processor time of this rank so far.
+  static double processor_seconds();
+  /// Adds work that costs() would not see.
+  void add_work(double seconds) const { costs_.seconds += seconds; }
+
+  /// Throws AgreedError on all ranks if `failure` is set on any, with the words of the first.
   void agree(const std::optional<std::string>& failure) const;
 
   /// Calls work() on each rank, which may not communicate; if it throws on one, an Error is thrown
@@ -78,6 +96,7 @@ class Communicator {
 
   MPI_Comm handle_;
   int rank_ = 0, size_ = 1;
+  mutable Costs costs_;  // of what const members do
 };
 
 template <class Work>
@@ -85,6 +104,7 @@ auto Communicator::on_all(Work&& work) const {
   using Result = std::invoke_result_t<Work&>;
   std::conditional_t<std::is_void_v<Result>, std::optional<int>, std::optional<Result>> result;
   std::optional<std::string> failure;
+  const double begin = processor_seconds();
   try {
     if constexpr (std::is_void_v<Result>)
       work();
@@ -95,6 +115,7 @@ auto Communicator::on_all(Work&& work) const {
   } catch (const std::exception& error) {
     failure = error.what();
   }
+  add_work(processor_seconds() - begin);
   agree(failure);
   if constexpr (!std::is_void_v<Result>) return *std::move(result);
 }

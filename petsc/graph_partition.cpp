@@ -72,7 +72,9 @@ std::vector<int> partition_graph(const Communicator& comm, const ElementGraph& g
     neighbour.push_back(0);
   });
   neighbour.pop_back();
+  const double start = Communicator::processor_seconds();  // which includes that of waiting
   const bool done = Scotch(comm.handle()).partition(begin, neighbour, weight, comm.size(), part_of);
+  comm.add_work(Communicator::processor_seconds() - start);
   comm.on_all([&] {
     if (!done) throw meshadapt::Error("balance: PT-Scotch has failed");
   });

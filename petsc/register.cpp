@@ -1,9 +1,15 @@
 /// @file
-/// How PETSc gets to know the adaptor: by a call, or when it loads the library.
+/// What C sees: how PETSc gets to know the adaptor, by a call, or when it loads the library; and
+/// fields that are carried.
 #include <petscdm.h>
+
+#include <exception>
+#include <string>
 
 #include "adapt_plex.hpp"
 #include "ductile_petsc.h"
+#include "threads.hpp"
+#include "vectors.hpp"
 
 extern "C" {
 
@@ -13,6 +19,31 @@ PetscErrorCode DuctilePetscRegister() {
   if (is_known) PetscFunctionReturn(0);
   PetscCall(DMGenerateRegister("ductile", nullptr, nullptr, ductile::petsc::adapt_plex, -1));
   is_known = true;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DuctilePetscTransfer(DM before, Vec values, PetscBool on_cells,
+                                    PetscBool conservatively, DM after, Vec* carried) {
+  using namespace ductile;
+  PetscFunctionBegin;
+  MPI_Comm handle = MPI_COMM_NULL;
+  PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(before), &handle));
+  std::string failure;
+  try {
+    const petsc::Communicator comm(handle);
+    const int threads = petsc::threads_of(comm, before);
+    const auto executor = comm.on_all([&] { return runtime::Executor({.threads = threads}); });
+    using Place = meshadapt::NamedField::Place;
+    using meshadapt::Carrying;
+    *carried = petsc::carry_vectors(
+        comm, executor, before,
+        {{"values", values, on_cells == PETSC_TRUE ? Place::elements : Place::vertices,
+          conservatively == PETSC_TRUE ? Carrying::conservatively : Carrying::by_value}},
+        after)[0];
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  PetscCheck(failure.empty(), handle, PETSC_ERR_LIB, "Ductile: %s", failure.c_str());
   PetscFunctionReturn(0);
 }
 

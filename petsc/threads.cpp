@@ -40,8 +40,13 @@ int threads_of(const Communicator& comm, DM dm) {
   PetscInt threads = 0;
   PetscBool is_given = PETSC_FALSE;
   check(PetscOptionsGetInt(nullptr, prefix, "-dm_ductile_threads", &threads, &is_given));
+  return threads_of(
+      comm, is_given == PETSC_TRUE ? std::optional(static_cast<int>(threads)) : std::nullopt);
+}
+
+int threads_of(const Communicator& comm, std::optional<int> given) {
   const int sharing = ranks_on_same_cores(comm);
-  if (is_given == PETSC_TRUE) return static_cast<int>(threads);
+  if (given) return *given;
   if (const char* const said = std::getenv("OMP_NUM_THREADS"); said != nullptr)
     if (const int number = std::atoi(said); number > 0) return number;
   return std::max(1, runtime::available_cores() / sharing);

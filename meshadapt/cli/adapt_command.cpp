@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "adapt_job.hpp"
 #include "adapt_report.hpp"
 #include "carried_fields.hpp"
 #include "checks/faults.hpp"
@@ -39,6 +40,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using meshadapt::MakeMeshOptions;
 using runtime::Executor;
+using Job = AdaptJob;
 
 constexpr std::array<Option, 32> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
@@ -91,23 +93,6 @@ constexpr auto options = [] {
   return all;
 }();
 
-/// All that the command line says, checked before any file is read.
-struct Job {
-  fs::path input, output;
-  std::optional<fs::path> metric_in, metric_out, parameters, geometry, json, vtu;
-  CarriedFields fields;
-  std::string unneeded;  // options of Mmg's
-  std::optional<double> size;
-  SizeOptions places;
-  std::optional<std::size_t> memory;  // bytes
-  AdaptOptions adapt;
-  int verbosity = 1;
-  int threads = 0;
-  bool racing = false;
-  bool with_metric = true;  // write the metric at the new vertices
-  bool keep_sizes = false;  // whatever metric there is with the mesh
-};
-
 fs::path only_mesh(const Arguments& arguments) {
   std::vector<std::string> meshes = arguments.operands();
   if (const auto mesh = arguments.text("-in")) meshes.push_back(*mesh);
@@ -117,11 +102,11 @@ fs::path only_mesh(const Arguments& arguments) {
 }
 
 /// Nothing is beside standard output.
-void set_output(Job& job, const Arguments& arguments) {
+void set_output(Job& job, const Arguments& arguments, const std::optional<fs::path>& given) {
   const auto out = arguments.text("-o");
-  if (!out && job.input == "/dev/stdin")
+  if (!given && !out && job.input == "/dev/stdin")
     throw UsageError("expected -o, because the mesh is read from standard input, found none");
-  job.output = out ? output_of(*out) : default_output(job.input);
+  job.output = given ? *given : out ? output_of(*out) : default_output(job.input);
   expect_mesh_name(job.output);
   job.with_metric = !arguments.has("--no-metric");
   if (holds_fields(job.output)) return;
@@ -159,9 +144,9 @@ void set_sizes(Job& job, const Arguments& arguments) {
   if (given.empty()) job.metric_in = metric_beside(job.input);
 }
 
-void set_files(Job& job, const Arguments& arguments) {
+void set_files(Job& job, const Arguments& arguments, const std::optional<fs::path>& output) {
   job.input = only_mesh(arguments);
-  set_output(job, arguments);
+  set_output(job, arguments, output);
   job.json = arguments.text("--json");
   job.vtu = arguments.text("--vtu");
   if (job.vtu && job.vtu->extension() != ".vtu")
@@ -237,22 +222,27 @@ void expect_inputs_to_stay(const Job& job) {
   for (const fs::path& path : job.fields.outputs()) expect_no_input(path, fields);
 }
 
-Job read_job(const Arguments& arguments) {
-  Job job;
-  set_files(job, arguments);
+}  // namespace
+
+void set_options_of_work(AdaptJob& job, const Arguments& arguments) {
   set_options(job.adapt, arguments);
   job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
   job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
   job.racing = arguments.has("--racing");
   if (const auto megabytes = arguments.integer("-m", 1, 1 << 30))
     job.memory = static_cast<std::size_t>(*megabytes) << 20U;
+}
+
+AdaptJob read_adapt_job(const Arguments& arguments, const std::optional<fs::path>& output) {
+  Job job;
+  set_files(job, arguments, output);
+  set_options_of_work(job, arguments);
   job.unneeded = unneeded_mmg_options(arguments);
   expect_inputs_to_stay(job);
   meshadapt::check_writable(outputs_of(job));
   return job;
 }
 
-/// At the vertices of the input.
 AnyField choose_metric(const Executor& executor, const Job& job,
                        const meshadapt::MeshWithFields& file, const meshadapt::Sizes& sizes,
                        meshadapt::Warnings& warnings) {
@@ -270,6 +260,8 @@ AnyField choose_metric(const Executor& executor, const Job& job,
                      " that the mesh has");
   return meshadapt::default_metric(executor, mesh);
 }
+
+namespace {
 
 /// One line on standard error, rewritten in place; gone when the work is done.
 class ProgressLine {
@@ -410,7 +402,7 @@ int work(const Executor& executor, Job job) {
 }
 
 int run(const Arguments& arguments) {
-  const Job job = read_job(arguments);
+  const Job job = read_adapt_job(arguments);
   return run_in_team({.threads = job.threads, .deterministic = !job.racing},
                      [&](const Executor& executor) { return work(executor, job); });
 }

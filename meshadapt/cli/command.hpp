@@ -24,6 +24,9 @@ struct Command {
 extern const Command adapt_command, info_command, metric_command, transfer_command, view_command,
     convert_command;
 
+/// Prints its options, as of a program of this name.
+void print_help(const Command& command, std::string_view program = "ductile");
+
 /// All commands, in the order of help.
 std::span<const Command* const> commands();
 

@@ -44,14 +44,18 @@ void print_overview(std::FILE* to) {
                "2 the command line or the input is wrong.\n");
 }
 
-void print_help(const Command& command) {
-  std::printf("ductile %s %s\n%s.\n", std::string(command.name).c_str(),
+}  // namespace
+
+void print_help(const Command& command, std::string_view program) {
+  std::printf("%s %s %s\n%s.\n", std::string(program).c_str(), std::string(command.name).c_str(),
               std::string(command.operands).c_str(), std::string(command.summary).c_str());
   if (!command.details.empty()) std::printf("%s\n", std::string(command.details).c_str());
   std::printf("\nOptions (one or two dashes mean the same):\n");
   std::printf("%s", help_lines(command.options).c_str());
   std::printf("  %-22s %s\n", "-h, --help", "shows its options");
 }
+
+namespace {
 
 [[noreturn]] void refuse_command(const std::string& name) {
   std::string message = "unknown command '" + name + "'";

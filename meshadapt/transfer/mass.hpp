@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
+#include "ductile/meshadapt/transfer.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 
 namespace ductile::meshadapt {
@@ -13,9 +14,11 @@ namespace ductile::meshadapt {
 template <int Dim>
 class Mass {
  public:
-  /// Refers to both.
-  Mass(const runtime::Executor& executor, const FixedMesh<Dim>& mesh, std::size_t stride)
-      : executor_(executor), mesh_(mesh), stride_(stride) {}
+  /// Refers to all. A mesh that is a part of a larger one comes with `join`, and vertices with the
+  /// shares that they have in all of it.
+  Mass(const runtime::Executor& executor, const FixedMesh<Dim>& mesh, std::size_t stride,
+       const JoinParts& join)
+      : executor_(executor), mesh_(mesh), stride_(stride), join_(join) {}
 
   /// Integral of the product of the hat functions of two corners of an element.
   double between(std::size_t element) const {
@@ -31,13 +34,18 @@ class Mass {
           sum[e * stride_ + k] += between(e) * x[v * stride_ + k];
     });
     std::vector<double> result(x.size());
+    const bool is_part = static_cast<bool>(join_);
+    const auto own = [&](std::size_t i) { return mesh_.share_of[i / stride_] / (Dim + 2) * x[i]; };
     runtime::parallel_for(executor_, mesh_.vertex_count(), [&](std::size_t v) {
       double* const at = &result[v * stride_];
-      for (std::size_t k = 0; k < stride_; ++k)
-        at[k] = mesh_.share_of[v] / (Dim + 2) * x[v * stride_ + k];
+      for (std::size_t k = 0; k < stride_; ++k) at[k] = is_part ? 0 : own(v * stride_ + k);
       for (const ElementId e : mesh_.elements_of(static_cast<VertexId>(v)))
         for (std::size_t k = 0; k < stride_; ++k) at[k] += sum[e * stride_ + k];
     });
+    if (is_part) {
+      join_(result, stride_, Joining::sum);
+      runtime::parallel_for(executor_, result.size(), [&](std::size_t i) { result[i] += own(i); });
+    }
     return result;
   }
 
@@ -84,6 +92,7 @@ class Mass {
   const runtime::Executor& executor_;
   const FixedMesh<Dim>& mesh_;
   std::size_t stride_;
+  const JoinParts& join_;
 };
 
 }  // namespace ductile::meshadapt

@@ -16,12 +16,14 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <int Dim>
 Projection<Dim>::Projection(const Executor& executor, const Locator<Dim>& from,
-                            const Components& field, const FixedMesh<Dim>& to)
+                            const Components& field, const FixedMesh<Dim>& to,
+                            const JoinParts& join)
     : executor_(executor),
       from_(from),
       field_(field),
       to_(to),
-      mass_(executor, to, field.stride),
+      join_(join),
+      mass_(executor, to, field.stride, join),
       moments_(to.element_count() * (Dim + 1) * field.stride),
       seen_(to.element_count() * field.stride, {infinity, -infinity}),
       covered_(to.element_count()) {}
@@ -127,6 +129,7 @@ std::vector<double> Projection<Dim>::gather() const {
         result[v * stride() + k] += moments_[(e * (Dim + 1) + i) * stride() + k];
     }
   });
+  if (join_) join_(result, stride(), Joining::sum);
   return result;
 }
 
@@ -144,7 +147,23 @@ auto Projection<Dim>::ranges() const -> std::vector<Range> {
         range = {std::min(range.low, seen.low), std::max(range.high, seen.high)};
       }
   });
+  if (join_) join_ranges(range_of, Joining::least);
   return range_of;
+}
+
+/// Of all parts: the lowest and the highest, or sums of both.
+template <int Dim>
+void Projection<Dim>::join_ranges(std::vector<Range>& range_of, Joining how) const {
+  const double sign = how == Joining::least ? -1 : 1;
+  std::vector<double> values(2 * range_of.size());
+  parallel_for(executor_, range_of.size(), [&](std::size_t i) {
+    values[2 * i] = range_of[i].low;
+    values[2 * i + 1] = sign * range_of[i].high;
+  });
+  join_(values, 2 * stride(), how);
+  parallel_for(executor_, range_of.size(), [&](std::size_t i) {
+    range_of[i] = {values[2 * i], sign * values[2 * i + 1]};
+  });
 }
 
 /// How much of what would flow to a vertex, and of what would flow from it, leaves it in its range:
@@ -162,6 +181,9 @@ auto Projection<Dim>::permitted_shares(const std::vector<double>& lumped,
         Range& flow = flow_of[v * stride() + k];
         (amount < 0 ? flow.low : flow.high) += amount;
       });
+  });
+  if (join_) join_ranges(flow_of, Joining::sum);
+  parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
     for (std::size_t i = v * stride(); i < (v + 1) * stride(); ++i) {
       const double down = std::min(0.0, to_.share_of[v] * (range_of[i].low - lumped[i]));
       const double up = std::max(0.0, to_.share_of[v] * (range_of[i].high - lumped[i]));
@@ -190,13 +212,19 @@ std::vector<double> Projection<Dim>::blend(const std::vector<double>& lumped,
         share = std::min(share, amount < 0 ? permitted.low : permitted.high);
       });
     });
-  std::vector<double> result = lumped;
+  std::vector<double> result = join_ ? std::vector<double>(lumped.size()) : lumped;
   parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
     for (const ElementId e : to_.elements_of(static_cast<VertexId>(v)))
       mass_.excess(e, closest, [&](std::size_t i, std::size_t k, double amount) {
         if (to_.corners_of[e][i] == v)
           result[v * stride() + k] += share_of[e * stride() + k] * amount / to_.share_of[v];
       });
+  });
+  if (join_) {
+    join_(result, stride(), Joining::sum);
+    parallel_for(executor_, result.size(), [&](std::size_t i) { result[i] += lumped[i]; });
+  }
+  parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
     if (!keep_bounds || !(to_.share_of[v] > 0)) return;
     for (std::size_t i = v * stride(); i < (v + 1) * stride(); ++i)  // rounding
       result[i] = std::clamp(result[i], range_of[i].low, range_of[i].high);

@@ -18,9 +18,9 @@ namespace ductile::meshadapt {
 template <int Dim>
 class Projection {
  public:
-  /// Refers to all.
+  /// Refers to all; `join` is there where the new mesh is a part of a larger one.
   Projection(const runtime::Executor& executor, const Locator<Dim>& from, const Components& field,
-             const FixedMesh<Dim>& to);
+             const FixedMesh<Dim>& to, const JoinParts& join);
 
   std::vector<double> run(const ProjectionOptions& options);
 
@@ -41,6 +41,7 @@ class Projection {
   void widen(std::size_t element, const double* values);
   std::vector<double> gather() const;
   std::vector<Range> ranges() const;
+  void join_ranges(std::vector<Range>& range_of, Joining how) const;
   std::vector<double> blend(const std::vector<double>& lumped, const std::vector<double>& closest,
                             bool keep_bounds) const;
   std::vector<Range> permitted_shares(const std::vector<double>& lumped,
@@ -53,6 +54,7 @@ class Projection {
   const Locator<Dim>& from_;
   Components field_;
   const FixedMesh<Dim>& to_;
+  const JoinParts& join_;
   Mass<Dim> mass_;
   std::vector<double> moments_;  // [(element * corners + corner) * stride + component]
   std::vector<Range> seen_;      // [element * stride + component], of old values around

@@ -39,7 +39,8 @@ TransferredField transfer(const Executor& executor, const FieldOnMesh& from, con
   result.field.values = std::move(at_vertices.values);
   result.report.vertices_outside = at_vertices.outside;
   if (projection) {
-    Projection<Dim> onto(executor, locator, field, new_mesh);
+    const JoinParts whole;
+    Projection<Dim> onto(executor, locator, field, new_mesh, whole);
     result.field.values = onto.run(*projection);
     result.report.volume_outside = onto.coverage().volume_outside;
     result.report.volume_left_out = onto.coverage().volume_left_out;

@@ -69,13 +69,16 @@ void expect_field(const Executor& executor, const NamedFieldsOnMesh& from, std::
 template <int Dim>
 class FieldCarrier {
  public:
-  FieldCarrier(const Executor& executor, const NamedFieldsOnMesh& from, const AnyMesh& to)
+  FieldCarrier(const Executor& executor, const NamedFieldsOnMesh& from, const AnyMesh& to,
+               const JoinParts& join)
       : executor_(executor),
         fields_(from.fields),
+        join_(join),
         old_mesh_(make_fixed_mesh<Dim>(executor, from.mesh)),
         new_mesh_(make_fixed_mesh<Dim>(executor, to)),
         to_(to),
         locator_(executor, old_mesh_) {
+    if (join_) join_(new_mesh_.share_of, 1, Joining::sum);
     result_.fields.resize(fields_.size());
   }
 
@@ -102,8 +105,11 @@ class FieldCarrier {
     } else {
       Evaluated at_vertices = evaluate_at_vertices(executor_, locator_, field, to_);
       report.vertices_outside = at_vertices.outside;
-      if (carrying == Carrying::by_value) return std::move(at_vertices.values);
-      Projection<Dim> onto(executor_, locator_, field, new_mesh_);
+      if (carrying == Carrying::by_value) {
+        if (join_) join_(at_vertices.values, field.stride, Joining::first);
+        return std::move(at_vertices.values);
+      }
+      Projection<Dim> onto(executor_, locator_, field, new_mesh_, join_);
       values = onto.run({});
       coverage = onto.coverage();
     }
@@ -146,7 +152,9 @@ class FieldCarrier {
 
   const Executor& executor_;
   std::span<const NamedField> fields_;
-  const FixedMesh<Dim> old_mesh_, new_mesh_;
+  const JoinParts& join_;
+  const FixedMesh<Dim> old_mesh_;
+  FixedMesh<Dim> new_mesh_;
   const AnyMesh& to_;
   const Locator<Dim> locator_;
   TransferredFields result_;
@@ -154,10 +162,11 @@ class FieldCarrier {
 
 template <int Dim>
 TransferredFields transfer_in(const Executor& executor, const NamedFieldsOnMesh& from,
-                              const AnyMesh& to, const std::vector<Carrying>& how_of) {
+                              const AnyMesh& to, const std::vector<Carrying>& how_of,
+                              const JoinParts& join) {
   expect_places(executor, from.mesh.coordinates, Dim, "old vertex");
   expect_places(executor, to.coordinates, Dim, "new vertex");
-  FieldCarrier<Dim> carrier(executor, from, to);
+  FieldCarrier<Dim> carrier(executor, from, to, join);
   for (const Where place : {Where::vertices, Where::elements})
     for (const Carrying carrying : {Carrying::by_value, Carrying::conservatively}) {
       std::vector<std::size_t> which;
@@ -171,7 +180,8 @@ TransferredFields transfer_in(const Executor& executor, const NamedFieldsOnMesh&
 }  // namespace
 
 TransferredFields transfer_fields(const Executor& executor, const NamedFieldsOnMesh& from,
-                                  const AnyMesh& to, const std::vector<Carrying>& carrying) {
+                                  const AnyMesh& to, const std::vector<Carrying>& carrying,
+                                  const JoinParts& join) {
   expect_coordinates(from.mesh);
   expect_coordinates(to);
   std::vector<Carrying> how_of = carrying;
@@ -181,8 +191,8 @@ TransferredFields transfer_fields(const Executor& executor, const NamedFieldsOnM
                      std::to_string(from.fields.size()) + " fields, found " +
                      std::to_string(carrying.size()));
   for (std::size_t f = 0; f < from.fields.size(); ++f) expect_field(executor, from, f, how_of[f]);
-  return from.mesh.dimension == 2 ? transfer_in<2>(executor, from, to, how_of)
-                                  : transfer_in<3>(executor, from, to, how_of);
+  return from.mesh.dimension == 2 ? transfer_in<2>(executor, from, to, how_of, join)
+                                  : transfer_in<3>(executor, from, to, how_of, join);
 }
 
 }  // namespace ductile::meshadapt

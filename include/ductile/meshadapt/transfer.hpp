@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -101,13 +102,25 @@ struct TransferredFields {
                           ///< conservatively
 };
 
+/// How values that several parts of a mesh have for one vertex become one.
+enum class Joining : std::uint8_t { sum, least, first };
+
+/// Gives vertices that a part of a mesh shares with other parts, on other machines it may be, the
+/// same values in all of them: values[vertex * stride + component] of this part come in. Sums must
+/// not depend on which part asks, so that all have the same bits.
+using JoinParts = std::function<void(std::span<double> values, std::size_t stride, Joining how)>;
+
 /// Carries fields to another mesh: all in the same way, if `carrying` has one entry, or each in its
 /// own. Throws InputError, naming the field, unless it has a value for each entity of its mesh, and
 /// conservatively only finite ones; and as interpolate_field() does.
+/// With `join`, the new mesh is one part of many, each of which calls this; the old one has all
+/// that this part overlaps. Then integrals are kept over all parts, join() is called as many times,
+/// on the calling thread, in each of them, and what the report says was left out means nothing.
 /// Thread safety: one caller; runs on the executor.
 TransferredFields transfer_fields(const runtime::Executor& executor, const NamedFieldsOnMesh& from,
                                   const AnyMesh& to,
-                                  const std::vector<Carrying>& carrying = {Carrying::by_value});
+                                  const std::vector<Carrying>& carrying = {Carrying::by_value},
+                                  const JoinParts& join = {});
 
 // ---- What is still there ----
 

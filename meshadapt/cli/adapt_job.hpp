@@ -1,0 +1,52 @@
+/// @file
+/// AdaptJob: all that the command line of `adapt` says, checked before any file is read; for the
+/// programs that adapt.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "arguments.hpp"
+#include "carried_fields.hpp"
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/sizes.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "size_options.hpp"
+
+namespace ductile::cli {
+
+struct AdaptJob {
+  std::filesystem::path input, output;
+  std::optional<std::filesystem::path> metric_in, metric_out, parameters, geometry, json, vtu;
+  CarriedFields fields;
+  std::string unneeded;  // options of Mmg's
+  std::optional<double> size;
+  SizeOptions places;
+  std::optional<std::size_t> memory;  // bytes
+  meshadapt::AdaptOptions adapt;
+  int verbosity = 1;
+  int threads = 0;
+  bool racing = false;
+  bool with_metric = true;  // write the metric at the new vertices
+  bool keep_sizes = false;  // whatever metric there is with the mesh
+};
+
+/// Throws UsageError, and InputError where outputs cannot be written. `output` comes before what
+/// -o says.
+AdaptJob read_adapt_job(const Arguments& arguments,
+                        const std::optional<std::filesystem::path>& output = {});
+
+/// What of it needs no files: options of adapt(), threads, verbosity, memory. Throws UsageError.
+void set_options_of_work(AdaptJob& job, const Arguments& arguments);
+
+/// The metric that a job asks for, at the vertices of the input. Throws InputError.
+meshadapt::AnyField choose_metric(const runtime::Executor& executor, const AdaptJob& job,
+                                  const meshadapt::MeshWithFields& file,
+                                  const meshadapt::Sizes& sizes, meshadapt::Warnings& warnings);
+
+}  // namespace ductile::cli

@@ -1,0 +1,43 @@
+/// @file
+/// Outputs of a distributed mesh: gathered on the first rank, a piece of each rank, or PETSc's
+/// HDF5. Files appear whole or not at all; what a run writes in pieces appears with its index, the
+/// .pvtu, last.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "adapt_parts.hpp"
+#include "communicator.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
+#include "ductile/meshadapt/files.hpp"
+#include "file_part.hpp"
+
+namespace ductile::petsc {
+
+/// A mesh with the fields at its vertices and elements, each rank its own.
+struct DistributedResult {
+  AdaptedParts parts;
+  std::vector<meshadapt::NamedField> fields;
+  std::vector<KeptVertex> kept;
+  std::vector<meshadapt::ReferenceName> names;  ///< of references
+  int dropped_axis = 2;                         ///< as AnyMesh has it
+};
+
+/// All of it on the first rank; other ranks get a mesh without anything. Vertices come in the order
+/// of their numbers, elements in that of the ranks. Throws Error, on all ranks. Collective.
+meshadapt::MeshWithFields gathered(const Communicator& comm, const DistributedResult& result);
+
+/// PATH, a .pvtu, and a PATH_RANK.vtu beside it from each rank that has elements. If that fails,
+/// there is no PATH, rather than one that names pieces of two runs. Throws Error, on all ranks.
+/// Collective.
+void write_pieces(const Communicator& comm, const std::filesystem::path& path,
+                  const DistributedResult& result);
+
+/// A file that DMPlex reads and draws, with references as the labels "Face Sets", "Cell Sets" and
+/// "Vertex Sets". Fields at vertices become "vertex_fields". Throws Error, on all ranks.
+/// Collective.
+void write_hdf5(const Communicator& comm, const std::filesystem::path& path,
+                const DistributedResult& result);
+
+}  // namespace ductile::petsc

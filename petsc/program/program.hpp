@@ -1,0 +1,19 @@
+/// @file
+/// The command of the program `ductile-mpi`.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "communicator.hpp"
+
+namespace ductile::petsc {
+
+/// Adapts a mesh on all ranks, by the words after `adapt`. Throws Ended, or AgreedError; anything
+/// else is thrown on one rank only. Collective.
+void adapt_files(const Communicator& comm, std::span<const std::string> words);
+
+/// Prints what `adapt` takes.
+void print_help_of_adapt();
+
+}  // namespace ductile::petsc

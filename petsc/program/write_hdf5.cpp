@@ -1,0 +1,118 @@
+#include <petscviewer.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "outputs.hpp"
+#include "plex.hpp"
+#include "write_plex.hpp"
+
+namespace ductile::petsc {
+
+namespace {
+
+namespace fs = std::filesystem;
+using meshadapt::NamedField;
+
+/// Gives a PETSc object back.
+template <class Object, PetscErrorCode (*destroy)(Object*)>
+class Held {
+ public:
+  Held() = default;
+  ~Held() { destroy(&object_); }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+  Object* operator&() { return &object_; }  // NOLINT: as PETSc's functions take it
+  operator Object() const { return object_; }
+
+ private:
+  Object object_ = nullptr;
+};
+using HeldDM = Held<DM, DMDestroy>;
+using HeldVec = Held<Vec, VecDestroy>;
+using HeldSection = Held<PetscSection, PetscSectionDestroy>;
+using HeldViewer = Held<PetscViewer, PetscViewerDestroy>;
+
+/// [vertex of the DMPlex] That of the part: PETSc sorts them by their numbers.
+std::vector<VertexId> by_number(const Part& part) {
+  std::vector<VertexId> order(part.number_of.size());
+  for (VertexId v = 0; v < order.size(); ++v) order[v] = v;
+  std::sort(order.begin(), order.end(),
+            [&](VertexId a, VertexId b) { return part.number_of[a] < part.number_of[b]; });
+  return order;
+}
+
+void write_field(DM plex, PetscViewer viewer, const NamedField& field,
+                 const std::vector<VertexId>& order, int dimension) {
+  const PetscInt each = component_count(field.type, dimension);
+  const Stratum vertices = vertices_of(plex);
+  HeldDM dm;
+  HeldSection section;
+  HeldVec local, global;
+  check(DMClone(plex, &dm));
+  check(PetscSectionCreate(PetscObjectComm(reinterpret_cast<PetscObject>(plex)), &section));
+  check(PetscSectionSetNumFields(section, 1));
+  check(PetscSectionSetFieldName(section, 0, field.name.c_str()));
+  check(PetscSectionSetFieldComponents(section, 0, each));
+  check(PetscSectionSetChart(section, vertices.begin, vertices.end));
+  for (PetscInt v = vertices.begin; v < vertices.end; ++v) {
+    check(PetscSectionSetDof(section, v, each));
+    check(PetscSectionSetFieldDof(section, v, 0, each));
+  }
+  check(PetscSectionSetUp(section));
+  check(DMSetLocalSection(dm, section));
+  check(DMCreateLocalVector(dm, &local));
+  PetscScalar* values = nullptr;
+  check(VecGetArray(local, &values));
+  for (std::size_t i = 0; i < order.size(); ++i)
+    std::copy_n(&field.values[order[i] * static_cast<std::size_t>(each)], each,
+                values + static_cast<std::ptrdiff_t>(i) * each);
+  check(VecRestoreArray(local, &values));
+  check(DMCreateGlobalVector(dm, &global));
+  check(PetscObjectSetName(reinterpret_cast<PetscObject>(static_cast<Vec>(global)),
+                           field.name.c_str()));
+  check(DMLocalToGlobal(dm, local, INSERT_VALUES, global));
+  check(VecView(global, viewer));
+}
+
+/// A part whose labels are references.
+AdaptedParts with_references(const DistributedResult& result) {
+  AdaptedParts parts = result.parts;
+  for (std::int32_t& reference : parts.part.mesh.vertex_reference)
+    if (reference != unlabelled)
+      reference = result.kept[static_cast<std::size_t>(reference)].reference;
+  return parts;
+}
+
+}  // namespace
+
+void write_hdf5(const Communicator& comm, const fs::path& path, const DistributedResult& result) {
+  CarriedLabels labels;
+  labels.facets.name = "Face Sets";
+  labels.elements.name = "Cell Sets";
+  labels.vertices.name = "Vertex Sets";
+  const AdaptedParts parts = comm.on_all([&] { return with_references(result); });
+  const std::vector<VertexId> order = comm.on_all([&] { return by_number(parts.part); });
+  const std::string temporary = path.string() + ".ductile-tmp";
+  {
+    HeldDM plex;
+    HeldViewer viewer;
+    *&plex = write_plex(comm, parts, labels);
+    check(PetscObjectSetName(reinterpret_cast<PetscObject>(static_cast<DM>(plex)), "mesh"));
+    check(PetscViewerCreate(comm.handle(), &viewer));
+    check(PetscViewerSetType(viewer, PETSCVIEWERHDF5));
+    check(PetscViewerFileSetMode(viewer, FILE_MODE_WRITE));
+    check(PetscViewerFileSetName(viewer, temporary.c_str()));
+    check(DMView(plex, viewer));
+    for (const NamedField& field : result.fields)
+      if (field.place == NamedField::Place::vertices)
+        write_field(plex, viewer, field, order, parts.part.mesh.dimension);
+  }
+  comm.on_all([&] {
+    if (comm.rank() == 0) fs::rename(temporary, path);
+  });
+}
+
+}  // namespace ductile::petsc
