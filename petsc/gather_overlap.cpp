@@ -6,7 +6,7 @@
 #include <numeric>
 #include <span>
 
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::petsc {
 

@@ -17,6 +17,7 @@
 #include "ductile/runtime/worklist.hpp"
 #include "geometry/crack_sides.hpp"
 #include "geometry/facet_sides.hpp"
+#include "geometry/levelled.hpp"
 #include "geometry/reference_surface.hpp"
 #include "geometry/rough_parts.hpp"
 #include "geometry/rounding.hpp"
@@ -76,7 +77,9 @@ class Classifier {
                                         {hausdorff_tolerance_, least_turn_});
       join_patches();
     }
-    if constexpr (Dim == 3) find_curves();
+    if constexpr (Dim == 3) find_curve_edges();
+    if (hausdorff_tolerance_ > 0 && reference_ == nullptr) level();
+    if constexpr (Dim == 3) grow_curves();
     const bool is_rough = rounding_ && !(rounding_->plane_of.empty() && rounding_->line_of.empty());
     mark_crack_sides(executor_, mesh_, facets_, sides_,
                      is_rough ? rounding_->tolerance : tolerance_);
@@ -317,7 +320,7 @@ class Classifier {
     for (const CurveEdge& e : curve_edges_)
       edges.push_back({e.a, e.b, e.curve, first_two(e.patches)});
     mesh_.surface =
-        make_surface<Dim>(executor_, mesh_, {facets_, plane_of_, wide_normals_, edges},
+        make_surface<Dim>(executor_, mesh_, {facets_, plane_of_, wide_normals_, edges, places_},
                           {hausdorff_tolerance_, tolerance_, least_turn_, options_.functions});
   }
 
@@ -335,6 +338,40 @@ class Classifier {
         mesh_.patches_of[f.other][static_cast<std::size_t>(f.other_facet)] = f.patch;
     });
   }
+
+  // ---- Noise: where vertices would be without it ----
+
+  void level() {
+    std::vector<std::uint8_t> held = kept_;
+    for (VertexId v = 0; v < held.size(); ++v)
+      if (mesh_.kind_of[v].corner || mesh_.kind_of[v].required) held[v] = 1;
+    for (const TaggedFacet<Dim>& facet : facets_)
+      if (mesh_.patches[facet.patch].required)
+        for (const VertexId v : facet.corners) held[v] = 1;
+    if constexpr (Dim == 2)
+      for (std::size_t i = 0; i < sides_.size(); ++i) {
+        const auto both = sides_.run_at(i);
+        if (both.size() != 2 || facets_[both[0].facet].patch != facets_[both[1].facet].patch ||
+            is_sharp(both))
+          held[static_cast<VertexId>(both[0].key)] = 1;
+      }
+    std::vector<std::array<VertexId, 2>> edges;
+    edges.reserve(curve_edges_.size());
+    for (const CurveEdge& edge : curve_edges_) {
+      edges.push_back({edge.a, edge.b});
+      if (edge.data.required) held[edge.a] = held[edge.b] = 1;
+    }
+    places_ = levelled_places<Dim>(
+        executor_, mesh_, {facets_, wide_normals_, edges, held, hausdorff_tolerance_, least_turn_});
+  }
+
+  const Vector<Dim>& place(VertexId v) const {
+    return places_.empty() ? mesh_.site_of[v].position : places_[v];
+  }
+  bool is_levelled(VertexId v) const {
+    return !places_.empty() && places_[v] != mesh_.site_of[v].position;
+  }
+  bool is_levelled(const auto& edge) const { return is_levelled(edge.a) || is_levelled(edge.b); }
 
   // ---- Curves: edges where patches meet or that the file lists, chained where straight ----
 
@@ -359,8 +396,7 @@ class Classifier {
     return patches;
   }
 
-  void find_curves() {
-    mesh_.curves.assign(1, {});
+  void find_curve_edges() {
     auto keys = runtime::parallel_collect<SideKey>(
         executor_, sides_.size(), [&](std::size_t i, auto&& append) {
           if (!sides_.begins_run(i)) return;
@@ -373,6 +409,10 @@ class Classifier {
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     for (const SideKey key : keys) add_curve_edge(key);
+  }
+
+  void grow_curves() {
+    mesh_.curves.assign(1, {});
     for (std::uint32_t e = 0; e < curve_edges_.size(); ++e)
       if (curve_edges_[e].curve == 0) grow_curve(e);
     for (const CurveEdge& e : curve_edges_) {
@@ -400,6 +440,7 @@ class Classifier {
   void grow_curve(std::uint32_t seed) {
     const auto id = static_cast<CurveId>(mesh_.curves.size());
     Curve curve = curve_edges_[seed].data;
+    curve.smooth = is_levelled(curve_edges_[seed]);
     const auto [origin, direction, tolerance] = line_along(seed);
     curve_edges_[seed].curve = id;
     for (const VertexId start : {curve_edges_[seed].a, curve_edges_[seed].b}) {
@@ -409,9 +450,9 @@ class Classifier {
       for (std::uint32_t e = next_edge(seed, v); e != none; e = next_edge(e, v)) {
         CurveEdge& edge = curve_edges_[e];
         const VertexId end = edge.a == v ? edge.b : edge.a;
-        const Vector<Dim> d = mesh_.site_of[end].position - origin;
-        const Vector<Dim> step = mesh_.site_of[end].position - mesh_.site_of[v].position;
-        const bool straight = norm(d - dot(d, direction) * direction) <= tolerance;
+        const Vector<Dim> d = place(end) - origin, step = place(end) - place(v);
+        const bool straight =
+            !is_levelled(edge) && norm(d - dot(d, direction) * direction) <= tolerance;
         const double along = dot(step, heading);
         if (edge.curve != 0 || !edge.agrees_with(curve_edges_[seed])) break;
         if (edge.sheet != none && !edge.data.required) {
@@ -443,19 +484,18 @@ class Classifier {
 
   /// Through an edge, or near what continues it, if only rounding makes that bend.
   Line line_along(std::uint32_t seed) {
-    const auto at = [&](VertexId v) { return mesh_.site_of[v].position; };
     const CurveEdge& edge = curve_edges_[seed];
-    Vector<Dim> direction = at(edge.b) - at(edge.a);
+    Vector<Dim> direction = place(edge.b) - place(edge.a);
     direction *= 1 / norm(direction);
     if constexpr (Dim == 3) {
-      if (auto line = rough_line(seed)) {
+      if (auto line = is_levelled(edge) ? std::nullopt : rough_line(seed)) {
         if (dot(line->direction, direction) < 0) line->direction *= -1;
         rounding_->line_of.resize(mesh_.curves.size() + 1);
         rounding_->line_of.back() = line;
         return {line->origin, line->direction, rounding()};
       }
     }
-    return {at(edge.a), direction, tolerance_};
+    return {place(edge.a), direction, tolerance_};
   }
 
   /// The line near a chain of edges that would lie on it without rounding.
@@ -620,6 +660,7 @@ class Classifier {
   runtime::UnsetVector<Others> across_;             // [facet][side], the other facet or none
   runtime::UnsetVector<Others> beside_;             // the same, though it may fold back
   std::vector<Vector<Dim>> wide_normals_;           // [facet], 0 if its own; empty if all are
+  std::vector<Vector<Dim>> places_;                 // [vertex], see levelled_places()
   std::unordered_map<SideKey, ListedEdge> listed_;  // 3D
   std::vector<std::uint8_t> kept_;  // [vertex], whether facets there keep their shape
   std::vector<PatchId> plane_of_;   // [facet], its patch before flat ones were joined

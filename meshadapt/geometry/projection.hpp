@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt_options.hpp"
-#include "ductile/meshadapt/vector.hpp"
+#include "ductile/meshadapt/simplex.hpp"
 #include "mesh/mesh.hpp"
 
 namespace ductile::meshadapt {

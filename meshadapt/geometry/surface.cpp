@@ -30,6 +30,7 @@ class SurfaceMaker {
         plane_of_(classified.plane_of),
         normals_(classified.normals),
         edges_(classified.edges),
+        places_(classified.places),
         options_(options) {}
 
   std::shared_ptr<const Surface<Dim>> make(const runtime::Executor& executor) const {
@@ -115,8 +116,16 @@ class SurfaceMaker {
   template <std::size_t N>
   std::array<Vector<Dim>, N> points(const std::array<VertexId, N>& vertices) const {
     std::array<Vector<Dim>, N> result;
-    for (std::size_t i = 0; i < N; ++i) result[i] = mesh_.site_of[vertices[i]].position;
+    for (std::size_t i = 0; i < N; ++i) result[i] = place(vertices[i]);
     return result;
+  }
+
+  const Vector<Dim>& place(VertexId v) const {
+    return places_.empty() ? mesh_.site_of[v].position : places_[v];
+  }
+  bool is_levelled(const Facet<Dim>& corners) const {
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](VertexId v) { return place(v) != mesh_.site_of[v].position; });
   }
 
   ModelInput<Dim> model_input() const {
@@ -127,7 +136,7 @@ class SurfaceMaker {
     const auto number = [&](VertexId v) {
       if (number_of[v] == none) {
         number_of[v] = static_cast<std::uint32_t>(input.points.size());
-        input.points.push_back(mesh_.site_of[v].position);
+        input.points.push_back(place(v));
         input.ends.push_back(mesh_.kind_of[v].corner ? 1 : 0);
       }
       return number_of[v];
@@ -136,6 +145,8 @@ class SurfaceMaker {
     for (std::size_t f = 0; f < facets_.size(); ++f) {
       ModelFacet<Dim> facet{corners(facets_[f]), facets_[f].patch, plane_of_[f],
                             mesh_.patches[facets_[f].patch].smooth};
+      if (facet.smooth && is_levelled(facet.corner))
+        facet.plane = static_cast<std::uint32_t>(mesh_.patches.size() + f);  // no longer that
       for (std::uint32_t& corner : facet.corner) corner = number(corner);
       input.facets.push_back(facet);
     }
@@ -204,6 +215,7 @@ class SurfaceMaker {
   std::span<const PatchId> plane_of_;
   std::span<const Vector<Dim>> normals_;
   std::span<const SurfaceEdge> edges_;
+  std::span<const Vector<Dim>> places_;
   const SurfaceOptions& options_;
 };
 

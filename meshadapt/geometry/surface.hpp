@@ -47,6 +47,7 @@ struct ClassifiedFacets {
   std::span<const PatchId> plane_of;     ///< [facet], the same of those of one patch in one plane
   std::span<const Vector<Dim>> normals;  ///< [facet], see wide_normals()
   std::span<const SurfaceEdge> edges;
+  std::span<const Vector<Dim>> places;  ///< [vertex], see levelled_places()
 };
 
 /// Null if no patch or curve of the mesh is smooth. Linear, times a logarithm. Throws

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -41,6 +42,21 @@ class WideNormals {
     });
   }
 
+  /// As of the facets beside that are noise, if this one is a step of their surface. So it is next
+  /// to ridges, which the surroundings of a facet must not contain.
+  std::optional<Vector<Dim>> as_beside(std::uint32_t facet,
+                                       std::span<const Vector<Dim>> normal_of) const {
+    Vector<Dim> sum;
+    for (const std::uint32_t other : beside_[facet])
+      if (other != none) sum += sign(facet, other) * normal_of[other];
+    if (!(norm(sum) > 0)) return {};
+    constexpr double most_rise = 1.5;  // of the tolerance; what is behind a ridge rises by twice
+    const Vector<Dim> normal = unit(sum);
+    if (dot(own(facet), normal) > options_.least_turn) return normal;
+    if (!(rise(facet, normal) < most_rise * options_.tolerance)) return {};
+    return normal;
+  }
+
   /// Of the surface around a facet, if it is smooth.
   std::optional<Vector<Dim>> around(std::uint32_t facet) const {
     const std::vector<Place> places = places_around(facet);
@@ -64,6 +80,8 @@ class WideNormals {
     Vector<Dim> centre;  // from that of the facet in question
     Vector<Dim> normal;  // as long as the facet is large, and to the same side
   };
+
+  static constexpr double reach = 2;  // of the tolerance
 
   Points points(std::uint32_t facet) const {
     const Facet<Dim> corners = outward_corners(mesh_, facets_[facet]);
@@ -89,31 +107,59 @@ class WideNormals {
     return to - (dot(to, along) / dot(along, along)) * along;
   }
 
+  /// Of a facet and what goes on like it, as far as noise may reach, in a direction.
+  double rise(std::uint32_t facet, const Vector<Dim>& direction) const {
+    const Vector<Dim> origin = centre(points(facet)), normal = own(facet);
+    const double far = reach * options_.tolerance;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    const auto goes_on = [&](std::uint32_t f, double side) {
+      const Points p = points(f);
+      if (!(side * dot(unit(facet_normal(p)), normal) > options_.least_turn)) return false;
+      for (const Vector<Dim>& corner : p) {
+        const Vector<Dim> away = corner - origin;
+        const double height = dot(away, direction) * std::min(1.0, far / norm(away));
+        low = std::min(low, height);
+        high = std::max(high, height);
+      }
+      return true;
+    };
+    visit_around(facet, goes_on);
+    return high - low;
+  }
+
   double sign(std::uint32_t f, std::uint32_t g) const {
     return face_alike(mesh_, facets_[f], facets_[g]) ? 1 : -1;
   }
 
-  /// Facets that follow each other from one on, as far as they are close to its centre.
-  std::vector<Place> places_around(std::uint32_t facet) const {
-    constexpr double reach = 2;  // of the tolerance
+  /// Facets that follow each other from one on, as far as they are close to its centre; past those
+  /// for which visit(facet, side) says so. The side is -1 where a facet faces the other way.
+  void visit_around(std::uint32_t facet, auto&& visit) const {
     constexpr std::size_t most = 400;
     const Vector<Dim> origin = centre(points(facet));
     std::vector<std::pair<std::uint32_t, double>> found{{facet, 1}};
-    std::vector<Place> places;
     const auto is_found = [&](std::uint32_t f) {
       return std::any_of(found.begin(), found.end(),
                          [&](const auto& known) { return known.first == f; });
     };
     for (std::size_t i = 0; i < found.size(); ++i) {
       const auto [f, side] = found[i];
-      const Points p = points(f);
-      places.push_back({centre(p) - origin, side * facet_normal(p)});
+      if (!visit(f, side)) continue;
       for (const std::uint32_t next : beside_[f]) {
         if (next == none || found.size() == most || is_found(next)) continue;
         if (norm(closest_point(points(next), origin) - origin) <= reach * options_.tolerance)
           found.emplace_back(next, side * sign(f, next));
       }
     }
+  }
+
+  std::vector<Place> places_around(std::uint32_t facet) const {
+    const Vector<Dim> origin = centre(points(facet));
+    std::vector<Place> places;
+    visit_around(facet, [&](std::uint32_t f, double side) {
+      const Points p = points(f);
+      places.push_back({centre(p) - origin, side * facet_normal(p)});
+      return true;
+    });
     return places;
   }
 
@@ -139,13 +185,17 @@ class WideNormals {
 
   /// Do those ahead of the facet and those behind it, on the mean, turn by much?
   bool turns(const std::vector<Place>& places, const Vector<Dim>& across, double area) const {
-    constexpr double little = 0.15;  // of the area, which says nothing
+    constexpr double little = 0.15;                   // of the area, which says nothing
+    const double between = 0.5 * options_.tolerance;  // what is as close counts for both
     Vector<Dim> ahead, behind;
     double ahead_area = 0, behind_area = 0;
     for (const Place& place : places) {
-      const bool is_ahead = dot(place.centre, across) > 0;
-      (is_ahead ? ahead : behind) += place.normal;
-      (is_ahead ? ahead_area : behind_area) += norm(place.normal);
+      const double share = std::clamp(0.5 + dot(place.centre, across) / between, 0.0, 1.0);
+      const double size = norm(place.normal);
+      ahead += share * place.normal;
+      behind += (1 - share) * place.normal;
+      ahead_area += share * size;
+      behind_area += (1 - share) * size;
     }
     return std::min(ahead_area, behind_area) > little * area &&
            dot(ahead, behind) < options_.least_turn * norm(ahead) * norm(behind);
@@ -156,6 +206,23 @@ class WideNormals {
   std::span<const Others> beside_;
   const WideNormalOptions& options_;
 };
+
+/// From what is noise to what is beside it, towards ridges.
+template <int Dim>
+void spread(const runtime::Executor& executor, const WideNormals<Dim>& normals,
+            std::vector<Vector<Dim>>& normal_of) {
+  constexpr int most_rounds = 16;
+  std::vector<Vector<Dim>> next = normal_of;
+  for (int round = 0; round < most_rounds; ++round) {
+    runtime::parallel_for(executor, normal_of.size(), [&](std::size_t i) {
+      const auto f = static_cast<std::uint32_t>(i);
+      if (norm(normal_of[f]) > 0 || !normals.may_be_noise(f)) return;
+      if (const auto normal = normals.as_beside(f, normal_of)) next[f] = *normal;
+    });
+    if (next == normal_of) return;
+    normal_of = next;
+  }
+}
 
 }  // namespace
 
@@ -172,6 +239,7 @@ std::vector<Vector<Dim>> wide_normals(const runtime::Executor& executor, const M
   });
   const auto is_own = [](const Vector<Dim>& normal) { return !(dot(normal, normal) > 0); };
   if (std::all_of(normal_of.begin(), normal_of.end(), is_own)) return {};
+  spread(executor, normals, normal_of);
   return normal_of;
 }
 

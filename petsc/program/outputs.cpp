@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "ductile/meshadapt/atomic_file.hpp"
+#include "ductile/meshadapt/files.hpp"
 #include "migrate.hpp"
 
 namespace ductile::petsc {

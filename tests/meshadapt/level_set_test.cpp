@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
@@ -185,7 +187,53 @@ AnyMesh terraces(double step) {
 TEST(LevelSet, StepsHigherThanTheToleranceStay) {
   constexpr double tolerance = 0.02;
   EXPECT_NEAR(volume(adapted(terraces(0.03), 0.5, tolerance).mesh), 0.515, 1e-9);
-  EXPECT_NEAR(volume(adapted(terraces(0.01), 0.5, tolerance).mesh), 0.505, tolerance);
+  const AnyMesh low = adapted(terraces(0.01), 0.5, tolerance).mesh;
+  EXPECT_NEAR(volume(low), 0.505, tolerance);
+  EXPECT_LT(low.triangles.size(), 125U);  // 118 if no turn of a step counts
+}
+
+// ---- Voxels ----
+
+/// Sides of triangles at which the boundary turns by 45 degrees or more.
+std::size_t sharp_sides(const AnyMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Vector<3>>> normals;
+  for (const auto& corners : mesh.triangles.vertices) {
+    const auto at = [&](std::size_t i) { return test::point<3>(mesh, corners[i % 3]); };
+    const Vector<3> normal = cross(at(1) - at(0), at(2) - at(0));
+    for (std::size_t i = 0; i < 3; ++i)
+      normals[std::minmax(corners[i], corners[(i + 1) % 3])].push_back((1 / norm(normal)) * normal);
+  }
+  return static_cast<std::size_t>(std::count_if(normals.begin(), normals.end(), [](const auto& at) {
+    return at.second.size() != 2 || dot(at.second[0], at.second[1]) < std::sqrt(0.5);
+  }));
+}
+
+/// A ball of radius 1 out of cubes of this size, somewhere in their grid.
+AnyMesh voxels(double size, test::Random& random) {
+  test::Grid grid;
+  grid.dimension = 3;
+  const int n = static_cast<int>(std::ceil(2.2 / size)) + 1;
+  Vector<3> centre;
+  for (int i = 0; i < 3; ++i) centre[i] = n * size / 2 + test::uniform(random, 0, size);
+  for (auto& lines : grid.lines)
+    for (int i = 0; i <= n + 1; ++i) lines.push_back(i * size);
+  grid.region = [=](const test::Cell& cell) {
+    Vector<3> away = -1.0 * centre;
+    for (int i = 0; i < 3; ++i) away[i] += (cell[static_cast<std::size_t>(i)] + 0.5) * size;
+    return norm(away) < 1 ? 1 : 0;
+  };
+  return in_one_piece(grid);
+}
+
+/// An equilateral triangle of the size asked for fits 322 times.
+TEST(LevelSet, VoxelsBecomeTheSphereThatTheyApproximate) {
+  test::Random random(11);
+  for (const double size : {0.08, 0.07, 0.06}) {
+    SCOPED_TRACE(size);
+    const AnyMesh result = adapted(voxels(size, random), 0.3, 2 * size).mesh;
+    EXPECT_LT(result.triangles.size(), 1.25 * 322);
+    EXPECT_LE(sharp_sides(result), 8U);
+  }
 }
 
 }  // namespace

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/adapt_to_sizes.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/default_metric.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
