@@ -106,8 +106,9 @@ std::size_t commit_lists(Mesh<Dim>& mesh, DeferredLists& deferred) {
       [&](VertexId owner, const ListChange& change) { change_list(mesh, owner, change); });
 }
 
-/// The lists of vertices, for whoever applies an item while others may change a list, too: changes
-/// are deferred, or made at once under its lock. Lists are sorted, so that they come out the same.
+/// Changes the lists of vertices, of which others may change the same at the same time: changes are
+/// deferred, or made at once under its lock. Lists are sorted, so that they come out the same.
+/// Nobody may read the list of a vertex that he shares with others meanwhile.
 /// Thread safety: the thread that made it, within one iteration of a loop.
 template <int Dim>
 class SharedLists {
@@ -225,8 +226,8 @@ void move_element(Mesh<Dim>& mesh, ElementId from, ElementId to) {
   mesh.corners_of[from].fill(none);
 }
 
-/// Reaches for a vertex and its neighbours: who has those may do what he likes with the elements
-/// around the vertex.
+/// Reaches for a vertex and its neighbours: whoever has these may change the elements around the
+/// vertex, but not read the lists of its neighbours, which others may be changing; see SharedLists.
 template <int Dim>
 bool reach_ball(const Mesh<Dim>& mesh, VertexId vertex, auto& reach) {
   if (!reach(vertex)) return false;

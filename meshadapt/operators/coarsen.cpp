@@ -47,7 +47,7 @@ bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
   plan.gone = gone;
   for (const Candidate& choice : choices) {
     plan.kept = choice.kept;
-    if (!keeps_edges_short(plan, ring, longest) || !keeps_shapes(plan, worst) ||
+    if (!keeps_edges_short(plan, ring, longest) || !keeps_quality(plan, worst) ||
         !keeps_surface(plan) || !keeps_sides_apart(plan))
       continue;
     note_short_edges(plan, ring);
@@ -151,7 +151,7 @@ bool Coarsen<Dim>::keeps_edges_short(const Plan& plan, const Ring& ring, double 
 
 /// Notes the qualities in the plan.
 template <int Dim>
-bool Coarsen<Dim>::keeps_shapes(Plan& plan, double worst_before) const {
+bool Coarsen<Dim>::keeps_quality(Plan& plan, double worst_before) const {
   plan.qualities.clear();
   const double least = std::min(rules_.kept_quality * worst_before, rules_.accepted_quality);
   const bool on_boundary = mesh_.kind_of[plan.gone].class_dimension < Dim;

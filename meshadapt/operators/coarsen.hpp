@@ -54,7 +54,7 @@ class Coarsen {
   void prefetch(VertexId vertex, int stage) const { prefetch_ball(mesh_, vertex, stage); }
 
   // ---- Apply: stretch or remove own elements, hold and change lists, wake neighbours with a short
-  // edge. All new conflicts are with the vertex that is kept, so that one is postponed. ----
+  // edge. Only `kept` gets neighbours that it did not have, so it waits for the next round. ----
   void apply(VertexId, const Plan& plan, auto& commit) {
     collapse(plan, SharedLists<Dim>(mesh_, deferred_ ? &*deferred_ : nullptr));
     for (const VertexId v : plan.short_edge_vertices) commit.wake(v);
@@ -70,13 +70,15 @@ class Coarsen {
   Ring ring_around(VertexId gone) const;
 
   // ---- Rules: each one reason to refuse a collapse, named for what it protects. Without effect
-  // on the mesh, so that a test may ask for each; decide() asks for all ----
+  // on the mesh, so that a test may ask for each; decide() asks for all. A rule may read the lists
+  // of `gone`, but not those of `kept` or another neighbour: a collapse two rings away, with which
+  // there is no conflict, may be changing them, and the result would depend on threads ----
   bool keeps_required(VertexId gone) const;
   bool keeps_geometry(VertexId gone, VertexId kept) const;
   bool keeps_patches(VertexId gone, VertexId kept) const;
   double longest_allowed(const Ring& ring) const;
   bool keeps_edges_short(const Plan& plan, const Ring& ring, double longest) const;
-  bool keeps_shapes(Plan& plan, double worst_before) const;
+  bool keeps_quality(Plan& plan, double worst_before) const;
   bool keeps_surface(const Plan& plan) const;
   bool keeps_sides_apart(const Plan& plan) const;
 

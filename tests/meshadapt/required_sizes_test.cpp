@@ -16,6 +16,7 @@
 #include "core/determinant.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/statistics.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/make_mesh.hpp"
 #include "support/meshes.hpp"

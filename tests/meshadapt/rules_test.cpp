@@ -1,5 +1,5 @@
 /// @file
-/// The rules by which operators refuse a change, each asked on a mesh of two elements: a vertex in
+/// The rules by which operators refuse a change, each asked on a mesh of a few elements: a vertex in
 /// the middle of a straight side, on a line of the boundary in 3D.
 #include <gtest/gtest.h>
 

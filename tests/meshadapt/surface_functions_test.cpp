@@ -14,13 +14,12 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
-#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/simplex.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "support/bits.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"

@@ -38,25 +38,48 @@ def place_of(text, rule):
     if "after" in rule:
         start = text.find(rule["after"])
         if start < 0:
-            sys.exit(f"rules.toml: \"{rule['name']}\": no \"{rule['after']}\" in {rule['file']}")
+            raise ValueError(f"\"{rule['name']}\": no \"{rule['after']}\" in {rule['file']}")
     found = [match.span() for match in re.finditer(pattern, text[start:])]
     if not found or ("after" not in rule and len(found) > 1):
-        sys.exit(f"rules.toml: \"{rule['name']}\": expected once in {rule['file']}, found "
-                 f"{len(found)} times: {rule['find']}")
+        raise ValueError(f"\"{rule['name']}\": expected once in {rule['file']}, found {len(found)} times: "
+                         f"{rule['find']}")
     begin, end = found[0]
     return start + begin, start + end
 
 
-def with_mutants(text, rules):
-    """The text of a file in which each of its rules may be taken away."""
-    places = sorted((*place_of(text, rule), rule) for rule in rules)
+def places_of(text, rules):
+    """Where the rules stand in a file: (begin, end, rule) in order, and what is wrong with the list."""
+    places, faults = [], []
+    for rule in rules:
+        try:
+            places.append((*place_of(text, rule), rule))
+        except ValueError as fault:
+            faults.append(str(fault))
+    places.sort(key=lambda place: place[:2])
     for (_, end, one), (begin, _, other) in zip(places, places[1:]):
         if begin < end:
-            sys.exit(f"rules.toml: \"{one['name']}\" and \"{other['name']}\" overlap")
+            faults.append(f"\"{one['name']}\" and \"{other['name']}\" overlap")
+    return places, faults
+
+
+def with_mutants(text, rules):
+    """The text of a file in which each of its rules may be taken away."""
+    places, faults = places_of(text, rules)
+    if faults:
+        sys.exit("rules.toml: " + "\nrules.toml: ".join(faults))
     for begin, end, rule in reversed(places):
         choice = f"(::ductile::is_mutant({rule['number']}) ? ({rule['becomes']}) : ({text[begin:end]}))"
         text = text[:begin] + choice + text[end:]
     return text
+
+
+def print_list(rules):
+    faults = []
+    for file in sorted({rule["file"] for rule in rules}):
+        faults += places_of((ROOT / file).read_text(), [rule for rule in rules if rule["file"] == file])[1]
+    for rule in rules:
+        print(f"{rule['number']:3}  {rule['name']}")
+    sys.exit("rules.toml: " + "\nrules.toml: ".join(faults) if faults else 0)
 
 
 def write_if_new(path, data):
@@ -141,11 +164,7 @@ def main():
     rules = read_rules()
     folder = ROOT / "build" / "mutants"
     if options.list:
-        for file in {rule["file"] for rule in rules}:
-            with_mutants((ROOT / file).read_text(), [rule for rule in rules if rule["file"] == file])
-        for rule in rules:
-            print(f"{rule['number']:3}  {rule['name']}")
-        return
+        print_list(rules)
     copy_sources(folder / "source", rules)
     build(folder, options.jobs)
     wanted = chosen(rules, options)

@@ -14,7 +14,8 @@ namespace ductile::meshadapt {
 
 class Geometry;  // geometry.hpp
 
-/// What is too short, too long or too bad, and what a change may make of it.
+/// What is too short, too long or too bad, and what a change may make of it. expect_rules() in
+/// adapt/adapt.cpp says which values are accepted.
 struct Rules {
   /// Edges shorter than this are collapsed.
   double short_edge = 0.70710678118654752;
@@ -28,9 +29,9 @@ struct Rules {
   /// worst quality in the old cavity): far from the metric, good elements are still to come.
   double accepted_quality = 0.1;
   double kept_quality = 1;  ///< see accepted_quality
-  /// An element worse than this may not be split into worse ones, except on the sides of layers
-  /// that the elements span, where the layer is why they are bad: there each part must keep
-  /// layer_split_keeps of the quality.
+  /// An element worse than this may not be split into worse ones. On the sides of a layer that is
+  /// one element thick each part need only keep layer_split_keeps of the quality, because there the
+  /// layer is why elements are bad.
   double poor_quality = 0.001;
   double layer_split_keeps = 0.5;  ///< see poor_quality
   /// A split is refused if it makes an element worse than min(accepted_quality, split_keeps * worst

@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/adapt_options.hpp"
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::meshadapt {

@@ -91,8 +91,9 @@ concept Operator = requires(const Op& reader, Op& op, const typename Op::Item& i
 
 /// Items are numbers, each that of the resource that it reaches for first; conflicts(item, visit)
 /// visits all others that it may reach, of which each may reach it, too; repetition is allowed. An
-/// item runs beside any with which it has no conflict. What two such both write, as a mark of a
-/// common neighbour (atomic.hpp) or its list under a lock, comes out the same in any order.
+/// item runs beside any with which it has no conflict. Two such may both write to a
+/// common neighbour, as a mark (atomic.hpp) or a list under a lock, if that comes out the same in
+/// any order; neither may read it then.
 /// An item wakes only itself and those that it conflicts with; one that still waits for its turn in
 /// the round has it there. Until its round is over, an item has the conflicts that it had at first:
 /// if applying gives conflicts to others, one of each pair is postponed, that is, leaves the round
