@@ -104,6 +104,53 @@ TEST(OperatorCheck, FindsEachFaultOfAnOperatorInOrder) {
   EXPECT_EQ(checked.value, run.value) << "in the order of the work";
 }
 
+/// On a line of vertices: each adds 1 to both neighbours, once. Those that have a neighbour in
+/// common have no conflict, as sums come out the same in any order, unless one reads them.
+class SharedSums {
+ public:
+  using Item = Vertex;
+  struct Plan {
+    std::uint32_t read;
+    friend bool operator==(const Plan&, const Plan&) = default;
+  };
+  explicit SharedSums(bool reads) : sum_(100, 0), is_done_(100, 0), reads_(reads) {}
+
+  std::size_t resource_count() const { return sum_.size(); }
+  void conflicts(Vertex v, auto&& visit) const {
+    for (const Vertex other : {v - 1, v + 1})
+      if (other < sum_.size()) visit(other);
+  }
+  bool plan(Vertex v, Plan& plan, auto& reach) const {
+    if (!reach(v)) return false;
+    plan.read = 0;
+    for (const Vertex other : {v - 1, v + 1}) {
+      if (other >= sum_.size()) continue;
+      if (!reach(other)) return false;
+      if (reads_) plan.read += sum_[other];
+    }
+    return is_done_[v] == 0;
+  }
+  void apply(Vertex v, const Plan&, auto&) {
+    is_done_[v] = 1;
+    conflicts(v, [&](Vertex other) { ++sum_[other]; });
+  }
+
+ private:
+  std::vector<std::uint32_t> sum_;
+  std::vector<std::uint8_t> is_done_;
+  bool reads_;
+};
+
+TEST(OperatorCheck, FindsWhoReadsWhatAnotherWithoutAConflictWrites) {
+  const auto work = all_items(100);
+  expect_caught(ContractRule::touches_announced, SharedSums(true), work, Strategy::tiles);
+  expect_caught(ContractRule::touches_announced, SharedSums(true), work, Strategy::colours);
+  SharedSums sound(false);
+  EXPECT_EQ(run_rounds_checked(Executor({.threads = 2}), sound, work, {.strategy = Strategy::tiles})
+                .applied,
+            100U);
+}
+
 /// Each item takes the first free place from a random one on. If it reaches for places one after
 /// the other, which ones depends on who was there before; otherwise it reaches for all it may take.
 class Probing {

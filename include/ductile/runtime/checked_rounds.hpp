@@ -1,9 +1,9 @@
 /// @file
 /// run_rounds_checked: run_rounds for authors of operators: slow, on one thread, and throws
 /// ContractBroken as soon as the operator does something that would be wrong, or would depend on
-/// timing, on many. It sees where items that have reached for nothing in common change each other's
-/// plans, and whether plan() gives up where it should; not single reads and writes. The more an
-/// operator tells, the more it sees:
+/// timing, on many. It sees where items that have reached for nothing in common, or in `tiles` and
+/// `colours` have no conflict, change each other's plans, and whether plan() gives up where it
+/// should; not single reads and writes. The more an operator tells, the more it sees:
 ///   Plan has ==            compares plans, not only whether there is one
 ///   to_string(Item)        messages name the item, not only its place (numbers name themselves)
 /// Where items lower what others have not reached for, as LevelledOperator allows, the operator has
@@ -30,8 +30,7 @@ template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds_checked(const Executor& executor, Op& op, Work work,
                                 const RoundsOptions& options = {}) {
   detail::expect_whole_operator<Op>();
-  const bool in_order = detail::strategy_of<Op>(executor, options) == Strategy::in_order;
-  return detail::OperatorCheck<Op>(op, in_order)
+  return detail::OperatorCheck<Op>(op, detail::strategy_of<Op>(executor, options))
       .run(detail::to_vector<typename Op::Item>(std::move(work)));
 }
 

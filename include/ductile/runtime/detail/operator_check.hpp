@@ -40,8 +40,12 @@ class OperatorCheck {
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
 
-  /// Nobody may be woken if `in_order`.
-  OperatorCheck(Op& op, bool in_order) : op_(op), in_order_(in_order) {
+  /// Nobody may be woken in order. By conflicts those that have none run at once, whatever they
+  /// reach for.
+  OperatorCheck(Op& op, Strategy strategy)
+      : op_(op),
+        in_order_(strategy == Strategy::in_order),
+        by_conflicts_(strategy == Strategy::tiles || strategy == Strategy::colours) {
     if constexpr (kinds > 0) {
       const auto counts = op.counts();
       std::copy(counts.begin(), counts.end(), top_.begin());
@@ -296,6 +300,11 @@ class OperatorCheck {
     return others;
   }
 
+  static std::uint32_t number_of(const Item& item) {
+    if constexpr (ConflictingOperator<Op>) return item;
+    return 0;
+  }
+
   /// Of two that wait and have got a new conflict by what was applied, has one been postponed?
   void expect_postponed(const Watched& other, const Numbered& applied,
                         const std::vector<Item>& postponed) const {
@@ -330,6 +339,13 @@ class OperatorCheck {
                "its plan changed when item " + name_of(applied) +
                    " was applied, though the two have reached for nothing in common: one reads " +
                    "or writes what it has not reached for");
+    } else if (by_conflicts_ && !std::binary_search(other.conflicts.begin(), other.conflicts.end(),
+                                                    number_of(applied.item))) {
+      if (!is_same(after, other.before))
+        refuse(ContractRule::touches_announced, other.item,
+               "its plan changed when item " + name_of(applied) +
+                   " was applied, with which it has no conflict: both may run at once, so neither "
+                   "may read what the other writes to what both have reached");
     } else if (is_in_order_after(other.item)) {
       const bool is_known =
           std::all_of(after.reached.begin(), after.reached.end(), [&](std::uint32_t r) {
@@ -375,7 +391,7 @@ class OperatorCheck {
   }
 
   Op& op_;
-  bool in_order_;
+  bool in_order_, by_conflicts_;
   std::vector<Numbered> waiting_;        // the next last
   std::vector<std::uint32_t> waits_of_;  // [item], how often it waits, if there are conflicts
   std::vector<Numbered> considered_;     // had their turn
