@@ -22,7 +22,6 @@
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
 #include "io/atomic_file.hpp"
-#include "json_report.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "run_in_team.hpp"

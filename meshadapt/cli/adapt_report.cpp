@@ -62,6 +62,23 @@ std::string figures(const MeshSummary& mesh, bool with_histograms) {
   return with_histograms ? to_text(*mesh.statistics) : short_figures(*mesh.statistics);
 }
 
+std::string json_of(const MeshSummary& mesh) {
+  return "{\"file\": " + json_string(mesh.name) +
+         ", \"dimension\": " + std::to_string(mesh.dimension) +
+         ", \"vertices\": " + std::to_string(mesh.vertices) +
+         ", \"edges\": " + std::to_string(mesh.edges) +
+         ", \"triangles\": " + std::to_string(mesh.triangles) +
+         ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra) +
+         ", \"statistics\": " + (mesh.statistics ? to_json(*mesh.statistics) : "null") + "}";
+}
+
+std::string json_of(const KernelReport& kernel) {
+  return "{\"seconds\": " + json_number(kernel.seconds) +
+         ", \"considered\": " + std::to_string(kernel.considered) +
+         ", \"applied\": " + std::to_string(kernel.applied) +
+         ", \"rounds\": " + std::to_string(kernel.rounds) + "}";
+}
+
 double share_of_edges(const meshadapt::MeshStatistics& statistics, std::size_t count) {
   return static_cast<double>(count) /
          static_cast<double>(std::max<std::size_t>(1, statistics.edge_length.count));
@@ -175,6 +192,30 @@ std::string to_text(const AdaptSummary& summary, bool with_histograms) {
           seconds(report.renumber_seconds) + "\n";
   return text + counts(summary.after) + figures(summary.after, with_histograms) +
          held_edges(report);
+}
+
+std::string to_json(const AdaptSummary& summary) {
+  const AdaptReport& report = summary.report;
+  std::string kernel_list, warnings;
+  for (const auto& [name, kernel] : meshadapt::kernels)
+    kernel_list +=
+        (kernel_list.empty() ? "" : ", ") + json_string(name) + ": " + json_of(report.*kernel);
+  for (const std::string& warning : report.warnings)
+    warnings += (warnings.empty() ? "" : ", ") + json_string(warning);
+  return "{\"before\": " + json_of(summary.before) + ",\n \"after\": " + json_of(summary.after) +
+         ",\n \"threads\": " + std::to_string(summary.threads) +
+         ", \"deterministic\": " + (summary.deterministic ? "true" : "false") +
+         ", \"instructions\": " + json_string(std::string(report.instructions)) +
+         ", \"iterations\": " + std::to_string(report.iterations) +
+         ", \"converged\": " + (report.converged ? "true" : "false") +
+         ", \"held_long_edges\": " + std::to_string(report.held_long_edges) +
+         ", \"held_short_edges\": " + std::to_string(report.held_short_edges) +
+         ",\n \"kernels\": {" + kernel_list +
+         "},\n \"seconds\": {\"total\": " + json_number(report.total_seconds) +
+         ", \"setup\": " + json_number(report.setup_seconds) +
+         ", \"renumber\": " + json_number(report.renumber_seconds) +
+         "},\n \"peak_memory_bytes\": " + std::to_string(summary.peak_memory) +
+         ",\n \"warnings\": [" + warnings + "]}\n";
 }
 
 }  // namespace ductile::cli

@@ -1,6 +1,5 @@
 /// @file
-/// What `ductile adapt` tells about a run: in a few lines for people (json_report.hpp: for
-/// programs).
+/// What `ductile adapt` tells about a run: in a few lines for people, as JSON for programs.
 #pragma once
 
 #include <optional>
@@ -40,5 +39,6 @@ AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::A
                        const SummaryOptions& options);
 
 std::string to_text(const AdaptSummary& summary, bool with_histograms);
+std::string to_json(const AdaptSummary& summary);
 
 }  // namespace ductile::cli

@@ -1,8 +1,8 @@
 #include <array>
 #include <cstdio>
 #include <map>
-#include <optional>
 #include <string>
+#include <utility>
 
 #include "command.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -11,7 +11,6 @@
 #include "ductile/meshadapt/statistics.hpp"
 #include "files.hpp"
 #include "io/atomic_file.hpp"
-#include "json_report.hpp"
 #include "report.hpp"
 #include "run_in_team.hpp"
 
@@ -94,6 +93,38 @@ void print_counts(const AnyMesh& mesh) {
     std::printf("  %-12s %12s\n", "ridges", with_commas(mesh.ridges.size()).c_str());
 }
 
+/// The names of references, each with how many entities carry it.
+std::string names_json(const AnyMesh& mesh) {
+  const std::array references{&mesh.vertex_reference, &mesh.edges.reference,
+                              &mesh.triangles.reference, &mesh.tetrahedra.reference};
+  std::map<std::pair<int, std::int32_t>, std::size_t> count_of;  // [dimension, reference]
+  for (int dimension = 0; dimension <= 3 && !mesh.names.empty(); ++dimension)
+    for (const std::int32_t reference : *references[static_cast<std::size_t>(dimension)])
+      ++count_of[{dimension, reference}];
+  std::string text;
+  for (const auto& [dimension, reference, name] : mesh.names)
+    text += std::string(text.empty() ? "" : ", ") + "{\"name\": " + json_string(name) +
+            ", \"dimension\": " + std::to_string(dimension) +
+            ", \"reference\": " + std::to_string(reference) +
+            ", \"count\": " + std::to_string(count_of[{dimension, reference}]) + "}";
+  return "[" + text + "]";
+}
+
+void write_json(const std::string& path, const AnyMesh& mesh, const Validity& validity,
+                const std::string& statistics) {
+  meshadapt::AtomicOutputs outputs;
+  write_bytes(outputs, path,
+              "{\"mesh\": " + json_string(mesh.name) +
+                  ", \"dimension\": " + std::to_string(mesh.dimension) +
+                  ", \"valid\": " + (validity.reason.empty() ? "true" : "false") +
+                  ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
+                  ", \"edges\": " + std::to_string(mesh.edges.size()) +
+                  ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
+                  ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
+                  ", \"names\": " + names_json(mesh) + ", \"statistics\": " + statistics + "}\n");
+  outputs.commit();
+}
+
 int work(const Executor& executor, const Arguments& arguments) {
   meshadapt::Warnings warnings;
   const AnyMesh mesh = meshadapt::read_mesh(input_of(arguments.operands()[0]), &warnings);
@@ -107,17 +138,14 @@ int work(const Executor& executor, const Arguments& arguments) {
   warnings.insert(warnings.end(), validity.warnings.begin(), validity.warnings.end());
   std::printf("  %s\n", validity.reason.empty() ? "valid: it can be adapted"
                                                 : ("not valid: " + validity.reason).c_str());
-  std::optional<meshadapt::MeshStatistics> statistics;
+  std::string statistics = "null";
   if (has_elements) {
-    statistics = meshadapt::measure(executor, mesh, given);
-    std::printf("%s", to_text(*statistics).c_str());
+    const auto measured = meshadapt::measure(executor, mesh, given);
+    std::printf("%s", to_text(measured).c_str());
+    statistics = to_json(measured);
   }
   print_warnings(warnings);
-  if (const auto path = arguments.text("--json")) {
-    meshadapt::AtomicOutputs outputs;
-    write_bytes(outputs, *path, to_json(mesh, validity.reason.empty(), statistics));
-    outputs.commit();
-  }
+  if (const auto path = arguments.text("--json")) write_json(*path, mesh, validity, statistics);
   return validity.reason.empty() ? done : misused;
 }
 

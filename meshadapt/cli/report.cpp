@@ -1,6 +1,7 @@
 #include "report.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -59,6 +60,19 @@ std::string histogram(const Distribution& d) {
   return text;
 }
 
+std::string json_of(const Distribution& d) {
+  std::string bins;
+  for (const std::size_t count : d.histogram)
+    bins += (bins.empty() ? "" : ", ") + std::to_string(count);
+  return "{\"count\": " + std::to_string(d.count) + ", \"min\": " + json_number(d.min) +
+         ", \"p01\": " + json_number(d.low) + ", \"median\": " + json_number(d.median) +
+         ", \"mean\": " + json_number(d.mean) + ", \"max\": " + json_number(d.max) +
+         ", \"histogram_from\": " + json_number(d.histogram_from) +
+         ", \"histogram_to\": " + json_number(d.histogram_to) + ", \"histogram\": [" + bins +
+         "], \"below\": " + std::to_string(d.below) + ", \"above\": " + std::to_string(d.above) +
+         "}";
+}
+
 }  // namespace
 
 std::string to_text(const MeshStatistics& s) {
@@ -74,6 +88,39 @@ std::string to_text(const MeshStatistics& s) {
   text += figures("quality", s.quality) + histogram(s.quality);
   if (s.in_metric) text += format("  complexity of the metric %.6g\n", s.complexity);
   return text;
+}
+
+std::string to_json(const MeshStatistics& s) {
+  std::string text = std::string("{\"in_metric\": ") + (s.in_metric ? "true" : "false") +
+                     ", \"edge_length\": " + json_of(s.edge_length) +
+                     ", \"quality\": " + json_of(s.quality);
+  if (s.in_metric) {
+    text += ", \"edges_short\": " + std::to_string(s.edges_short) +
+            ", \"edges_in_range\": " + std::to_string(s.edges_in_range) +
+            ", \"edges_long\": " + std::to_string(s.edges_long) +
+            ", \"share_in_range\": " + json_number(s.share_in_range()) +
+            ", \"complexity\": " + json_number(s.complexity);
+  }
+  return text + "}";
+}
+
+std::string json_string(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : as_utf8(text)) {
+    if (c == '"' || c == '\\')
+      quoted += std::string("\\") + c;
+    else if (static_cast<unsigned char>(c) < 0x20)
+      quoted += format("\\u%04x", c);
+    else
+      quoted += c;
+  }
+  return quoted + "\"";
+}
+
+std::string json_number(double number) {
+  if (!std::isfinite(number)) return "null";
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
 }  // namespace ductile::cli

@@ -300,9 +300,13 @@ class OperatorCheck {
     return others;
   }
 
-  static std::uint32_t number_of(const Item& item) {
-    if constexpr (ConflictingOperator<Op>) return item;
-    return 0;
+  /// Had they no conflict before one was applied? An item may also wait twice.
+  static bool may_run_beside([[maybe_unused]] const Watched& other,
+                             [[maybe_unused]] const Numbered& applied) {
+    if constexpr (ConflictingOperator<Op>)
+      return other.item.item != applied.item &&
+             !std::binary_search(other.conflicts.begin(), other.conflicts.end(), applied.item);
+    return false;
   }
 
   /// Of two that wait and have got a new conflict by what was applied, has one been postponed?
@@ -339,8 +343,7 @@ class OperatorCheck {
                "its plan changed when item " + name_of(applied) +
                    " was applied, though the two have reached for nothing in common: one reads " +
                    "or writes what it has not reached for");
-    } else if (by_conflicts_ && !std::binary_search(other.conflicts.begin(), other.conflicts.end(),
-                                                    number_of(applied.item))) {
+    } else if (by_conflicts_ && may_run_beside(other, applied)) {
       if (!is_same(after, other.before))
         refuse(ContractRule::touches_announced, other.item,
                "its plan changed when item " + name_of(applied) +
