@@ -82,8 +82,8 @@ std::size_t Adapter<Dim>::pass(const Phase& phase) {
   return changes;
 }
 
-/// Moves and swaps keep lengths in the end, but for the first time in a mesh that did not come
-/// adapted.
+/// Moves and swaps keep lengths in the end; in a mesh that did not come adapted, not yet the first
+/// time.
 template <int Dim>
 void Adapter<Dim>::run(const Phase& phase) {
   work_.begin(phase, came_adapted_);

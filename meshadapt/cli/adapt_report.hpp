@@ -30,7 +30,7 @@ struct SummaryOptions {
   bool before = true, after = true;  ///< which meshes to measure
   bool expects_lengths = true;       ///< a warning is added if too many edges are too long
   bool keeps_surface = false;        ///< ... or too short, which curved boundaries may be why
-  double hausdorff_tolerance = 0;    ///< ... or are, as they stay within this; 0: they do not move
+  double hausdorff_tolerance = 0;    ///< ... or are, because they stay within this; 0: they stay
 };
 
 /// `after` is the mesh of `adapted`.

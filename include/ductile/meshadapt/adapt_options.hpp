@@ -85,8 +85,8 @@ struct AdaptProgress {
 /// 0 nor from 1e-75 to 1e75, a smallest size above the largest, a gradation between 0 and 1 or not
 /// finite, rules that are negative, above 1e6 or no numbers, or that split what they collapse.
 struct AdaptOptions {
-  int iterations = 16;       ///< at most this many rounds of the four kernels, but for those on
-                             ///< the way to a metric that is far from the mesh
+  int iterations = 16;       ///< at most this many rounds of the four kernels; those on the way
+                             ///< to a metric that is far from the mesh do not count
   double smallest_size = 0;  ///< no edge length below this is asked for; 0: no bound
   double largest_size = 0;   ///< no edge length above this is asked for; 0: no bound
   double gradation = 0;      ///< sizes grow by at most this factor per unit of metric length (see
