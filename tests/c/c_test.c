@@ -338,9 +338,10 @@ static ductile_mesh* make_disk(void) {
   ductile_mesh* mesh = NULL;
   double points[2 * RIM + 2] = {0};
   int32_t fan[3 * RIM], rim[2 * RIM], references[RIM];
+  const double turn = 6.283185307179586, sides = RIM;
   for (int i = 0; i < RIM; ++i) {
-    points[2 * i + 2] = cos(i * 6.283185307179586 / RIM);
-    points[2 * i + 3] = sin(i * 6.283185307179586 / RIM);
+    points[2 * i + 2] = cos(i * turn / sides);
+    points[2 * i + 3] = sin(i * turn / sides);
     fan[3 * i] = 0;
     fan[3 * i + 1] = rim[2 * i] = i + 1;
     fan[3 * i + 2] = rim[2 * i + 1] = (i + 1) % RIM + 1;
