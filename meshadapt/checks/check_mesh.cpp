@@ -189,11 +189,10 @@ class AnyMeshChecker {
   // ---- Vertices and edges ----
 
   void check_vertices() {
+    const VertexElements& lists = adjacent_.lists<Dim>();
     problems_.expect_none(
         mesh_.vertex_count(),
-        [&](std::size_t v) {
-          return adjacent_.lists<Dim>().elements_of(static_cast<VertexId>(v)).empty();
-        },
+        [&](std::size_t v) { return lists.elements_of(static_cast<VertexId>(v)).empty(); },
         [](std::size_t v) { return "vertex " + number(v) + " belongs to no element"; });
   }
 
@@ -212,9 +211,10 @@ class AnyMeshChecker {
     problems_.expect_none(
         count, [&](std::size_t i) { return !is_first(i); },
         [&](std::size_t i) { return "the " + name_of(i) + " is listed twice"; });
+    const VertexElements& lists = adjacent_.lists<Dim>();
     const auto is_edge = [&](std::size_t i) {
       const auto a = static_cast<VertexId>(key[i] >> 32U), b = static_cast<VertexId>(key[i]);
-      const auto around = adjacent_.lists<Dim>().elements_of(a);
+      const auto around = lists.elements_of(a);
       return std::any_of(around.begin(), around.end(),
                          [&](ElementId e) { return contains(elements().vertices[e], b); });
     };

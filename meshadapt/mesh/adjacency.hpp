@@ -68,6 +68,7 @@ Adjacency<Dim> make_adjacency(const runtime::Executor& executor,
 
 /// A mesh, and what of its adjacency has been asked for, made then and kept. Refers to both.
 /// Precondition of asking: the mesh has this dimension, and the vertices that its elements name.
+/// Thread safety: one caller, outside of loops; what is returned may be read by any thread.
 class AdjacentMesh {
  public:
   AdjacentMesh(const runtime::Executor& executor, const AnyMesh& mesh)
