@@ -137,7 +137,7 @@ void write_pieces(const Communicator& comm, const fs::path& path, const Distribu
     std::vector<fs::path> pieces;
     for (std::size_t r = 0; r < counts.size(); ++r)
       if (counts[r] > 0) pieces.push_back(piece_of(path, static_cast<int>(r)));
-    if (comm.rank() == 0) index.stage(path).write(index_of_pieces(result.fields, pieces));
+    if (comm.rank() == 0) write_bytes(index, path, index_of_pieces(result.fields, pieces));
     if (counts[rank] == 0) return;
     AnyMesh mesh = mesh_for_file(result.parts.part, result.kept);
     mesh.names = result.names;
