@@ -22,6 +22,7 @@ PetscErrorCode DuctilePetscRegister() {
   PetscFunctionReturn(0);
 }
 
+// NOLINTNEXTLINE(readability-function-size): a function for C says all by its arguments
 PetscErrorCode DuctilePetscTransfer(DM before, Vec values, PetscBool on_cells,
                                     PetscBool conservatively, DM after, Vec* carried) {
   using namespace ductile;

@@ -1,6 +1,6 @@
 /// @file
-/// The rules by which operators refuse a change, each asked on a mesh of a few elements: a vertex in
-/// the middle of a straight side, on a line of the boundary in 3D.
+/// The rules by which operators refuse a change, each asked on a mesh of a few elements: a vertex
+/// in the middle of a straight side, on a line of the boundary in 3D.
 #include <gtest/gtest.h>
 
 #include <memory>
