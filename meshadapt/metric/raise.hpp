@@ -25,8 +25,8 @@ using Matrix = std::array<std::array<double, Dim>, Dim>;  // [row][column]
 
 /// Lower Cholesky factor of `a` with its diagonal raised by `shift`. Errors do not depend on how
 /// differently the axes are scaled (Demmel, LAPACK Working Note 14, 1989). What is raised covers
-/// them: seen from the factor, no tensor that is `a` but for rounding is longer than 1 by more than
-/// that.
+/// them: seen from the factor, a tensor that differs from `a` by rounding alone is longer than 1 by
+/// no more than that.
 template <int Dim>
 Matrix<Dim> cholesky(const Metric<Dim>& a) {
   Matrix<Dim> lower{};

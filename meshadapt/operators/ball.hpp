@@ -188,7 +188,7 @@ class Ball {
     QualityLanes quality;
   };
 
-  /// quality() of each, but for rounding.
+  /// quality() of each, up to rounding.
   Judged judge(const Block& block, const Site<Dim>& apex) const {
     const Vector<Dim> offset = apex.position - origin_;
     Judged judged;

@@ -58,7 +58,7 @@ struct Base {
           1 / std::max({corner[0]->scale, corner[1]->scale, corner[2]->scale})};
 }
 
-/// The square of quality() of the tetrahedron with this apex, but for rounding; -1 if its volume is
+/// The square of quality() of the tetrahedron with this apex, up to rounding; -1 if its volume is
 /// not positive. `side` is 1 if the apex shall be above the base, -1 if it shall be underneath. To
 /// be confirmed by certain_determinant() before it is acted on.
 [[gnu::always_inline]] inline double squared_quality_over(const Base& base, const Site<3>& apex,

@@ -445,8 +445,8 @@ bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
   return true;
 }
 
-/// Qualities tell little of elements over which the metric changes a lot, as those of overlong
-/// edges.
+/// Where the metric changes a lot over an element, as it does along overlong edges, its quality
+/// tells little.
 template <int Dim>
 double Refine<Dim>::least_quality(double before, const Split& split) const {
   if (before < rules_.poor_quality)

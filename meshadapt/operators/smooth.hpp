@@ -19,7 +19,7 @@ template <int Dim>
 struct VertexMove {
   ElementId host;
   Site<Dim> site;
-  BallQualities<Dim> qualities;  // of the elements around, as they will be
+  BallQualities<Dim> qualities;  // of the elements around after the move
   bool far;                      // far enough for its neighbours to be worth another look
   friend bool operator==(const VertexMove&, const VertexMove&) = default;
 };

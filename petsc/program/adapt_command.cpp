@@ -43,7 +43,8 @@ constexpr std::array<std::string_view, 12> not_here{"-hausd",   "-geometry", "-A
 
 enum class Form { gathered, pieces, hdf5 };
 
-/// What files say, in the order in which it is made; of the first rank only but for the form.
+/// What files say, in the order in which it is made. Only the form is known on every rank, the
+/// rest on the first one.
 struct Input {
   AdaptJob job;
   fs::path output;
