@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/transfer.hpp"
@@ -113,6 +114,18 @@ AdaptedPart adapt_part(const Executor& executor, Part part, const Interfaces& in
   return result;
 }
 
+template <int Dim>
+AnyField bound_at_curves(const Executor& executor, const Part& part, const Interfaces& interfaces,
+                         const meshadapt::AdaptOptions& options) {
+  if (part.element_count() == 0) return part.wanted;
+  return meshadapt::bound_at_curved_boundaries(executor, with_required<Dim>(part, interfaces),
+                                               part.wanted, options);
+}
+
+template AnyField bound_at_curves<2>(const Executor&, const Part&, const Interfaces&,
+                                     const meshadapt::AdaptOptions&);
+template AnyField bound_at_curves<3>(const Executor&, const Part&, const Interfaces&,
+                                     const meshadapt::AdaptOptions&);
 template AdaptedPart adapt_part<2>(const Executor&, Part, const Interfaces&,
                                    const meshadapt::AdaptOptions&);
 template AdaptedPart adapt_part<3>(const Executor&, Part, const Interfaces&,

@@ -30,6 +30,15 @@ template <int Dim>
 AdaptedPart adapt_part(const runtime::Executor& executor, Part part, const Interfaces& interfaces,
                        const meshadapt::AdaptOptions& options);
 
+/// What is wanted, made finer at curved boundaries, see bound_at_curved_boundaries().
+template <int Dim>
+AnyField bound_at_curves(const runtime::Executor& executor, const Part& part,
+                         const Interfaces& interfaces, const meshadapt::AdaptOptions& options);
+
+extern template AnyField bound_at_curves<2>(const runtime::Executor&, const Part&,
+                                            const Interfaces&, const meshadapt::AdaptOptions&);
+extern template AnyField bound_at_curves<3>(const runtime::Executor&, const Part&,
+                                            const Interfaces&, const meshadapt::AdaptOptions&);
 extern template AdaptedPart adapt_part<2>(const runtime::Executor&, Part, const Interfaces&,
                                           const meshadapt::AdaptOptions&);
 extern template AdaptedPart adapt_part<3>(const runtime::Executor&, Part, const Interfaces&,

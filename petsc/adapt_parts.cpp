@@ -11,6 +11,7 @@
 #include "grade.hpp"
 #include "held.hpp"
 #include "migrate.hpp"
+#include "parts_geometry.hpp"
 
 namespace ductile::petsc {
 
@@ -24,11 +25,17 @@ class Parts {
  public:
   Parts(const Communicator& comm, const Executor& executor, Part part,
         const AdaptPartsOptions& options)
-      : comm_(comm), executor_(executor), options_(options), part_(std::move(part)) {}
+      : comm_(comm),
+        executor_(executor),
+        options_(options),
+        adapt_(options.adapt),
+        part_(std::move(part)) {}
 
   AdaptedParts run() {
     std::vector<PassReport> reports;
     find_interfaces();
+    find_geometry();
+    limit_sizes();
     balance(beforehand);
     end(Phase::balance);
     for (int pass = 1;; ++pass) {
@@ -42,6 +49,7 @@ class Parts {
       part_ = migrate<Dim>(comm_, part_, target_of);
       find_interfaces();
       end(Phase::migration);
+      limit_sizes();
     }
     find_interfaces();
     balance(at_the_end);
@@ -82,6 +90,28 @@ class Parts {
     if (comm_.size() > 1) interfaces_ = petsc::find_interfaces<Dim>(comm_, part_);
   }
 
+  /// Boundaries are measured from what they are now, in all passes and on all ranks.
+  void find_geometry() {
+    auto& make = adapt_.make;
+    if (comm_.size() == 1 || make.geometry || make.hausdorff_tolerance == 0 || make.lock_boundary)
+      return;
+    make.geometry = geometry_of_parts(comm_, executor_, part_, make);
+    make.functions.clear();
+    end(Phase::balance);
+  }
+
+  /// What is wanted keeps the sizes and the growth that the options allow, across ranks, too.
+  void limit_sizes() {
+    if (comm_.size() == 1) return;
+    const bool at_curves = bounds_curved_sizes(adapt_);
+    if (at_curves)
+      part_.wanted =
+          comm_.on_all([&] { return bound_at_curves<Dim>(executor_, part_, interfaces_, adapt_); });
+    const double growth = growth_of(adapt_);
+    if (at_curves || growth > 0) grade<Dim>(comm_, executor_, part_, interfaces_, growth);
+    end(Phase::gradation);
+  }
+
   /// Interfaces everywhere, as between parts of every second element, leave nothing to adapt and
   /// nowhere to displace them.
   bool is_scattered() const {
@@ -100,13 +130,10 @@ class Parts {
 
   PassReport adapt(int pass) {
     const double begin = MPI_Wtime();
-    if (comm_.size() > 1 && options_.adapt.gradation > 0)
-      grade<Dim>(comm_, executor_, part_, interfaces_, options_.adapt.gradation);
-    end(Phase::gradation);
     auto adapted = comm_.on_all([&] {
-      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_.adapt);
+      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, adapt_);
       return adapt_zone<Dim>(executor_, part_, interfaces_, held_elements<Dim>(part_, layers),
-                             options_.adapt);
+                             adapt_);
     });
     part_ = std::move(adapted.part);
     interfaces_ = std::move(adapted.interfaces);
@@ -135,8 +162,7 @@ class Parts {
   /// A second pass always is: the interfaces of the first were there before. Without insertion no
   /// more can be done to what is blocked.
   bool is_worthwhile(const PassReport& report) const {
-    const auto& [insert, swap, move] =
-        std::tie(options_.adapt.insert, options_.adapt.swap, options_.adapt.move);
+    const auto& [insert, swap, move] = std::tie(adapt_.insert, adapt_.swap, adapt_.move);
     if (report.edges == 0 || !(insert || swap || move)) return false;
     return report.pass < 2 || (insert && report.blocked > 0);
   }
@@ -144,6 +170,7 @@ class Parts {
   const Communicator& comm_;
   const Executor& executor_;
   const AdaptPartsOptions& options_;
+  meshadapt::AdaptOptions adapt_;  // with the geometry of all parts
   Part part_;
   Interfaces interfaces_;
   std::array<Costs, phase_count> costs_ = {};  // [phase], of this rank

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "first_rank.hpp"
 #include "local_parameters.hpp"
 #include "outputs.hpp"
+#include "parts_geometry.hpp"
 #include "program.hpp"
 #include "system.hpp"
 #include "threads.hpp"
@@ -37,9 +39,8 @@ using meshadapt::Warnings;
 using runtime::Executor;
 
 /// Options of `ductile adapt` that need all of a mesh in one place, or one order of events.
-constexpr std::array<std::string_view, 12> not_here{"-hausd",   "-geometry", "-A",    "-ar",
-                                                    "-nr",      "--near",    "--on",  "--inside",
-                                                    "--racing", "--json",    "--vtu", "-optim"};
+constexpr std::array<std::string_view, 6> not_here{"--near",   "--on",   "--inside",
+                                                   "--racing", "--json", "--vtu"};
 
 enum class Form { gathered, pieces, hdf5 };
 
@@ -50,6 +51,7 @@ struct Input {
   fs::path output;
   Form form = Form::gathered;
   FilePart file;
+  std::optional<Part> geometry;
   std::vector<NamedField> fields;
   std::vector<std::size_t> field_count_of;  // [file given by --field]
   std::vector<meshadapt::ReferenceName> names;
@@ -132,6 +134,19 @@ void read_fields(Input& input, meshadapt::MeshWithFields& file) {
   }
 }
 
+/// A mesh that only says what boundaries are like.
+Part read_geometry(Input& input, const Executor& executor) {
+  AnyMesh mesh = meshadapt::read_mesh(*input.job.geometry, &input.warnings);
+  const int dimension = input.file.part.mesh.dimension;
+  if (mesh.dimension != dimension)
+    throw meshadapt::InputError(mesh.name + ": expected a geometry of dimension " +
+                                std::to_string(dimension) + ", found " +
+                                std::to_string(mesh.dimension));
+  if (input.job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, mesh);
+  meshadapt::AnyField sizes = meshadapt::constant_metric(mesh, 1);
+  return part_of_file(std::move(mesh), std::move(sizes), input.warnings).part;
+}
+
 void read_files(Input& input, const Executor& executor) {
   AdaptJob& job = input.job;
   if (!job.unneeded.empty()) input.warnings.push_back(job.unneeded);
@@ -147,6 +162,7 @@ void read_files(Input& input, const Executor& executor) {
   input.names = file.mesh.names;
   input.dropped_axis = file.mesh.dropped_axis;
   input.file = part_of_file(std::move(file.mesh), std::move(metric), input.warnings);
+  if (job.geometry) input.geometry = read_geometry(input, executor);
 }
 
 // ---- What all ranks have to know ----
@@ -210,9 +226,23 @@ void print_costs(const std::array<Costs, phase_count>& costs) {
   std::printf("\n");
 }
 
-AdaptPartsOptions options_of(const Communicator& comm, const AdaptJob& job) {
+/// What -geometry says, on all ranks; null without it. Collective.
+std::shared_ptr<const meshadapt::Geometry> geometry_of(const Communicator& comm,
+                                                       const Executor& executor,
+                                                       const Input& input) {
+  bool is_given = input.geometry.has_value();
+  from_first_rank(comm, is_given);
+  if (!is_given) return nullptr;
+  const Part none = empty_part(input.file.part.mesh.dimension);
+  return geometry_of_parts(comm, executor, input.geometry ? *input.geometry : none,
+                           input.job.adapt.make);
+}
+
+AdaptPartsOptions options_of(const Communicator& comm, const AdaptJob& job,
+                             std::shared_ptr<const meshadapt::Geometry> geometry) {
   AdaptPartsOptions options;
   options.adapt = job.adapt;
+  options.adapt.make.geometry = std::move(geometry);
   options.adapt.make.complete_boundary = false;  // parts list theirs
   if (options.adapt.required_gradation <= 0) options.adapt.required_gradation = 2.3;
   options.passes = 6;
@@ -319,7 +349,8 @@ void work(const Communicator& comm, const Executor& executor, Input& input, Carr
   if (input.job.memory) comm.on_all([&] { cli::limit_memory(*input.job.memory); });
   on_first_rank(comm, [&] { read_files(input, executor); });
   tell_others(comm, input);
-  AdaptedParts parts = adapted(comm, executor, input.file.part, options_of(comm, input.job));
+  const auto options = options_of(comm, input.job, geometry_of(comm, executor, input));
+  AdaptedParts parts = adapted(comm, executor, input.file.part, options);
   if (comm.rank() == 0 && input.job.verbosity > 1) print_costs(parts.last);
   const Costs before = comm.costs();
   auto fields = fields_of(comm, executor, input, parts, carrying);
