@@ -1,6 +1,7 @@
 #include "parts_geometry.hpp"
 
 #include "adapt_part.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
 #include "migrate.hpp"
 
 namespace ductile::petsc {
@@ -8,9 +9,14 @@ namespace ductile::petsc {
 std::shared_ptr<const meshadapt::Geometry> geometry_of_parts(
     const Communicator& comm, const runtime::Executor& executor, const Part& part,
     const meshadapt::MakeMeshOptions& make) {
-  Part whole = comm.size() == 1           ? part
-               : part.mesh.dimension == 2 ? gather_everywhere<2>(comm, part)
-                                          : gather_everywhere<3>(comm, part);
+  Part whole = comm.on_all([&] {
+    Part own = part;
+    own.wanted = meshadapt::constant_metric(own.mesh, 1);  // which goes with vertices
+    return own;
+  });
+  if (comm.size() > 1)
+    whole = part.mesh.dimension == 2 ? gather_everywhere<2>(comm, whole)
+                                     : gather_everywhere<3>(comm, whole);
   return comm.on_all([&] {
     list_boundary(executor, whole);
     for (VertexId v = 0; v < whole.mesh.vertex_count(); ++v)

@@ -143,8 +143,7 @@ Part read_geometry(Input& input, const Executor& executor) {
                                 std::to_string(dimension) + ", found " +
                                 std::to_string(mesh.dimension));
   if (input.job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, mesh);
-  meshadapt::AnyField sizes = meshadapt::constant_metric(mesh, 1);
-  return part_of_file(std::move(mesh), std::move(sizes), input.warnings).part;
+  return part_of_file(std::move(mesh), {}, input.warnings).part;
 }
 
 void read_files(Input& input, const Executor& executor) {
