@@ -175,6 +175,10 @@ def try_box(dim, n):
     first = [pathlib.Path(f).read_bytes() for f in files]
     adapt("in.mesh", "-o", "out.mesh", "--field", "u.sol", "--threads", "2", "-v", "0")
     expect([pathlib.Path(f).read_bytes() for f in files] == first, f"{dim}D: other bytes")
+    if ranks == "1":
+        run([ductile, "adapt", "in.mesh", "-o", "serial.mesh", "--field", "u.sol", "--threads", "2"])
+        for file, bytes in zip(("serial.mesh", "serial.sol", "serial.u.sol"), first):
+            expect(pathlib.Path(file).read_bytes() == bytes, f"{dim}D: {file} is another than on one rank")
     return len(found[("Triangles", "Tetrahedra")[dim - 2]])
 
 
