@@ -4,7 +4,6 @@
 #include <tuple>
 #include <utility>
 
-#include "adapt_part.hpp"
 #include "adapt_zone.hpp"
 #include "balance.hpp"
 #include "displace.hpp"
@@ -25,11 +24,7 @@ class Parts {
  public:
   Parts(const Communicator& comm, const Executor& executor, Part part,
         const AdaptPartsOptions& options)
-      : comm_(comm),
-        executor_(executor),
-        options_(options),
-        adapt_(options.adapt),
-        part_(std::move(part)) {}
+      : comm_(comm), executor_(executor), options_(options), part_(std::move(part)) {}
 
   AdaptedParts run() {
     std::vector<PassReport> reports;
@@ -92,7 +87,7 @@ class Parts {
 
   /// Boundaries are measured from what they are now, in all passes and on all ranks.
   void find_geometry() {
-    auto& make = adapt_.make;
+    auto& make = options_.adapt.make;
     if (comm_.size() == 1 || make.geometry || make.hausdorff_tolerance == 0 || make.lock_boundary)
       return;
     make.geometry = geometry_of_parts(comm_, executor_, part_, make);
@@ -103,11 +98,11 @@ class Parts {
   /// What is wanted keeps the sizes and the growth that the options allow, across ranks, too.
   void limit_sizes() {
     if (comm_.size() == 1) return;
-    const bool at_curves = bounds_curved_sizes(adapt_);
+    const bool at_curves = bounds_curved_sizes(options_.adapt);
     if (at_curves)
-      part_.wanted =
-          comm_.on_all([&] { return bound_at_curves<Dim>(executor_, part_, interfaces_, adapt_); });
-    const double growth = growth_of(adapt_);
+      part_.wanted = comm_.on_all(
+          [&] { return bound_at_curves<Dim>(executor_, part_, interfaces_, options_); });
+    const double growth = growth_of(options_.adapt);
     if (at_curves || growth > 0) grade<Dim>(comm_, executor_, part_, interfaces_, growth);
     end(Phase::gradation);
   }
@@ -131,9 +126,9 @@ class Parts {
   PassReport adapt(int pass) {
     const double begin = MPI_Wtime();
     auto adapted = comm_.on_all([&] {
-      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, adapt_);
+      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_);
       return adapt_zone<Dim>(executor_, part_, interfaces_, held_elements<Dim>(part_, layers),
-                             adapt_);
+                             options_);
     });
     part_ = std::move(adapted.part);
     interfaces_ = std::move(adapted.interfaces);
@@ -162,15 +157,15 @@ class Parts {
   /// A second pass always is: the interfaces of the first were there before. Without insertion no
   /// more can be done to what is blocked.
   bool is_worthwhile(const PassReport& report) const {
-    const auto& [insert, swap, move] = std::tie(adapt_.insert, adapt_.swap, adapt_.move);
+    const auto& [insert, swap, move] =
+        std::tie(options_.adapt.insert, options_.adapt.swap, options_.adapt.move);
     if (report.edges == 0 || !(insert || swap || move)) return false;
     return report.pass < 2 || (insert && report.blocked > 0);
   }
 
   const Communicator& comm_;
   const Executor& executor_;
-  const AdaptPartsOptions& options_;
-  meshadapt::AdaptOptions adapt_;  // with the geometry of all parts
+  AdaptPartsOptions options_;  // with the geometry of all parts
   Part part_;
   Interfaces interfaces_;
   std::array<Costs, phase_count> costs_ = {};  // [phase], of this rank

@@ -143,6 +143,9 @@ Part read_geometry(Input& input, const Executor& executor) {
                                 std::to_string(dimension) + ", found " +
                                 std::to_string(mesh.dimension));
   if (input.job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, mesh);
+  mesh.required_edges.clear();  // of no matter here
+  mesh.required_triangles.clear();
+  mesh.required_tetrahedra.clear();
   return part_of_file(std::move(mesh), {}, input.warnings).part;
 }
 
@@ -185,7 +188,9 @@ void tell_others(const Communicator& comm, Input& input) {
   from_first_rank(comm, input.form);
   from_first_rank(comm, input.dropped_axis);
   from_first_rank(comm, input.job.with_metric);
-  from_first_rank(comm, input.file.kept);
+  from_first_rank(comm, input.file.kept.vertices);
+  from_first_rank(comm, input.file.kept.facets);
+  from_first_rank(comm, input.file.kept.elements);
   std::vector<Told> fields, names;
   std::vector<char> output;
   comm.on_all([&] {
@@ -237,9 +242,14 @@ std::shared_ptr<const meshadapt::Geometry> geometry_of(const Communicator& comm,
                            input.job.adapt.make);
 }
 
-AdaptPartsOptions options_of(const Communicator& comm, const AdaptJob& job,
+AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
                              std::shared_ptr<const meshadapt::Geometry> geometry) {
+  const AdaptJob& job = input.job;
   AdaptPartsOptions options;
+  for (const KeptReference& kept : input.file.kept.facets)
+    options.required_facets.push_back(kept.label);
+  for (const KeptReference& kept : input.file.kept.elements)
+    options.required_elements.push_back(kept.label);
   options.adapt = job.adapt;
   options.adapt.make.geometry = std::move(geometry);
   options.adapt.make.complete_boundary = false;  // parts list theirs
@@ -349,7 +359,7 @@ void work(const Communicator& comm, const Executor& executor, Input& input, Carr
   if (input.job.memory) comm.on_all([&] { cli::limit_memory(*input.job.memory); });
   on_first_rank(comm, [&] { read_files(input, executor); });
   tell_others(comm, input);
-  const auto options = options_of(comm, input.job, geometry_of(comm, executor, input));
+  const auto options = options_of(comm, input, geometry_of(comm, executor, input));
   AdaptedParts parts = adapted(comm, executor, input.file.part, options);
   if (comm.rank() == 0 && input.job.verbosity > 1) print_costs(parts.last);
   const Costs before = comm.costs();

@@ -19,7 +19,7 @@ namespace ductile::petsc {
 struct DistributedResult {
   AdaptedParts parts;
   std::vector<meshadapt::NamedField> fields;
-  std::vector<KeptVertex> kept;
+  Kept kept;
   std::vector<meshadapt::ReferenceName> names;  ///< of references
   int dropped_axis = 2;                         ///< as AnyMesh has it
 };

@@ -85,7 +85,12 @@ AdaptedParts with_references(const DistributedResult& result) {
   AdaptedParts parts = result.parts;
   for (std::int32_t& reference : parts.part.mesh.vertex_reference)
     if (reference != unlabelled)
-      reference = result.kept[static_cast<std::size_t>(reference)].reference;
+      reference = result.kept.vertices[static_cast<std::size_t>(reference)].reference;
+  AnyMesh& mesh = parts.part.mesh;
+  auto& of_elements = mesh.dimension == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference;
+  restore_references(mesh.dimension == 2 ? mesh.edges.reference : mesh.triangles.reference,
+                     result.kept.facets);
+  restore_references(of_elements, result.kept.elements);
   return parts;
 }
 

@@ -63,7 +63,11 @@ def box(dim, n):
     return points, cells, listed
 
 
-def write_mesh(name, dim, points, cells, facets, kept=()):
+required_words = {2: ("RequiredEdges", "RequiredTriangles"), 3: ("RequiredTriangles", "RequiredTetrahedra")}
+
+
+def write_mesh(name, dim, points, cells, facets, kept=(), required=()):
+    """required: numbers of facets, and of cells"""
     names = {2: ("Edges", "Triangles"), 3: ("Triangles", "Tetrahedra")}[dim]
     with open(name, "w") as file:
         print("MeshVersionFormatted 2\nDimension", dim, "\nVertices", len(points), file=file)
@@ -75,6 +79,8 @@ def write_mesh(name, dim, points, cells, facets, kept=()):
                 print(*[c + 1 for c in corners], reference, file=file)
         if kept:
             print("RequiredVertices", len(kept), *[v + 1 for v in kept], file=file)
+        for word, numbers in zip(required_words[dim], required):
+            print(word, len(numbers), *[i + 1 for i in numbers], file=file)
         print("End", file=file)
 
 
@@ -96,7 +102,7 @@ def sections(name):
             each = width[word] or dim + 1
             count = int(next(words))
             found[word] = [[float(next(words)) for _ in range(each)] for _ in range(count)]
-        elif word in ("RequiredVertices", "SolAtVertices"):
+        elif word == "SolAtVertices" or word.startswith("Required"):
             count = int(next(words))
             skip = 2 if word == "SolAtVertices" else 0
             for _ in range(skip):
@@ -153,7 +159,8 @@ def small_near_middle(x):
 def try_box(dim, n):
     points, cells, facets = box(dim, n)
     kept = min(range(len(points)), key=lambda v: sum((a - 0.3) ** 2 for a in points[v]))
-    write_mesh("in.mesh", dim, points, cells, facets, [kept])
+    required = [[len(facets) // 2], [len(cells) // 2, len(cells) // 3]]
+    write_mesh("in.mesh", dim, points, cells, facets, [kept], required)
     write_sol("in.sol", dim, [small_near_middle(x) for x in points])
     u = [1 + x[0] * x[0] + (3 if x[1] > 0.5 else 0) for x in points]
     write_sol("u.sol", dim, u)
@@ -167,6 +174,13 @@ def try_box(dim, n):
     _, found = sections("out.mesh")
     stays = found["Vertices"][int(found["RequiredVertices"][0]) - 1][:dim]
     expect(stays == points[kept], f"{dim}D: a required vertex went to {stays}")
+    places = lambda of, corners: sorted(of[int(c)][:dim] for c in corners)
+    for word, list, numbers in zip(required_words[dim], ("facet", "cell"), required):
+        name = {"facet": ("Edges", "Triangles"), "cell": ("Triangles", "Tetrahedra")}[list][dim - 2]
+        old = sorted(places(points, (facets, cells)[list == "cell"][i][0]) for i in numbers)
+        new = [found[name][int(i) - 1] for i in found[word]]
+        new = sorted(places(found["Vertices"], [c - 1 for c in cell[:-1]]) for cell in new)
+        expect(old == new, f"{dim}D: required: {old} became {new}")
     carried = sections("out.u.sol")[1]["SolAtVertices"]
     expect(min(u) <= min(carried) and max(carried) <= max(u), f"{dim}D: bounds of a field are lost")
     old, new = integral("in.mesh", u), integral("out.mesh", carried)
