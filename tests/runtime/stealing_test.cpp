@@ -6,11 +6,13 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
 #include <ctime>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "spin.hpp"
 
@@ -158,15 +160,16 @@ TEST(StealBySignal, ReachesThreadsThatBlockAllSignals) {
   }).join();
 }
 
-/// Iterations take as long as a signal is worth, so that many signals come when their victim has
-/// too little left to give.
+/// A few iterations are long, so that those asked seem to have more left than they have: many
+/// signals come when there is too little to give.
 TEST(StealBySignal, RunsNothingTwiceThatWasRefused) {
-  for (int loop = 0; loop < 300; ++loop) {
-    std::vector<std::atomic<int>> runs(40);
+  for (std::uint32_t loop = 0; loop < 1000; ++loop) {
+    std::vector<std::atomic<int>> runs(90);
     parallel_for(Executor({.threads = 3}), runs.size(),
                  [&](std::size_t i) {
                    ++runs[i];
-                   spin(std::chrono::microseconds(i < 10 ? 30 : 11));
+                   const bool is_long = mix32(1000 * loop + static_cast<std::uint32_t>(i)) % 8 == 0;
+                   spin(std::chrono::nanoseconds(is_long ? 40000 : 500));
                  },
                  {.grain = 1, .schedule = Schedule::steal_by_signal});
     for (const auto& count : runs) ASSERT_EQ(count, 1) << loop;
