@@ -66,20 +66,19 @@ TYPED_TEST(RulesIn, AVertexOfTheBoundaryIsCollapsedAlongItOnly) {
   EXPECT_FALSE(op.keeps_geometry(1, 3));
 }
 
+/// Vertices of required elements are like corners.
 TYPED_TEST(RulesIn, NoCollapseChangesARequiredElement) {
   constexpr int Dim = TypeParam::value;
   AnyMesh any = pair_of<Dim>(0.5, 1);
   EdgeCollapse plan;
   auto free = made<Dim>(any);
-  EXPECT_TRUE(Coarsen<Dim>(free, {}).keeps_required(1));
   EXPECT_TRUE(Coarsen<Dim>(free, {}).decide(1, plan));
   require_first<Dim>(any);
   auto held = made<Dim>(any);
-  const Coarsen<Dim> op(held, {});
-  EXPECT_FALSE(op.keeps_required(0));
-  EXPECT_FALSE(op.keeps_required(1));
-  EXPECT_FALSE(op.decide(1, plan));
-  EXPECT_TRUE(op.keeps_required(2));
+  for (const VertexId v : held.corners_of[0]) {
+    EXPECT_EQ(held.kind_of[v].class_dimension, 0);
+    EXPECT_FALSE(Coarsen<Dim>(held, {}).decide(v, plan));
+  }
 }
 
 /// A collapse may make an edge longer than the rules want by 2 % of the longest that is there.
