@@ -105,4 +105,13 @@ class Swap {
   EdgeRange range_;
 };
 
+template <>
+runtime::UnsetVector<Swappable> Swap<2>::improvements(const runtime::Executor& executor,
+                                                      Mesh<2>& mesh, std::uint32_t after,
+                                                      double below, const EdgeRange& range);
+template <>
+runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& executor,
+                                                      Mesh<3>& mesh, std::uint32_t after,
+                                                      double below, const EdgeRange& range);
+
 }  // namespace ductile::meshadapt
