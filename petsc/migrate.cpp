@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 #include <utility>
 
 #include "ductile/meshadapt/metric.hpp"
@@ -137,6 +138,22 @@ Part assemble(std::vector<Vertex<Dim>> vertices, const std::vector<Simplex<Dim +
   return part;
 }
 
+/// The part made of what comes where elements go as target_of says; lists(those of all targets)
+/// are the lists for all ranks. Collective.
+template <int Dim>
+Part sent(const Communicator& comm, const Part& part, const std::vector<int>& target_of,
+          std::size_t targets, auto&& lists) {
+  const auto elements =
+      comm.exchange(comm.on_all([&] { return lists(elements_to<Dim>(part, target_of, targets)); }));
+  auto facets =
+      comm.exchange(comm.on_all([&] { return lists(facets_to<Dim>(part, target_of, targets)); }));
+  auto vertices =
+      comm.exchange(comm.on_all([&] { return lists(vertices_to<Dim>(part, target_of, targets)); }));
+  return comm.on_all([&] {
+    return assemble<Dim>(std::move(vertices.items), elements.items, std::move(facets.items));
+  });
+}
+
 }  // namespace
 
 std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfaces, Part& part) {
@@ -162,17 +179,20 @@ std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfa
 
 template <int Dim>
 Part migrate(const Communicator& comm, const Part& part, const std::vector<int>& target_of) {
-  const auto ranks = static_cast<std::size_t>(comm.size());
-  const auto elements =
-      comm.exchange(comm.on_all([&] { return elements_to<Dim>(part, target_of, ranks); }));
-  auto facets = comm.exchange(comm.on_all([&] { return facets_to<Dim>(part, target_of, ranks); }));
-  auto vertices =
-      comm.exchange(comm.on_all([&] { return vertices_to<Dim>(part, target_of, ranks); }));
-  return comm.on_all([&] {
-    return assemble<Dim>(std::move(vertices.items), elements.items, std::move(facets.items));
+  return sent<Dim>(comm, part, target_of, static_cast<std::size_t>(comm.size()),
+                   [](auto lists) { return lists; });
+}
+
+template <int Dim>
+Part gather_everywhere(const Communicator& comm, const Part& part) {
+  const std::vector<int> to_one(part.element_count(), 0);
+  return sent<Dim>(comm, part, to_one, 1, [&](const auto& lists) {
+    return std::decay_t<decltype(lists)>(static_cast<std::size_t>(comm.size()), lists.front());
   });
 }
 
+template Part gather_everywhere<2>(const Communicator&, const Part&);
+template Part gather_everywhere<3>(const Communicator&, const Part&);
 template Part migrate<2>(const Communicator&, const Part&, const std::vector<int>&);
 template Part migrate<3>(const Communicator&, const Part&, const std::vector<int>&);
 
