@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/first_bad.hpp"
+#include "core/unit.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/facet_sides.hpp"
@@ -37,8 +38,8 @@ std::vector<std::uint32_t> ReferenceSurface<Dim>::sheets_of(
     const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[facets[f].element], facets[f].facet);
     const Vector<Dim> normal = normal_of<Dim>(mesh, corners);
     const auto nearest =
-        surface->facets.nearest(centre_of<Dim>(mesh, corners), (1 / norm(normal)) * normal,
-                                reference_of, facets[f].data.reference, near * tolerance);
+        surface->facets.nearest(centre_of<Dim>(mesh, corners), unit(normal), reference_of,
+                                facets[f].data.reference, near * tolerance);
     if (!nearest) return;
     sheet_of[f] = nearest->sheet;
     distance_of[f] = is_smooth[nearest->sheet] != 0 ? nearest->distance : 0;
@@ -76,8 +77,8 @@ std::uint32_t ReferenceSurface<Dim>::sheet_of_edge(const std::array<Vector<Dim>,
   if (!surface) return none;
   const Vector<Dim> along = ends[1] - ends[0];
   const auto nearest =
-      surface->edges.nearest(0.5 * (ends[0] + ends[1]), (1 / norm(along)) * along,
-                             reference_of_curve, reference, fitting * surface->edges.tolerance());
+      surface->edges.nearest(0.5 * (ends[0] + ends[1]), unit(along), reference_of_curve, reference,
+                             fitting * surface->edges.tolerance());
   return nearest ? nearest->sheet : none;
 }
 
