@@ -76,7 +76,7 @@ void expect_alike(double least, double noise) {
   const auto [fewest, most] = std::minmax_element(counts.begin(), counts.end());
   EXPECT_LT(*most, 1.3 * *fewest);
   const double equilateral = 0.433 * size * size;
-  EXPECT_LT(*most, 1.4 * 12.57 / equilateral);  // where zeros are off, sizes see some of it
+  EXPECT_LT(*most, 1.25 * 12.57 / equilateral);
 }
 
 TEST(LevelSet, FiveGridsOfASphereGiveAsManyTriangles) { expect_alike(0, 0); }
