@@ -12,8 +12,8 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// Of the tolerance: as far away a facet may be from its sheet, and is looked for.
-constexpr double fitting = 2, near = 50;
+/// Of the tolerance: as far away a facet's sheet is looked for.
+constexpr double near = 50;
 
 template <int Dim>
 Vector<Dim> centre_of(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
