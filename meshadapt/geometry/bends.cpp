@@ -161,14 +161,15 @@ class BendsMaker {
   }
 
   void take_normals() {
-    constexpr double reach = 4;  // of the tolerance
+    constexpr double reach = 4;    // of the tolerance
+    constexpr double near = 0.95;  // cosine: what is not is the model of needles
     runtime::parallel_for(executor_, nodes_.size(), [&](std::size_t n) {
       BendNode<Dim>& node = nodes_[n];
       node.normal = unit(node.normal);
       const auto& model = mesh_.surface->facets;
       const auto nearest = model.nearest_on(at(node.vertex), mesh_.patches[node.patch].sheet,
                                             reach * model.tolerance());
-      if (nearest && std::abs(dot(nearest->direction, node.normal)) > 0.5)
+      if (nearest && std::abs(dot(nearest->direction, node.normal)) > near)
         node.normal = nearest->direction;
     });
   }
