@@ -25,7 +25,7 @@ Parameters parameters_of(const Communicator& comm, DM dm) {
   Parameters parameters;
   auto& adapt = parameters.options.adapt;
   adapt.gradation = parameter<PetscReal>(dm, DMPlexMetricGetGradationFactor);
-  adapt.required_gradation = 2.3;
+  adapt.required_gradation = gradation_at_interfaces;
   const double hausdorff = parameter<PetscReal>(dm, DMPlexMetricGetHausdorffNumber);
   if (comm.size() == 1 && hausdorff != hausdorff_of_nobody)
     adapt.make.hausdorff_tolerance = hausdorff;

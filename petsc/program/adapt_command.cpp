@@ -214,7 +214,8 @@ AdaptPartsOptions options_of(const Communicator& comm, const AdaptJob& job) {
   AdaptPartsOptions options;
   options.adapt = job.adapt;
   options.adapt.make.complete_boundary = false;  // parts list theirs
-  if (options.adapt.required_gradation <= 0) options.adapt.required_gradation = 2.3;
+  if (options.adapt.required_gradation <= 0)
+    options.adapt.required_gradation = gradation_at_interfaces;
   options.passes = 6;
   if (job.memory)
     options.adapt.memory_limit = *job.memory - std::min(runtime::held_memory(), *job.memory - 1);
