@@ -28,7 +28,7 @@ class Parts {
   AdaptedParts run() {
     std::vector<PassReport> reports;
     find_interfaces();
-    balance(beforehand);
+    if (share_out(Displaced::not_at_all, is_scattered() ? 0 : beforehand)) find_interfaces();
     end(Phase::balance);
     for (int pass = 1;; ++pass) {
       reports.push_back(adapt(pass));
@@ -37,12 +37,12 @@ class Parts {
       const std::int64_t before = pass == 1 ? 0 : reports[reports.size() - 2].blocked;
       if (pass >= options_.passes || !is_worthwhile(reports.back(), before)) break;
       constexpr std::array displaced{Displaced::not_at_all, Displaced::forth, Displaced::back};
-      share_out(displaced[static_cast<std::size_t>(pass) % displaced.size()]);
+      share_out(displaced[static_cast<std::size_t>(pass) % displaced.size()], 0);
       find_interfaces();
       end(Phase::migration);
     }
+    share_out(Displaced::not_at_all, at_the_end);
     find_interfaces();
-    balance(at_the_end);
     const std::int64_t own = number_vertices(comm_, interfaces_, part_);
     end(Phase::balance);
     return {std::move(part_), std::move(interfaces_), own, std::move(reports), take_costs()};
@@ -88,17 +88,13 @@ class Parts {
     return 4 * sums[0] > sums[1];  // facets count on both sides
   }
 
-  void balance(double accepted) {
-    if (comm_.size() == 1) return;
+  /// Unless loads differ by less than is accepted. Returns whether elements have moved.
+  bool share_out(Displaced displaced, double accepted) {
+    if (comm_.size() == 1) return false;
     const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(part_); });
-    if (imbalance(comm_, load_of) <= accepted && !is_scattered()) return;
-    share_out(Displaced::not_at_all);
-    find_interfaces();
-  }
-
-  void share_out(Displaced displaced) {
-    const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(part_); });
+    if (imbalance(comm_, load_of) <= accepted) return false;
     part_ = migrate<Dim>(comm_, part_, balanced<Dim>(comm_, part_, load_of, displaced));
+    return true;
   }
 
   PassReport adapt(int pass) {

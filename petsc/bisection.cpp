@@ -66,13 +66,13 @@ class Bisection {
   }
 
  private:
-  static constexpr std::size_t bins = 64;
-  static constexpr int searches = 4;
-  /// By how much planes are displaced, of what is before the plane between the last two ranks; of
-  /// the same width at all planes, so that few ranks have much more than others.
+  static constexpr std::size_t bins = 64, not_open = -1;
+  static constexpr int searches = 4;  // each in one of the bins of the last
+  /// How far planes are displaced: over this share of what is before the plane between two ranks,
+  /// and over about as much space between more, which is a smaller share of theirs.
   static constexpr double displacement = 0.3;
 
-  /// Axes are turned a little, so that elements in rows are not all at the same place.
+  /// Axes are turned a little, because in rows of elements many are at the same place along a side.
   static double along(const std::array<double, Dim>& x, std::size_t axis) {
     constexpr std::array<double, 3> turned{1, 0.01, 0.003};
     double sum = 0;
@@ -114,14 +114,13 @@ class Bisection {
 
   /// Divides each node of several ranks in two. Returns whether there were any.
   bool divide() {
-    constexpr std::size_t none = -1;
     std::vector<std::size_t> open;  // nodes
-    open_of_.assign(nodes_.size(), none);
-    for (std::size_t n = 0; n < nodes_.size(); ++n)
-      if (nodes_[n].count > 1) {
-        open_of_[n] = open.size();
-        open.push_back(n);
-      }
+    open_of_.assign(nodes_.size(), not_open);
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      if (nodes_[n].count == 1) continue;
+      open_of_[n] = open.size();
+      open.push_back(n);
+    }
     if (open.empty()) return false;
     const auto searches_of = search(open);
     const std::vector<std::int64_t> cut = cut_by(searches_of);
@@ -133,13 +132,17 @@ class Bisection {
       second_of.push_back(nodes_.size());
       split(open[i], axis_of[i], searches_of[i * Dim + axis_of[i]].range.low);
     }
-    for (std::size_t e = 0; e < elements_.size(); ++e) {
-      const std::size_t i = open_of_[node_of_[e]];
-      if (i == none) continue;
+    visit_open([&](std::size_t e, std::size_t i) {
       const double plane = searches_of[i * Dim + axis_of[i]].range.low;
       if (place_of_[e].middle[axis_of[i]] >= plane) node_of_[e] = second_of[i];
-    }
+    });
     return true;
+  }
+
+  /// Calls visit(element, open node) for the elements of these.
+  void visit_open(auto&& visit) const {
+    for (std::size_t e = 0; e < elements_.size(); ++e)
+      if (const std::size_t i = open_of_[node_of_[e]]; i != not_open) visit(e, i);
   }
 
   void split(std::size_t n, std::size_t axis, double plane) {
@@ -173,17 +176,16 @@ class Bisection {
   /// [open node, axis, bin] The loads of elements, of all ranks.
   std::vector<std::int64_t> loads_in(const std::vector<Search>& all) const {
     std::vector<std::int64_t> loads(all.size() * bins, 0);
-    for (std::size_t e = 0; e < elements_.size(); ++e) {
-      const std::size_t i = open_of_[node_of_[e]];
-      if (i >= all.size()) continue;
+    visit_open([&](std::size_t e, std::size_t i) {
       for (std::size_t axis = 0; axis < Dim; ++axis) {
         const auto& [low, high] = all[i * Dim + axis].range;
         const double at = place_of_[e].middle[axis];
-        if (at < low || at > high) continue;
-        const auto bin = static_cast<std::size_t>((at - low) / (high - low) * bins);
-        loads[(i * Dim + axis) * bins + std::min(bin, bins - 1)] += in_thousandths(load_of_[e]);
+        if (!(at >= low && at <= high)) continue;
+        const double share = high > low ? (at - low) / (high - low) : 0;
+        const auto bin = std::min(static_cast<std::size_t>(share * bins), bins - 1);
+        loads[(i * Dim + axis) * bins + bin] += in_thousandths(load_of_[e]);
       }
-    }
+    });
     return comm_.sums(std::move(loads));
   }
 
@@ -217,9 +219,7 @@ class Bisection {
   /// thousandths.
   std::vector<std::int64_t> cut_by(const std::vector<Search>& all) const {
     std::vector<std::int64_t> cut(all.size(), 0);
-    for (std::size_t e = 0; e < elements_.size(); ++e) {
-      const std::size_t i = open_of_[node_of_[e]];
-      if (i >= all.size()) continue;
+    visit_open([&](std::size_t e, std::size_t i) {
       const Place<Dim>& place = place_of_[e];
       for (std::size_t axis = 0; axis < Dim; ++axis) {
         const double plane = all[i * Dim + axis].range.low;
@@ -227,7 +227,7 @@ class Bisection {
         cut[i * Dim + axis] += in_thousandths(load_of_[e] * wanted_size(e, axis) /
                                               (place.high[axis] - place.low[axis]));
       }
-    }
+    });
     return comm_.sums(std::move(cut));
   }
 
@@ -250,7 +250,8 @@ class Bisection {
   std::vector<Place<Dim>> place_of_;  // [element]
   std::vector<std::size_t> node_of_;  // [element]
   std::vector<Node<Dim>> nodes_;
-  std::vector<std::size_t> open_of_;  // [node], its number among those that are divided
+  std::vector<std::size_t>
+      open_of_;  // [node], its number among those that are divided, or not_open
 };
 
 }  // namespace
