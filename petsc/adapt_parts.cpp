@@ -92,6 +92,7 @@ class Parts {
   bool share_out(Displaced displaced, double accepted) {
     if (comm_.size() == 1) return false;
     const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(part_); });
+    expect_countable(comm_, load_of);
     if (imbalance(comm_, load_of) <= accepted) return false;
     part_ = migrate<Dim>(comm_, part_, balanced<Dim>(comm_, part_, load_of, displaced));
     return true;

@@ -114,6 +114,13 @@ double imbalance(const Communicator& comm, const std::vector<double>& load_of) {
   return static_cast<double>(comm.largest(own)) * comm.size() / static_cast<double>(all);
 }
 
+void expect_countable(const Communicator& comm, const std::vector<double>& load_of) {
+  const double each = 1e-3 * static_cast<double>(comm.sum(in_thousandths(load_of))) / comm.size();
+  if (each > std::numeric_limits<std::uint32_t>::max())
+    throw meshadapt::InputError("metric: asks for about " + std::to_string(each) +
+                                " elements on each rank, more than 32 bits count");
+}
+
 template <int Dim>
 std::vector<int> balanced(const Communicator& comm, const Part& part,
                           const std::vector<double>& load_of, Displaced displaced) {

@@ -19,6 +19,11 @@ std::vector<double> predicted_elements(const Part& part);
 /// The largest load of a rank over the mean. Collective.
 double imbalance(const Communicator& comm, const std::vector<double>& load_of);
 
+/// Throws InputError, on all ranks, if loads are more elements than ranks can count. Where sizes
+/// are that small, a part of few elements has hardly a vertex that is not held, and would not see
+/// it. Collective.
+void expect_countable(const Communicator& comm, const std::vector<double>& load_of);
+
 /// The rank to which each element goes so that loads are about equal, except for what planes are
 /// displaced, and interfaces small; parts go to those ranks that have most of them. Every rank gets
 /// elements, unless there are fewer than ranks. Collective.

@@ -60,9 +60,11 @@ class Bisection {
   std::vector<int> run() {
     while (divide()) {
     }
-    std::vector<int> rank_of;
-    for (const std::size_t node : node_of_) rank_of.push_back(nodes_[node].first);
-    return rank_of;
+    return comm_.on_all([&] {
+      std::vector<int> rank_of;
+      for (const std::size_t node : node_of_) rank_of.push_back(nodes_[node].first);
+      return rank_of;
+    });
   }
 
  private:
@@ -175,6 +177,11 @@ class Bisection {
 
   /// [open node, axis, bin] The loads of elements, of all ranks.
   std::vector<std::int64_t> loads_in(const std::vector<Search>& all) const {
+    std::vector<std::int64_t> loads = comm_.on_all([&] { return own_loads_in(all); });
+    return comm_.sums(std::move(loads));
+  }
+
+  std::vector<std::int64_t> own_loads_in(const std::vector<Search>& all) const {
     std::vector<std::int64_t> loads(all.size() * bins, 0);
     visit_open([&](std::size_t e, std::size_t i) {
       for (std::size_t axis = 0; axis < Dim; ++axis) {
@@ -186,7 +193,7 @@ class Bisection {
         loads[(i * Dim + axis) * bins + bin] += in_thousandths(load_of_[e]);
       }
     });
-    return comm_.sums(std::move(loads));
+    return loads;
   }
 
   std::vector<std::int64_t> wanted_before(const std::vector<std::size_t>& open,
@@ -218,6 +225,11 @@ class Bisection {
   /// [open node, axis] How many of the elements that are wanted the plane would cut, in
   /// thousandths.
   std::vector<std::int64_t> cut_by(const std::vector<Search>& all) const {
+    std::vector<std::int64_t> cut = comm_.on_all([&] { return own_cut_by(all); });
+    return comm_.sums(std::move(cut));
+  }
+
+  std::vector<std::int64_t> own_cut_by(const std::vector<Search>& all) const {
     std::vector<std::int64_t> cut(all.size(), 0);
     visit_open([&](std::size_t e, std::size_t i) {
       const Place<Dim>& place = place_of_[e];
@@ -228,7 +240,7 @@ class Bisection {
                                               (place.high[axis] - place.low[axis]));
       }
     });
-    return comm_.sums(std::move(cut));
+    return cut;
   }
 
   /// Along an axis.
