@@ -4,12 +4,12 @@
 #include <tuple>
 #include <utility>
 
-#include "adapt_part.hpp"
 #include "adapt_zone.hpp"
 #include "balance.hpp"
 #include "grade.hpp"
 #include "held.hpp"
 #include "migrate.hpp"
+#include "parts_geometry.hpp"
 
 namespace ductile::petsc {
 
@@ -28,6 +28,8 @@ class Parts {
   AdaptedParts run() {
     std::vector<PassReport> reports;
     find_interfaces();
+    find_geometry();
+    limit_sizes();
     if (share_out(Displaced::not_at_all, is_scattered() ? 0 : beforehand)) find_interfaces();
     end(Phase::balance);
     for (int pass = 1;; ++pass) {
@@ -40,6 +42,7 @@ class Parts {
       share_out(displaced[static_cast<std::size_t>(pass) % displaced.size()], 0);
       find_interfaces();
       end(Phase::migration);
+      limit_sizes();
     }
     share_out(Displaced::not_at_all, at_the_end);
     find_interfaces();
@@ -80,6 +83,28 @@ class Parts {
     if (comm_.size() > 1) interfaces_ = petsc::find_interfaces<Dim>(comm_, part_);
   }
 
+  /// Boundaries are measured from what they are now, in all passes and on all ranks.
+  void find_geometry() {
+    auto& make = options_.adapt.make;
+    if (comm_.size() == 1 || make.geometry || make.hausdorff_tolerance == 0 || make.lock_boundary)
+      return;
+    make.geometry = geometry_of_parts(comm_, executor_, part_, make);
+    make.functions.clear();
+    end(Phase::balance);
+  }
+
+  /// What is wanted keeps the sizes and the growth that the options allow, across ranks, too.
+  void limit_sizes() {
+    if (comm_.size() == 1) return;
+    const bool at_curves = bounds_curved_sizes(options_.adapt);
+    if (at_curves)
+      part_.wanted = comm_.on_all(
+          [&] { return bound_at_curves<Dim>(executor_, part_, interfaces_, options_); });
+    const double growth = growth_of(options_.adapt);
+    if (at_curves || growth > 0) grade<Dim>(comm_, executor_, part_, interfaces_, growth);
+    end(Phase::gradation);
+  }
+
   /// Interfaces everywhere, as between parts of every second element, leave nothing to adapt and
   /// nowhere to displace them.
   bool is_scattered() const {
@@ -100,13 +125,10 @@ class Parts {
 
   PassReport adapt(int pass) {
     const double begin = MPI_Wtime();
-    if (comm_.size() > 1 && options_.adapt.gradation > 0)
-      grade<Dim>(comm_, executor_, part_, interfaces_, options_.adapt.gradation);
-    end(Phase::gradation);
     auto adapted = comm_.on_all([&] {
-      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_.adapt);
+      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_);
       return adapt_zone<Dim>(executor_, part_, interfaces_, held_elements<Dim>(part_, layers),
-                             options_.adapt);
+                             options_);
     });
     part_ = std::move(adapted.part);
     interfaces_ = std::move(adapted.interfaces);
@@ -151,7 +173,7 @@ class Parts {
 
   const Communicator& comm_;
   const Executor& executor_;
-  const AdaptPartsOptions& options_;
+  AdaptPartsOptions options_;  // with the geometry of all parts
   Part part_;
   Interfaces interfaces_;
   std::array<Costs, phase_count> costs_ = {};  // [phase], of this rank

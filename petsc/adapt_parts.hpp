@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "adapt_part.hpp"
 #include "communicator.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -40,8 +41,7 @@ struct PassReport {
 /// ones along the interface are tried again and again, for nothing.
 inline constexpr double gradation_at_interfaces = 60;
 
-struct AdaptPartsOptions {
-  meshadapt::AdaptOptions adapt = {};                ///< required_gradation holds at interfaces
+struct AdaptPartsOptions : AdaptPartOptions {
   int passes = 3;                                    ///< at most; at least one is made
   std::function<void(const PassReport&)> told = {};  ///< called after each pass, on all ranks
 };

@@ -15,13 +15,13 @@ namespace ductile::petsc {
 template <int Dim>
 AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
                        const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held,
-                       const meshadapt::AdaptOptions& options);
+                       const AdaptPartOptions& options);
 
 extern template AdaptedPart adapt_zone<2>(const runtime::Executor&, const Part&, const Interfaces&,
                                           const std::vector<std::uint8_t>&,
-                                          const meshadapt::AdaptOptions&);
+                                          const AdaptPartOptions&);
 extern template AdaptedPart adapt_zone<3>(const runtime::Executor&, const Part&, const Interfaces&,
                                           const std::vector<std::uint8_t>&,
-                                          const meshadapt::AdaptOptions&);
+                                          const AdaptPartOptions&);
 
 }  // namespace ductile::petsc

@@ -189,6 +189,15 @@ class Assembly {
   std::vector<VertexId> now_;  // [received vertex]
 };
 
+/// The part made of what all ranks send. Collective.
+template <int Dim>
+Part received(const Communicator& comm, const Sent<Dim>& sent) {
+  const auto elements = comm.exchange(sent.elements);
+  const auto facets = comm.exchange(sent.facets);
+  const auto vertices = comm.exchange(sent.vertices);
+  return comm.on_all([&] { return Assembly<Dim>(vertices).part(elements, facets); });
+}
+
 }  // namespace
 
 std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfaces, Part& part) {
@@ -214,14 +223,25 @@ std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfa
 
 template <int Dim>
 Part migrate(const Communicator& comm, const Part& part, const std::vector<int>& target_of) {
-  const Sent<Dim> sent = comm.on_all(
-      [&] { return Sender<Dim>(part, target_of, static_cast<std::size_t>(comm.size())).lists(); });
-  const auto elements = comm.exchange(sent.elements);
-  const auto facets = comm.exchange(sent.facets);
-  const auto vertices = comm.exchange(sent.vertices);
-  return comm.on_all([&] { return Assembly<Dim>(vertices).part(elements, facets); });
+  return received<Dim>(comm, comm.on_all([&] {
+    return Sender<Dim>(part, target_of, static_cast<std::size_t>(comm.size())).lists();
+  }));
 }
 
+template <int Dim>
+Part gather_everywhere(const Communicator& comm, const Part& part) {
+  return received<Dim>(comm, comm.on_all([&] {
+    Sent<Dim> sent = Sender<Dim>(part, std::vector<int>(part.element_count(), 0), 1).lists();
+    const auto ranks = static_cast<std::size_t>(comm.size());
+    sent.elements.resize(ranks, sent.elements.front());
+    sent.facets.resize(ranks, sent.facets.front());
+    sent.vertices.resize(ranks, sent.vertices.front());
+    return sent;
+  }));
+}
+
+template Part gather_everywhere<2>(const Communicator&, const Part&);
+template Part gather_everywhere<3>(const Communicator&, const Part&);
 template Part migrate<2>(const Communicator&, const Part&, const std::vector<int>&);
 template Part migrate<3>(const Communicator&, const Part&, const std::vector<int>&);
 

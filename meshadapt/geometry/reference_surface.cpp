@@ -12,8 +12,8 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// Of the tolerance: as far away a facet may be from its sheet, and is looked for.
-constexpr double fitting = 2, near = 50;
+/// Of the tolerance: as far away a facet's sheet is looked for.
+constexpr double near = 50;
 
 template <int Dim>
 Vector<Dim> centre_of(const Mesh<Dim>& mesh, const Facet<Dim>& facet) {
@@ -33,6 +33,7 @@ std::vector<std::uint32_t> ReferenceSurface<Dim>::sheets_of(
   const double tolerance = surface->facets.tolerance();
   std::vector<double> distance_of(facets.size());
   runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
+    if (facets[f].data.required) return;
     const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[facets[f].element], facets[f].facet);
     const Vector<Dim> normal = normal_of<Dim>(mesh, corners);
     const auto nearest =
@@ -47,7 +48,10 @@ std::vector<std::uint32_t> ReferenceSurface<Dim>::sheets_of(
   };
   const bool bends =
       std::any_of(is_smooth.begin(), is_smooth.end(), [](std::uint8_t is) { return is != 0; });
-  if (bends && std::none_of(sheet_of.begin(), sheet_of.end(), is_curved))
+  const bool is_free = std::any_of(facets.begin(), facets.end(), [](const TaggedFacet<Dim>& facet) {
+    return !facet.data.required;
+  });
+  if (!in_parts && bends && is_free && std::none_of(sheet_of.begin(), sheet_of.end(), is_curved))
     throw InputError("geometry: none of the facets of the mesh is within " +
                      number(near * tolerance) +
                      " of one of its curved boundaries with the same reference; expected the "

@@ -17,9 +17,6 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// Of the tolerance: as far as vertices may be from the function of their surface.
-constexpr double fitting = 2;
-
 template <int Dim>
 class SurfaceMaker {
  public:

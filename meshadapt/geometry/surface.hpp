@@ -26,6 +26,9 @@ struct Surface {
   Edges edges;    ///< of smooth curves, by CurveId; 3D only
 };
 
+/// Of the tolerance: as far a mesh may be from the surface that is given for it.
+inline constexpr double fitting = 2;
+
 /// An edge of a curve, in 3D.
 struct SurfaceEdge {
   VertexId a, b;

@@ -12,7 +12,7 @@
 namespace ductile::meshadapt {
 
 /// How far a mesh reaches, and how far its boundary may go astray: what counts as flat is so by
-/// this fraction of the extent (see classify.cpp), and coordinates are rounded.
+/// this fraction of the extent (see boundary_parts.cpp), and coordinates are rounded.
 struct Scale {
   double extent = 0, slack = 0;
 };

@@ -1,7 +1,7 @@
 /// @file
-/// Ball: the elements around a vertex as bases under an apex that may move (base.hpp), eight side
-/// by side (lanes.hpp). Determinants and sums of squared lengths are double, as terms may cancel in
-/// them; what follows from these is float, like the qualities that a mesh keeps.
+/// VertexBall: the elements around a vertex as bases under an apex that may move (base.hpp), eight
+/// side by side (lanes.hpp). Determinants and sums of squared lengths are double, as terms may
+/// cancel in them; what follows from these is float, like the qualities that a mesh keeps.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ struct BallQualities {
 };
 
 template <int Dim>
-class Ball {
+class VertexBall {
  public:
   struct Score {
     double worst = 0, sum = 0;
@@ -51,7 +51,7 @@ class Ball {
   };
   using Qualities = BallQualities<Dim>;
 
-  Ball(const Mesh<Dim>& mesh, VertexId vertex)
+  VertexBall(const Mesh<Dim>& mesh, VertexId vertex)
       : vertex_(vertex),
         origin_(mesh.site_of[vertex].position),
         size_(mesh.elements_of.of(vertex).size()) {

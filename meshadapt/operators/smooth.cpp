@@ -93,7 +93,7 @@ bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
   const auto is_good = [&](ElementId e) { return mesh_.quality_of[e] >= good_enough; };
   if (!options_.laplacian && std::all_of(elements.begin(), elements.end(), is_good)) return false;
   background_.prefetch_corners(mesh_.host_of[vertex]);
-  const Ball<Dim> ball(mesh_, vertex);
+  const VertexBall<Dim> ball(mesh_, vertex);
   std::array<Place, 2> places{Place{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present()}};
   bool moved = options_.laplacian && relax(vertex, ball, places[0], places[1]);
   Place& best = places[moved ? 1 : 0];
@@ -135,7 +135,7 @@ bool Smooth<Dim>::settle(VertexId vertex, Place& best) const {
   const Vector<Dim> step = *target - from;
   if (norm(step) <= close * mesh_.surface->facets.tolerance()) return false;
   background_.prefetch_corners(mesh_.host_of[vertex]);
-  const Ball<Dim> ball(mesh_, vertex);
+  const VertexBall<Dim> ball(mesh_, vertex);
   const Place here{mesh_.site_of[vertex], mesh_.host_of[vertex], ball.present()};
   for (const double fraction : {1.0, 0.5, 0.25})
     if (place(ball, from + fraction * step, here, {kept * here.score.worst, 0}, best)) return true;
@@ -196,7 +196,7 @@ bool Smooth<Dim>::keeps_lengths(VertexId vertex, const Site<Dim>& site) const {
 /// metric were the same there as nearby, as that needs no search; and a place with positive volumes
 /// lies inside the domain.
 template <int Dim>
-bool Smooth<Dim>::place(const Ball<Dim>& ball, const Vector<Dim>& position, const Place& near,
+bool Smooth<Dim>::place(const VertexBall<Dim>& ball, const Vector<Dim>& position, const Place& near,
                         const Score& bar, Place& result) const {
   const auto beats_bar = [&](const Score& score) { return score.worst > 0 && score.sum > bar.sum; };
   if (!beats_bar(ball.score({position, near.site.metric, near.site.scale}, bar.worst)))
@@ -279,7 +279,7 @@ std::optional<Vector<Dim>> Smooth<Dim>::stepped(VertexId vertex, const Vector<Di
 
 /// Goes towards where the elements want it as far as their qualities get better.
 template <int Dim>
-bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, const Place& from,
+bool Smooth<Dim>::relax(VertexId vertex, const VertexBall<Dim>& ball, const Place& from,
                         Place& to) const {
   const Vector<Dim> step = allowed(vertex, ball.mean_pull(from.site));
   if (squared_length(from.site.metric, step) < 1e-4) return false;
@@ -296,7 +296,7 @@ bool Smooth<Dim>::relax(VertexId vertex, const Ball<Dim>& ball, const Place& fro
 /// in which the harmonic mean of all qualities rises most. It is sought in the space where the
 /// metric is the identity, lest the thin direction hide the others.
 template <int Dim>
-Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim,
+Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const VertexBall<Dim>& ball, Aim aim,
                                 const Place& at) const {
   const PrincipalAxes<Dim> axes = principal_axes(at.site.metric);
   Buffer<Vector<Dim>, 16> gradients;
@@ -327,7 +327,7 @@ Vector<Dim> Smooth<Dim>::ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim,
 
 /// The sum of the inverse qualities around the vertex if it were at this site.
 template <int Dim>
-double Smooth<Dim>::inverse_qualities(const Ball<Dim>& ball, const Site<Dim>& site) {
+double Smooth<Dim>::inverse_qualities(const VertexBall<Dim>& ball, const Site<Dim>& site) {
   double sum = 0;
   ball.visit_qualities(site, [&](std::size_t, double quality) { sum += 1 / quality; });
   return sum;
@@ -335,7 +335,8 @@ double Smooth<Dim>::inverse_qualities(const Ball<Dim>& ball, const Site<Dim>& si
 
 /// Climbs the worst quality around the vertex, or the harmonic mean of all, by line searches.
 template <int Dim>
-bool Smooth<Dim>::optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const {
+bool Smooth<Dim>::optimise(VertexId vertex, const VertexBall<Dim>& ball, Aim aim,
+                           Place& best) const {
   constexpr int climbs = 4, halvings = 5;
   bool moved = false;
   Place trial;

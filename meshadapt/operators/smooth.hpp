@@ -88,7 +88,7 @@ class Smooth {
  private:
   /// What is climbed: the worst quality around, or the harmonic mean of all.
   enum class Aim : std::uint8_t { worst, mean };
-  using Score = typename Ball<Dim>::Score;
+  using Score = typename VertexBall<Dim>::Score;
   struct Place {
     Site<Dim> site;
     ElementId host;
@@ -97,7 +97,7 @@ class Smooth {
   };
   void move(VertexId vertex, const Plan& plan);
   bool follow(VertexId vertex, const Place& best, Plan& plan) const;
-  bool place(const Ball<Dim>& ball, const Vector<Dim>& position, const Place& near,
+  bool place(const VertexBall<Dim>& ball, const Vector<Dim>& position, const Place& near,
              const Score& bar, Place& result) const;
   Vector<Dim> allowed(VertexId vertex, Vector<Dim> displacement) const;
   Vector<Dim> tangent(VertexId vertex) const;
@@ -106,10 +106,10 @@ class Smooth {
                                      const Vector<Dim>& step) const;
   bool follows_function(VertexId vertex) const;
   bool settle(VertexId vertex, Place& best) const;
-  bool relax(VertexId vertex, const Ball<Dim>& ball, const Place& from, Place& to) const;
-  bool optimise(VertexId vertex, const Ball<Dim>& ball, Aim aim, Place& best) const;
-  Vector<Dim> ascent(VertexId vertex, const Ball<Dim>& ball, Aim aim, const Place& at) const;
-  static double inverse_qualities(const Ball<Dim>& ball, const Site<Dim>& site);
+  bool relax(VertexId vertex, const VertexBall<Dim>& ball, const Place& from, Place& to) const;
+  bool optimise(VertexId vertex, const VertexBall<Dim>& ball, Aim aim, Place& best) const;
+  Vector<Dim> ascent(VertexId vertex, const VertexBall<Dim>& ball, Aim aim, const Place& at) const;
+  static double inverse_qualities(const VertexBall<Dim>& ball, const Site<Dim>& site);
 
   Mesh<Dim>& mesh_;
   const Background<Dim>& background_;

@@ -4,6 +4,7 @@
 /// matter, and needs no more than the meshes and what the case promises.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct Promise {
 };
 
 using Faults = std::vector<std::string>;
+
+/// Adds "KIND: COUNT WHAT" to the faults; nothing if there are none of it.
+inline void report(const std::string& kind, std::size_t count, const std::string& what,
+                   Faults& faults) {
+  if (count > 0) faults.push_back(kind + ": " + std::to_string(count) + " " + what);
+}
 
 /// Is it a mesh: indices, volumes, facets, lists?
 Faults check_structure(const Mesh& mesh, bool unlisted_boundary = false);

@@ -53,12 +53,9 @@ void check_definite(const Field& metric, const Promise& promise, Faults& faults)
     if (promise.largest_size > 0 && beyond(value, metric.dimension, promise.largest_size, 1))
       ++too_large;
   }
-  const auto report = [&](std::size_t count, const std::string& what) {
-    if (count > 0) faults.push_back("metric: " + std::to_string(count) + " " + what);
-  };
-  report(indefinite, "tensors that are not positive definite");
-  report(too_small, "sizes below -hmin");
-  report(too_large, "sizes above -hmax");
+  report("metric", indefinite, "tensors that are not positive definite", faults);
+  report("metric", too_small, "sizes below -hmin", faults);
+  report("metric", too_large, "sizes above -hmax", faults);
 }
 
 /// Edges that no kernel may change: required ones and those between two required vertices.

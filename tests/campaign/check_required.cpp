@@ -23,10 +23,6 @@ struct Found {
   bool marked = false;
 };
 
-void report(std::size_t count, const std::string& what, Faults& faults) {
-  if (count > 0) faults.push_back("required: " + std::to_string(count) + " " + what);
-}
-
 /// What the list `name` names, as cells with references.
 Cells named(const Mesh& mesh, int corners) {
   if (corners > 1) return mesh.cells_of(corners);
@@ -69,9 +65,9 @@ void compare(const Mesh& before, const Mesh& after, const std::string& name, int
     if (found->second.references.count(old_cells.reference[static_cast<std::size_t>(index)]) == 0)
       ++changed;
   }
-  report(lost, name + " lost", faults);
-  report(unmarked, name + " no longer marked", faults);
-  report(changed, name + " with another reference", faults);
+  report("required", lost, name + " lost", faults);
+  report("required", unmarked, name + " no longer marked", faults);
+  report("required", changed, name + " with another reference", faults);
 }
 
 }  // namespace

@@ -36,11 +36,6 @@ bool indices_in_range(const Mesh& mesh, Faults& faults) {
   return true;
 }
 
-/// `what` with how many there are; nothing if there are none.
-void report(std::size_t count, const std::string& what, Faults& faults) {
-  if (count > 0) faults.push_back("structure: " + std::to_string(count) + " " + what);
-}
-
 void check_elements(const Mesh& mesh, Faults& faults) {
   std::size_t flat = 0;
   std::set<int> used;
@@ -51,9 +46,9 @@ void check_elements(const Mesh& mesh, Faults& faults) {
     seen.insert(key_of(element));
   }
   used.erase(-1);
-  report(flat, "elements without a positive volume", faults);
-  report(mesh.elements().size() - seen.size(), "elements there twice", faults);
-  report(mesh.points.size() - used.size(), "vertices of no element", faults);
+  report("structure", flat, "elements without a positive volume", faults);
+  report("structure", mesh.elements().size() - seen.size(), "elements there twice", faults);
+  report("structure", mesh.points.size() - used.size(), "vertices of no element", faults);
 }
 
 /// Two elements on the same side of their facet see it turned the same way.
@@ -80,11 +75,11 @@ void check_facets(const Mesh& mesh, bool unlisted_boundary, Faults& faults) {
     if (facet.elements.empty()) ++astray;
     if (facet.listed.size() > 1) ++twice;
   }
-  report(crowded, "facets with more than two elements", faults);
-  report(overlapping, "facets with both elements on one side", faults);
-  if (!unlisted_boundary) report(unlisted, "boundary facets not listed", faults);
-  report(astray, "listed facets of no element", faults);
-  report(twice, "facets listed twice", faults);
+  report("structure", crowded, "facets with more than two elements", faults);
+  report("structure", overlapping, "facets with both elements on one side", faults);
+  if (!unlisted_boundary) report("structure", unlisted, "boundary facets not listed", faults);
+  report("structure", astray, "listed facets of no element", faults);
+  report("structure", twice, "facets listed twice", faults);
 }
 
 void check_lines(const Mesh& mesh, Faults& faults) {
@@ -97,8 +92,8 @@ void check_lines(const Mesh& mesh, Faults& faults) {
     if (!std::binary_search(edges.begin(), edges.end(), edge)) ++astray;
     seen.insert(edge);
   }
-  report(astray, "listed edges of no element", faults);
-  report(mesh.cells_of(2).size() - seen.size(), "edges listed twice", faults);
+  report("structure", astray, "listed edges of no element", faults);
+  report("structure", mesh.cells_of(2).size() - seen.size(), "edges listed twice", faults);
 }
 
 }  // namespace

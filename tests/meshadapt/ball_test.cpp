@@ -70,7 +70,7 @@ TYPED_TEST(BallOf, GivesTheQualitiesOfTheElementsAround) {
   for (int trial = 0; trial < 10; ++trial) {
     const Mesh<Dim> mesh = wild_mesh<Dim>(random);
     for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
-      const Ball<Dim> ball(mesh, v);
+      const VertexBall<Dim> ball(mesh, v);
       const Site<Dim> apex = moved(mesh, v, random, v % 2 == 0 ? 0.03 : 0.4);
       const auto expected = qualities_by_definition(mesh, v, apex);
       ASSERT_EQ(ball.size(), expected.size());
@@ -85,7 +85,7 @@ TYPED_TEST(BallOf, GivesTheQualitiesOfTheElementsAround) {
       EXPECT_NEAR(score.worst, worst, 1e-6 * worst);
       EXPECT_NEAR(score.sum, std::accumulate(expected.begin(), expected.end(), 0.0), 1e-5);
       EXPECT_LT(ball.score(apex, worst * 1.01).worst, 0);
-      typename Ball<Dim>::Qualities qualities;
+      typename VertexBall<Dim>::Qualities qualities;
       ball.score(apex, 0, qualities);
       for (std::size_t i = 0; i < std::min(expected.size(), qualities.most); ++i)
         EXPECT_NEAR(qualities[i], expected[i], 1e-6 * expected[i]);
@@ -105,7 +105,7 @@ TYPED_TEST(BallOf, KnowsTheQualitiesThatThereAre) {
       worst = std::min<double>(worst, mesh.quality_of[e]);
       sum += mesh.quality_of[e];
     }
-    const auto present = Ball<Dim>(mesh, v).present();
+    const auto present = VertexBall<Dim>(mesh, v).present();
     EXPECT_EQ(present.worst, worst);
     EXPECT_NEAR(present.sum, sum, 1e-5);
   }
@@ -141,7 +141,7 @@ TYPED_TEST(BallOf, IsCertainOnlyOfVolumesThatArePositive) {
       const double share = 1 - std::pow(10.0, uniform(random, -17, 0));
       for (const VertexId corner : facet)
         apex.position += (share / Dim) * (mesh.site_of[corner].position - mesh.site_of[v].position);
-      const Ball<Dim> ball(mesh, v);
+      const VertexBall<Dim> ball(mesh, v);
       const auto score = ball.score(apex, 0);
       if (!(score.worst > 0)) continue;
       if (!ball.is_certain(score.volume, apex.position)) {
@@ -174,7 +174,7 @@ TYPED_TEST(BallOf, RefusesAnApexThatIsNowhere) {
   undecided.metric.m.fill(nothing);
   undecided.scale = dense.scale = nothing;
   for (const Site<Dim>& apex : {nowhere, undecided, dense})
-    EXPECT_LT(Ball<Dim>(mesh, 0).score(apex, 0).worst, 0);
+    EXPECT_LT(VertexBall<Dim>(mesh, 0).score(apex, 0).worst, 0);
 }
 
 TYPED_TEST(BallOf, GivesTheGradientsOfQualities) {
@@ -183,7 +183,7 @@ TYPED_TEST(BallOf, GivesTheGradientsOfQualities) {
   Random random(32);
   const Mesh<Dim> mesh = wild_mesh<Dim>(random);
   for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
-    const Ball<Dim> ball(mesh, v);
+    const VertexBall<Dim> ball(mesh, v);
     const Site<Dim>& here = mesh.site_of[v];
     const auto qualities = qualities_by_definition(mesh, v, here);
     for (int axis = 0; axis < Dim; ++axis) {
@@ -216,7 +216,7 @@ TEST(Ball, PullsToWhereElementsAreRegular) {
     if (mesh.elements_of.of(v).size() != 6) continue;
     const Vector<2> off{{0.1, -0.05}};
     mesh.site_of[v].position += off;
-    const Vector<2> pull = Ball<2>(mesh, v).mean_pull(mesh.site_of[v]);
+    const Vector<2> pull = VertexBall<2>(mesh, v).mean_pull(mesh.site_of[v]);
     EXPECT_NEAR(pull[0], -off[0], 1e-6);
     EXPECT_NEAR(pull[1], -off[1], 1e-6);
     return;

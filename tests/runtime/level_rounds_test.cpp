@@ -12,6 +12,7 @@
 #include "ductile/runtime/checked_rounds.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "expect_caught.hpp"
 #include "rounds_support.hpp"
 
 namespace ductile::runtime::test {
@@ -212,16 +213,6 @@ TEST(LevelRounds, PassOnWhatOperatorsThrow) {
 }
 
 // ---- What is checked ----
-
-template <class Op>
-void expect_caught(ContractRule rule, Op op, std::vector<typename Op::Item> work) {
-  try {
-    run_rounds_checked(Executor({.threads = 2}), op, std::move(work));
-    ADD_FAILURE() << "nothing was caught, rule " << static_cast<int>(rule);
-  } catch (const ContractBroken& broken) {
-    EXPECT_EQ(static_cast<int>(broken.rule()), static_cast<int>(rule)) << broken.what();
-  }
-}
 
 TEST(LevelRounds, AreCheckedForReachesAndOrder) {
   const Elimination hidden(1, 80, 110, {.hides_neighbours = true});

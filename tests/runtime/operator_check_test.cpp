@@ -6,23 +6,12 @@
 #include "ductile/runtime/checked_rounds.hpp"
 #include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "expect_caught.hpp"
 #include "rounds_support.hpp"
 #include "split_intervals.hpp"
 
 namespace ductile::runtime::test {
 namespace {
-
-/// Expects that the operator is caught breaking the rule.
-template <class Op>
-void expect_caught(ContractRule rule, Op op, std::vector<typename Op::Item> work,
-                   Strategy strategy = Strategy::automatic) {
-  try {
-    run_rounds_checked(Executor({.threads = 2}), op, std::move(work), {.strategy = strategy});
-    ADD_FAILURE() << "nothing was caught, rule " << static_cast<int>(rule);
-  } catch (const ContractBroken& broken) {
-    EXPECT_EQ(static_cast<int>(broken.rule()), static_cast<int>(rule)) << broken.what();
-  }
-}
 
 TEST(OperatorCheck, FindsEachFaultOfAnOperatorThatMakesThings) {
   struct Case {
