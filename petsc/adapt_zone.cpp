@@ -171,7 +171,7 @@ AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
                        const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held,
                        const AdaptPartOptions& options) {
   const auto held = static_cast<std::size_t>(std::count(is_held.begin(), is_held.end(), 1));
-  if (2 * held > is_held.size()) return adapt_part<Dim>(executor, part, interfaces, options);
+  if (held == is_held.size()) return adapt_part<Dim>(executor, part, interfaces, options);
   if (held > 0) return Zone<Dim>(part, interfaces, is_held).adapt(executor, options);
   AdaptedPart result{part, interfaces, {}};
   result.interfaces.facets.clear();

@@ -11,7 +11,7 @@
 namespace ductile::petsc {
 
 /// As adapt_part() of the elements that `is_held` marks, with what they share with others required
-/// too. If these are most of the part, all of it is adapted.
+/// too.
 template <int Dim>
 AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
                        const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held,

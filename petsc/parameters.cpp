@@ -27,7 +27,7 @@ Parameters parameters_of(DM dm) {
   Parameters parameters;
   auto& adapt = parameters.options.adapt;
   adapt.gradation = parameter<PetscReal>(dm, DMPlexMetricGetGradationFactor);
-  adapt.required_gradation = 2.3;
+  adapt.required_gradation = gradation_at_interfaces;
   const double hausdorff = parameter<PetscReal>(dm, DMPlexMetricGetHausdorffNumber);
   if (hausdorff > 0 && (hausdorff != hausdorff_of_nobody || has_geometry(dm)))
     adapt.make.hausdorff_tolerance = hausdorff;

@@ -86,7 +86,7 @@ AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
   options.adapt.make.geometry = std::move(geometry);
   options.adapt.make.complete_boundary = false;  // parts list theirs
   if (options.adapt.required_gradation <= 0 && comm.size() > 1)
-    options.adapt.required_gradation = 2.3;
+    options.adapt.required_gradation = gradation_at_interfaces;
   options.passes = 6;
   if (job.memory)
     options.adapt.memory_limit = *job.memory - std::min(runtime::held_memory(), *job.memory - 1);
@@ -225,8 +225,8 @@ void print_help_of_adapt() {
   cli::Command command = cli::adapt_command;
   command.summary = "adapts a mesh to a metric, on all ranks that mpirun starts";
   command.details =
-      "The first rank reads; PT-Scotch shares elements out; each rank adapts its part, and passes\n"
-      "go on until nothing is held between parts. The same number of ranks gives the same bytes,\n"
+      "The first rank reads; planes share elements out; each rank adapts its part, and passes\n"
+      "go on until hardly anything is held between parts. The same number of ranks gives the same bytes,\n"
       "whatever the number of threads.";
   command.options = options;
   cli::print_help(command, "mpirun -n N ductile-mpi");
