@@ -30,9 +30,9 @@ class Parts {
     std::vector<PassReport> reports;
     find_interfaces();
     find_geometry();
-    limit_sizes();
     balance(beforehand);
     end(Phase::balance);
+    limit_sizes();
     for (int pass = 1;; ++pass) {
       reports.push_back(adapt(pass));
       reports.back().costs = take_costs();
