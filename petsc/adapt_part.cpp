@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/transfer.hpp"
@@ -15,9 +16,19 @@ using runtime::Executor;
 
 namespace {
 
+/// Adds the indices of those that have one of some references.
+void add_with(std::vector<std::uint32_t>& indices, const std::vector<std::int32_t>& reference_of,
+              const std::vector<std::int32_t>& references) {
+  if (references.empty()) return;
+  for (std::uint32_t i = 0; i < reference_of.size(); ++i)
+    if (std::binary_search(references.begin(), references.end(), reference_of[i]))
+      indices.push_back(i);
+}
+
 /// Requires what must stay, and marks the vertices among it by references: their index, plus 1.
 template <int Dim>
-AnyMesh with_required(const Part& part, const Interfaces& interfaces) {
+AnyMesh with_required(const Part& part, const Interfaces& interfaces,
+                      const AdaptPartOptions& options) {
   AnyMesh mesh = part.mesh;
   const auto require = [&](VertexId v) {
     if (mesh.vertex_reference[v] != 0) return;
@@ -30,6 +41,9 @@ AnyMesh with_required(const Part& part, const Interfaces& interfaces) {
     if (part.mesh.vertex_reference[v] != unlabelled) require(v);
   auto& required = Dim == 2 ? mesh.required_edges : mesh.required_triangles;
   for (const SharedFacet& shared : interfaces.facets) required.push_back(shared.facet);
+  add_with(required, meshadapt::facets_in<Dim>(mesh).reference, options.required_facets);
+  add_with(Dim == 2 ? mesh.required_triangles : mesh.required_tetrahedra,
+           meshadapt::elements_in<Dim>(mesh).reference, options.required_elements);
   return mesh;
 }
 
@@ -90,14 +104,14 @@ void list_boundary(const Executor& executor, Part& part) {
 
 template <int Dim>
 AdaptedPart adapt_part(const Executor& executor, Part part, const Interfaces& interfaces,
-                       const meshadapt::AdaptOptions& options) {
+                       const AdaptPartOptions& options) {
   AdaptedPart result{{}, interfaces, {}};
   if (part.element_count() == 0) {
     result.part = std::move(part);
     return result;
   }
-  auto [mesh, metric, report] =
-      meshadapt::adapt(executor, with_required<Dim>(part, interfaces), part.wanted, options);
+  auto [mesh, metric, report] = meshadapt::adapt(
+      executor, with_required<Dim>(part, interfaces, options), part.wanted, options.adapt);
   result.report = std::move(report);
   result.part.mesh = std::move(mesh);
   AnyMesh& after = result.part.mesh;
@@ -106,6 +120,7 @@ AdaptedPart adapt_part(const Executor& executor, Part part, const Interfaces& in
   after.required_vertices.clear();
   after.required_edges.clear();
   after.required_triangles.clear();
+  after.required_tetrahedra.clear();
   restore_vertices(part, result.part, result.interfaces);
   drop_unlabelled_facets<Dim>(after);
   result.part.wanted =
@@ -113,9 +128,21 @@ AdaptedPart adapt_part(const Executor& executor, Part part, const Interfaces& in
   return result;
 }
 
+template <int Dim>
+AnyField bound_at_curves(const Executor& executor, const Part& part, const Interfaces& interfaces,
+                         const AdaptPartOptions& options) {
+  if (part.element_count() == 0) return part.wanted;
+  return meshadapt::bound_at_curved_boundaries(
+      executor, with_required<Dim>(part, interfaces, options), part.wanted, options.adapt);
+}
+
+template AnyField bound_at_curves<2>(const Executor&, const Part&, const Interfaces&,
+                                     const AdaptPartOptions&);
+template AnyField bound_at_curves<3>(const Executor&, const Part&, const Interfaces&,
+                                     const AdaptPartOptions&);
 template AdaptedPart adapt_part<2>(const Executor&, Part, const Interfaces&,
-                                   const meshadapt::AdaptOptions&);
+                                   const AdaptPartOptions&);
 template AdaptedPart adapt_part<3>(const Executor&, Part, const Interfaces&,
-                                   const meshadapt::AdaptOptions&);
+                                   const AdaptPartOptions&);
 
 }  // namespace ductile::petsc

@@ -4,13 +4,12 @@
 #include <tuple>
 #include <utility>
 
-#include "adapt_part.hpp"
 #include "adapt_zone.hpp"
 #include "balance.hpp"
-#include "displace.hpp"
 #include "grade.hpp"
 #include "held.hpp"
 #include "migrate.hpp"
+#include "parts_geometry.hpp"
 
 namespace ductile::petsc {
 
@@ -29,22 +28,24 @@ class Parts {
   AdaptedParts run() {
     std::vector<PassReport> reports;
     find_interfaces();
-    balance(beforehand);
+    find_geometry();
+    if (share_out(Displaced::not_at_all, is_scattered() ? 0 : beforehand)) find_interfaces();
     end(Phase::balance);
+    limit_sizes();
     for (int pass = 1;; ++pass) {
       reports.push_back(adapt(pass));
       reports.back().costs = take_costs();
       if (options_.told) options_.told(reports.back());
-      if (pass >= options_.passes || !is_worthwhile(reports.back())) break;
-      const std::vector<int> target_of = comm_.on_all([&] {
-        return displaced<Dim>(part_, interfaces_, {comm_.rank(), pass - 1});
-      });
-      part_ = migrate<Dim>(comm_, part_, target_of);
+      const std::int64_t before = pass == 1 ? 0 : reports[reports.size() - 2].blocked;
+      if (pass >= options_.passes || !is_worthwhile(reports.back(), before)) break;
+      constexpr std::array displaced{Displaced::not_at_all, Displaced::forth, Displaced::back};
+      share_out(displaced[static_cast<std::size_t>(pass) % displaced.size()], 0);
       find_interfaces();
       end(Phase::migration);
+      limit_sizes();
     }
+    share_out(Displaced::not_at_all, at_the_end);
     find_interfaces();
-    balance(at_the_end);
     const std::int64_t own = number_vertices(comm_, interfaces_, part_);
     end(Phase::balance);
     return {std::move(part_), std::move(interfaces_), own, std::move(reports), take_costs()};
@@ -52,7 +53,7 @@ class Parts {
 
  private:
   static constexpr double beforehand = 1.2, at_the_end = 1.05;  // the imbalance that may be
-  static constexpr std::uint8_t layers = 3;  // around what was held, that are adapted with it
+  static constexpr int layers = 3;  // around what was held, that are adapted with it
 
   /// What was done since the last phase ended is this phase's.
   void end(Phase phase) {
@@ -82,6 +83,28 @@ class Parts {
     if (comm_.size() > 1) interfaces_ = petsc::find_interfaces<Dim>(comm_, part_);
   }
 
+  /// Boundaries are measured from what they are now, in all passes and on all ranks.
+  void find_geometry() {
+    auto& make = options_.adapt.make;
+    if (comm_.size() == 1 || make.geometry || make.hausdorff_tolerance == 0 || make.lock_boundary)
+      return;
+    make.geometry = geometry_of_parts(comm_, executor_, part_, make);
+    make.functions.clear();
+    end(Phase::balance);
+  }
+
+  /// What is wanted keeps the sizes and the growth that the options allow, across ranks, too.
+  void limit_sizes() {
+    if (comm_.size() == 1) return;
+    const bool at_curves = bounds_curved_sizes(options_.adapt);
+    if (at_curves)
+      part_.wanted = comm_.on_all(
+          [&] { return bound_at_curves<Dim>(executor_, part_, interfaces_, options_); });
+    const double growth = growth_of(options_.adapt);
+    if (at_curves || growth > 0) grade<Dim>(comm_, executor_, part_, interfaces_, growth);
+    end(Phase::gradation);
+  }
+
   /// Interfaces everywhere, as between parts of every second element, leave nothing to adapt and
   /// nowhere to displace them.
   bool is_scattered() const {
@@ -90,31 +113,33 @@ class Parts {
     return 4 * sums[0] > sums[1];  // facets count on both sides
   }
 
-  void balance(double accepted) {
-    if (comm_.size() == 1) return;
-    const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(executor_, part_); });
-    if (imbalance(comm_, load_of) <= accepted && !is_scattered()) return;
-    part_ = migrate<Dim>(comm_, part_, balanced<Dim>(comm_, part_, interfaces_, load_of));
-    find_interfaces();
+  /// Unless loads differ by less than is accepted. Returns whether elements have moved.
+  bool share_out(Displaced displaced, double accepted) {
+    if (comm_.size() == 1) return false;
+    const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(part_); });
+    expect_countable(comm_, load_of);
+    if (imbalance(comm_, load_of) <= accepted) return false;
+    part_ = migrate<Dim>(comm_, part_, balanced<Dim>(comm_, part_, load_of, displaced));
+    return true;
   }
 
   PassReport adapt(int pass) {
     const double begin = MPI_Wtime();
-    if (comm_.size() > 1 && options_.adapt.gradation > 0)
-      grade<Dim>(comm_, executor_, part_, interfaces_, options_.adapt.gradation);
-    end(Phase::gradation);
     auto adapted = comm_.on_all([&] {
-      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_.adapt);
+      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_);
       return adapt_zone<Dim>(executor_, part_, interfaces_, held_elements<Dim>(part_, layers),
-                             options_.adapt);
+                             options_);
     });
     part_ = std::move(adapted.part);
     interfaces_ = std::move(adapted.interfaces);
     number_vertices(comm_, interfaces_, part_);
     const EdgesAtInterfaces edges = comm_.on_all([&] {
-      part_.was_shared.assign(part_.number_of.size(), 0);
-      for (const SharedVertex& shared : interfaces_.vertices) part_.was_shared[shared.vertex] = 1;
-      return edges_at_interfaces<Dim>(part_, interfaces_);
+      auto at_interfaces = edges_at_interfaces<Dim>(part_, interfaces_);
+      part_.is_held = std::move(at_interfaces.is_at_blocked);
+      // Interfaces of later passes are where the first pass has adapted.
+      if (pass == 1)
+        for (const SharedVertex& shared : interfaces_.vertices) part_.is_held[shared.vertex] = 1;
+      return at_interfaces;
     });
     const auto elements = static_cast<std::int64_t>(part_.element_count());
     const auto sums = comm_.sums({elements, edges.all, edges.blocked});
@@ -133,17 +158,22 @@ class Parts {
   }
 
   /// A second pass always is: the interfaces of the first were there before. Without insertion no
-  /// more can be done to what is blocked.
-  bool is_worthwhile(const PassReport& report) const {
+  /// more can be done to what is blocked; and a few edges, or as many as before, are so on any
+  /// mesh.
+  bool is_worthwhile(const PassReport& report, std::int64_t before) const {
     const auto& [insert, swap, move] =
         std::tie(options_.adapt.insert, options_.adapt.swap, options_.adapt.move);
     if (report.edges == 0 || !(insert || swap || move)) return false;
-    return report.pass < 2 || (insert && report.blocked > 0);
+    if (report.pass < 2) return true;
+    constexpr double few = 1e-3, hardly_fewer = 0.75;
+    const auto blocked = static_cast<double>(report.blocked);
+    return insert && blocked > few * static_cast<double>(report.edges) &&
+           (report.pass < 3 || blocked < hardly_fewer * static_cast<double>(before));
   }
 
   const Communicator& comm_;
   const Executor& executor_;
-  const AdaptPartsOptions& options_;
+  AdaptPartsOptions options_;  // with the geometry of all parts
   Part part_;
   Interfaces interfaces_;
   std::array<Costs, phase_count> costs_ = {};  // [phase], of this rank

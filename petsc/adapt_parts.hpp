@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "adapt_part.hpp"
 #include "communicator.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/runtime/executor.hpp"
@@ -35,8 +36,12 @@ struct PassReport {
   std::array<Costs, phase_count> costs = {};
 };
 
-struct AdaptPartsOptions {
-  meshadapt::AdaptOptions adapt = {};                ///< required_gradation holds at interfaces
+/// The required_gradation at interfaces: sizes go over into theirs within a few elements. With less
+/// there are many elements of those sizes to be replaced in the next pass; without any limit, poor
+/// ones along the interface are tried again and again, for nothing.
+inline constexpr double gradation_at_interfaces = 60;
+
+struct AdaptPartsOptions : AdaptPartOptions {
   int passes = 3;                                    ///< at most; at least one is made
   std::function<void(const PassReport&)> told = {};  ///< called after each pass, on all ranks
 };

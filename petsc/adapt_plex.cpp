@@ -8,6 +8,7 @@
 #include "metric.hpp"
 #include "parameters.hpp"
 #include "plex.hpp"
+#include "plex_geometry.hpp"
 #include "read_plex.hpp"
 #include "threads.hpp"
 #include "vectors.hpp"
@@ -29,14 +30,16 @@ void tell(MPI_Comm comm, const PassReport& pass) {
 
 DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cells) {
   const Communicator comm(handle);
-  Parameters parameters = parameters_of(comm, dm);
+  Parameters parameters = parameters_of(dm);
   const int threads = threads_of(comm, dm);
   const runtime::Executor executor =
       comm.on_all([&] { return runtime::Executor({.threads = threads}); });
   const CarriedLabels labels = labels_of(comm, dm, metric != nullptr ? facets : nullptr,
                                          metric != nullptr ? cells : nullptr);
   PlexPart read = read_plex(comm, dm, labels);
-  const auto& adapt = parameters.options.adapt;
+  auto& adapt = parameters.options.adapt;
+  if (adapt.make.hausdorff_tolerance > 0)
+    adapt.make.geometry = geometry_of_plex(comm, executor, dm, labels, adapt.make);
   read.part.wanted = metric != nullptr ? metric_of_vector(comm, dm, metric, read,
                                                           {adapt.smallest_size, adapt.largest_size})
                                        : metric_of_label(comm, executor, facets, read);
@@ -47,6 +50,7 @@ DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cell
           ? adapt_parts<2>(comm, executor, std::move(read.part), parameters.options)
           : adapt_parts<3>(comm, executor, std::move(read.part), parameters.options);
   DM adapted = write_plex(comm, parts, labels);
+  pass_geometry_on(dm, adapted);
   compose_vectors(comm, executor, dm, parts, adapted);
   return adapted;
 }

@@ -70,7 +70,7 @@ class Zone {
         to_outer_(outer_, part),
         to_inner_(inner_, part) {}
 
-  AdaptedPart adapt(const runtime::Executor& executor, const meshadapt::AdaptOptions& options) {
+  AdaptedPart adapt(const runtime::Executor& executor, const AdaptPartOptions& options) {
     divide();
     list_boundary(executor, inner_);
     find_required();
@@ -169,9 +169,9 @@ class Zone {
 template <int Dim>
 AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
                        const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held,
-                       const meshadapt::AdaptOptions& options) {
+                       const AdaptPartOptions& options) {
   const auto held = static_cast<std::size_t>(std::count(is_held.begin(), is_held.end(), 1));
-  if (2 * held > is_held.size()) return adapt_part<Dim>(executor, part, interfaces, options);
+  if (held == is_held.size()) return adapt_part<Dim>(executor, part, interfaces, options);
   if (held > 0) return Zone<Dim>(part, interfaces, is_held).adapt(executor, options);
   AdaptedPart result{part, interfaces, {}};
   result.interfaces.facets.clear();
@@ -179,10 +179,8 @@ AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
 }
 
 template AdaptedPart adapt_zone<2>(const runtime::Executor&, const Part&, const Interfaces&,
-                                   const std::vector<std::uint8_t>&,
-                                   const meshadapt::AdaptOptions&);
+                                   const std::vector<std::uint8_t>&, const AdaptPartOptions&);
 template AdaptedPart adapt_zone<3>(const runtime::Executor&, const Part&, const Interfaces&,
-                                   const std::vector<std::uint8_t>&,
-                                   const meshadapt::AdaptOptions&);
+                                   const std::vector<std::uint8_t>&, const AdaptPartOptions&);
 
 }  // namespace ductile::petsc

@@ -11,17 +11,17 @@
 namespace ductile::petsc {
 
 /// As adapt_part() of the elements that `is_held` marks, with what they share with others required
-/// too. If these are most of the part, all of it is adapted.
+/// too.
 template <int Dim>
 AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
                        const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held,
-                       const meshadapt::AdaptOptions& options);
+                       const AdaptPartOptions& options);
 
 extern template AdaptedPart adapt_zone<2>(const runtime::Executor&, const Part&, const Interfaces&,
                                           const std::vector<std::uint8_t>&,
-                                          const meshadapt::AdaptOptions&);
+                                          const AdaptPartOptions&);
 extern template AdaptedPart adapt_zone<3>(const runtime::Executor&, const Part&, const Interfaces&,
                                           const std::vector<std::uint8_t>&,
-                                          const meshadapt::AdaptOptions&);
+                                          const AdaptPartOptions&);
 
 }  // namespace ductile::petsc

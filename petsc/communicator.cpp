@@ -27,6 +27,12 @@ std::int64_t Communicator::largest(std::int64_t value) const {
   return result;
 }
 
+std::vector<double> Communicator::largest(std::vector<double> values) const {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX,
+                handle_);
+  return values;
+}
+
 std::int64_t Communicator::sum_before(std::int64_t value) const {
   std::int64_t result = 0;
   MPI_Exscan(&value, &result, 1, MPI_INT64_T, MPI_SUM, handle_);

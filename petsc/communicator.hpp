@@ -60,6 +60,8 @@ class Communicator {
 
   std::int64_t sum(std::int64_t value) const;
   std::int64_t largest(std::int64_t value) const;
+  /// The largest of several values, each over the ranks.
+  std::vector<double> largest(std::vector<double> values) const;
   /// Of the ranks before this one.
   std::int64_t sum_before(std::int64_t value) const;
   /// Sums of several values, each over the ranks.

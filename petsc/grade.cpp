@@ -47,7 +47,8 @@ void grade(const Communicator& comm, const runtime::Executor& executor, Part& pa
   });
   for (int time = 0; time < most_times; ++time) {
     comm.on_all([&] {
-      if (mesh) meshadapt::limit_gradation(executor, metric_of, *mesh, {.factor = factor});
+      if (mesh && factor > 0)
+        meshadapt::limit_gradation(executor, metric_of, *mesh, {.factor = factor});
     });
     if (take_finer(comm, interfaces, metric_of) == 0) break;
   }

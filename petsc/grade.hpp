@@ -11,7 +11,8 @@ namespace ductile::petsc {
 
 /// Makes what is wanted finer until sizes grow by at most `factor` per unit of metric length, as
 /// limit_gradation() does, across interfaces too: parts are graded, shared vertices take the finer
-/// metric, until none does. Throws as limit_gradation() does, as Error on all ranks. Collective.
+/// metric, until none does. With a factor of 0 these only take the finer metric. Throws as
+/// limit_gradation() does, as Error on all ranks. Collective.
 template <int Dim>
 void grade(const Communicator& comm, const runtime::Executor& executor, Part& part,
            const Interfaces& interfaces, double factor);

@@ -21,6 +21,12 @@ std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfa
 template <int Dim>
 Part migrate(const Communicator& comm, const Part& part, const std::vector<int>& target_of);
 
+/// The whole mesh on each rank, in the order of the ranks. Collective.
+template <int Dim>
+Part gather_everywhere(const Communicator& comm, const Part& part);
+
+extern template Part gather_everywhere<2>(const Communicator&, const Part&);
+extern template Part gather_everywhere<3>(const Communicator&, const Part&);
 extern template Part migrate<2>(const Communicator&, const Part&, const std::vector<int>&);
 extern template Part migrate<3>(const Communicator&, const Part&, const std::vector<int>&);
 

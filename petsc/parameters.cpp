@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "plex_geometry.hpp"
+
 namespace ductile::petsc {
 
 namespace {
@@ -19,15 +21,15 @@ bool is_set(DM dm, PetscErrorCode (*get)(DM, PetscBool*)) {
 
 }  // namespace
 
-Parameters parameters_of(const Communicator& comm, DM dm) {
+Parameters parameters_of(DM dm) {
   constexpr double hausdorff_of_nobody = 0.01;
   constexpr double no_smallest = 1e-30, no_largest = 1e30;  // PETSc's defaults
   Parameters parameters;
   auto& adapt = parameters.options.adapt;
   adapt.gradation = parameter<PetscReal>(dm, DMPlexMetricGetGradationFactor);
-  adapt.required_gradation = 2.3;
+  adapt.required_gradation = gradation_at_interfaces;
   const double hausdorff = parameter<PetscReal>(dm, DMPlexMetricGetHausdorffNumber);
-  if (comm.size() == 1 && hausdorff != hausdorff_of_nobody)
+  if (hausdorff > 0 && (hausdorff != hausdorff_of_nobody || has_geometry(dm)))
     adapt.make.hausdorff_tolerance = hausdorff;
   const double smallest = parameter<PetscReal>(dm, DMPlexMetricGetMinimumMagnitude);
   const double largest = parameter<PetscReal>(dm, DMPlexMetricGetMaximumMagnitude);

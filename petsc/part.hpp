@@ -24,9 +24,9 @@ struct Part {
   /// References are values of labels. Facets are listed if they have one; those on interfaces
   /// between parts in both.
   AnyMesh mesh;
-  AnyField wanted;                       ///< the metric to adapt to, one symmetric tensor a vertex
-  std::vector<std::int64_t> number_of;   ///< [vertex], the same on all ranks
-  std::vector<std::uint8_t> was_shared;  ///< [vertex], 1 of those that were in the last pass
+  AnyField wanted;                      ///< the metric to adapt to, one symmetric tensor a vertex
+  std::vector<std::int64_t> number_of;  ///< [vertex], the same on all ranks
+  std::vector<std::uint8_t> is_held;    ///< [vertex], 1 of those that the last pass held
 
   std::size_t element_count() const {
     return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();

@@ -5,6 +5,9 @@
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
+#include "geometry/curvature.hpp"
 #include "geometry/make_mesh.hpp"
 #include "geometry/reference_surface.hpp"
 
@@ -26,6 +29,7 @@ std::shared_ptr<const ReferenceSurface<Dim>> reference_surface(const runtime::Ex
   const Mesh<Dim> mesh = make_mesh<Dim>(executor, any, make, neighbours, warnings);
   auto reference = std::make_shared<ReferenceSurface<Dim>>();
   reference->surface = mesh.surface;
+  reference->in_parts = options.in_parts;
   for (const Patch<Dim>& patch : mesh.patches) {
     reference->is_smooth.push_back(patch.smooth ? 1 : 0);
     reference->reference_of.push_back(patch.reference);
@@ -50,7 +54,28 @@ std::optional<GeometryPoint> closest_in(const ReferenceSurface<Dim>& reference,
   return result;
 }
 
+template <int Dim>
+AnyField bounded_at_curves(const runtime::Executor& executor, const AnyMesh& any,
+                           const AnyField& metric, const AdaptOptions& options) {
+  const SizeBounds bounds{options.smallest_size, options.largest_size};
+  Neighbours<Dim> neighbours;
+  std::vector<std::string> warnings;
+  const Mesh<Dim> mesh = make_mesh<Dim>(executor, any, options.make, neighbours, warnings);
+  if (!mesh.surface) return metric;
+  std::vector<Metric<Dim>> metric_of = tensors_of<Dim>(executor, metric);
+  bound_sizes(executor, metric_of, bounds);
+  bound_curved_sizes(executor, mesh, options.make.hausdorff_tolerance, metric_of);
+  bound_sizes(executor, metric_of, bounds);
+  return symmetric_field(executor, metric_of, metric.name);
+}
+
 }  // namespace
+
+AnyField bound_at_curved_boundaries(const runtime::Executor& executor, const AnyMesh& mesh,
+                                    const AnyField& metric, const AdaptOptions& options) {
+  return mesh.dimension == 2 ? bounded_at_curves<2>(executor, mesh, metric, options)
+                             : bounded_at_curves<3>(executor, mesh, metric, options);
+}
 
 Geometry::Geometry(const runtime::Executor& executor, const AnyMesh& mesh,
                    const GeometryOptions& options)

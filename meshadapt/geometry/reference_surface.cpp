@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/first_bad.hpp"
+#include "core/unit.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/facet_sides.hpp"
@@ -33,12 +34,13 @@ std::vector<std::uint32_t> ReferenceSurface<Dim>::sheets_of(
   const double tolerance = surface->facets.tolerance();
   std::vector<double> distance_of(facets.size());
   runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
+    if (facets[f].data.required) return;
     const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[facets[f].element], facets[f].facet);
     const Vector<Dim> normal = normal_of<Dim>(mesh, corners);
     const Vector<Dim> centre = centre_of<Dim>(mesh, corners);
     const std::int32_t reference = facets[f].data.reference;
-    auto nearest = surface->facets.nearest(centre, (1 / norm(normal)) * normal, reference_of,
-                                           reference, near * tolerance);
+    auto nearest =
+        surface->facets.nearest(centre, unit(normal), reference_of, reference, near * tolerance);
     if (!nearest || (is_smooth[nearest->sheet] != 0 && nearest->distance > fitting * tolerance)) {
       const auto noise = surface->facets.nearest(centre, fitting * tolerance);
       if (noise && reference_of[noise->sheet] == reference) nearest = noise;
@@ -52,7 +54,10 @@ std::vector<std::uint32_t> ReferenceSurface<Dim>::sheets_of(
   };
   const bool bends =
       std::any_of(is_smooth.begin(), is_smooth.end(), [](std::uint8_t is) { return is != 0; });
-  if (bends && std::none_of(sheet_of.begin(), sheet_of.end(), is_curved))
+  const bool is_free = std::any_of(facets.begin(), facets.end(), [](const TaggedFacet<Dim>& facet) {
+    return !facet.data.required;
+  });
+  if (!in_parts && bends && is_free && std::none_of(sheet_of.begin(), sheet_of.end(), is_curved))
     throw InputError("geometry: none of the facets of the mesh is within " +
                      number(near * tolerance) +
                      " of one of its curved boundaries with the same reference; expected the "
@@ -77,8 +82,8 @@ std::uint32_t ReferenceSurface<Dim>::sheet_of_edge(const std::array<Vector<Dim>,
   if (!surface) return none;
   const Vector<Dim> along = ends[1] - ends[0];
   const auto nearest =
-      surface->edges.nearest(0.5 * (ends[0] + ends[1]), (1 / norm(along)) * along,
-                             reference_of_curve, reference, fitting * surface->edges.tolerance());
+      surface->edges.nearest(0.5 * (ends[0] + ends[1]), unit(along), reference_of_curve, reference,
+                             fitting * surface->edges.tolerance());
   return nearest ? nearest->sheet : none;
 }
 

@@ -25,13 +25,7 @@ runtime::UnsetVector<VertexId> Coarsen<Dim>::short_edge_vertices(const runtime::
                                              runtime::few_nanoseconds.serial_below);
 }
 
-template <int Dim>
-Coarsen<Dim>::Coarsen(Mesh<Dim>& mesh, const Rules& rules)
-    : mesh_(mesh),
-      rules_(rules),
-      has_required_elements_(std::any_of(mesh.regions.begin(), mesh.regions.end(),
-                                         [](const Region& region) { return region.required; })) {}
-
+/// Corners stay, and so does whatever belongs to required entities: its class dimension is 0, too.
 template <int Dim>
 bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
   const auto ball = mesh_.elements_of.of(gone);
@@ -43,7 +37,6 @@ bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
   const double longest = longest_allowed(ring);
   double worst = 1;
   for (const ElementId e : ball) worst = std::min<double>(worst, mesh_.quality_of[e]);
-  if (!keeps_required(gone)) return false;
   plan.gone = gone;
   for (const Candidate& choice : choices) {
     plan.kept = choice.kept;
@@ -54,15 +47,6 @@ bool Coarsen<Dim>::decide(VertexId gone, Plan& plan) const {
     return true;
   }
   return false;
-}
-
-/// No element that is required changes.
-template <int Dim>
-bool Coarsen<Dim>::keeps_required(VertexId gone) const {
-  if (!has_required_elements_) return true;
-  const auto ball = mesh_.elements_of.of(gone);
-  return std::none_of(ball.begin(), ball.end(),
-                      [&](ElementId e) { return mesh_.required_element(e); });
 }
 
 template <int Dim>

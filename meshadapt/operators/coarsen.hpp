@@ -29,7 +29,7 @@ class Coarsen {
   using Plan = EdgeCollapse;
   static constexpr bool forgoes_wakes = true;  // the next sweep finds who is not worth it at once
 
-  Coarsen(Mesh<Dim>& mesh, const Rules& rules);
+  Coarsen(Mesh<Dim>& mesh, const Rules& rules) : mesh_(mesh), rules_(rules) {}
 
   /// For the strategy `colours`: lists are not changed at once, but by deferred updates.
   void defer_lists(const runtime::Executor& executor) { deferred_.emplace(executor); }
@@ -73,7 +73,6 @@ class Coarsen {
   // on the mesh, so that a test may ask for each; decide() asks for all. A rule may read the lists
   // of `gone`, but not those of `kept` or another neighbour: a collapse two rings away, with which
   // there is no conflict, may be changing them, and the result would depend on threads ----
-  bool keeps_required(VertexId gone) const;
   bool keeps_geometry(VertexId gone, VertexId kept) const;
   bool keeps_patches(VertexId gone, VertexId kept) const;
   double longest_allowed(const Ring& ring) const;
@@ -101,7 +100,6 @@ class Coarsen {
 
   Mesh<Dim>& mesh_;
   Rules rules_;
-  bool has_required_elements_;
   std::optional<DeferredLists> deferred_;
 };
 

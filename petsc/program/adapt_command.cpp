@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,13 +12,13 @@
 #include "command.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/process.hpp"
 #include "file_part.hpp"
 #include "files.hpp"
 #include "first_rank.hpp"
-#include "local_parameters.hpp"
+#include "input.hpp"
 #include "outputs.hpp"
+#include "parts_geometry.hpp"
 #include "program.hpp"
 #include "system.hpp"
 #include "threads.hpp"
@@ -33,31 +34,7 @@ using cli::Arguments;
 using cli::Option;
 using meshadapt::Carrying;
 using meshadapt::NamedField;
-using meshadapt::Warnings;
 using runtime::Executor;
-
-/// Options of `ductile adapt` that need all of a mesh in one place, or one order of events.
-constexpr std::array<std::string_view, 12> not_here{"-hausd",   "-geometry", "-A",    "-ar",
-                                                    "-nr",      "--near",    "--on",  "--inside",
-                                                    "--racing", "--json",    "--vtu", "-optim"};
-
-enum class Form { gathered, pieces, hdf5 };
-
-/// What files say, in the order in which it is made. Only the form is known on every rank, the
-/// rest on the first one.
-struct Input {
-  AdaptJob job;
-  fs::path output;
-  Form form = Form::gathered;
-  FilePart file;
-  std::vector<NamedField> fields;
-  std::vector<std::size_t> field_count_of;  // [file given by --field]
-  std::vector<meshadapt::ReferenceName> names;
-  int dropped_axis = 2;
-  Warnings warnings;
-};
-
-// ---- The command line ----
 
 std::vector<Option> options_here() {
   std::vector<Option> options;
@@ -75,131 +52,6 @@ std::vector<Option> options_here() {
   return options;
 }
 
-void refuse_what_is_not_here(const Arguments& arguments) {
-  for (const std::string_view name : not_here)
-    if (arguments.has(name))
-      throw cli::UsageError("option " + std::string(name) +
-                            ": not on several ranks; use ductile adapt, or, for sizes by places, "
-                            "ductile metric first");
-}
-
-/// A .pvtu and a .h5 hold fields, as a .vtu does, whose name stands in for theirs.
-void read_words(Input& input, const Arguments& arguments) {
-  refuse_what_is_not_here(arguments);
-  std::optional<fs::path> stand_in;
-  if (const auto given = arguments.text("-o")) {
-    const fs::path output = *given;
-    if (output.extension() == ".pvtu") input.form = Form::pieces;
-    if (output.extension() == ".h5" || output.extension() == ".hdf5") input.form = Form::hdf5;
-    if (input.form != Form::gathered) stand_in = fs::path(output).replace_extension(".vtu");
-    input.output = output;
-  }
-  input.job = cli::read_adapt_job(arguments, stand_in);
-  if (input.form == Form::gathered)
-    input.output = input.job.output;
-  else
-    meshadapt::check_writable(input.output);
-}
-
-// ---- Reading, on the first rank ----
-
-/// Those in the file of the mesh, where the output holds fields, and those of --field.
-void read_fields(Input& input, meshadapt::MeshWithFields& file) {
-  const AdaptJob& job = input.job;
-  std::string left;
-  for (NamedField& field : file.fields) {
-    if (field.name == "metric") continue;
-    if (cli::holds_fields(job.output))
-      input.fields.push_back(std::move(field));
-    else
-      left += (left.empty() ? "" : ", ") + field.name;
-  }
-  if (!left.empty())
-    input.warnings.push_back(file.mesh.name + ": its fields are left out, which " +
-                             job.output.string() + " does not hold: " + left);
-  const auto values = job.fields.read(file.mesh, input.warnings);
-  input.field_count_of = values.field_count_of;
-  if (values.field_count_of.empty()) return;
-  std::vector<std::string> names;  // as the files are called
-  for (std::size_t f = 0; f < input.field_count_of.size(); ++f)
-    for (std::size_t k = 1; k <= input.field_count_of[f]; ++k)
-      names.push_back(cli::as_utf8(job.fields.inputs()[f].stem().string()) +
-                      (input.field_count_of[f] > 1 ? "_" + std::to_string(k) : ""));
-  auto fields = meshadapt::named_fields(values.all, "field");
-  for (std::size_t k = 0; k < fields.size(); ++k) {
-    fields[k].name = names[k];
-    input.fields.push_back(std::move(fields[k]));
-  }
-}
-
-void read_files(Input& input, const Executor& executor) {
-  AdaptJob& job = input.job;
-  if (!job.unneeded.empty()) input.warnings.push_back(job.unneeded);
-  auto file = meshadapt::read_mesh_with_fields(job.input, &input.warnings);
-  if (job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, file.mesh);
-  meshadapt::AnyField metric = cli::choose_metric(executor, job, file, {}, input.warnings);
-  cli::bound_locally(executor, file.mesh,
-                     cli::local_parameters(job.parameters, file.mesh, job.adapt, input.warnings),
-                     metric, job.adapt);
-  metric =
-      meshadapt::metric_of(metric, file.mesh, {job.adapt.smallest_size, job.adapt.largest_size});
-  read_fields(input, file);
-  input.names = file.mesh.names;
-  input.dropped_axis = file.mesh.dropped_axis;
-  input.file = part_of_file(std::move(file.mesh), std::move(metric), input.warnings);
-}
-
-// ---- What all ranks have to know ----
-
-/// A field, or a name of references, as it goes to other ranks.
-struct Told {
-  std::array<char, 240> name{};
-  int number = 0, other = 0;
-
-  Told() = default;
-  Told(const std::string& text, int first, int second) : number(first), other(second) {
-    std::copy_n(text.data(), std::min(text.size(), name.size() - 1), name.begin());
-  }
-};
-
-void tell_others(const Communicator& comm, Input& input) {
-  int dimension = input.file.part.mesh.dimension;
-  std::array<double, 2> bounds{input.job.adapt.smallest_size, input.job.adapt.largest_size};
-  from_first_rank(comm, dimension);
-  from_first_rank(comm, bounds);
-  from_first_rank(comm, input.form);
-  from_first_rank(comm, input.dropped_axis);
-  from_first_rank(comm, input.job.with_metric);
-  from_first_rank(comm, input.file.kept);
-  std::vector<Told> fields, names;
-  std::vector<char> output;
-  comm.on_all([&] {
-    if (comm.rank() != 0) return;
-    for (const NamedField& field : input.fields)
-      fields.emplace_back(field.name, static_cast<int>(field.type), static_cast<int>(field.place));
-    for (const auto& name : input.names)
-      names.emplace_back(name.name, name.reference, name.dimension);
-    const std::string path = input.output.string();
-    output.assign(path.begin(), path.end());
-  });
-  from_first_rank(comm, fields);
-  from_first_rank(comm, names);
-  from_first_rank(comm, output);
-  input.job.adapt.smallest_size = bounds[0];
-  input.job.adapt.largest_size = bounds[1];
-  if (comm.rank() == 0) return;
-  input.output = std::string(output.begin(), output.end());
-  input.file.part = empty_part(dimension);
-  for (const Told& field : fields)
-    input.fields.push_back({field.name.data(),
-                            static_cast<meshadapt::AnyField::Type>(field.number),
-                            {},
-                            static_cast<NamedField::Place>(field.other)});
-  for (const Told& name : names) input.names.push_back({name.other, name.number, name.name.data()});
-}
-
-// ---- The work ----
-
 /// Of all ranks together.
 void print_costs(const std::array<Costs, phase_count>& costs) {
   constexpr std::array<const char*, phase_count> names{"balance", "migration", "gradation",
@@ -210,11 +62,31 @@ void print_costs(const std::array<Costs, phase_count>& costs) {
   std::printf("\n");
 }
 
-AdaptPartsOptions options_of(const Communicator& comm, const AdaptJob& job) {
+/// What -geometry says, on all ranks; null without it. Collective.
+std::shared_ptr<const meshadapt::Geometry> geometry_of(const Communicator& comm,
+                                                       const Executor& executor,
+                                                       const Input& input) {
+  bool is_given = input.geometry.has_value();
+  from_first_rank(comm, is_given);
+  if (!is_given) return nullptr;
+  const Part none = empty_part(input.file.part.mesh.dimension);
+  return geometry_of_parts(comm, executor, input.geometry ? *input.geometry : none,
+                           input.job.adapt.make);
+}
+
+AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
+                             std::shared_ptr<const meshadapt::Geometry> geometry) {
+  const AdaptJob& job = input.job;
   AdaptPartsOptions options;
+  for (const KeptReference& kept : input.file.kept.facets)
+    options.required_facets.push_back(kept.label);
+  for (const KeptReference& kept : input.file.kept.elements)
+    options.required_elements.push_back(kept.label);
   options.adapt = job.adapt;
+  options.adapt.make.geometry = std::move(geometry);
   options.adapt.make.complete_boundary = false;  // parts list theirs
-  if (options.adapt.required_gradation <= 0) options.adapt.required_gradation = 2.3;
+  if (options.adapt.required_gradation <= 0 && comm.size() > 1)
+    options.adapt.required_gradation = gradation_at_interfaces;
   options.passes = 6;
   if (job.memory)
     options.adapt.memory_limit = *job.memory - std::min(runtime::held_memory(), *job.memory - 1);
@@ -319,7 +191,8 @@ void work(const Communicator& comm, const Executor& executor, Input& input, Carr
   if (input.job.memory) comm.on_all([&] { cli::limit_memory(*input.job.memory); });
   on_first_rank(comm, [&] { read_files(input, executor); });
   tell_others(comm, input);
-  AdaptedParts parts = adapted(comm, executor, input.file.part, options_of(comm, input.job));
+  const auto options = options_of(comm, input, geometry_of(comm, executor, input));
+  AdaptedParts parts = adapted(comm, executor, input.file.part, options);
   if (comm.rank() == 0 && input.job.verbosity > 1) print_costs(parts.last);
   const Costs before = comm.costs();
   auto fields = fields_of(comm, executor, input, parts, carrying);
@@ -352,8 +225,8 @@ void print_help_of_adapt() {
   cli::Command command = cli::adapt_command;
   command.summary = "adapts a mesh to a metric, on all ranks that mpirun starts";
   command.details =
-      "The first rank reads; PT-Scotch shares elements out; each rank adapts its part, and passes\n"
-      "go on until nothing is held between parts. The same number of ranks gives the same bytes,\n"
+      "The first rank reads; planes share elements out; each rank adapts its part, and passes\n"
+      "go on until hardly anything is held between parts. The same number of ranks gives the same bytes,\n"
       "whatever the number of threads.";
   command.options = options;
   cli::print_help(command, "mpirun -n N ductile-mpi");

@@ -1,7 +1,10 @@
 #include "file_part.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -9,13 +12,33 @@ namespace ductile::petsc {
 
 namespace {
 
-void refuse_required(const AnyMesh& mesh) {
-  const bool edges = !mesh.required_edges.empty(), triangles = !mesh.required_triangles.empty();
-  if (!edges && !triangles && mesh.required_tetrahedra.empty()) return;
-  const std::string what = edges ? "edges" : triangles ? "triangles" : "tetrahedra";
-  throw meshadapt::InputError(
-      mesh.name + ": expected no required " + what +
-      ", which are not kept on several ranks, found some; use ductile adapt");
+/// Gives what is required labels of its own, one for each reference.
+std::vector<KeptReference> mark_required(std::vector<std::int32_t>& reference_of,
+                                         std::vector<std::uint32_t>& required,
+                                         const std::string& name) {
+  std::vector<KeptReference> kept;
+  if (required.empty()) return kept;
+  std::map<std::int32_t, std::int32_t> label_of;  // [reference]
+  const std::int32_t largest = *std::max_element(reference_of.begin(), reference_of.end());
+  if (largest > std::numeric_limits<std::int32_t>::max() - static_cast<int>(required.size()))
+    throw meshadapt::InputError(name + ": expected references of what is required that leave " +
+                                std::to_string(required.size()) + " above them, found " +
+                                std::to_string(largest));
+  for (const std::uint32_t i : std::set(required.begin(), required.end())) {
+    const auto [at, is_new] = label_of.try_emplace(
+        reference_of[i], largest + 1 + static_cast<std::int32_t>(label_of.size()));
+    if (is_new) kept.push_back({at->second, at->first});
+    reference_of[i] = at->second;
+  }
+  required.clear();
+  return kept;
+}
+
+void refuse_required_edges(const AnyMesh& mesh) {
+  if (mesh.dimension == 3 && !mesh.required_edges.empty())
+    throw meshadapt::InputError(mesh.name +
+                                ": expected no required edges of tetrahedra, which are not kept "
+                                "on several ranks, found some; use ductile adapt");
 }
 
 /// Marks vertices that stay by their index in what is returned.
@@ -45,11 +68,18 @@ std::vector<KeptVertex> mark_kept(AnyMesh& mesh, meshadapt::Warnings& warnings) 
 }  // namespace
 
 FilePart part_of_file(AnyMesh mesh, AnyField metric, meshadapt::Warnings& warnings) {
-  refuse_required(mesh);
+  refuse_required_edges(mesh);
+  const bool is_flat = mesh.dimension == 2;
   if (mesh.dimension == 3 && mesh.edges.size() > 0)
     warnings.push_back(mesh.name + ": its " + std::to_string(mesh.edges.size()) +
                        " edges are left out, which are not kept on several ranks");
-  FilePart result{empty_part(mesh.dimension), mark_kept(mesh, warnings)};
+  FilePart result{empty_part(mesh.dimension), {mark_kept(mesh, warnings), {}, {}}};
+  result.kept.facets =
+      is_flat ? mark_required(mesh.edges.reference, mesh.required_edges, mesh.name)
+              : mark_required(mesh.triangles.reference, mesh.required_triangles, mesh.name);
+  result.kept.elements =
+      is_flat ? mark_required(mesh.triangles.reference, mesh.required_triangles, mesh.name)
+              : mark_required(mesh.tetrahedra.reference, mesh.required_tetrahedra, mesh.name);
   mesh.corners.clear();
   mesh.ridges.clear();
   mesh.required_vertices.clear();
@@ -63,7 +93,20 @@ FilePart part_of_file(AnyMesh mesh, AnyField metric, meshadapt::Warnings& warnin
   return result;
 }
 
-AnyMesh mesh_for_file(const Part& part, const std::vector<KeptVertex>& kept) {
+std::vector<std::uint32_t> restore_references(std::vector<std::int32_t>& reference_of,
+                                              const std::vector<KeptReference>& kept) {
+  std::vector<std::uint32_t> required;
+  if (kept.empty()) return required;
+  for (std::uint32_t i = 0; i < reference_of.size(); ++i) {
+    if (reference_of[i] < kept.front().label) continue;
+    reference_of[i] =
+        kept[static_cast<std::size_t>(reference_of[i] - kept.front().label)].reference;
+    required.push_back(i);
+  }
+  return required;
+}
+
+AnyMesh mesh_for_file(const Part& part, const Kept& kept) {
   AnyMesh mesh = part.mesh;
   for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
     std::int32_t& reference = mesh.vertex_reference[v];
@@ -71,7 +114,7 @@ AnyMesh mesh_for_file(const Part& part, const std::vector<KeptVertex>& kept) {
       reference = 0;
       continue;
     }
-    const KeptVertex& vertex = kept[static_cast<std::size_t>(reference)];
+    const KeptVertex& vertex = kept.vertices[static_cast<std::size_t>(reference)];
     reference = vertex.reference;
     if (vertex.is_required != 0) mesh.required_vertices.push_back(v);
     if (vertex.is_corner != 0) mesh.corners.push_back(v);
@@ -81,10 +124,15 @@ AnyMesh mesh_for_file(const Part& part, const std::vector<KeptVertex>& kept) {
     for (std::size_t c = 0; c < all.size(); ++c)
       if (all.reference[c] != unlabelled) cells.add(all.vertices[c], all.reference[c]);
   };
-  if (mesh.dimension == 2)
+  if (mesh.dimension == 2) {
     drop_unlabelled(mesh.edges);
-  else
+    mesh.required_edges = restore_references(mesh.edges.reference, kept.facets);
+    mesh.required_triangles = restore_references(mesh.triangles.reference, kept.elements);
+  } else {
     drop_unlabelled(mesh.triangles);
+    mesh.required_triangles = restore_references(mesh.triangles.reference, kept.facets);
+    mesh.required_tetrahedra = restore_references(mesh.tetrahedra.reference, kept.elements);
+  }
   return mesh;
 }
 

@@ -18,19 +18,34 @@ struct KeptVertex {
   std::uint8_t is_required, is_corner;
 };
 
-/// All of a mesh on one rank. The label of a vertex is its index in `kept`.
+/// What stands in for a reference in a part, of facets or elements that are required.
+struct KeptReference {
+  std::int32_t label, reference;
+};
+
+/// What stays of a mesh, and what its labels mean. That of a vertex is its index here.
+struct Kept {
+  std::vector<KeptVertex> vertices;
+  std::vector<KeptReference> facets, elements;  ///< in the order of labels
+};
+
+/// All of a mesh on one rank.
 struct FilePart {
   Part part;
-  std::vector<KeptVertex> kept;
+  Kept kept;
 };
 
 /// Of a mesh and its metric. Says in `warnings` what is not carried on several ranks: edges of
-/// tetrahedra, and references of vertices that may go. Throws InputError for facets and elements
-/// that are required.
+/// tetrahedra, and references of vertices that may go. Throws InputError for edges of tetrahedra
+/// that are required, or if no label is left for what is.
 FilePart part_of_file(meshadapt::AnyMesh mesh, meshadapt::AnyField metric,
                       meshadapt::Warnings& warnings);
 
 /// The part as a mesh for a file: references in place of labels, no facets without one.
-meshadapt::AnyMesh mesh_for_file(const Part& part, const std::vector<KeptVertex>& kept);
+meshadapt::AnyMesh mesh_for_file(const Part& part, const Kept& kept);
+
+/// Puts references in the place of labels, of facets and elements. Returns which are required.
+std::vector<std::uint32_t> restore_references(std::vector<std::int32_t>& reference_of,
+                                              const std::vector<KeptReference>& kept);
 
 }  // namespace ductile::petsc

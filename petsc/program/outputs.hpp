@@ -19,7 +19,7 @@ namespace ductile::petsc {
 struct DistributedResult {
   AdaptedParts parts;
   std::vector<meshadapt::NamedField> fields;
-  std::vector<KeptVertex> kept;
+  Kept kept;
   std::vector<meshadapt::ReferenceName> names;  ///< of references
   int dropped_axis = 2;                         ///< as AnyMesh has it
 };
@@ -35,7 +35,7 @@ void write_pieces(const Communicator& comm, const std::filesystem::path& path,
                   const DistributedResult& result);
 
 /// A file that DMPlex reads and draws, with references as the labels "Face Sets", "Cell Sets" and
-/// "Vertex Sets". Fields at vertices become "vertex_fields". Throws Error, on all ranks.
+/// "Vertex Sets". Fields become "vertex_fields" and "cell_fields". Throws Error, on all ranks.
 /// Collective.
 void write_hdf5(const Communicator& comm, const std::filesystem::path& path,
                 const DistributedResult& result);

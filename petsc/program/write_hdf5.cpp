@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -44,10 +45,12 @@ std::vector<VertexId> by_number(const Part& part) {
   return order;
 }
 
+/// order is [vertex or cell of the DMPlex], the number of that of the part.
 void write_field(DM plex, PetscViewer viewer, const NamedField& field,
-                 const std::vector<VertexId>& order, int dimension) {
+                 const std::vector<std::uint32_t>& order, int dimension) {
   const PetscInt each = component_count(field.type, dimension);
-  const Stratum vertices = vertices_of(plex);
+  const Stratum points =
+      field.place == NamedField::Place::vertices ? vertices_of(plex) : stratum_of_height(plex, 0);
   HeldDM dm;
   HeldSection section;
   HeldVec local, global;
@@ -56,10 +59,10 @@ void write_field(DM plex, PetscViewer viewer, const NamedField& field,
   check(PetscSectionSetNumFields(section, 1));
   check(PetscSectionSetFieldName(section, 0, field.name.c_str()));
   check(PetscSectionSetFieldComponents(section, 0, each));
-  check(PetscSectionSetChart(section, vertices.begin, vertices.end));
-  for (PetscInt v = vertices.begin; v < vertices.end; ++v) {
-    check(PetscSectionSetDof(section, v, each));
-    check(PetscSectionSetFieldDof(section, v, 0, each));
+  check(PetscSectionSetChart(section, points.begin, points.end));
+  for (PetscInt p = points.begin; p < points.end; ++p) {
+    check(PetscSectionSetDof(section, p, each));
+    check(PetscSectionSetFieldDof(section, p, 0, each));
   }
   check(PetscSectionSetUp(section));
   check(DMSetLocalSection(dm, section));
@@ -82,7 +85,12 @@ AdaptedParts with_references(const DistributedResult& result) {
   AdaptedParts parts = result.parts;
   for (std::int32_t& reference : parts.part.mesh.vertex_reference)
     if (reference != unlabelled)
-      reference = result.kept[static_cast<std::size_t>(reference)].reference;
+      reference = result.kept.vertices[static_cast<std::size_t>(reference)].reference;
+  AnyMesh& mesh = parts.part.mesh;
+  auto& of_elements = mesh.dimension == 2 ? mesh.triangles.reference : mesh.tetrahedra.reference;
+  restore_references(mesh.dimension == 2 ? mesh.edges.reference : mesh.triangles.reference,
+                     result.kept.facets);
+  restore_references(of_elements, result.kept.elements);
   return parts;
 }
 
@@ -94,7 +102,9 @@ void write_hdf5(const Communicator& comm, const fs::path& path, const Distribute
   labels.elements.name = "Cell Sets";
   labels.vertices.name = "Vertex Sets";
   const AdaptedParts parts = comm.on_all([&] { return with_references(result); });
-  const std::vector<VertexId> order = comm.on_all([&] { return by_number(parts.part); });
+  const auto vertices = comm.on_all([&] { return by_number(parts.part); });
+  std::vector<std::uint32_t> cells(parts.part.element_count());  // as they are in the part
+  std::iota(cells.begin(), cells.end(), 0U);
   const std::string temporary = path.string() + ".ductile-tmp";
   {
     HeldDM plex;
@@ -107,8 +117,9 @@ void write_hdf5(const Communicator& comm, const fs::path& path, const Distribute
     check(PetscViewerFileSetName(viewer, temporary.c_str()));
     check(DMView(plex, viewer));
     for (const NamedField& field : result.fields)
-      if (field.place == NamedField::Place::vertices)
-        write_field(plex, viewer, field, order, parts.part.mesh.dimension);
+      write_field(plex, viewer, field,
+                  field.place == NamedField::Place::vertices ? vertices : cells,
+                  parts.part.mesh.dimension);
   }
   comm.on_all([&] {
     if (comm.rank() == 0) fs::rename(temporary, path);

@@ -9,6 +9,7 @@
 #include "checks/check_structure.hpp"
 #include "geometry/make_mesh.hpp"
 #include "io_support.hpp"
+#include "operators/cavity.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 
@@ -168,6 +169,14 @@ void expect_finds_faults_of_structure() {
   mesh.corners_of[3].fill(none);
   EXPECT_FINDS(mesh, "list of elements is not sorted, or has one that is not its own");
   mesh = made<Dim>(any);
+  mesh.elements_of.insert(0, none - 1);
+  EXPECT_FINDS(mesh, "list of elements is not sorted, or has one that is not its own");
+  mesh = made<Dim>(any);
+  for (const VertexId v : mesh.corners_of[2]) mesh.elements_of.erase(v, 2);
+  mesh.corners_of[2] = mesh.corners_of[3];
+  for (const VertexId v : mesh.corners_of[3]) mesh.elements_of.insert(v, 2);
+  EXPECT_FINDS(mesh, "has a facet with more than two elements");
+  mesh = made<Dim>(any);
   const ElementId e = element_at_boundary(mesh, facet);
   mesh.patches_of[e][static_cast<std::size_t>(facet)] = 0;
   EXPECT_FINDS(mesh, Dim == 2 ? "has a" : "has an edge between patches");
@@ -191,6 +200,13 @@ TEST(CheckMesh, FindsWhatIsWrongWithTheDataStructure) {
   while (mesh.links_of.of(v).empty()) ++v;
   mesh.links_of.erase(v, CurveLink(mesh.links_of.of(v)[0]));
   EXPECT_FINDS(mesh, "links are not sorted, not mutual, or not along edges");
+  mesh = made<3>(box(3));
+  VertexId far = v + 1;
+  const VertexBuffer beside = neighbours_of(mesh, v);
+  while (std::find(beside.begin(), beside.end(), far) != beside.end()) ++far;
+  mesh.links_of.insert(v, {far, 1});
+  mesh.links_of.insert(far, {v, 1});
+  EXPECT_FINDS(mesh, "links are not sorted, not mutual, or not along edges");
 }
 
 TEST(CheckDomain, FindsWhatLeftItsPlace) {
@@ -204,6 +220,11 @@ TEST(CheckDomain, FindsWhatLeftItsPlace) {
     after = before;
     (dimension == 2 ? after.edges.reference : after.triangles.reference)[0] += 100;
     EXPECT_NE(test::joined(check_domain(executor, before, after)).find("facets of reference"),
+              std::string::npos);
+    auto& reference_of = dimension == 2 ? after.edges.reference : after.triangles.reference;
+    std::replace(reference_of.begin(), reference_of.end(), 2, 1);
+    EXPECT_NE(test::joined(check_domain(executor, before, after, 0.1))
+                  .find("facets of reference 2 are gone"),
               std::string::npos);
   }
 }

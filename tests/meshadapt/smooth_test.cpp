@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
@@ -152,6 +155,64 @@ TYPED_TEST(SmoothIn, KeepsTheQualitiesOfALargeBallUpToDate) {
     runtime::run_rounds_by<runtime::Strategy::tiles>(executor, op, std::vector<VertexId>{0});
   EXPECT_LT(norm(scene.mesh.site_of[0].position), 0.5 * norm(before));
   EXPECT_TRUE(check_mesh(executor, scene.mesh).empty());
+}
+
+/// The sum of the inverse qualities around a vertex if it were at this site.
+template <int Dim>
+double inverse_qualities(Mesh<Dim>& mesh, VertexId vertex, const Site<Dim>& site) {
+  const Site<Dim> before = std::exchange(mesh.site_of[vertex], site);
+  double sum = 0;
+  for (const ElementId e : mesh.elements_of.of(vertex))
+    sum += 1 / mesh.quality_at(mesh.corners_of[e]);
+  mesh.site_of[vertex] = before;
+  return sum;
+}
+
+/// Calls look_at(op, vertex, plan) for what moves of random meshes are planned.
+template <int Dim>
+void visit_moves(const SmoothOptions& options, auto&& look_at) {
+  const Executor executor({.threads = 1});
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Random random(seed);
+    AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 8 : 4));
+    test::jiggle(any, random, 0.4);
+    SmoothScene<Dim> scene(executor, any);
+    const Smooth<Dim> op(scene.mesh, *scene.background, options);
+    for (VertexId v = 0; v < scene.mesh.vertex_slots(); ++v) {
+      VertexMove<Dim> plan;
+      if (scene.mesh.kind_of[v].class_dimension != 0 && op.decide(v, plan))
+        look_at(scene.mesh, op, v, plan);
+    }
+  }
+}
+
+TYPED_TEST(SmoothIn, RaisesTheHarmonicMeanOfQualitiesWhereAllArePoor) {
+  constexpr int Dim = TypeParam::value;
+  std::size_t moves = 0;
+  const SmoothOptions options{.laplacian = false, .optimise_below = 1, .mean_below = 1};
+  visit_moves<Dim>(options, [&](auto& mesh, const auto&, VertexId v, const auto& plan) {
+    ++moves;
+    EXPECT_LT(inverse_qualities(mesh, v, plan.site), inverse_qualities(mesh, v, mesh.site_of[v]));
+  });
+  EXPECT_GT(moves, 50U);
+}
+
+/// The lengths are those of a unit square in the metric of the identity.
+TYPED_TEST(SmoothIn, LeadsNoEdgeOutOfTheRange) {
+  constexpr int Dim = TypeParam::value;
+  std::size_t moves = 0;
+  const EdgeRange range = Dim == 2 ? EdgeRange{0.1, 0.17} : EdgeRange{0.2, 0.35};
+  const SmoothOptions options{.optimise_below = 0.9, .range = range};
+  visit_moves<Dim>(options, [&](auto& mesh, const auto&, VertexId v, const auto& plan) {
+    ++moves;
+    for (const VertexId other : neighbours_of(mesh, v)) {
+      const double after = norm(plan.site.position - mesh.site_of[other].position);
+      const double before = norm(mesh.site_of[v].position - mesh.site_of[other].position);
+      EXPECT_GE(after, std::min(before, range.shortest) - 1e-9);
+      EXPECT_LE(after, std::max(before, range.longest) + 1e-9);
+    }
+  });
+  EXPECT_GT(moves, 5U);
 }
 
 }  // namespace

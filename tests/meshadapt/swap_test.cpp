@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <initializer_list>
-#include <numbers>
 
 #include "ductile/runtime/run_rounds.hpp"
 #include "geometry/make_mesh.hpp"
@@ -21,31 +20,6 @@ Mesh<Dim> mesh_of(std::initializer_list<Vector<Dim>> points,
                   std::initializer_list<Corners<Dim>> elements) {
   return test::in_unit_metric<Dim>(executor, test::listed_mesh<Dim>(points, elements),
                                    {.complete_boundary = true});
-}
-
-/// Elements around the edge 0-1, eight as in an orange of which the upper half was cut away, all
-/// but a slice of this height with the facets 0-2-3 and 1-2-3; and, on request, two elements on it
-/// of another region. Boundaries bend, and may change by the tolerance.
-Mesh<3> half_orange(double height, double tolerance, bool covered = false) {
-  AnyMesh any;
-  any.dimension = 3;
-  any.coordinates = {-1, 0, 0, 1, 0, 0, 0, -1, height, 0, 1, height};
-  constexpr std::uint32_t segments = 7, first = 4, top = first + segments - 1;
-  for (std::uint32_t i = 1; i < segments; ++i) {
-    const double angle = -std::numbers::pi * i / segments;
-    any.coordinates.insert(any.coordinates.end(), {0, std::cos(angle), std::sin(angle)});
-  }
-  any.tetrahedra.add({0, 1, 2, 3}, 1);
-  for (std::uint32_t i = 0; i < segments; ++i)
-    any.tetrahedra.add({0, 1, i == 0 ? 3 : first + i - 1, i + 1 == segments ? 2 : first + i}, 1);
-  if (covered) {
-    any.coordinates.insert(any.coordinates.end(), {0, 0, 1});
-    any.tetrahedra.add({0, 3, 2, top}, 2);
-    any.tetrahedra.add({1, 2, 3, top}, 2);
-  }
-  any.vertex_reference.assign(any.coordinates.size() / 3, 0);
-  return test::in_unit_metric<3>(executor, any,
-                                 {.complete_boundary = true, .hausdorff_tolerance = tolerance});
 }
 
 template <int Dim>
@@ -125,7 +99,7 @@ TEST(Swap, PiercesTheLargeFaceOfFlatTetrahedra) {
 }
 
 TEST(Swap, CutsOffAPoorElementBelowASmoothPatch) {
-  auto mesh = half_orange(0.01, 0.03);
+  auto mesh = test::half_orange(executor, 0.01, 0.03);
   auto found = improvements(mesh);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(std::pair(found[0].a, found[0].b), std::pair(VertexId{0}, VertexId{1}));
@@ -153,10 +127,10 @@ TEST(Swap, CutsNothingOffThatIsFarFromTheInputOrNotPoorOrBelowAnotherRegion) {
     runtime::run_rounds_by<runtime::Strategy::reservations>(executor, swap, std::move(found));
     return !contains(mesh.corners_of[0], 3);
   };
-  EXPECT_TRUE(cuts(half_orange(0.01, 0.03)));
-  EXPECT_FALSE(cuts(half_orange(0.01, 0.003)));
-  EXPECT_FALSE(cuts(half_orange(0.2, 1)));
-  EXPECT_FALSE(cuts(half_orange(0.01, 0.03, true)));
+  EXPECT_TRUE(cuts(test::half_orange(executor, 0.01, 0.03)));
+  EXPECT_FALSE(cuts(test::half_orange(executor, 0.01, 0.003)));
+  EXPECT_FALSE(cuts(test::half_orange(executor, 0.2, 1)));
+  EXPECT_FALSE(cuts(test::half_orange(executor, 0.01, 0.03, true)));
 }
 
 }  // namespace

@@ -4,22 +4,6 @@ metric that was adapted to."""
 from support import *
 
 
-def integral(dm, values, on_cells=False):
-    """Of each component, over all ranks."""
-    x, cells = coordinates(dm), corners_of(dm)
-    dim = dm.getDimension()
-    values = values.array.reshape(len(cells) if on_cells else len(x), -1)
-    own = [p - dm.getHeightStratum(0)[0] for p in own_points(dm, *dm.getHeightStratum(0))]
-    p = x[cells[own]]
-    volume = np.abs(np.linalg.det(p[:, 1:] - p[:, :1])) / (2 if dim == 2 else 6)
-    at = values[own] if on_cells else values[cells[own]].mean(axis=1)
-    return np.array([total(float(s)) for s in (volume[:, None] * at).sum(axis=0)])
-
-
-def local(array):
-    return PETSc.Vec().createWithArray(np.ascontiguousarray(array).ravel(), comm=PETSc.COMM_SELF)
-
-
 options["dm_ductile_fields"] = "u,line"
 options["dm_ductile_cell_fields"] = "heat,material"
 options["dm_ductile_by_value"] = "line,material"

@@ -63,7 +63,11 @@ def box(dim, n):
     return points, cells, listed
 
 
-def write_mesh(name, dim, points, cells, facets, kept=()):
+required_words = {2: ("RequiredEdges", "RequiredTriangles"), 3: ("RequiredTriangles", "RequiredTetrahedra")}
+
+
+def write_mesh(name, dim, points, cells, facets, kept=(), required=()):
+    """required: numbers of facets, and of cells"""
     names = {2: ("Edges", "Triangles"), 3: ("Triangles", "Tetrahedra")}[dim]
     with open(name, "w") as file:
         print("MeshVersionFormatted 2\nDimension", dim, "\nVertices", len(points), file=file)
@@ -75,6 +79,8 @@ def write_mesh(name, dim, points, cells, facets, kept=()):
                 print(*[c + 1 for c in corners], reference, file=file)
         if kept:
             print("RequiredVertices", len(kept), *[v + 1 for v in kept], file=file)
+        for word, numbers in zip(required_words[dim], required):
+            print(word, len(numbers), *[i + 1 for i in numbers], file=file)
         print("End", file=file)
 
 
@@ -96,7 +102,7 @@ def sections(name):
             each = width[word] or dim + 1
             count = int(next(words))
             found[word] = [[float(next(words)) for _ in range(each)] for _ in range(count)]
-        elif word in ("RequiredVertices", "SolAtVertices"):
+        elif word == "SolAtVertices" or word.startswith("Required"):
             count = int(next(words))
             skip = 2 if word == "SolAtVertices" else 0
             for _ in range(skip):
@@ -153,7 +159,8 @@ def small_near_middle(x):
 def try_box(dim, n):
     points, cells, facets = box(dim, n)
     kept = min(range(len(points)), key=lambda v: sum((a - 0.3) ** 2 for a in points[v]))
-    write_mesh("in.mesh", dim, points, cells, facets, [kept])
+    required = [[len(facets) // 2], [len(cells) // 2, len(cells) // 3]]
+    write_mesh("in.mesh", dim, points, cells, facets, [kept], required)
     write_sol("in.sol", dim, [small_near_middle(x) for x in points])
     u = [1 + x[0] * x[0] + (3 if x[1] > 0.5 else 0) for x in points]
     write_sol("u.sol", dim, u)
@@ -167,6 +174,13 @@ def try_box(dim, n):
     _, found = sections("out.mesh")
     stays = found["Vertices"][int(found["RequiredVertices"][0]) - 1][:dim]
     expect(stays == points[kept], f"{dim}D: a required vertex went to {stays}")
+    places = lambda of, corners: sorted(of[int(c)][:dim] for c in corners)
+    for word, list, numbers in zip(required_words[dim], ("facet", "cell"), required):
+        name = {"facet": ("Edges", "Triangles"), "cell": ("Triangles", "Tetrahedra")}[list][dim - 2]
+        old = sorted(places(points, (facets, cells)[list == "cell"][i][0]) for i in numbers)
+        new = [found[name][int(i) - 1] for i in found[word]]
+        new = sorted(places(found["Vertices"], [c - 1 for c in cell[:-1]]) for cell in new)
+        expect(old == new, f"{dim}D: required: {old} became {new}")
     carried = sections("out.u.sol")[1]["SolAtVertices"]
     expect(min(u) <= min(carried) and max(carried) <= max(u), f"{dim}D: bounds of a field are lost")
     old, new = integral("in.mesh", u), integral("out.mesh", carried)
@@ -175,6 +189,10 @@ def try_box(dim, n):
     first = [pathlib.Path(f).read_bytes() for f in files]
     adapt("in.mesh", "-o", "out.mesh", "--field", "u.sol", "--threads", "2", "-v", "0")
     expect([pathlib.Path(f).read_bytes() for f in files] == first, f"{dim}D: other bytes")
+    if ranks == "1":
+        run([ductile, "adapt", "in.mesh", "-o", "serial.mesh", "--field", "u.sol", "--threads", "2"])
+        for file, bytes in zip(("serial.mesh", "serial.sol", "serial.u.sol"), first):
+            expect(pathlib.Path(file).read_bytes() == bytes, f"{dim}D: {file} is another than on one rank")
     return len(found[("Triangles", "Tetrahedra")[dim - 2]])
 
 
@@ -194,9 +212,65 @@ def try_pieces(dim, count):
     expect(arrays - {None} <= own, f"the index names {arrays}, a piece has {own}")
 
 
-def try_hdf5():
-    adapt("in.mesh", "-o", "out.h5")
-    expect(pathlib.Path("out.h5").read_bytes()[1:4] == b"HDF", "out.h5 is no HDF5")
+def write_vtu(name, dim, points, cells, heat):
+    """In words, with one value on each cell."""
+    corners = [v for cell, _ in cells for v in cell]
+    arrays = {
+        "Points": ("Float64", 3, [x for p in points for x in (*p, 0.0)[:3]], ""),
+        "Cells": ("Int64", 1, corners, "connectivity"),
+        "offsets": ("Int64", 1, range(dim + 1, len(corners) + 1, dim + 1), "offsets"),
+        "types": ("UInt8", 1, [{2: 5, 3: 10}[dim]] * len(cells), "types"),
+        "CellData": ("Float64", 1, heat, "heat"),
+    }
+    text = {
+        key: f'<DataArray type="{kind}" Name="{array}" NumberOfComponents="{each}" format="ascii">'
+        + " ".join(map(str, values)) + "</DataArray>"
+        for key, (kind, each, values, array) in arrays.items()
+    }
+    pathlib.Path(name).write_text(
+        '<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid>'
+        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">'
+        f"<Points>{text['Points']}</Points><Cells>{text['Cells']}{text['offsets']}{text['types']}</Cells>"
+        f"<CellData>{text['CellData']}</CellData></Piece></UnstructuredGrid></VTKFile>"
+    )
+
+
+def try_hdf5(dim, n):
+    points, cells, _ = box(dim, n)
+    write_vtu("in.vtu", dim, points, cells, [1.0 + i % 7 for i in range(len(cells))])
+    adapt("in.vtu", "-hsiz", "0.2", "-o", "out.h5", "--complete-boundary")
+    found = pathlib.Path("out.h5").read_bytes()
+    expect(found[1:4] == b"HDF", "out.h5 is no HDF5")
+    for name in (b"vertex_fields", b"cell_fields", b"heat"):
+        expect(name in found, f"out.h5 has no {name}")
+
+
+def ball(dim, n):
+    """The box, of which cubes around the centre become spheres of radius 1; its surface is 1."""
+    points, cells, facets = box(dim, n)
+    centred = [[2 * a - 1 for a in p] for p in points]
+    scales = [max(map(abs, p)) / max(1e-300, sum(a * a for a in p) ** 0.5) for p in centred]
+    points = [[a * scale for a in p] for p, scale in zip(centred, scales)]
+    return points, [(c, 1) for c, _ in cells], [(f, 1) for f, reference in facets if reference != 99]
+
+
+def try_curved(dim, n, tolerance):
+    """Sizes from curvature alone; then again, measured from the first mesh."""
+    write_mesh("ball.mesh", dim, *ball(dim, n))
+    curved = ("-hausd", str(tolerance), "-v", "0", "--no-metric", "-o", "round.mesh")
+    adapt("ball.mesh", "-A", "-hmax", "0.7", *curved)
+    adapt("round.mesh", "-geometry", "ball.mesh", "-hsiz", str(0.15 * dim), "-hgrad", "1.3", *curved)
+    run([ductile, "info", "round.mesh"])
+    found = sections("round.mesh")[1]
+    facets = found[("Edges", "Triangles")[dim - 2]]
+    for v in {int(c) - 1 for facet in facets for c in facet[:dim]}:
+        off = abs(sum(a * a for a in found["Vertices"][v][:dim]) ** 0.5 - 1)
+        expect(off < 0.1 * tolerance, f"{dim}D: a vertex is {off} from the sphere")
+    whole = {2: 3.14159265, 3: 4.18879020}[dim]
+    lost = 1 - measures("round.mesh")["cell", 1.0] / whole
+    expect(abs(lost) < 2 * dim * tolerance, f"{dim}D: {lost} of the ball is lost")
+    count = len(sections("ball.mesh")[1][("Edges", "Triangles")[dim - 2]])
+    expect(len(facets) < 0.8 * count, f"{dim}D: {count} facets became {len(facets)}")
 
 
 def try_mistakes(dim):
@@ -220,6 +294,7 @@ def try_mistakes(dim):
 
 for dim, n in ((2, 10), (3, 5)):
     try_pieces(dim, try_box(dim, n))
-    try_hdf5()
+    try_hdf5(dim, n)
+    try_curved(dim, 24 if dim == 2 else 10, 0.004 if dim == 2 else 0.02)
     if dim == 2:
         try_mistakes(dim)

@@ -190,6 +190,22 @@ def digest(dm):
     return hashed.hexdigest()
 
 
+def integral(dm, values, on_cells=False):
+    """Of each component of a local vector, over all ranks of the mesh."""
+    x, cells = coordinates(dm), corners_of(dm)
+    dim = dm.getDimension()
+    values = values.array.reshape(len(cells) if on_cells else len(x), -1)
+    own = [p - dm.getHeightStratum(0)[0] for p in own_points(dm, *dm.getHeightStratum(0))]
+    p = x[cells[own]]
+    volume = np.abs(np.linalg.det(p[:, 1:] - p[:, :1])) / (2 if dim == 2 else 6)
+    at = values[own] if on_cells else values[cells[own]].mean(axis=1)
+    return np.array([total(float(s)) for s in (volume[:, None] * at).sum(axis=0)])
+
+
+def local(array):
+    return PETSc.Vec().createWithArray(np.ascontiguousarray(array).ravel(), comm=PETSc.COMM_SELF)
+
+
 def quality(dm, tensor_at):
     """Edges in range, edges, and the worst and mean quality of the cells, in a metric, of all ranks.
 

@@ -13,6 +13,11 @@ namespace ductile::runtime::test {
 using Vertex = std::uint32_t;
 inline constexpr std::array thread_counts{1, 2, 3, 4, 8};
 
+/// For plans that a test asks for itself: whoever is reached for is had.
+struct ReachAny {
+  bool operator()(Vertex) const { return true; }
+};
+
 inline std::vector<Vertex> all_items(std::size_t n) {
   std::vector<Vertex> items(n);
   std::iota(items.begin(), items.end(), 0U);

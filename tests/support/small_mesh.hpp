@@ -2,7 +2,9 @@
 /// Meshes of a few elements that a test lists, in the Euclidean metric.
 #pragma once
 
+#include <cmath>
 #include <initializer_list>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,39 @@ AnyMesh listed_mesh(std::initializer_list<Vector<Dim>> points,
       any.tetrahedra.add(corners, reference);
   }
   return any;
+}
+
+/// Elements around the edge 0-1, eight as in an orange of which the upper half was cut away, all
+/// but a slice of this height with the facets 0-2-3 and 1-2-3; and, on request, two elements on it
+/// of another region. Boundaries bend, and may change by the tolerance.
+inline Mesh<3> half_orange(const runtime::Executor& executor, double height, double tolerance,
+                           bool covered = false) {
+  AnyMesh any;
+  any.dimension = 3;
+  any.coordinates = {-1, 0, 0, 1, 0, 0, 0, -1, height, 0, 1, height};
+  constexpr std::uint32_t segments = 7, first = 4, top = first + segments - 1;
+  for (std::uint32_t i = 1; i < segments; ++i) {
+    const double angle = -std::numbers::pi * i / segments;
+    any.coordinates.insert(any.coordinates.end(), {0, std::cos(angle), std::sin(angle)});
+  }
+  any.tetrahedra.add({0, 1, 2, 3}, 1);
+  for (std::uint32_t i = 0; i < segments; ++i)
+    any.tetrahedra.add({0, 1, i == 0 ? 3 : first + i - 1, i + 1 == segments ? 2 : first + i}, 1);
+  if (covered) {
+    any.coordinates.insert(any.coordinates.end(), {0, 0, 1});
+    any.tetrahedra.add({0, 3, 2, top}, 2);
+    any.tetrahedra.add({1, 2, 3, top}, 2);
+  }
+  any.vertex_reference.assign(any.coordinates.size() / 3, 0);
+  return in_unit_metric<3>(executor, any,
+                           {.complete_boundary = true, .hausdorff_tolerance = tolerance});
+}
+
+/// The patch of an element's facet opposite to one of its corners.
+template <int Dim>
+PatchId& patch_opposite(Mesh<Dim>& mesh, ElementId element, VertexId corner) {
+  const int place = corner_of(mesh.corners_of[element], corner);
+  return mesh.patches_of[element][static_cast<std::size_t>(place)];
 }
 
 }  // namespace ductile::meshadapt::test

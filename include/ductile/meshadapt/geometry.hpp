@@ -29,6 +29,9 @@ struct GeometryOptions {
   double ridge_angle = 45;                      ///< as MakeMeshOptions::ridge_angle
   bool complete_boundary = false;               ///< as MakeMeshOptions::complete_boundary
   std::vector<SurfaceFunction> functions = {};  ///< as MakeMeshOptions::functions
+  /// The meshes that are adapted with it are parts of its domain: they may have none of its curved
+  /// boundaries. Otherwise a mesh without any is refused as one of another domain.
+  bool in_parts = false;
 };
 
 /// A point of a geometry.
@@ -72,5 +75,11 @@ template <>
 inline const ReferenceSurface<3>* Geometry::surface() const {
   return space_.get();
 }
+
+/// The metric made finer at curved boundaries, as adapt() does by itself with a gradation or
+/// curved_sizes, and kept within the bounds on sizes; nothing grows from there yet. For meshes that
+/// are adapted in parts. Throws as adapt() does. Thread safety: any thread; runs on the executor.
+AnyField bound_at_curved_boundaries(const runtime::Executor& executor, const AnyMesh& mesh,
+                                    const AnyField& metric, const AdaptOptions& options);
 
 }  // namespace ductile::meshadapt

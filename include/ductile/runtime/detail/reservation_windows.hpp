@@ -28,7 +28,12 @@ class ReservationWindows {
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
 
-  ReservationWindows(const Executor& executor, Op& op) : executor_(executor), op_(op), made_(op) {}
+  /// Keys fall from this one, and begin there again when they are used up. There must be as many as
+  /// the largest window has items.
+  ReservationWindows(const Executor& executor, Op& op, std::uint32_t highest_key = nobody)
+      : executor_(executor), op_(op), made_(op), highest_key_(highest_key) {}
+  static constexpr std::uint32_t nobody = 0xffffffffU;  ///< holds what no item has reached
+  static constexpr std::size_t most_window = 8192;      ///< items in a window
 
   /// Those that have lost and those that were woken are the next pass's work.
   RoundsReport run(std::vector<Item> work, std::size_t most_passes) {
@@ -130,7 +135,7 @@ class ReservationWindows {
     if (slots_.size() < count) slots_.resize(count);
     if (first_key_ < count) {
       std::fill(holder_of_.begin(), holder_of_.end(), nobody);
-      first_key_ = nobody;
+      first_key_ = highest_key_;
     }
     first_key_ -= static_cast<std::uint32_t>(count);
     holder_of_.resize(std::max(holder_of_.size(), op_.resource_count()), nobody);
@@ -228,16 +233,15 @@ class ReservationWindows {
     return report_;
   }
 
-  static constexpr std::size_t least_window = 64, first_window = 2048, most_window = 8192;
+  static constexpr std::size_t least_window = 64, first_window = 2048;
   static constexpr LoopOptions grain{.grain = 32};
-  static constexpr std::uint32_t nobody = 0xffffffffU;
 
   const Executor& executor_;
   Op& op_;
   MadeThings<Op> made_;
   std::vector<Slot> slots_;               // [place in the window]
   std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first that has reached it
-  std::uint32_t first_key_ = nobody;
+  std::uint32_t highest_key_, first_key_ = highest_key_;
   std::vector<std::uint64_t> by_priority_;  // of the window, priority and place
   std::vector<std::uint32_t> rank_of_;      // [place in the window], if there are priorities
   std::size_t window_ = first_window;

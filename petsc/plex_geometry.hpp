@@ -1,0 +1,29 @@
+/// @file
+/// The geometry that a caller keeps over several calls: a DMPlex, composed with the one that is
+/// adapted as "ductile_geometry".
+#pragma once
+
+#include <memory>
+
+#include "communicator.hpp"
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/geometry.hpp"
+#include "ductile/runtime/executor.hpp"
+#include "plex.hpp"
+
+namespace ductile::petsc {
+
+/// Is one composed with `dm`? Throws InputError if it is no DM.
+bool has_geometry(DM dm);
+
+/// The geometry of the composed mesh, with labels of the same names; null without one. It is made
+/// once for each tolerance and kept with that mesh. Throws Error, on all ranks. Collective.
+std::shared_ptr<const meshadapt::Geometry> geometry_of_plex(const Communicator& comm,
+                                                            const runtime::Executor& executor,
+                                                            DM dm, const CarriedLabels& labels,
+                                                            const meshadapt::MakeMeshOptions& make);
+
+/// Composes with `after` what is composed with `before`, if anything is.
+void pass_geometry_on(DM before, DM after);
+
+}  // namespace ductile::petsc

@@ -1,0 +1,164 @@
+#include "input.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "command.hpp"
+#include "ductile/meshadapt/mesh_arrays.hpp"
+#include "ductile/meshadapt/metric_field.hpp"
+#include "files.hpp"
+#include "first_rank.hpp"
+#include "local_parameters.hpp"
+
+namespace ductile::petsc {
+
+namespace fs = std::filesystem;
+using cli::AdaptJob;
+using cli::Arguments;
+using meshadapt::NamedField;
+using runtime::Executor;
+
+namespace {
+
+void refuse_what_is_not_here(const Arguments& arguments) {
+  for (const std::string_view name : not_here)
+    if (arguments.has(name))
+      throw cli::UsageError("option " + std::string(name) +
+                            ": not on several ranks; use ductile adapt, or, for sizes by places, "
+                            "ductile metric first");
+}
+
+/// Those in the file of the mesh, where the output holds fields, and those of --field.
+void read_fields(Input& input, meshadapt::MeshWithFields& file) {
+  const AdaptJob& job = input.job;
+  std::string left;
+  for (NamedField& field : file.fields) {
+    if (field.name == "metric") continue;
+    if (cli::holds_fields(job.output))
+      input.fields.push_back(std::move(field));
+    else
+      left += (left.empty() ? "" : ", ") + field.name;
+  }
+  if (!left.empty())
+    input.warnings.push_back(file.mesh.name + ": its fields are left out, which " +
+                             job.output.string() + " does not hold: " + left);
+  const auto values = job.fields.read(file.mesh, input.warnings);
+  input.field_count_of = values.field_count_of;
+  if (values.field_count_of.empty()) return;
+  std::vector<std::string> names;  // as the files are called
+  for (std::size_t f = 0; f < input.field_count_of.size(); ++f)
+    for (std::size_t k = 1; k <= input.field_count_of[f]; ++k)
+      names.push_back(cli::as_utf8(job.fields.inputs()[f].stem().string()) +
+                      (input.field_count_of[f] > 1 ? "_" + std::to_string(k) : ""));
+  auto fields = meshadapt::named_fields(values.all, "field");
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    fields[k].name = names[k];
+    input.fields.push_back(std::move(fields[k]));
+  }
+}
+
+/// A mesh that only says what boundaries are like.
+Part read_geometry(Input& input, const Executor& executor) {
+  AnyMesh mesh = meshadapt::read_mesh(*input.job.geometry, &input.warnings);
+  const int dimension = input.file.part.mesh.dimension;
+  if (mesh.dimension != dimension)
+    throw meshadapt::InputError(mesh.name + ": expected a geometry of dimension " +
+                                std::to_string(dimension) + ", found " +
+                                std::to_string(mesh.dimension));
+  if (input.job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, mesh);
+  mesh.required_edges.clear();  // of no matter here
+  mesh.required_triangles.clear();
+  mesh.required_tetrahedra.clear();
+  return part_of_file(std::move(mesh), {}, input.warnings).part;
+}
+
+/// A field, or a name of references, as it goes to other ranks.
+struct Told {
+  std::array<char, 240> name{};
+  int number = 0, other = 0;
+
+  Told() = default;
+  Told(const std::string& text, int first, int second) : number(first), other(second) {
+    std::copy_n(text.data(), std::min(text.size(), name.size() - 1), name.begin());
+  }
+};
+
+}  // namespace
+
+/// A .pvtu and a .h5 hold fields, as a .vtu does, whose name stands in for theirs.
+void read_words(Input& input, const Arguments& arguments) {
+  refuse_what_is_not_here(arguments);
+  std::optional<fs::path> stand_in;
+  if (const auto given = arguments.text("-o")) {
+    const fs::path output = *given;
+    if (output.extension() == ".pvtu") input.form = Form::pieces;
+    if (output.extension() == ".h5" || output.extension() == ".hdf5") input.form = Form::hdf5;
+    if (input.form != Form::gathered) stand_in = fs::path(output).replace_extension(".vtu");
+    input.output = output;
+  }
+  input.job = cli::read_adapt_job(arguments, stand_in);
+  if (input.form == Form::gathered)
+    input.output = input.job.output;
+  else
+    meshadapt::check_writable(input.output);
+}
+
+void read_files(Input& input, const Executor& executor) {
+  AdaptJob& job = input.job;
+  if (!job.unneeded.empty()) input.warnings.push_back(job.unneeded);
+  auto file = meshadapt::read_mesh_with_fields(job.input, &input.warnings);
+  if (job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, file.mesh);
+  meshadapt::AnyField metric = cli::choose_metric(executor, job, file, {}, input.warnings);
+  cli::bound_locally(executor, file.mesh,
+                     cli::local_parameters(job.parameters, file.mesh, job.adapt, input.warnings),
+                     metric, job.adapt);
+  metric =
+      meshadapt::metric_of(metric, file.mesh, {job.adapt.smallest_size, job.adapt.largest_size});
+  read_fields(input, file);
+  input.names = file.mesh.names;
+  input.dropped_axis = file.mesh.dropped_axis;
+  input.file = part_of_file(std::move(file.mesh), std::move(metric), input.warnings);
+  if (job.geometry) input.geometry = read_geometry(input, executor);
+}
+
+void tell_others(const Communicator& comm, Input& input) {
+  int dimension = input.file.part.mesh.dimension;
+  std::array<double, 2> bounds{input.job.adapt.smallest_size, input.job.adapt.largest_size};
+  from_first_rank(comm, dimension);
+  from_first_rank(comm, bounds);
+  from_first_rank(comm, input.form);
+  from_first_rank(comm, input.dropped_axis);
+  from_first_rank(comm, input.job.with_metric);
+  from_first_rank(comm, input.file.kept.vertices);
+  from_first_rank(comm, input.file.kept.facets);
+  from_first_rank(comm, input.file.kept.elements);
+  std::vector<Told> fields, names;
+  std::vector<char> output;
+  comm.on_all([&] {
+    if (comm.rank() != 0) return;
+    for (const NamedField& field : input.fields)
+      fields.emplace_back(field.name, static_cast<int>(field.type), static_cast<int>(field.place));
+    for (const auto& name : input.names)
+      names.emplace_back(name.name, name.reference, name.dimension);
+    const std::string path = input.output.string();
+    output.assign(path.begin(), path.end());
+  });
+  from_first_rank(comm, fields);
+  from_first_rank(comm, names);
+  from_first_rank(comm, output);
+  input.job.adapt.smallest_size = bounds[0];
+  input.job.adapt.largest_size = bounds[1];
+  if (comm.rank() == 0) return;
+  input.output = std::string(output.begin(), output.end());
+  input.file.part = empty_part(dimension);
+  for (const Told& field : fields)
+    input.fields.push_back({field.name.data(),
+                            static_cast<meshadapt::AnyField::Type>(field.number),
+                            {},
+                            static_cast<NamedField::Place>(field.other)});
+  for (const Told& name : names) input.names.push_back({name.other, name.number, name.name.data()});
+}
+
+}  // namespace ductile::petsc

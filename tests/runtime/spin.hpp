@@ -1,0 +1,15 @@
+/// @file
+/// Work that takes time.
+#pragma once
+
+#include <chrono>
+
+namespace ductile::runtime::test {
+
+inline void spin(std::chrono::nanoseconds time) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (std::chrono::steady_clock::now() < end) {
+  }
+}
+
+}  // namespace ductile::runtime::test
