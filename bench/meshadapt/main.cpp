@@ -8,11 +8,11 @@
 #include <exception>
 #include <filesystem>
 
-#include "child.hpp"
 #include "copies.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "peer.hpp"
 #include "plan.hpp"
+#include "report/gnuplot.hpp"
 #include "results.hpp"
 #include "sample.hpp"
 #include "system.hpp"
@@ -86,16 +86,6 @@ void measure_peer(Results& results, const Plan& plan, const AdaptCase& made) {
   }
 }
 
-void draw(Results& results, const fs::path& folder) {
-  const auto gnuplot = find_program("gnuplot");
-  if (!gnuplot) {
-    results.notes.emplace_back("There are no plots, because gnuplot is not on the PATH.");
-    return;
-  }
-  if (run_child({*gnuplot, "-e", "cd '" + folder.string() + "'", DUCTILE_PLOTS}).status != 0)
-    results.notes.emplace_back("gnuplot failed; some plots are missing.");
-}
-
 /// What an earlier run left would end up in the page of this one.
 void clear_folder(const fs::path& folder) {
   fs::create_directories(folder);
@@ -117,7 +107,7 @@ int run(const Plan& plan) {
   }
   results.notes.push_back("Measured in " + std::to_string(static_cast<int>(seconds_since(start))) +
                           " s.");
-  draw(results, plan.folder);
+  if (!draw_plots(DUCTILE_PLOTS, plan.folder)) results.notes.emplace_back(no_plots);
   write_page(results, plan.folder);
   const std::vector<Summary> summaries = summarise(results.samples);
   std::printf("\n%s", time_table(summaries).text().c_str());

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <stdexcept>
 
-#include "ductile/meshadapt/error.hpp"
-#include "ductile/meshadapt/files.hpp"
 #include "report/page.hpp"
+#include "report/whole_file.hpp"
 
 namespace ductile::bench {
 
@@ -19,8 +19,8 @@ std::string Cell::text(int digits) const {
 
 void Table::add(std::vector<Cell> row) {
   if (row.size() != columns_.size())
-    throw meshadapt::Error("a table of " + std::to_string(columns_.size()) +
-                           " columns was given a row of " + std::to_string(row.size()));
+    throw std::runtime_error("a table of " + std::to_string(columns_.size()) +
+                             " columns was given a row of " + std::to_string(row.size()));
   rows_.push_back(std::move(row));
 }
 
@@ -55,21 +55,19 @@ std::string Table::html() const {
 }
 
 void Table::write_csv(const std::filesystem::path& path) const {
-  meshadapt::AtomicOutputs outputs;
   std::string text;
   for (std::size_t c = 0; c < columns_.size(); ++c) text += (c > 0 ? "," : "") + columns_[c];
   text += "\n";
   for (const auto& row : rows_) {
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       if (row[c].words.find_first_of(",\n") != std::string::npos)
-        throw meshadapt::Error(path.string() + ": expected words without commas, found '" +
-                               row[c].words + "'");
+        throw std::runtime_error(path.string() + ": expected words without commas, found '" +
+                                 row[c].words + "'");
       text += (c > 0 ? "," : "") + row[c].text(12);
     }
     text += "\n";
   }
-  write_bytes(outputs, path, text);
-  outputs.commit();
+  write_whole(path, text);
 }
 
 }  // namespace ductile::bench

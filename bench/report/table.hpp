@@ -45,7 +45,8 @@ class Table {
   std::string html() const;
 
   /// The file appears whole or not at all; numbers have twelve digits. Words must be free of commas
-  /// and line ends, or Error is thrown.
+  /// and line ends, or
+  /// std::runtime_error is thrown.
   void write_csv(const std::filesystem::path& path) const;
 
  private:

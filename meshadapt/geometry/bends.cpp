@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -26,12 +27,6 @@ Metric<Dim> square(double weight, const Vector<Dim>& direction) {
   for (int j = 0; j < Dim; ++j)
     for (int i = 0; i <= j; ++i) result.m[at++] = weight * direction[i] * direction[j] / squared;
   return result;
-}
-
-template <int Dim>
-Vector<Dim> unit(const Vector<Dim>& v) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : Vector<Dim>{};
 }
 
 /// Builds Bends from the facets of smooth patches, which meet at sides: vertices in 2D, in 3D
@@ -166,14 +161,15 @@ class BendsMaker {
   }
 
   void take_normals() {
-    constexpr double reach = 4;  // of the tolerance
+    constexpr double reach = 4;    // of the tolerance
+    constexpr double near = 0.95;  // cosine: what is not is the model of needles
     runtime::parallel_for(executor_, nodes_.size(), [&](std::size_t n) {
       BendNode<Dim>& node = nodes_[n];
       node.normal = unit(node.normal);
       const auto& model = mesh_.surface->facets;
       const auto nearest = model.nearest_on(at(node.vertex), mesh_.patches[node.patch].sheet,
                                             reach * model.tolerance());
-      if (nearest && std::abs(dot(nearest->direction, node.normal)) > 0.5)
+      if (nearest && std::abs(dot(nearest->direction, node.normal)) > near)
         node.normal = nearest->direction;
     });
   }

@@ -20,8 +20,8 @@ struct BendNode {
   VertexId vertex = none;
   PatchId patch = 0;
   double width = 0;  ///< of the widest flat part beside it
-  /// That of the model where the vertex is on it, otherwise of the facets around; of unit length,
-  /// may be to either side.
+  /// That of the model where the vertex is on it and the facets around agree, otherwise theirs; of
+  /// unit length, may be to either side.
   Vector<Dim> normal;
   double area = 0;  ///< of the part of the patch that is closest to the vertex; length in 2D
 };

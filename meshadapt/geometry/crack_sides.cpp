@@ -4,6 +4,7 @@
 #include <compare>
 #include <span>
 
+#include "core/unit.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/worklist.hpp"
 
@@ -99,8 +100,7 @@ runtime::UnsetVector<Meeting> meetings_against(const runtime::Executor& executor
   auto outwards = runtime::make_unset_vector<Vector<3>>(executor, facets.size());  // of length 1
   runtime::parallel_for(executor, facets.size(), [&](std::size_t f) {
     const Corners<3>& corners_there = mesh.corners_of[facets[f].element];
-    const Vector<3> normal = normal_of<3>(mesh, facet_of<3>(corners_there, facets[f].facet));
-    outwards[f] = (1 / norm(normal)) * normal;
+    outwards[f] = unit(normal_of<3>(mesh, facet_of<3>(corners_there, facets[f].facet)));
   });
   return runtime::parallel_collect<Meeting>(
       executor, corners.size(), [&](std::size_t i, auto&& append) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -31,25 +32,33 @@ class Surroundings {
       : mesh_(mesh), bends_(bends), tolerance_(tolerance), seen_(bends.nodes.size(), none) {}
 
   /// A tensor in which edges as long as the boundary allows have length 1, if it can say so within
-  /// `reach`; one that is too small where they may be longer.
+  /// `reach`; one that is too small where they may be longer. Where it bends enough for chords,
+  /// that may be noise: a fit that bends less counts if it explains all that is within 1.5 times as
+  /// far.
   Metric<Dim> sizes_at(std::uint32_t node, double reach) {
+    constexpr double farther_away = 1.5;
     front_.clear();
     found_.clear();
     origin_ = position(node);
-    bend_ = CurvatureFit<Dim>(bends_.nodes[node].normal);
+    bend_ = CurvatureFit<Dim>(normal_at(node));
     see(node, node);
     PrincipalAxes<Dim> curvature = bend_.curvature();
-    for (double distance = 0; !front_.empty() && found_.size() < most_nodes;) {
+    double limit = reach;
+    bool bends_enough = false;
+    while (!front_.empty() && found_.size() < most_nodes) {
       std::pop_heap(front_.begin(), front_.end(), farther);
-      const auto [away, nearest] = front_.back();
+      const auto [distance, nearest] = front_.back();
       front_.pop_back();
-      distance = away;
-      if (distance > reach) break;
+      if (distance > limit && found_.size() > fewest_nodes) break;
       take(node, nearest, distance);
+      if (bends_enough) continue;
       curvature = bend_.curvature();
-      if (found_.size() > fewest_nodes && is_enough(largest(curvature), distance)) break;
+      bends_enough = found_.size() > fewest_nodes && is_enough(largest(curvature), distance);
+      if (bends_enough) limit = farther_away * distance;
     }
-    return sizes(curvature);
+    const PrincipalAxes<Dim> smoother = bend_.curvature();
+    const bool is_rough = largest(smoother) < largest(curvature) && explains_all();
+    return sizes(is_rough ? smoother : curvature);
   }
 
  private:
@@ -67,6 +76,18 @@ class Surroundings {
     return mesh_.site_of[bends_.nodes[node].vertex].position;
   }
 
+  /// That of a node. Among needles it may say nothing: where the largest part beside the node is
+  /// turned by 45 degrees against it, that part's.
+  const Vector<Dim>& normal_at(std::uint32_t node) const {
+    constexpr double least_turn = 0.7;
+    const auto& [offset, neighbour] = bends_.next;
+    std::uint32_t widest = node;
+    for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i)
+      if (bends_.nodes[neighbour[i]].area > bends_.nodes[widest].area) widest = neighbour[i];
+    const auto &own = bends_.nodes[node].normal, &wide = bends_.nodes[widest].normal;
+    return std::abs(dot(own, wide)) < least_turn ? wide : own;
+  }
+
   void see(std::uint32_t from, std::uint32_t node) {
     if (std::exchange(seen_[node], from) == from) return;
     front_.emplace_back(norm(position(node) - origin_), node);
@@ -79,6 +100,18 @@ class Surroundings {
     bend_.add(position(node) - origin_, found.normal, found.area);
     const auto& [offset, neighbour] = bends_.next;
     for (std::uint32_t i = offset[node]; i < offset[node + 1]; ++i) see(from, neighbour[i]);
+  }
+
+  /// Are all places as high as the fit says, within half of the tolerance?
+  bool explains_all() const {
+    double low = std::numeric_limits<double>::max(), high = -low;
+    const auto height = bend_.height();
+    for (const auto& [distance, node] : found_) {
+      const double h = height(position(node) - origin_);
+      low = std::min(low, h);
+      high = std::max(high, h);
+    }
+    return high - low <= tolerance_;
   }
 
   /// Is the distance that of the chords that a curvature allows, see bound_curved_sizes()?

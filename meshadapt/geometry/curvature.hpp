@@ -15,7 +15,9 @@ namespace ductile::meshadapt {
 /// of length h is k h^2 / 8 from an arc of curvature k. A patch has two such directions; across it
 /// sizes are those of the one that bends more. Curvature is that of the model's normals, or of the
 /// curve's edges, over all that is no farther away than 1.25 such chords, or than the sizes asked
-/// for, so that it does not depend on how the facets are cut, and what a single facet does cancels.
+/// for, and at least seven vertices, so that it does not depend on how the facets are cut, and what
+/// a single facet does cancels. Up to 1.5 times as far a fit that bends less takes its place if all
+/// vertices there are within half of the tolerance of it: what bends more is noise.
 /// Sizes are not smaller than the edges that the mesh has there, each in its direction, or the flat
 /// parts that the patch is made of, where these are larger than the chords: to divide them would
 /// bring nothing closer. They are never smaller than twice the tolerance. The mesh has a surface.

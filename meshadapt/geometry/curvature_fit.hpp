@@ -18,6 +18,8 @@ namespace ductile::meshadapt {
 /// others. It is exact on spheres and cylinders, however far away the places are.
 template <int Dim>
 class CurvatureFit {
+  static constexpr std::size_t tangents = Dim - 1;
+
  public:
   CurvatureFit() = default;
   /// Of the point, of unit length.
@@ -51,13 +53,33 @@ class CurvatureFit {
     }
   }
 
+  /// A function of places: how far they are above what bends like that, up to a constant. Needs
+  /// places that were added.
+  auto height() const {
+    const auto bend = bends();
+    std::array<double, tangents> slope = change_;
+    for (std::size_t i = 0; i < tangents; ++i) {
+      for (std::size_t j = 0; j < tangents; ++j) slope[i] -= bend[i][j] * place_[j];
+      slope[i] /= weight_;
+    }
+    return [this, bend, slope](const Vector<Dim>& offset) {
+      double height = dot(offset, normal_);
+      for (std::size_t i = 0; i < tangents; ++i) {
+        double turn = slope[i];
+        for (std::size_t j = 0; j < tangents; ++j)
+          turn += bend[i][j] * dot(offset, tangent_[j]) / 2;
+        height += turn * dot(offset, tangent_[i]);
+      }
+      return height;
+    };
+  }
+
   /// The absolute principal curvatures and their directions; the first is the normal with 0.
   PrincipalAxes<Dim> curvature() const {
     PrincipalAxes<Dim> result{};
     result.vector[0] = normal_;
     if constexpr (Dim == 2) {
-      const double spread = square(0, 0);
-      result.value[1] = spread > 0 ? std::abs(change(0, 0) / spread) : 0;
+      result.value[1] = std::abs(bends()[0][0]);
       result.vector[1] = tangent_[0];
     } else {
       const auto axes = principal_axes(solved());
@@ -70,7 +92,16 @@ class CurvatureFit {
   }
 
  private:
-  static constexpr std::size_t tangents = Dim - 1;
+  /// The tensor by which normals change with places.
+  std::array<std::array<double, tangents>, tangents> bends() const {
+    if constexpr (Dim == 2) {
+      const double spread = square(0, 0);
+      return {{{spread > 0 ? change(0, 0) / spread : 0}}};
+    } else {
+      const Metric<2> bend = solved();
+      return {{{bend(0, 0), bend(0, 1)}, {bend(1, 0), bend(1, 1)}}};
+    }
+  }
 
   // About the means.
   double square(std::size_t i, std::size_t j) const {

@@ -4,18 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "core/unit.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/facet_sides.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
-
-template <int Dim>
-Vector<Dim> unit(const Vector<Dim>& v) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : Vector<Dim>{};
-}
 
 /// The curves at the vertices of a mesh.
 class Chains {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
@@ -12,15 +13,6 @@
 namespace ductile::meshadapt {
 
 using runtime::parallel_for;
-
-namespace {
-
-Vector<3> unit(const Vector<3>& v) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : Vector<3>{};
-}
-
-}  // namespace
 
 PatchNormals::PatchNormals(const runtime::Executor& executor, const ModelInput<3>& input,
                            const CurveTangents<3>& curves)

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/first_bad.hpp"
+#include "core/unit.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/facet_sides.hpp"
@@ -36,9 +37,14 @@ std::vector<std::uint32_t> ReferenceSurface<Dim>::sheets_of(
     if (facets[f].data.required) return;
     const Facet<Dim> corners = facet_of<Dim>(mesh.corners_of[facets[f].element], facets[f].facet);
     const Vector<Dim> normal = normal_of<Dim>(mesh, corners);
-    const auto nearest =
-        surface->facets.nearest(centre_of<Dim>(mesh, corners), (1 / norm(normal)) * normal,
-                                reference_of, facets[f].data.reference, near * tolerance);
+    const Vector<Dim> centre = centre_of<Dim>(mesh, corners);
+    const std::int32_t reference = facets[f].data.reference;
+    auto nearest =
+        surface->facets.nearest(centre, unit(normal), reference_of, reference, near * tolerance);
+    if (!nearest || (is_smooth[nearest->sheet] != 0 && nearest->distance > fitting * tolerance)) {
+      const auto noise = surface->facets.nearest(centre, fitting * tolerance);
+      if (noise && reference_of[noise->sheet] == reference) nearest = noise;
+    }
     if (!nearest) return;
     sheet_of[f] = nearest->sheet;
     distance_of[f] = is_smooth[nearest->sheet] != 0 ? nearest->distance : 0;
@@ -76,8 +82,8 @@ std::uint32_t ReferenceSurface<Dim>::sheet_of_edge(const std::array<Vector<Dim>,
   if (!surface) return none;
   const Vector<Dim> along = ends[1] - ends[0];
   const auto nearest =
-      surface->edges.nearest(0.5 * (ends[0] + ends[1]), (1 / norm(along)) * along,
-                             reference_of_curve, reference, fitting * surface->edges.tolerance());
+      surface->edges.nearest(0.5 * (ends[0] + ends[1]), unit(along), reference_of_curve, reference,
+                             fitting * surface->edges.tolerance());
   return nearest ? nearest->sheet : none;
 }
 

@@ -9,6 +9,7 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/sheets.hpp"
 #include "mesh/box_index.hpp"
@@ -35,8 +36,7 @@ Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners>& corner) {
     direction = facet_normal(corner);
   else
     direction = corner[1] - corner[0];
-  const double length = norm(direction);
-  return length > 0 ? (1 / length) * direction : Vector<Dim>{};
+  return unit(direction);
 }
 
 /// Of the facets: their parts are looked at one by one.

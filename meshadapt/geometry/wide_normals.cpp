@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/unit.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/facet_sides.hpp"
 #include "mesh/distance.hpp"
@@ -13,12 +14,6 @@
 namespace ductile::meshadapt {
 
 namespace {
-
-template <int Dim>
-Vector<Dim> unit(const Vector<Dim>& v) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : Vector<Dim>{};
-}
 
 template <int Dim>
 class WideNormals {

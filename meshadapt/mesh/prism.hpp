@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 
 namespace ductile::meshadapt {
@@ -52,7 +53,7 @@ class Prism {
     if constexpr (Corners == 2) {
       gradient_[0] = (1 / dot(u, u)) * u;
       if constexpr (Dim == 2) {
-        across_[0] = unit({{-u[1], u[0]}});
+        across_[0] = unit(Vector<2>{{-u[1], u[0]}});
       } else {
         const int least = std::abs(u[0]) < std::abs(u[1]) ? 0 : 1;
         Vector<3> axis;
@@ -124,8 +125,6 @@ class Prism {
   }
 
  private:
-  static Vector<Dim> unit(const Vector<Dim>& v) { return (1 / norm(v)) * v; }
-
   Place place(const Vector<Dim>& point) const {
     Place result;
     const Vector<Dim> offset = point - corner_[0];

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +12,7 @@
 #include "ductile/meshadapt/fixed_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "mesh/adjacency.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/wording.hpp"
@@ -116,27 +115,6 @@ std::vector<double> sizes_of(const AnyMesh& mesh) {
   return size_of;
 }
 
-/// The elements around each vertex, in ascending order: around[first[vertex]] up to
-/// around[first[vertex + 1]].
-struct ElementsAround {
-  std::vector<std::size_t> first;
-  std::vector<ElementId> around;
-
-  template <std::size_t N>
-  ElementsAround(const std::vector<std::array<VertexId, N>>& corners_of, std::size_t vertices)
-      : first(vertices + 1), around(N * corners_of.size()) {
-    for (const auto& corners : corners_of)
-      for (const VertexId v : corners) ++first[v];
-    std::exclusive_scan(first.begin(), first.end(), first.begin(), std::size_t{0});
-    std::vector<std::size_t> next(first);
-    for (std::size_t e = 0; e < corners_of.size(); ++e)
-      for (const VertexId v : corners_of[e]) around[next[v]++] = static_cast<ElementId>(e);
-  }
-  std::span<const ElementId> of(std::size_t vertex) const {
-    return {around.data() + first[vertex], first[vertex + 1] - first[vertex]};
-  }
-};
-
 template <int Dim>
 class DefaultMetric {
  public:
@@ -144,7 +122,7 @@ class DefaultMetric {
       : executor_(executor),
         size_of_(sizes_of(mesh)),  // which checks the mesh, too
         mesh_(mesh),
-        around_(elements_in<Dim>(mesh).vertices, mesh.vertex_count()),
+        lists_(list_elements<Dim>(executor, elements_in<Dim>(mesh).vertices, mesh.vertex_count())),
         log_of_(elements_in<Dim>(mesh).size()),
         volume_of_(log_of_.size()) {
     runtime::parallel_for(executor_, log_of_.size(), [&](std::size_t e) {
@@ -156,8 +134,9 @@ class DefaultMetric {
 
   AnyField field() const {
     std::vector<Metric<Dim>> metric_of(mesh_.vertex_count());
-    runtime::parallel_for(executor_, metric_of.size(),
-                          [&](std::size_t v) { metric_of[v] = metric_at(v); });
+    runtime::parallel_for(executor_, metric_of.size(), [&](std::size_t v) {
+      metric_of[v] = metric_at(static_cast<VertexId>(v));
+    });
     return symmetric_field(executor_, metric_of, mesh_.name);
   }
 
@@ -169,22 +148,22 @@ class DefaultMetric {
     return corner;
   }
 
-  Metric<Dim> metric_at(std::size_t v) const {
+  Metric<Dim> metric_at(VertexId v) const {
     double volume = 0;
-    for (const ElementId e : around_.of(v)) volume += volume_of_[e];
+    for (const ElementId e : lists_.elements_of(v)) volume += volume_of_[e];
     if (!(volume > 0)) return isotropic<Dim>(size_of_[v]);
     Metric<Dim> mean;
-    for (const ElementId e : around_.of(v))
+    for (const ElementId e : lists_.elements_of(v))
       if (volume_of_[e] > 0) mean += volume_of_[e] / volume * log_of_[e];
     const Metric<Dim> shape = exponential(without_little_stretch(mean));
     return std::exp(-2 * mean_log_length(shape, v)) * shape;
   }
 
   /// Of the edges that a vertex has in its elements.
-  double mean_log_length(const Metric<Dim>& metric, std::size_t v) const {
+  double mean_log_length(const Metric<Dim>& metric, VertexId v) const {
     double sum = 0;
     int count = 0;
-    for (const ElementId e : around_.of(v))
+    for (const ElementId e : lists_.elements_of(v))
       for (const VertexId w : elements_in<Dim>(mesh_).vertices[e]) {
         const double square =
             squared_length(metric, position_in<Dim>(mesh_, w) - position_in<Dim>(mesh_, v));
@@ -198,7 +177,7 @@ class DefaultMetric {
   const runtime::Executor& executor_;
   std::vector<double> size_of_;  // [vertex]
   const AnyMesh& mesh_;
-  ElementsAround around_;
+  VertexElements lists_;
   std::vector<Metric<Dim>> log_of_;  // [element], unset where the element is flat
   std::vector<double> volume_of_;    // [element], times 2 or 6
 };

@@ -50,6 +50,7 @@ class Gradation {
         changed_(metric_of.size()),
         has_changed_(metric_of.size(), 1),
         axes_of_(metric_of.size()),
+        finest_of_(metric_of.size()),
         neighbours_(executor, mesh) {
     std::iota(changed_.begin(), changed_.end(), VertexId{0});
   }
@@ -78,17 +79,20 @@ class Gradation {
   struct Raised {
     VertexId vertex;
     Metric<Dim> metric;
+    double finest;
   };
 
   /// Finds the new metrics from the old ones, then puts them in place.
   void sweep(std::span<const VertexId> active) {
     runtime::parallel_for(executor_, changed_.size(), [&](std::size_t i) {
-      axes_of_[changed_[i]] = principal_axes(metric_of_[changed_[i]]);
+      const VertexId v = changed_[i];
+      const auto& value = (axes_of_[v] = principal_axes(metric_of_[v])).value;
+      if (finest_of_[v] == 0) finest_of_[v] = finer * *std::max_element(value.begin(), value.end());
     });
     const auto raised = runtime::parallel_collect<Raised>(
         executor_, active.size(), [&](std::size_t i, auto&& append) {
-          Metric<Dim> metric = metric_of_[active[i]];
-          if (raise_from_neighbours(metric, active[i])) append(Raised{active[i], metric});
+          Raised at{active[i], metric_of_[active[i]], finest_of_[active[i]]};
+          if (raise_from_neighbours(at)) append(at);
         });
     runtime::parallel_for(
         executor_, changed_.size(), [&](std::size_t i) { has_changed_[changed_[i]] = 0; }, cheap);
@@ -97,37 +101,44 @@ class Gradation {
         executor_, raised.size(),
         [&](std::size_t i) {
           metric_of_[raised[i].vertex] = raised[i].metric;
+          finest_of_[raised[i].vertex] = raised[i].finest;
           has_changed_[raised[i].vertex] = 1;
           changed_[i] = raised[i].vertex;
         },
         cheap);
   }
 
-  bool raise_from_neighbours(Metric<Dim>& metric, VertexId vertex) {
+  bool raise_from_neighbours(Raised& at) {
     bool raised = false;
-    for (const VertexId from : neighbours_.of(vertex)) {
+    for (const VertexId from : neighbours_.of(at.vertex)) {
       if (!has_changed_[from]) continue;
-      const Metric<Dim> reaching = grown(from, vertex);
-      if (!raising::surely_finer(metric, reaching, options_.tolerance))
-        raised = raising::raise(metric, reaching, options_.tolerance) || raised;
+      const auto [vertex, reaching, finest] = grown(from, at.vertex);
+      if (raising::surely_finer(at.metric, reaching, options_.tolerance)) continue;
+      at.finest = std::max(at.finest, finest);
+      raised = raising::raise_up_to(at.finest, at.metric, reaching, options_.tolerance) || raised;
     }
     return raised;
   }
 
   /// The metric at `from` as it may be at `to` at most: a size h grows by g^(7/8) g_h^(1/8), where
   /// g is the growth over the edge's length in the metric and g_h that over its length in h.
-  Metric<Dim> grown(VertexId from, VertexId to) const {
+  Raised grown(VertexId from, VertexId to) const {
     const Vector<Dim> edge = place_of(mesh_, to) - place_of(mesh_, from);
     const double length = std::sqrt(std::max(0.0, squared_length(metric_of_[from], edge)));
     const double in_metric = 1 + length * rate_, in_space = norm(edge) * rate_;
-    PrincipalAxes<Dim> axes = axes_of_[from];
-    for (double& value : axes.value) {
+    const auto grow = [&](double value) {
       const double in_size = 1 + in_space * std::sqrt(std::max(0.0, value));
       const double growth = in_metric * std::sqrt(std::sqrt(std::sqrt(in_size / in_metric)));
-      value /= growth * growth;
-    }
-    return compose(axes);
+      return value / (growth * growth);
+    };
+    PrincipalAxes<Dim> axes = axes_of_[from];
+    for (double& value : axes.value) value = grow(value);
+    return {to, compose(axes), grow(finest_of_[from])};
   }
+
+  /// By how much eigenvalues may exceed the largest that spreads to a vertex: at 1 the direction of
+  /// the shortest size could not turn.
+  static constexpr double finer = 1.2;
 
   const Executor& executor_;
   std::vector<Metric<Dim>>& metric_of_;  // [vertex]
@@ -137,6 +148,7 @@ class Gradation {
   std::vector<VertexId> changed_;                     // in the last sweep, all before the first
   std::vector<std::uint8_t> has_changed_;             // [vertex]
   runtime::UnsetVector<PrincipalAxes<Dim>> axes_of_;  // [vertex], of those that changed
+  std::vector<double> finest_of_;                     // [vertex], no eigenvalue is larger
   VertexNeighbours<AMesh> neighbours_;
 };
 

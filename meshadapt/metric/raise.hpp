@@ -96,6 +96,22 @@ bool raise(Metric<Dim>& base, const Metric<Dim>& other, double tolerance) {
   return changed;
 }
 
+/// A tensor by what its squared sizes exceed those of eigenvalues `most`: which of two tensors is
+/// finer stays as it is, and no result of an intersection is finer than `most` afterwards.
+template <int Dim>
+Metric<Dim> above_sizes_of(double most, const Metric<Dim>& tensor) {
+  constexpr double closest = 1e-6;
+  PrincipalAxes<Dim> axes = principal_axes(tensor);
+  for (double& value : axes.value) value /= std::max(1 - value / most, closest);
+  return compose(axes);
+}
+template <int Dim>
+Metric<Dim> back_from(double most, const Metric<Dim>& excess) {
+  PrincipalAxes<Dim> axes = principal_axes(excess);
+  for (double& value : axes.value) value /= 1 + value / most;
+  return compose(axes);
+}
+
 /// Is no squared length in `fine` shorter than in `coarse` by more than `tolerance`? A yes is
 /// certain up to rounding; a no may be one only because it is close. Cheap: Cholesky without roots.
 template <int Dim>
@@ -113,6 +129,21 @@ bool surely_finer(const Metric<Dim>& fine, const Metric<Dim>& coarse, double tol
       for (std::size_t k = j + 1; k <= i; ++k) rest[i][k] -= multiple * rest[k][j];
     }
   }
+  return true;
+}
+
+/// The same as raise(), but eigenvalues stay below `most`, as all are before: intersections of
+/// stretched tensors are finer than either, so many of them would end at any size.
+template <int Dim>
+bool raise_up_to(double most, Metric<Dim>& base, const Metric<Dim>& other, double tolerance) {
+  const Metric<Dim> before = base;
+  if (!raise(base, other, tolerance)) return false;
+  Metric<Dim> finest;
+  for (std::size_t i = 0, at = 0; i < Dim; at += ++i + 1) finest.m[at] = most;
+  if (surely_finer(finest, base, 0)) return true;
+  Metric<Dim> excess = above_sizes_of(most, before);
+  raise(excess, above_sizes_of(most, other), rounding);
+  base = back_from(most, excess);
   return true;
 }
 

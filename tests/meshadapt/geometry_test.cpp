@@ -183,6 +183,34 @@ TEST_P(GeometryOf, AnotherDomainIsRefused) {
   EXPECT_NE(message(mesh, wider).find("hausdorff_tolerance"), std::string::npos);
 }
 
+TEST_P(GeometryOf, PartsNeedNoneOfItsCurves) {
+  const Executor executor({.threads = 2});
+  const AnyMesh mesh = start(true);
+  AnyMesh inner = mesh;  // with nothing curved near that of the geometry
+  for (double& x : inner.coordinates) x *= 0.1;
+  AdaptOptions options;
+  options.make.hausdorff_tolerance = tolerance;
+  options.make.geometry = std::make_shared<const Geometry>(
+      executor, mesh, GeometryOptions{.tolerance = tolerance, .in_parts = true});
+  EXPECT_NO_THROW(adapt(executor, inner, constant_metric(inner, 0.02), options));
+}
+
+TEST_P(GeometryOf, SizesAtCurvedBoundariesAreBoundedByTheTolerance) {
+  const Executor executor({.threads = 2});
+  const AnyMesh mesh = start(true);
+  const AnyField metric = constant_metric(mesh, 1);
+  const auto bounded = bound_at_curved_boundaries(executor, mesh, metric, options_on(mesh));
+  const double chord = std::sqrt(8 * radius * tolerance);
+  const auto each = static_cast<std::size_t>(dimension() == 2 ? 3 : 6);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    const double size = 1 / std::sqrt(bounded.values[v * each]);
+    if (norm_of(mesh, v) < 0.99 * radius)
+      EXPECT_EQ(size, 1) << v;
+    else
+      EXPECT_LT(size, 1.5 * chord) << v;
+  }
+}
+
 TEST_P(GeometryOf, TheSameBallGivesTheSameBytesAtAnyNumberOfThreads) {
   const AnyMesh first = start(false);
   std::vector<std::uint64_t> expected;

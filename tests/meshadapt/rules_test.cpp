@@ -119,6 +119,16 @@ TYPED_TEST(RulesIn, OnlyShortEdgesAreCollapsed) {
   EXPECT_TRUE(Coarsen<Dim>(mesh, rules).decide(1, plan));
 }
 
+TYPED_TEST(RulesIn, TheShortestEdgeIsTriedFirst) {
+  constexpr int Dim = TypeParam::value;
+  for (const double middle : {0.45, 0.55}) {
+    auto mesh = made<Dim>(pair_of<Dim>(middle, 1));
+    EdgeCollapse plan;
+    ASSERT_TRUE(Coarsen<Dim>(mesh, {}).decide(1, plan));
+    EXPECT_EQ(plan.kept, middle < 0.5 ? 0U : 2U);
+  }
+}
+
 TYPED_TEST(RulesIn, AMoveLeavesVolumesPositiveAndLengthsInTheirRange) {
   constexpr int Dim = TypeParam::value;
   Neighbours<Dim> neighbours;

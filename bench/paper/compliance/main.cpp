@@ -170,5 +170,6 @@ void run(Experiment& experiment) {
 int main(int word_count, char** word) {
   return paper::run_experiment(
       word_count, word,
-      {"Compliance minimisation: the stiffest cantilever of a given volume", run, options});
+      {"Compliance minimisation: the stiffest cantilever of a given volume", run, DUCTILE_PLOTS,
+       options});
 }

@@ -213,6 +213,7 @@ void run(Experiment& experiment) {
 }  // namespace
 
 int main(int word_count, char** word) {
-  return run_experiment(word_count, word,
-                        {"Viscous fingering in a porous medium, viscosity ratio e^2", run});
+  return run_experiment(
+      word_count, word,
+      {"Viscous fingering in a porous medium, viscosity ratio e^2", run, DUCTILE_PLOTS});
 }

@@ -10,6 +10,7 @@
 
 #include "arguments.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "report/gnuplot.hpp"
 
 namespace ductile::paper {
 
@@ -89,6 +90,7 @@ int run_experiment(int word_count, char** word, const ExperimentEntry& entry) {
     experiment.say("%s; %d threads", entry.title, experiment.executor().threads());
     const auto start = std::chrono::steady_clock::now();
     entry.run(experiment);
+    if (!bench::draw_plots(entry.plots, experiment.folder())) experiment.say("%s", bench::no_plots);
     experiment.say("took %.1f s",
                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     return experiment.all_claims_held() ? 0 : 1;

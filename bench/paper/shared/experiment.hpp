@@ -34,6 +34,8 @@ class Experiment {
   /// What was typed, for options of the experiment's own (ExperimentEntry::options).
   const cli::Arguments& arguments() const { return setup_.arguments; }
 
+  const std::filesystem::path& folder() const { return setup_.folder; }
+
   /// Where an output file goes; folders in the name are made.
   std::filesystem::path file(const std::string& name) const;
 
@@ -54,6 +56,7 @@ class Experiment {
 struct ExperimentEntry {
   const char* title;  ///< one line for help
   void (*run)(Experiment&);
+  const char* plots;  ///< the script of gnuplot that draws its figures from its tables
   std::span<const cli::Option> options = {};  ///< beside those that all experiments have
 };
 

@@ -260,6 +260,7 @@ void run(Experiment& experiment) {
 }  // namespace
 
 int main(int word_count, char** word) {
-  return paper::run_experiment(word_count, word,
-                               {"Synthetic benchmark: a mesh that follows a front", run, options});
+  return paper::run_experiment(
+      word_count, word,
+      {"Synthetic benchmark: a mesh that follows a front", run, DUCTILE_PLOTS, options});
 }

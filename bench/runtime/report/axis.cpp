@@ -39,9 +39,4 @@ Axis::Axis(std::span<const Contest> contests) {
     }
 }
 
-double Axis::place(double ratio) const {
-  const double inside = std::clamp(ratio, ticks_.front(), ticks_.back());
-  return std::log(inside / ticks_.front()) / std::log(ticks_.back() / ticks_.front());
-}
-
 }  // namespace ductile::bench::report

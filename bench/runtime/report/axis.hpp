@@ -26,8 +26,6 @@ class Axis {
   const std::vector<double>& ticks() const { return ticks_; }
   bool is_below(double ratio) const { return ratio < ticks_.front(); }
   bool is_beyond(double ratio) const { return ratio > ticks_.back(); }
-  /// From 0 to 1; those below and beyond are at the ends.
-  double place(double ratio) const;
 
  private:
   std::vector<double> ticks_;

@@ -1,18 +1,19 @@
 /// @file
-/// runtime_report FOLDER: reads the JSON files of a folder and writes report.html and its plots
-/// beside them, each whole or not at all. A file that cannot be read is named and left out. It
-/// knows a naming convention (samples.hpp) and no single benchmark.
+/// runtime_report FOLDER: reads the JSON files of a folder and writes report.html, its plots and
+/// the script that draws them (plots.gp) beside them. A file that cannot be read is named and left
+/// out. It knows a naming convention (samples.hpp) and no single benchmark.
 
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <stdexcept>
 
 #include "contests.hpp"
-#include "page.hpp"
+#include "contests_page.hpp"
 #include "plot.hpp"
+#include "report/gnuplot.hpp"
+#include "report/whole_file.hpp"
 #include "samples.hpp"
 
 namespace ductile::bench::report {
@@ -30,24 +31,18 @@ std::vector<path> json_files(const path& folder) {
   return files;
 }
 
-/// Under another name until it is whole.
-void write(const path& file, const std::string& text) {
-  const path part = file.string() + ".part";
-  std::ofstream out(part);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error(file.string() + ": cannot be written");
-  std::filesystem::rename(part, file);
-}
-
 void report(const path& folder) {
   const Samples samples = read_samples(json_files(folder));
   for (const Failure& file : samples.unread)
     std::cerr << "runtime_report: " << file.name << " is left out: " << file.message << '\n';
   const Contests contests = hold_contests(samples.samples);
+  std::string plots;
   for (const Section& section : sections(contests))
-    write(folder / plot_file(section), plot(section, contests.contests));
-  write(folder / "report.html", page(samples, contests));
+    plots += plot(plot_file(section), section, contests.contests);
+  write_whole(folder / "plots.gp", plots);
+  Page report = page(samples, contests);
+  if (!draw_plots(folder / "plots.gp", folder)) report.warning(no_plots);
+  report.write(folder / "report.html");
   std::cout << samples.samples.size() << " samples, " << samples.failures.size()
             << " failures; the report is " << (folder / "report.html").string() << '\n';
 }

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "text.hpp"
+#include "report/gnuplot.hpp"
 
 namespace ductile::bench::report {
 namespace {
@@ -16,17 +16,9 @@ constexpr const char* colours[] = {"#228833", "#009988", "#4477aa", "#ee6677", "
                                    "#000000", "#ee7733", "#888888", "#aa3377", "#66ccee"};
 constexpr std::size_t colour_count = std::size(colours);
 
-constexpr const char* outlines[] = {
-    "M-4,0a4,4 0 1,0 8,0a4,4 0 1,0 -8,0z",                 // disc
-    "M-4,-4h8v8h-8z",                                      // square
-    "M0,-5L5,4H-5z",                                       // triangle
-    "M0,-5.5L5,0L0,5.5L-5,0z",                             // lozenge
-    "M-1.5,-5h3v3.5h3.5v3h-3.5v3.5h-3v-3.5h-3.5v-3h3.5z",  // cross
-    "M0,5L5,-4H-5z",                                       // triangle, pointing down
-    "M-5,-2h10v4h-10z",                                    // bar
-    "M-4.5,-5H4.5L-4.5,5H4.5z",                            // hourglass
-};
-static_assert(outline_count == 2 * std::size(outlines));
+/// Types of gnuplot's points: filled and hollow ones, then crosses.
+constexpr int outlines[] = {7, 5, 9, 13, 15, 11, 6, 4, 8, 12, 14, 10, 2, 1, 3};
+static_assert(outline_count == std::size(outlines));
 
 using Libraries = std::set<std::string>;
 
@@ -99,20 +91,13 @@ std::map<std::string, Style> styles(std::span<const Contest> section,
   return style_of;
 }
 
-void draw_mark(std::ostream& to, const Style& style, Point at, const std::string& says) {
-  const std::string title = "<title>" + escaped(says) + "</title>";
-  if (style.mark >= outline_count) {
-    to << "<text transform=\"translate(" << at.x << ',' << at.y
-       << ")\" dy=\"4\" text-anchor=\"middle\" font-size=\"11\" font-weight=\"bold\" fill=\""
-       << style.colour << "\">" << style.mark - outline_count + 1 << title << "</text>\n";
-    return;
-  }
-  const bool hollow = style.mark >= outline_count / 2;
-  to << "<path d=\"" << outlines[style.mark % (outline_count / 2)] << "\" transform=\"translate("
-     << at.x << ',' << at.y << ")\" "
-     << (hollow ? "fill=\"white\" fill-opacity=\"0.6\" stroke-width=\"1.6\" stroke=\""
-                : "fill-opacity=\"0.75\" fill=\"")
-     << style.colour << "\">" << title << "</path>\n";
+std::string label(const Style& style, const std::string& place) {
+  const std::string begin = "set label ", at = " at " + place, colour = quoted(style.colour);
+  if (style.mark >= outline_count)
+    return begin + quoted(std::to_string(style.mark - outline_count + 1)) + at +
+           " center front font ',9' textcolor rgb " + colour;
+  return begin + "''" + at + " front point pt " + std::to_string(outlines[style.mark]) +
+         " ps 0.9 lw 1.4 lc rgb " + colour;
 }
 
 }  // namespace ductile::bench::report

@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <map>
-#include <ostream>
 #include <span>
 #include <string>
 
@@ -19,19 +18,15 @@ struct Style {
   std::size_t mark = 0;  ///< from outline_count on, a number is written
 };
 
-/// Eight outlines, filled and hollow.
-constexpr std::size_t outline_count = 16;
+/// As many as gnuplot has.
+constexpr std::size_t outline_count = 15;
 
 /// Of each candidate of a section. `all` are the contests of the whole report. Libraries that meet
 /// in a plot have different colours as long as there are enough. The marks of a plot differ, even
 /// where colours do, as long as there are enough. Thread safety: pure function.
 std::map<std::string, Style> styles(std::span<const Contest> section, std::span<const Contest> all);
 
-struct Point {
-  double x = 0, y = 0;
-};
-
-/// A mark of about 9 points as SVG; `says` is what a browser shows beside the pointer.
-void draw_mark(std::ostream& to, const Style& style, Point at, const std::string& says);
+/// A mark of about 9 points at a place in gnuplot's coordinates, as a command of gnuplot.
+std::string label(const Style& style, const std::string& place);
 
 }  // namespace ductile::bench::report

@@ -66,12 +66,13 @@ struct GradationReport {
 /// gradation control of anisotropic meshes", Finite Elem. Anal. Des. 46 (2010): with g alone,
 /// metrics spread with all of their anisotropy, so that where directions differ they ask for short
 /// edges in many directions over long distances. Isotropic metrics grow by g, because g_h is the
-/// same. In each sweep a vertex intersects its metric with those of its neighbours before the
-/// sweep, in the order of their numbers, so the result does not depend on threads or timing.
-/// metric_of is indexed by the vertices of the mesh; the metrics in the mesh are not read. Throws
-/// InputError if the factor is below 1 or not finite, the tolerance or the sweeps are negative, or
-/// there is not a metric (see metric_of) for each vertex; std::bad_alloc if memory runs out. Thread
-/// safety: one caller; runs on the executor.
+/// same. No size ends more than a tenth below the smallest of those that spread to it. In each
+/// sweep a vertex intersects its metric with those of its neighbours before the sweep, in the order
+/// of their numbers, so the result does not depend on threads or timing. metric_of is indexed by
+/// the vertices of the mesh; the metrics in the mesh are not read. Throws InputError if the factor
+/// is below 1 or not finite, the tolerance or the sweeps are negative, or there is not a metric
+/// (see metric_of) for each vertex; std::bad_alloc if memory runs out. Thread safety: one caller;
+/// runs on the executor.
 template <int Dim>
 GradationReport limit_gradation(const runtime::Executor& executor,
                                 std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,

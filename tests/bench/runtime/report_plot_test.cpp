@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <random>
 #include <set>
@@ -10,9 +11,10 @@
 
 #include "axis.hpp"
 #include "contests.hpp"
+#include "contests_page.hpp"
 #include "marks.hpp"
-#include "page.hpp"
 #include "plot.hpp"
+#include "report/gnuplot.hpp"
 #include "report_samples.hpp"
 #include "words.hpp"
 
@@ -33,11 +35,7 @@ Contests contests_of(const std::map<std::string, Candidates>& by_subject) {
 }
 
 /// What of a mark is seen.
-std::string look(const Style& style) {
-  std::ostringstream svg;
-  draw_mark(svg, style, {0, 0}, "");
-  return svg.str();
-}
+std::string look(const Style& style) { return label(style, "first 1, first 0"); }
 
 /// In every plot no two candidates look the same; a library has one colour in all plots. Returns
 /// how many libraries share their colour with another of the same plot.
@@ -102,22 +100,71 @@ TEST(ReportMarks, DifferWithoutColoursWhileThereAreEnough) {
   EXPECT_EQ(marks.size(), outline_count);
 }
 
-/// Of a mark's title, the horizontal place of the mark.
-double place_of_mark(const std::string& svg, const std::string& title) {
-  const std::size_t end = svg.find("<title>" + title);
-  const std::string key = "translate(";
-  const std::size_t begin = svg.rfind(key, end) + key.size();
-  return end == std::string::npos ? -1 : std::stod(svg.substr(begin));
+std::string script_of(const Contests& held) {
+  return plot("plot.svg", held.contests, held.contests);
+}
+
+/// Where the mark of a figure is: on the axis at its ratio, or beside it, as a part of the picture.
+struct Place {
+  bool on_axis = false;
+  double x = -1;
+};
+
+Place place_of(const std::string& script, const Figure& figure) {
+  const std::size_t says =
+      script.find("  # " + figure.candidate + ' ' + time_words(figure.median_ns) + '\n');
+  if (says == std::string::npos) return {};
+  std::istringstream place(script.substr(script.rfind(" at ", says) + 4));
+  std::string coordinates;
+  double x = -1;
+  place >> coordinates >> x;
+  return {coordinates == "first", x};
+}
+
+/// Where the axis begins or ends, as a part of the picture.
+double margin(const std::string& script, const std::string& name) {
+  const std::string key = name + " at screen ";
+  return std::stod(script.substr(script.find(key) + key.size()));
 }
 
 TEST(ReportPlot, PutsRatiosOnALogarithmicAxis) {
   const Contests held = hold_contests(samples({sample("a.x", 2, 100), sample("b.y", 2, 200),
                                                sample("c.z", 2, 400), sample("floor", 2, 50)}));
-  const std::string svg = plot(held.contests, held.contests);
-  const double x = place_of_mark(svg, "a.x 100 ns"), y = place_of_mark(svg, "b.y 200 ns");
-  EXPECT_GT(x, 0);
-  EXPECT_GT(y, x);
-  EXPECT_NEAR(place_of_mark(svg, "c.z 400 ns") - y, y - x, 0.1);
+  const std::string script = script_of(held);
+  EXPECT_NE(script.find("set logscale x\n"), std::string::npos);
+  for (const Figure& figure : held.contests.front().figures) {
+    EXPECT_TRUE(place_of(script, figure).on_axis) << figure.candidate;
+    EXPECT_NEAR(place_of(script, figure).x, ratio_of(figure), 1e-4) << figure.candidate;
+  }
+}
+
+/// Three candidates in one case and the legend: six marks, of which three are at equal distances.
+TEST(ReportPlot, IsWhatGnuplotUnderstands) {
+  const Contests held = hold_contests(samples({sample("it's.x", 2, 100), sample("b<&.y", 2, 200),
+                                               sample("c.z", 2, 400), sample("floor", 2, 50)}));
+  const Folder folder;
+  const auto script = folder.write("plots.gp", script_of(held));
+  if (!draw_plots(script, script.parent_path())) GTEST_SKIP() << "gnuplot is not there";
+  std::ifstream picture(script.parent_path() / "plot.svg");
+  std::vector<double> places;
+  std::string svg;
+  for (std::string line; std::getline(picture, line); svg += line)
+    if (const auto mark = line.find("<use "); mark != std::string::npos)
+      if (const auto at = line.find("translate(", mark); at != std::string::npos)
+        places.push_back(std::stod(line.substr(at + 10)));
+  ASSERT_EQ(places.size(), 6U) << svg;
+  std::sort(places.begin(), places.begin() + 3);
+  EXPECT_GT(places[1], places[0] + 20);
+  EXPECT_NEAR(places[2] - places[1], places[1] - places[0], 0.2);
+  for (const char* const text : {"it's.x", "b&lt;&amp;.y", "time over the floor"})
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+}
+
+TEST(ReportPlot, SaysWhereThereIsNothingToDraw) {
+  const Folder folder;
+  const auto script = folder.write("plots.gp", "set no_such_option\n");
+  EXPECT_FALSE(draw_plots(script, script.parent_path()));
+  EXPECT_FALSE(draw_plots(script.parent_path() / "none.gp", script.parent_path()));
 }
 
 /// Candidates c0, c1, ... of several cases at these ratios to the floor.
@@ -142,20 +189,22 @@ void check_outlier(const std::vector<std::vector<double>>& ratios, double outlie
   const Contests held = contests_at(ratios, floor);
   const Axis axis(held.contests);
   EXPECT_LE(axis.ticks().back() / axis.ticks().front(), 5000);
-  EXPECT_GT(axis.place(2) - axis.place(1), 0.08);
-  const std::string svg = plot(held.contests, held.contests);
-  EXPECT_NE(svg.find(ratio_words(outlier)), std::string::npos) << svg;
-  const auto x_of = [&](const Figure& figure) {
-    return place_of_mark(svg, figure.candidate + ' ' + time_words(figure.median_ns));
-  };
-  const Figure& usual = held.contests.front().figures[outlier < 1 ? 1 : 0];
-  const double begin = x_of(usual) - 520 * axis.place(ratio_of(usual));
+  const std::string script = script_of(held);
+  EXPECT_NE(script.find(ratio_words(outlier)), std::string::npos) << script;
   for (const Contest& contest : held.contests)
     for (const Figure& figure : contest.figures) {
       const double ratio = ratio_of(figure);
       EXPECT_EQ(axis.is_beyond(ratio), ratio > 200) << ratio;
       EXPECT_EQ(axis.is_below(ratio), ratio < 0.05) << ratio;
-      EXPECT_NEAR(x_of(figure), begin + 520 * axis.place(ratio), 0.5) << ratio;
+      const Place place = place_of(script, figure);
+      EXPECT_EQ(place.on_axis, ratio >= 0.05 && ratio <= 200) << ratio;
+      if (place.on_axis) {
+        EXPECT_NEAR(place.x, ratio, 1e-5 * ratio);
+      } else if (ratio < 1) {
+        EXPECT_NEAR(place.x, margin(script, "lmargin"), 1e-5);
+      } else {
+        EXPECT_NEAR(place.x, margin(script, "rmargin"), 1e-5);
+      }
     }
 }
 
@@ -183,19 +232,22 @@ TEST(ReportPlot, OutliersStandBesideEachOther) {
     for (int i = 0; i < 3; ++i) ratios.push_back(std::pow(10, usual(random)));
     for (int i = 0; i < trial % 7; ++i) ratios.push_back(std::pow(10, unusual(random)));
     const Contests held = contests_at({ratios}, trial % 2 == 0);
-    const std::string svg = plot(held.contests, held.contests);
+    const std::string script = script_of(held);
     std::vector<double> places;
     for (const Figure& figure : held.contests.front().figures)
-      places.push_back(place_of_mark(svg, figure.candidate + ' ' + time_words(figure.median_ns)));
+      if (const Place place = place_of(script, figure); !place.on_axis) places.push_back(place.x);
     EXPECT_TRUE(std::is_sorted(places.begin(), places.end()));
-    for (std::size_t i = 6; i < places.size(); ++i) EXPECT_GT(places[i] - places[i - 1], 9);
+    EXPECT_EQ(places.size(), static_cast<std::size_t>(trial % 7));
+    // Pictures are at most 2,000 pixels wide.
+    for (std::size_t i = 1; i < places.size(); ++i)
+      EXPECT_GT(2000 * (places[i] - places[i - 1]), 9);
   }
 }
 
 TEST(ReportPlot, AFewOutliersHaveARatioEach) {
   const auto words_at = [](const std::vector<double>& ratios, const std::string& words) {
     const Contests held = contests_at({ratios}, true);
-    return plot(held.contests, held.contests).find('>' + words + '<') != std::string::npos;
+    return script_of(held).find(quoted(words)) != std::string::npos;
   };
   EXPECT_TRUE(words_at({1, 2, 300, 4e6}, "300, 4.00 million"));
   EXPECT_TRUE(words_at({1, 2, 300, 400, 5000, 4e6}, "300 to 4.00 million"));

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "contests.hpp"
-#include "page.hpp"
+#include "contests_page.hpp"
 #include "report_samples.hpp"
 #include "words.hpp"
 
@@ -88,7 +88,7 @@ TEST(Report, LeavesOutFilesThatAreNotWhole) {
     EXPECT_EQ(all.unread[0].name, bad.string());
     EXPECT_FALSE(all.unread[0].message.empty());
     EXPECT_EQ(all.unread[0].message.find('\n'), std::string::npos);
-    EXPECT_NE(page(all, hold_contests(all.samples)).find("<b>bad.json is left out"),
+    EXPECT_NE(page(all, hold_contests(all.samples)).text().find("<b>bad.json is left out"),
               std::string::npos);
   }
 }
@@ -177,9 +177,9 @@ TEST(Report, WarnsOfFewSamples) {
   const std::string warning = "fewer than three samples";
   Samples all;
   all.samples = samples({sample("a.x", 2, 100), sample("b.y", 2, 200)});
-  EXPECT_EQ(page(all, hold_contests(all.samples)).find(warning), std::string::npos);
+  EXPECT_EQ(page(all, hold_contests(all.samples)).text().find(warning), std::string::npos);
   all.samples = {sample("a.x", 2, 100), sample("b.y", 2, 200)};
-  EXPECT_NE(page(all, hold_contests(all.samples)).find(warning), std::string::npos);
+  EXPECT_NE(page(all, hold_contests(all.samples)).text().find(warning), std::string::npos);
 }
 
 /// Candidates a.x, the fastest, and b.y of three samples each, of which so many count.
@@ -207,7 +207,7 @@ TEST(Report, TooFewSamplesWinNothing) {
         EXPECT_EQ(standing.won.size(), wins ? 1U : 0U) << left;
         EXPECT_EQ(standing.undecided.size(), wins ? 0U : 1U) << left;
       }
-      const std::string html = page(all, held);
+      const std::string html = page(all, held).text();
       EXPECT_EQ(html.find("class=\"won\"") != std::string::npos, wins) << left;
       EXPECT_EQ(html.find("class=\"few\"") != std::string::npos, !wins) << left;
       EXPECT_EQ(html.find("Not decided") != std::string::npos, !wins) << left;
@@ -269,7 +269,7 @@ TEST(Report, SaysWhatIsBelowItsFloor) {
     all.samples =
         samples({sample("a.x", 2, ns), sample("b.y", 2, 105), sample("floor", 2, 100)}, apart);
     const Contests held = hold_contests(all.samples);
-    const std::string last = sentences(held.contests).back(), html = page(all, held);
+    const std::string last = sentences(held.contests).back(), html = page(all, held).text();
     EXPECT_EQ(last.find("so that either the floor or the measurement is wrong: "
                         "case (floor 100 ns): a.x " +
                         time_words(ns) + '.') != std::string::npos,
@@ -336,7 +336,7 @@ TEST(Report, PageShowsEveryCandidateAndEscapesNames) {
   all.samples = samples({sample("a.x<y", 2, 100), sample("b.y", 2, 200), sample("floor", 2, 50)});
   all.failures = {{"name", "items & more were lost"}};
   const Contests held = hold_contests(all.samples);
-  const std::string html = page(all, held);
+  const std::string html = page(all, held).text();
   for (const char* const part :
        {"Which won where", "a.x&lt;y", "<td class=\"won\">a.x&lt;y</td><td>100 ns</td>",
         "src=\"subject_threads_2.svg\"", "near each other", "items &amp; more were lost"})

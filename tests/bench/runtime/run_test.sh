@@ -50,7 +50,7 @@ run_it() { env --default-signal "$run" "$work/programs" "$results" "$@" >"$work/
 # ---- A whole run ----
 DATE=first run_it --rounds 4 || fail "the first run failed: $(cat "$work/log")"
 grep -q "the report is $results/report.html" "$work/log" || fail "the report is not named"
-wanted="log.txt one_bench.1.json one_bench.2.json one_bench.3.json one_bench.4.json report.html"
+wanted="log.txt one_bench.1.json one_bench.2.json one_bench.3.json one_bench.4.json plots.gp report.html"
 found=$(cd "$results" && echo *)
 [ "$found" = "$wanted s_threads_1.svg" ] || fail "after a whole run there is: $found"
 [ ! -e "$results.unfinished" ] || fail "a whole run left its unfinished folder"
@@ -84,7 +84,7 @@ ln -sf "$report" "$work/programs/report/runtime_report"
 # ---- The next whole run takes their place, and leaves what is not its own ----
 DATE=third run_it --rounds 1 || fail "the third run failed: $(cat "$work/log")"
 found=$(cd "$results" && echo *)
-[ "$found" = "log.txt notes.txt one_bench.1.json report.html s_threads_1.svg" ] ||
+[ "$found" = "log.txt notes.txt one_bench.1.json plots.gp report.html s_threads_1.svg" ] ||
   fail "after the next run there is: $found"
 grep -q third "$results/report.html" || fail "the report is an old one"
 

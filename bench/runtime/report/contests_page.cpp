@@ -1,4 +1,4 @@
-#include "page.hpp"
+#include "contests_page.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,27 +6,11 @@
 #include <set>
 #include <sstream>
 
-#include "text.hpp"
+#include "report/table.hpp"
 #include "words.hpp"
 
 namespace ductile::bench::report {
 namespace {
-
-constexpr const char* head = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>Microbenchmarks</title><style>
-body { font: 15px/1.45 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em }
-table { border-collapse: collapse; font-size: 13px; margin: 0.7em 0 }
-th, td { padding: 2px 7px; border: 1px solid #ccc; text-align: right }
-th:first-child, td:first-child { text-align: left }
-.won { font-weight: bold } .won::after { content: " \2605" }
-.par::after { content: " \2606" }
-.few::after { content: " ?" }
-.wrong { color: #b00; font-weight: bold }
-.wide { overflow-x: auto } .wide th { vertical-align: bottom }
-summary { cursor: pointer } img { max-width: 100% }
-</style></head><body>
-<h1>Microbenchmarks</h1>
-)";
 
 std::string title(const Section& section) {
   return section.front().subject + ", threads: " + std::to_string(section.front().threads);
@@ -85,14 +69,13 @@ void write_overview(std::ostream& to, const Section& section) {
   to << "</table></div>\n";
 }
 
-void write_libraries(std::ostream& to, const Section& section) {
-  to << "<table><tr><th>best of a library</th><th>won alone</th><th>on a par</th>"
-        "<th>too few samples to say</th><th>cases</th><th>over the best</th></tr>\n";
+Table libraries_table(const Section& section) {
+  Table table({"best of a library", "won alone", "on a par", "too few samples to say", "cases",
+               "over the best"});
   for (const Standing& standing : standings(section, By::library))
-    to << "<tr><td>" << escaped(standing.who) << "</td><td>" << standing.won.size() << "</td><td>"
-       << standing.on_par.size() << "</td><td>" << standing.undecided.size() << "</td><td>"
-       << standing.cases << "</td><td>" << ratio_words(standing.over_best) << "</td></tr>\n";
-  to << "</table>\n";
+    table.add({standing.who, standing.won.size(), standing.on_par.size(), standing.undecided.size(),
+               standing.cases, ratio_words(standing.over_best)});
+  return table;
 }
 
 struct Columns {
@@ -132,42 +115,39 @@ void write_contest(std::ostream& to, const Contest& contest) {
   to << "</table>\n";
 }
 
-void write_section(std::ostream& to, const Section& section) {
-  to << "<h2>" << escaped(title(section)) << "</h2>\n<p><img src=\"" << escaped(plot_file(section))
-     << "\" alt=\"Ratios of all candidates in all cases\"></p>\n";
-  write_overview(to, section);
-  write_libraries(to, section);
-  to << "<details><summary>Medians, case by case</summary>\n";
-  for (const Contest& contest : section) write_contest(to, contest);
-  to << "</details>\n";
+void show_section(Page& page, const Section& section) {
+  page.heading(title(section));
+  page.picture(plot_file(section), "Ratios of all candidates in all cases");
+  std::ostringstream overview, contests;
+  write_overview(overview, section);
+  page.html(overview.str());
+  page.table(libraries_table(section));
+  for (const Contest& contest : section) write_contest(contests, contest);
+  page.html("<details><summary>Medians, case by case</summary>\n" + contests.str() +
+            "</details>\n");
 }
 
-void write_words(std::ostream& to, const std::vector<Section>& all) {
-  to << "<h2>Which won where</h2>\n";
+void show_words(Page& page, const std::vector<Section>& all) {
+  page.heading("Which won where");
   for (const Section& section : all) {
-    to << "<h3>" << escaped(title(section)) << " (cases: " << section.size() << ")</h3>\n<ul>";
-    for (const std::string& sentence : sentences(section))
-      to << "<li>" << escaped(sentence) << "</li>\n";
-    to << "</ul>\n";
+    page.subheading(title(section) + " (cases: " + std::to_string(section.size()) + ")");
+    page.list(sentences(section));
   }
 }
 
-void write_reading_aid(std::ostream& to, const Contests& contests) {
-  to << "<h2>How to read it</h2><p>A time is the median of the samples of a run, each a mean over "
-        "many repetitions. A filled star marks who was fastest alone, open stars those on a par: "
-        "at most 3 % slower, or with a lower quartile not above the upper one of the fastest. A "
-        "question mark stands there instead where the fastest has too few samples that count. The "
-        "floor is what nobody can be faster than, or nearly; what it is stands in "
-        "docs/benchmarks.md. What is below it by more than the spread is red: the floor is wrong "
-        "there, or the measurement. Candidates that use one thread only take part at every number "
-        "of threads.</p>\n<p>Of samples on several threads those count that were taken while the "
-        "threads were "
-     << words_for(contests.usual)
-     << ", by a cache line going back and forth before and after each.</p>\n";
-}
-
-void write_doubt(std::ostream& to, const std::string& doubt) {
-  to << "<p><b>" << escaped(doubt) << "</b></p>\n";
+void show_reading_aid(Page& page, const Contests& contests) {
+  page.heading("How to read it");
+  page.paragraph(
+      "A time is the median of the samples of a run, each a mean over many repetitions. A filled "
+      "star marks who was fastest alone, open stars those on a par: at most 3 % slower, or with a "
+      "lower quartile not above the upper one of the fastest. A question mark stands there instead "
+      "where the fastest has too few samples that count. The floor is what nobody can be faster "
+      "than, or nearly; what it is stands in docs/benchmarks.md. What is below it by more than the "
+      "spread is red: the floor is wrong there, or the measurement. Candidates that use one thread "
+      "only take part at every number of threads.");
+  page.paragraph(
+      "Of samples on several threads those count that were taken while the threads were " +
+      words_for(contests.usual) + ", by a cache line going back and forth before and after each.");
 }
 
 /// "In 2 of 10 comparisons" it is so; nothing if in none.
@@ -190,31 +170,29 @@ bool has_below_floor(const Contest& contest) {
 }
 
 /// What a reader should know before any result.
-void write_doubts(std::ostream& to, const Samples& samples, const std::vector<Contest>& contests) {
+void show_doubts(Page& page, const Samples& samples, const std::vector<Contest>& contests) {
   for (const Failure& file : samples.unread)
-    write_doubt(to, std::filesystem::path(file.name).filename().string() +
-                        " is left out: " + file.message + '.');
+    page.warning(std::filesystem::path(file.name).filename().string() +
+                 " is left out: " + file.message + '.');
   if (const auto where = in_how_many(contests, has_unsound); !where.empty())
-    write_doubt(to, where +
-                        "somebody has fewer than three samples, or samples at mixed distances: "
-                        "what is said of these is a guess.");
+    page.warning(where +
+                 "somebody has fewer than three samples, or samples at mixed distances: what is "
+                 "said of these is a guess.");
   if (const auto where = in_how_many(contests, has_below_floor); !where.empty())
-    write_doubt(to, where +
-                        "somebody is below the floor by more than the spread: either the floor or "
-                        "the measurement is wrong.");
+    page.warning(where +
+                 "somebody is below the floor by more than the spread: either the floor or the "
+                 "measurement is wrong.");
 }
 
-void write_end(std::ostream& to, const Samples& samples) {
-  to << "<h2>Machine and run</h2><table>\n";
-  for (const auto& [key, value] : samples.machine)
-    to << "<tr><td>" << escaped(key) << "</td><td>" << escaped(value) << "</td></tr>\n";
-  to << "</table>\n";
+void show_end(Page& page, const Samples& samples) {
+  page.heading("Machine and run");
+  Table machine({"", "found"}), failures({"benchmark", "why"});
+  for (const auto& [key, value] : samples.machine) machine.add({key, value});
+  page.table(machine);
   if (samples.failures.empty()) return;
-  to << "<h2>Not measured</h2><table>\n";
-  for (const Failure& failure : samples.failures)
-    to << "<tr><td>" << escaped(failure.name) << "</td><td>" << escaped(failure.message)
-       << "</td></tr>\n";
-  to << "</table>\n";
+  page.heading("Not measured");
+  for (const Failure& failure : samples.failures) failures.add({failure.name, failure.message});
+  page.table(failures);
 }
 
 }  // namespace
@@ -236,17 +214,15 @@ std::string plot_file(const Section& section) {
   return section.front().subject + "_threads_" + std::to_string(section.front().threads) + ".svg";
 }
 
-std::string page(const Samples& samples, const Contests& contests) {
-  std::ostringstream html;
-  html << head;
+Page page(const Samples& samples, const Contests& contests) {
+  Page report("Microbenchmarks");
   const std::vector<Section> all = sections(contests);
-  write_doubts(html, samples, contests.contests);
-  write_words(html, all);
-  write_reading_aid(html, contests);
-  for (const Section& section : all) write_section(html, section);
-  write_end(html, samples);
-  html << "</body></html>\n";
-  return html.str();
+  show_doubts(report, samples, contests.contests);
+  show_words(report, all);
+  show_reading_aid(report, contests);
+  for (const Section& section : all) show_section(report, section);
+  show_end(report, samples);
+  return report;
 }
 
 }  // namespace ductile::bench::report

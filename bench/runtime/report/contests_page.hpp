@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contests.hpp"
+#include "report/page.hpp"
 
 namespace ductile::bench::report {
 
@@ -20,6 +21,6 @@ std::vector<Section> sections(const Contests& contests);
 std::string plot_file(const Section& section);
 
 /// Thread safety: pure function.
-std::string page(const Samples& samples, const Contests& contests);
+Page page(const Samples& samples, const Contests& contests);
 
 }  // namespace ductile::bench::report
