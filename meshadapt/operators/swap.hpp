@@ -105,4 +105,17 @@ class Swap {
   EdgeRange range_;
 };
 
+template <>
+bool Swap<2>::decide(const Swappable& item, const Shell& shell, Plan& plan) const;
+template <>
+bool Swap<3>::decide(const Swappable& item, const Shell& shell, Plan& plan) const;
+template <>
+runtime::UnsetVector<Swappable> Swap<2>::improvements(const runtime::Executor& executor,
+                                                      Mesh<2>& mesh, std::uint32_t after,
+                                                      double below, const EdgeRange& range);
+template <>
+runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& executor,
+                                                      Mesh<3>& mesh, std::uint32_t after,
+                                                      double below, const EdgeRange& range);
+
 }  // namespace ductile::meshadapt
