@@ -226,7 +226,8 @@ void print_help_of_adapt() {
   command.summary = "adapts a mesh to a metric, on all ranks that mpirun starts";
   command.details =
       "The first rank reads; planes share elements out; each rank adapts its part, and passes\n"
-      "go on until hardly anything is held between parts. The same number of ranks gives the same bytes,\n"
+      "go on until hardly anything is held between parts. The same number of ranks gives the same "
+      "bytes,\n"
       "whatever the number of threads.";
   command.options = options;
   cli::print_help(command, "mpirun -n N ductile-mpi");
