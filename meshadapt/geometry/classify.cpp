@@ -62,6 +62,7 @@ void level(BoundaryParts<Dim>& parts, const std::vector<CurveEdge>& curve_edges)
       for (const VertexId v : facet.corners) held[v] = 1;
   if constexpr (Dim == 2)
     for (std::size_t i = 0; i < parts.sides.size(); ++i) {
+      if (!parts.sides.begins_run(i)) continue;
       const auto both = parts.sides.run_at(i);
       if (both.size() != 2 ||
           parts.facets[both[0].facet].patch != parts.facets[both[1].facet].patch ||

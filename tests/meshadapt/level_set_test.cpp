@@ -125,7 +125,8 @@ double volume(const AnyMesh& mesh) {
 /// Of a grid, all triangles with reference 1.
 AnyMesh in_one_piece(const test::Grid& grid) {
   AnyMesh mesh = test::make_grid(grid);
-  std::fill(mesh.triangles.reference.begin(), mesh.triangles.reference.end(), 1);
+  auto& facets = grid.dimension == 2 ? mesh.edges.reference : mesh.triangles.reference;
+  std::fill(facets.begin(), facets.end(), 1);
   return mesh;
 }
 
@@ -239,18 +240,33 @@ std::size_t sharp_sides(const AnyMesh& mesh) {
   }));
 }
 
-/// A ball of radius 1 out of cubes of this size, somewhere in their grid.
-AnyMesh voxels(double size, test::Random& random) {
+/// Vertices of a curve at which it turns by 45 degrees or more.
+std::size_t sharp_corners(const AnyMesh& mesh) {
+  std::map<std::uint32_t, std::vector<Vector<2>>> directions;  // of edges, away from the vertex
+  for (const auto& [a, b] : mesh.edges.vertices) {
+    const Vector<2> along = test::point<2>(mesh, b) - test::point<2>(mesh, a);
+    directions[a].push_back((1 / norm(along)) * along);
+    directions[b].push_back((-1 / norm(along)) * along);
+  }
+  return static_cast<std::size_t>(
+      std::count_if(directions.begin(), directions.end(), [](const auto& at) {
+        return at.second.size() != 2 || dot(at.second[0], at.second[1]) > -std::sqrt(0.5);
+      }));
+}
+
+/// A ball of radius 1 out of cubes of this size, or a disk of squares, somewhere in their grid.
+AnyMesh voxels(int dimension, double size, test::Random& random) {
   test::Grid grid;
-  grid.dimension = 3;
+  grid.dimension = dimension;
   const int n = static_cast<int>(std::ceil(2.2 / size)) + 1;
   Vector<3> centre;
-  for (int i = 0; i < 3; ++i) centre[i] = n * size / 2 + test::uniform(random, 0, size);
-  for (auto& lines : grid.lines)
-    for (int i = 0; i <= n + 1; ++i) lines.push_back(i * size);
+  for (int i = 0; i < dimension; ++i) {
+    centre[i] = n * size / 2 + test::uniform(random, 0, size);
+    for (int k = 0; k <= n + 1; ++k) grid.lines[static_cast<std::size_t>(i)].push_back(k * size);
+  }
   grid.region = [=](const test::Cell& cell) {
     Vector<3> away = -1.0 * centre;
-    for (int i = 0; i < 3; ++i) away[i] += (cell[static_cast<std::size_t>(i)] + 0.5) * size;
+    for (int i = 0; i < dimension; ++i) away[i] += (cell[static_cast<std::size_t>(i)] + 0.5) * size;
     return norm(away) < 1 ? 1 : 0;
   };
   return in_one_piece(grid);
@@ -261,9 +277,20 @@ TEST(LevelSet, VoxelsBecomeTheSphereThatTheyApproximate) {
   test::Random random(11);
   for (const double size : {0.08, 0.07, 0.06}) {
     SCOPED_TRACE(size);
-    const AnyMesh result = adapted(voxels(size, random), 0.3, 2 * size).mesh;
+    const AnyMesh result = adapted(voxels(3, size, random), 0.3, 2 * size).mesh;
     EXPECT_LT(result.triangles.size(), 1.25 * 322);
     EXPECT_LE(sharp_sides(result), 8U);
+  }
+}
+
+/// A regular polygon with edges of the size asked for has 21.
+TEST(LevelSet, PixelsBecomeTheCircleThatTheyApproximate) {
+  test::Random random(12);
+  for (const double size : {0.15, 0.1, 0.06}) {
+    SCOPED_TRACE(size);
+    const AnyMesh result = adapted(voxels(2, size, random), 0.3, 2 * size).mesh;
+    EXPECT_LT(result.edges.size(), 26U);
+    EXPECT_EQ(sharp_corners(result), 0U);
   }
 }
 
