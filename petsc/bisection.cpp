@@ -262,8 +262,7 @@ class Bisection {
   std::vector<Place<Dim>> place_of_;  // [element]
   std::vector<std::size_t> node_of_;  // [element]
   std::vector<Node<Dim>> nodes_;
-  std::vector<std::size_t>
-      open_of_;  // [node], its number among those that are divided, or not_open
+  std::vector<std::size_t> open_of_;  // [node], its number among those divided, or not_open
 };
 
 }  // namespace
