@@ -165,6 +165,20 @@ void PatchNormals::find_straight() {
   }
 }
 
+/// Does a patch turn by the ridge angle, or is a ridge asked for, where an edge is inside of it?
+/// Other edges, as the seams of what is closed, are on what is smooth.
+bool PatchNormals::is_crease(const ModelSide& one, const ModelSide& other) const {
+  if (input_.facets[one.facet].patch != input_.facets[other.facet].patch) return false;
+  if (input_.edges[edge_at_[one.facet][one.opposite]].ridge) return true;
+  const Vector<3>&a = input_.points[one.low], along = input_.points[one.high] - a;
+  const auto away = [&](const ModelSide& side) {
+    const Vector<3> d = input_.points[input_.facets[side.facet].corner[side.opposite]] - a;
+    return d - (dot(d, along) / dot(along, along)) * along;
+  };
+  const Vector<3> u = away(one), v = away(other);
+  return !(-dot(u, v) > input_.least_turn * norm(u) * norm(v));
+}
+
 /// Curves at the ends of patches, and creases inside them.
 void PatchNormals::find_rims() {
   for (std::size_t i = 0; i < sides_.size();) {
@@ -173,8 +187,7 @@ void PatchNormals::find_rims() {
       const auto [low, high, f, opposite] = sides_[i];
       const std::uint32_t edge = edge_at_[f][opposite];
       if (edge == no_edge) continue;
-      const bool crease = end == begin + 2 && input_.facets[sides_[begin].facet].patch ==
-                                                  input_.facets[sides_[begin + 1].facet].patch;
+      const bool crease = end == begin + 2 && is_crease(sides_[begin], sides_[begin + 1]);
       for (const std::uint32_t k : {(opposite + 1) % 3, (opposite + 2) % 3}) {
         const Node node = node_of_[f][k];
         if (crease) creased_[node] = 1;

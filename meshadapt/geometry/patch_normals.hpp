@@ -61,6 +61,7 @@ class PatchNormals {
   void find_flat();
   void keep_flat(std::size_t begin, std::size_t end, std::vector<std::uint8_t>& planes) const;
   void find_straight();
+  bool is_crease(const ModelSide& one, const ModelSide& other) const;
   void find_rims();
   std::size_t end_of_run(std::size_t begin) const;
   std::span<const NodeFacet> facets_at(Node node) const;
@@ -79,7 +80,7 @@ class PatchNormals {
   runtime::UnsetVector<NodeFacet> node_facets_;  // sorted
   std::vector<std::uint32_t> first_of_;          // [node], among node_facets_; and their number
   std::vector<Triple> node_of_;                  // [facet][corner]
-  std::vector<std::uint8_t> creased_;  // [node], it has an edge with the patch on both sides
+  std::vector<std::uint8_t> creased_;  // [node], it has an edge at which its patch is sharp
   std::vector<std::pair<Node, std::pair<std::uint32_t, std::uint32_t>>> rims_;  // sorted
   std::vector<Vector<3>> normal_of_;                                            // [node]
 };

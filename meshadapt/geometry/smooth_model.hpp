@@ -31,6 +31,7 @@ struct ModelFacet {
 struct ModelEdge {
   std::array<std::uint32_t, 2> corner;  ///< among the points
   bool smooth;                          ///< the curve may bend
+  bool ridge = false;                   ///< it is one however little facets turn there
 };
 
 template <int Dim>

@@ -147,8 +147,10 @@ class SurfaceMaker {
       for (std::uint32_t& corner : facet.corner) corner = number(corner);
       input.facets.push_back(facet);
     }
-    for (const SurfaceEdge& edge : edges_)
-      input.edges.push_back({{number(edge.a), number(edge.b)}, mesh_.curves[edge.curve].smooth});
+    for (const SurfaceEdge& edge : edges_) {
+      const Curve& curve = mesh_.curves[edge.curve];
+      input.edges.push_back({{number(edge.a), number(edge.b)}, curve.smooth, curve.ridge});
+    }
     return input;
   }
 
