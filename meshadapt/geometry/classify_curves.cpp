@@ -61,15 +61,18 @@ class CurveGrower {
         const bool straight =
             !is_levelled(edge) && norm(d - dot(d, direction) * direction) <= tolerance;
         const double along = dot(step, heading);
-        if (edge.curve != 0 || !edge.agrees_with(edges_[seed])) break;
+        if (!edge.agrees_with(edges_[seed])) break;
+        const bool may_bend = parts_.reference == nullptr && parts_.hausdorff_tolerance > 0 &&
+                              !edge.data.required;
+        const bool turns_little = may_bend && along > parts_.least_turn * norm(step);
+        // Also one that ends here, next to another of the same arc.
+        curve.smooth = curve.smooth || (turns_little && !straight);
+        if (edge.curve != 0) break;
         if (edge.sheet != none && !edge.data.required) {
           curve.smooth = true;
-        } else if (parts_.reference == nullptr && parts_.hausdorff_tolerance > 0 &&
-                   !edge.data.required) {
+        } else if (may_bend) {
           // By no more than 60 degrees in all, so that a closed curve keeps three ends.
-          if (!(along > parts_.least_turn * norm(step)) || !(dot(step, towards) > 0.5 * norm(step)))
-            break;
-          curve.smooth = curve.smooth || !straight;
+          if (!turns_little || !(dot(step, towards) > 0.5 * norm(step))) break;
           heading = (1 / norm(step)) * step;
         } else if (!straight || along <= 0) {
           break;
