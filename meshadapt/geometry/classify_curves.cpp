@@ -62,8 +62,8 @@ class CurveGrower {
             !is_levelled(edge) && norm(d - dot(d, direction) * direction) <= tolerance;
         const double along = dot(step, heading);
         if (!edge.agrees_with(edges_[seed])) break;
-        const bool may_bend = parts_.reference == nullptr && parts_.hausdorff_tolerance > 0 &&
-                              !edge.data.required;
+        const bool may_bend =
+            parts_.reference == nullptr && parts_.hausdorff_tolerance > 0 && !edge.data.required;
         const bool turns_little = may_bend && along > parts_.least_turn * norm(step);
         // Also one that ends here, next to another of the same arc.
         curve.smooth = curve.smooth || (turns_little && !straight);

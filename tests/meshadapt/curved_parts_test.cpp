@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <set>
 #include <string>
 #include <tuple>
@@ -46,11 +47,24 @@ double off_rounded_box(const Point& p, std::int32_t) {
 double off_torus(const Point& p, std::int32_t) {
   return std::abs(std::hypot(std::hypot(p[0], p[1]) - 1, p[2]) - 0.35);
 }
+/// From the closest of many points, then to both sides by less and less.
+double off_ellipse(double x, double y, double a, double b) {
+  const auto distance = [&](double at) {
+    return std::hypot(x - a * std::cos(at), y - b * std::sin(at));
+  };
+  constexpr int n = 64;
+  double step = 2 * std::numbers::pi / n, best = 0;
+  for (int i = 0; i < n; ++i)
+    if (distance(i * step) < distance(best)) best = i * step;
+  for (; step > 1e-9; step *= 0.7)
+    for (const double at : {best - step, best + step})
+      if (distance(at) < distance(best)) best = at;
+  return distance(best);
+}
 double off_plate2d(const Point& p, std::int32_t reference) {
   if (reference == 5) return std::abs(std::hypot(p[0] + 0.2, p[1]) - 0.4);
   if (reference != 6) return 0;
-  const double x = (p[0] - 0.6) / 0.3, y = (p[1] - 0.3) / 0.15;
-  return std::abs(x * x + y * y - 1) / (2 * std::hypot(x / 0.3, y / 0.15));
+  return off_ellipse(p[0] - 0.6, p[1] - 0.3, 0.3, 0.15);
 }
 
 struct Part {
@@ -58,14 +72,16 @@ struct Part {
   double tolerance;  // more than chords of its coarse mesh are off, so that it is smooth there
   double size;       // edges that are asked for
   double (*off)(const Point&, std::int32_t);  // null if that is not known
+  // Of the tolerance: how far facets of its coarse mesh may get without a geometry.
+  double most_off = 1.3;
 };
 constexpr std::array parts{
-    Part{"plate", 0.02, 0.3, off_plate},
+    Part{"plate", 0.02, 0.3, off_plate, 1.5},
     Part{"cut_sphere", 0.06, 0.4, off_cut_sphere},
     Part{"rounded_box", 0.02, 0.2, off_rounded_box},
     Part{"torus", 0.04, 0.3, off_torus},
     Part{"blade", 0.01, 0.3, nullptr},
-    Part{"plate2d", 0.015, 0.2, off_plate2d},
+    Part{"plate2d", 0.015, 0.2, off_plate2d, 1.6},
 };
 
 AnyMesh read(const Part& part, bool fine) {
@@ -140,12 +156,13 @@ class CurvedPart : public testing::TestWithParam<Case> {
  protected:
   const Part& part() const { return std::get<0>(GetParam()); }
   bool fine() const { return std::get<1>(GetParam()); }
+  bool has_geometry() const { return std::get<2>(GetParam()); }
   double tolerance() const { return fine() ? part().tolerance / 3 : part().tolerance; }
   AdaptOptions options_on(const AnyMesh& mesh) const {
     AdaptOptions options;
     options.make.hausdorff_tolerance = tolerance();
     options.gradation = 1.5;
-    if (std::get<2>(GetParam()))
+    if (has_geometry())
       options.make.geometry = std::make_shared<const Geometry>(
           executor, mesh, GeometryOptions{.tolerance = tolerance()});
     return options;
@@ -161,18 +178,21 @@ INSTANTIATE_TEST_SUITE_P(Parts, CurvedPart,
                                   (std::get<2>(at.param) ? "_with_geometry" : "");
                          });
 
-TEST_P(CurvedPart, StaysWhatItIsInFourCalls) {
+TEST_P(CurvedPart, StaysWhatItIsInTenCalls) {
+  // Chords of the wall of the plate's hole come close to its sides, so that they are flat in the
+  // next model; those of the ellipse, whose least radius is 5 X, turn so much that it has corners.
+  const double most_off = fine() || has_geometry() ? 1.3 : part().most_off;
   const AnyMesh start = read(part(), fine());
   const AdaptOptions options = options_on(start);
   AnyMesh mesh = start;
   double first = 0;
-  for (int call = 0; call < 4; ++call) {
+  for (int call = 0; call < 10; ++call) {
     mesh = adapt(executor, mesh, front(mesh, part().size, call), options).mesh;
     SCOPED_TRACE(call);
     EXPECT_EQ(test::joined(check_adapted(executor, start, mesh, 2 * tolerance())), "");
     EXPECT_EQ(references_of(mesh), references_of(start));
     if (part().off != nullptr) {
-      EXPECT_LT(off_surface(part(), mesh), (std::get<2>(GetParam()) ? 1.3 : 1.6) * tolerance());
+      EXPECT_LT(off_surface(part(), mesh), most_off * tolerance());
     }
     if (call == 0) first = volume_of(mesh);
   }

@@ -177,6 +177,16 @@ TEST(MakeMesh, ClosedCurvesKeepThreeVertices) {
   EXPECT_EQ(count[0] + count[1], 2 * 24);
 }
 
+/// Whatever number of edges is left between the curves of an arc.
+TEST(MakeMesh, ArcsBendAsAWhole) {
+  for (int n = 3; n <= 12; ++n) {
+    const auto made = make<3>(test::truncated_cone(n, 0.5), {.hausdorff_tolerance = 0.01});
+    const auto& curves = made.mesh.curves;
+    EXPECT_GE(curves.size(), 1U + 6);
+    for (std::size_t c = 1; c < curves.size(); ++c) EXPECT_TRUE(curves[c].smooth) << n;
+  }
+}
+
 /// A drop: a closed curve of edges that all turn little but in one corner.
 TEST(MakeMesh, ACornerOfASmoothPatchStays) {
   constexpr int n = 24;

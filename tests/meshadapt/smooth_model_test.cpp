@@ -112,6 +112,36 @@ TEST(SmoothModel, ComesCloserToASphereThanChords) {
   EXPECT_LT(farthest(SmoothModel<3>(executor, input), off), 4e-4) << "of chords: 0.017";
 }
 
+/// Two rings of edges around it that cross, as seams of what is closed; no patch ends there.
+ModelInput<3> with_seams(ModelInput<3> input, bool are_ridges) {
+  for (const auto& facet : input.facets)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = facet.corner[i], b = facet.corner[(i + 1) % 3];
+      const auto is_on = [&](int axis) {
+        return std::abs(input.points[a][axis]) < 1e-9 && std::abs(input.points[b][axis]) < 1e-9;
+      };
+      if (a < b && (is_on(0) || is_on(1))) input.edges.push_back({{a, b}, true, are_ridges});
+    }
+  return input;
+}
+
+TEST(SmoothModel, SeamsInsideLeaveItSmooth) {
+  const Executor executor({.threads = 2});
+  test::Random random(2);
+  for (int trial = 0; trial < 6; ++trial) {
+    Vector<3> axes;
+    for (double& axis : axes.x) axis = uniform(random, 0.7, 1.3);
+    const ModelInput<3> input = blown_up_cube(8, ellipsoid(axes));
+    const auto error = [&](const ModelInput<3>& of) {
+      return farthest(SmoothModel<3>(executor, of),
+                      [&](const Vector<3>& p) { return distance_from(axes, p); });
+    };
+    const double plain = error(input);
+    EXPECT_LT(error(with_seams(input, false)), 1.5 * plain);
+    EXPECT_GT(error(with_seams(input, true)), 3 * plain) << "a ridge is none of it";
+  }
+}
+
 TEST(SmoothModel, DoesNotDependOnThreads) {
   const ModelInput<3> input = blown_up_cube(5, ellipsoid({{1, 0.8, 0.6}}));
   const SmoothModel<3> first(Executor({.threads = 1}), input);
