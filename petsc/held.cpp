@@ -53,7 +53,8 @@ class Zone {
   }
 
   std::vector<std::uint8_t> spread(int layers) {
-    for (std::size_t i = 0; i < reached_.size(); ++i) add_around(reached_[i], Which::blocked);
+    for (std::size_t next = 0; next < reached_.size();)  // more are reached meanwhile
+      add_around(reached_[next++], Which::blocked);
     std::size_t first = 0;  // of those around which no layer is yet
     for (int layer = 0; layer < layers; ++layer)
       for (const std::size_t end = reached_.size(); first < end; ++first)

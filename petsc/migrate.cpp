@@ -148,10 +148,11 @@ class Assembly {
       std::sort(key.begin(), key.end());
       sorted.push_back({key, {corners, reference}});
     });
-    const auto first = [](const auto& pair) { return pair.first; };
-    std::ranges::stable_sort(sorted, {}, first);
-    const auto twice = std::ranges::unique(sorted, {}, first);
-    sorted.erase(twice.begin(), twice.end());
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    const auto twice = std::unique(sorted.begin(), sorted.end(),
+                                   [](const auto& a, const auto& b) { return a.first == b.first; });
+    sorted.erase(twice, sorted.end());
     for (const auto& [key, facet] : sorted)
       meshadapt::facets_in<Dim>(part_.mesh).add(facet.corners, facet.reference);
     return std::move(part_);

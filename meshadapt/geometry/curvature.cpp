@@ -49,7 +49,7 @@ class Surroundings {
       std::pop_heap(front_.begin(), front_.end(), farther);
       const auto [distance, nearest] = front_.back();
       front_.pop_back();
-      if (distance > limit && found_.size() > fewest_nodes) break;
+      if (distance > limit) break;
       take(node, nearest, distance);
       if (bends_enough) continue;
       curvature = bend_.curvature();
