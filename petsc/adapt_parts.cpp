@@ -29,9 +29,9 @@ class Parts {
     std::vector<PassReport> reports;
     find_interfaces();
     find_geometry();
+    limit_sizes();
     if (share_out(Displaced::not_at_all, is_scattered() ? 0 : beforehand)) find_interfaces();
     end(Phase::balance);
-    limit_sizes();
     for (int pass = 1;; ++pass) {
       reports.push_back(adapt(pass));
       reports.back().costs = take_costs();
