@@ -165,8 +165,8 @@ void PatchNormals::find_straight() {
   }
 }
 
-/// Does a patch turn by the ridge angle, or is a ridge asked for, where an edge is inside of it?
-/// Other edges, as the seams of what is closed, are on what is smooth.
+/// Is an edge inside of a patch sharp? It is where the patch turns by the ridge angle or a ridge is
+/// listed. Other edges, such as the seams of closed surfaces, lie on what is smooth.
 bool PatchNormals::is_crease(const ModelSide& one, const ModelSide& other) const {
   if (input_.facets[one.facet].patch != input_.facets[other.facet].patch) return false;
   if (input_.edges[edge_at_[one.facet][one.opposite]].ridge) return true;

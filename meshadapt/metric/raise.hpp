@@ -132,8 +132,8 @@ bool surely_finer(const Metric<Dim>& fine, const Metric<Dim>& coarse, double tol
   return true;
 }
 
-/// The same as raise(), but eigenvalues stay below `most`, as all are before: intersections of
-/// stretched tensors are finer than either, so many of them would end at any size.
+/// Does what raise() does, but no eigenvalue exceeds `most`, if none did before. Intersections of
+/// stretched tensors are finer than either tensor, so that many of them would end at any size.
 template <int Dim>
 bool raise_up_to(double most, Metric<Dim>& base, const Metric<Dim>& other, double tolerance) {
   const Metric<Dim> before = base;

@@ -74,7 +74,7 @@ Part read_geometry(Input& input, const Executor& executor) {
   return part_of_file(std::move(mesh), {}, input.warnings).part;
 }
 
-/// A field, or a name of references, as it goes to other ranks.
+/// What is sent to other ranks about a field or about the name of a reference.
 struct Told {
   std::array<char, 240> name{};
   int number = 0, other = 0;

@@ -109,8 +109,8 @@ TEST(StealBySignal, LeavesSignalsAloneThatTheCallerWaitsFor) {
 
 // ---- Stealing: a loop that only ends if threads are helped ----
 
-/// Runs a loop in which iteration `slow` waits until the others are done, but for so many; false if
-/// it has waited too long.
+/// Runs a loop in which iteration `slow` waits until all others but `but_for` are done. Returns
+/// false if it has waited too long.
 bool others_are_done_meanwhile(const Executor& executor, std::size_t n, std::size_t slow,
                                std::size_t but_for) {
   using namespace std::chrono_literals;

@@ -46,8 +46,8 @@ struct Woken {
     postponed.insert(v);
   }
 };
-/// A round in tiles one item after the other, by the definition of their order. Returns the next
-/// round's work; counts who is late.
+/// Runs a round in tiles one item after the other, by the definition of their order. Returns the
+/// next round's work and adds the items that are postponed to `late`.
 std::vector<Vertex> run_in_turn(Contract& op, const std::vector<Vertex>& work, std::size_t& late) {
   Woken woken;
   const int bits = std::clamp(static_cast<int>(std::bit_width(work.size())) - 11, 1, 6);
