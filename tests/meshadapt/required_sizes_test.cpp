@@ -179,6 +179,43 @@ TYPED_TEST(RequiredSizes, GrowAndFallFromWhatIsRequired) {
   EXPECT_GT(left, 100);
 }
 
+/// Many intersections of stretched metrics do not add up to sizes that nothing asked for, and that
+/// nothing required has; neither do those of squared sizes.
+TYPED_TEST(RequiredSizes, ComeToAnEndOnWildMetrics) {
+  constexpr int Dim = TypeParam::value;
+  const Executor executor({.threads = 1});
+  const auto eigenvalues_in = [](const std::vector<Metric<Dim>>& metric_of) {
+    std::pair<double, double> range{std::numeric_limits<double>::infinity(), 0};
+    for (const auto& metric : metric_of)
+      for (const double value : principal_axes(metric).value)
+        range = {std::min(range.first, value), std::max(range.second, value)};
+    return range;
+  };
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    Random random(seed);
+    AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 16 : 5));
+    const double share = seed % 3 == 0 ? 0.5 : 0.1;
+    for (std::uint32_t e = 0; e < elements_in<Dim>(any).size(); ++e)
+      if (chance(random, share)) required_elements<Dim>(any).push_back(e);
+    const std::vector<bool> is_source = vertices_of_required<Dim>(any);
+    std::vector<Metric<Dim>> metric_of, from_required;
+    for (std::size_t v = 0; v < any.vertex_count(); ++v) {
+      std::array<double, Dim> sizes;
+      for (double& size : sizes) size = std::pow(10, uniform(random, seed % 2 == 0 ? -4 : -1, 0));
+      metric_of.push_back(test::random_metric<Dim>(random, sizes));
+    }
+    const auto asked = eigenvalues_in(metric_of);
+    const double factor = seed % 4 < 2 ? 1.02 : 2;
+    EXPECT_TRUE(take_required_sizes(executor, made<Dim>(any), factor, metric_of).converged);
+    for (std::size_t v = 0; v < metric_of.size(); ++v)
+      if (is_source[v]) from_required.push_back(metric_of[v]);
+    const auto required = eigenvalues_in(from_required), all = eigenvalues_in(metric_of);
+    SCOPED_TRACE(seed);
+    EXPECT_LT(all.second, 1.2001 * std::max(asked.second, required.second));
+    EXPECT_GT(all.first, std::min(asked.first, required.first) / 1.2001);
+  }
+}
+
 // ---- What it is good for ----
 
 /// As finely as the edges that a frozen mesh has, times a factor.
