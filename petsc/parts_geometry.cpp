@@ -15,8 +15,8 @@ std::shared_ptr<const meshadapt::Geometry> geometry_of_parts(
     return own;
   });
   if (comm.size() > 1)
-    whole = part.mesh.dimension == 2 ? gather_everywhere<2>(comm, whole)
-                                     : gather_everywhere<3>(comm, whole);
+    whole = part.mesh.dimension == 2 ? gather_everywhere<2>(comm, executor, whole)
+                                     : gather_everywhere<3>(comm, executor, whole);
   return comm.on_all([&] {
     list_boundary(executor, whole);
     for (VertexId v = 0; v < whole.mesh.vertex_count(); ++v)

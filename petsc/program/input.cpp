@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "adapt/sizes_again.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -23,11 +24,10 @@ using runtime::Executor;
 namespace {
 
 void refuse_what_is_not_here(const Arguments& arguments) {
-  for (const std::string_view name : not_here)
-    if (arguments.has(name))
-      throw cli::UsageError("option " + std::string(name) +
-                            ": not on several ranks; use ductile adapt, or, for sizes by places, "
-                            "ductile metric first");
+  for (const auto& [option, instead] : not_here)
+    if (arguments.has(option))
+      throw cli::UsageError("option " + std::string(option) + ": not in ductile-mpi; " +
+                            std::string(instead));
 }
 
 /// Those in the file of the mesh, where the output holds fields, and those of --field.
@@ -68,7 +68,7 @@ Part read_geometry(Input& input, const Executor& executor) {
                                 std::to_string(dimension) + ", found " +
                                 std::to_string(mesh.dimension));
   if (input.job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, mesh);
-  mesh.required_edges.clear();  // of no matter here
+  if (dimension == 2) mesh.required_edges.clear();  // facets, which are of no matter here
   mesh.required_triangles.clear();
   mesh.required_tetrahedra.clear();
   return part_of_file(std::move(mesh), {}, input.warnings).part;
@@ -110,10 +110,14 @@ void read_files(Input& input, const Executor& executor) {
   if (!job.unneeded.empty()) input.warnings.push_back(job.unneeded);
   auto file = meshadapt::read_mesh_with_fields(job.input, &input.warnings);
   if (job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, file.mesh);
-  meshadapt::AnyField metric = cli::choose_metric(executor, job, file, {}, input.warnings);
-  cli::bound_locally(executor, file.mesh,
-                     cli::local_parameters(job.parameters, file.mesh, job.adapt, input.warnings),
-                     metric, job.adapt);
+  const meshadapt::Sizes sizes = job.places.sizes_for(file.mesh, input.warnings);
+  meshadapt::AnyField metric = cli::choose_metric(executor, job, file, sizes, input.warnings);
+  if (job.places.any())
+    input.sizes = meshadapt::lasting(file.mesh, sizes);
+  else
+    cli::bound_locally(executor, file.mesh,
+                       cli::local_parameters(job.parameters, file.mesh, job.adapt, input.warnings),
+                       metric, job.adapt);
   metric =
       meshadapt::metric_of(metric, file.mesh, {job.adapt.smallest_size, job.adapt.largest_size});
   read_fields(input, file);
@@ -135,24 +139,24 @@ void tell_others(const Communicator& comm, Input& input) {
   from_first_rank(comm, input.file.kept.facets);
   from_first_rank(comm, input.file.kept.elements);
   std::vector<Told> fields, names;
-  std::vector<char> output;
+  std::string output = input.output.string(), mesh = input.file.part.mesh.name;
   comm.on_all([&] {
     if (comm.rank() != 0) return;
     for (const NamedField& field : input.fields)
       fields.emplace_back(field.name, static_cast<int>(field.type), static_cast<int>(field.place));
     for (const auto& name : input.names)
       names.emplace_back(name.name, name.reference, name.dimension);
-    const std::string path = input.output.string();
-    output.assign(path.begin(), path.end());
   });
   from_first_rank(comm, fields);
   from_first_rank(comm, names);
   from_first_rank(comm, output);
+  from_first_rank(comm, mesh);
   input.job.adapt.smallest_size = bounds[0];
   input.job.adapt.largest_size = bounds[1];
   if (comm.rank() == 0) return;
-  input.output = std::string(output.begin(), output.end());
+  input.output = output;
   input.file.part = empty_part(dimension);
+  input.file.part.mesh.name = mesh;
   for (const Told& field : fields)
     input.fields.push_back({field.name.data(),
                             static_cast<meshadapt::AnyField::Type>(field.number),
