@@ -186,6 +186,10 @@ def try_box(dim, n):
     write_sol("u.sol", dim, u)
     text = adapt("in.mesh", "-o", "out.mesh", "--field", "u.sol", "--threads", "1")
     expect("pass 1:" in text and "blocked" in text, text)
+    turned = [line for line in text.splitlines() if "listed the other way round" in line]
+    by_rank = [line.split("warning: ")[1].startswith("rank") for line in turned]
+    expect(all(by_rank) if ranks != "1" else by_rank == [False], text)
+    expect(turned and turned == sorted(set(turned)), text)  # each once, in the order of ranks
     run([ductile, "info", "out.mesh", "-sol", "out.sol"])
     before, after = measures("in.mesh"), measures("out.mesh")
     expect(before.keys() == after.keys(), f"references {sorted(before)} became {sorted(after)}")
