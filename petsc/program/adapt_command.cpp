@@ -168,11 +168,12 @@ void sum_up(const Communicator& comm, const Input& input, const AdaptedParts& pa
   const std::int64_t most = comm.largest(elements);
   if (comm.rank() != 0 || input.job.verbosity <= 0) return;
   std::fprintf(cli::is_standard_output(input.output) ? stderr : stdout,
-               "%s: %s vertices, %s %s on %d ranks, %s on one at most\n",
+               "%s: %s vertices, %s %s on %d rank%s, %s on one at most\n",
                meshadapt::printable(input.output.string()).c_str(),
                cli::with_commas(static_cast<std::size_t>(sums[0])).c_str(),
                cli::with_commas(static_cast<std::size_t>(sums[1])).c_str(),
                parts.part.mesh.dimension == 2 ? "triangles" : "tetrahedra", comm.size(),
+               comm.size() > 1 ? "s" : "",
                cli::with_commas(static_cast<std::size_t>(most)).c_str());
 }
 

@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
 #include "first_rank.hpp"
+#include "listed.hpp"
 #include "local_parameters.hpp"
 
 namespace ductile::petsc {
@@ -57,6 +58,30 @@ void read_fields(Input& input, meshadapt::MeshWithFields& file) {
     fields[k].name = names[k];
     input.fields.push_back(std::move(fields[k]));
   }
+}
+
+/// Leaves out listed edges that belong to no tetrahedron, as adapt() does: no part would have them.
+void drop_loose_edges(const Executor& executor, AnyMesh& mesh, meshadapt::Warnings& warnings) {
+  if (mesh.dimension != 3 || mesh.edges.size() == 0) return;
+  const auto around = elements_around<3>(executor, mesh);
+  const std::vector<Marks> marks = marks_of(mesh, mesh.edges);
+  const auto all = std::exchange(mesh.edges, {});
+  mesh.ridges.clear();
+  mesh.required_edges.clear();
+  std::size_t first = all.size();  // that is loose
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    bool is_loose = true;
+    visit_beside<3>(mesh, around, all.vertices[i], [&](std::uint32_t) { is_loose = false; });
+    if (!is_loose)
+      list(mesh, all.vertices[i], all.reference[i], marks[i]);
+    else
+      first = std::min(first, i);
+  }
+  if (const std::size_t loose = all.size() - mesh.edges.size(); loose > 0)
+    warnings.push_back(
+        mesh.name + ": " + std::to_string(loose) + " of " + std::to_string(all.size()) +
+        " listed edges belong to no tetrahedron and are left out; the first is edge " +
+        std::to_string(first + 1));
 }
 
 /// A mesh that only says what boundaries are like.
@@ -110,6 +135,7 @@ void read_files(Input& input, const Executor& executor) {
   if (!job.unneeded.empty()) input.warnings.push_back(job.unneeded);
   auto file = meshadapt::read_mesh_with_fields(job.input, &input.warnings);
   if (job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, file.mesh);
+  drop_loose_edges(executor, file.mesh, input.warnings);
   const meshadapt::Sizes sizes = job.places.sizes_for(file.mesh, input.warnings);
   meshadapt::AnyField metric = cli::choose_metric(executor, job, file, sizes, input.warnings);
   if (job.places.any())

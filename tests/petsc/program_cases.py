@@ -338,6 +338,14 @@ def try_places(dim):
         expect(abs(before[key] - after[key]) < 1e-9, f"{dim}D: {key}: {before[key]} became {after[key]}")
 
 
+def try_loose_edge():
+    """One from corner to corner of the box, which no element has."""
+    points, cells, facets = box(3, 2)
+    write_mesh("loose.mesh", 3, points, cells, facets, edges=[((0, len(points) - 1), 5)])
+    text = adapt("loose.mesh", "-hsiz", "0.4", "-o", "loose.out.mesh")
+    expect(text.count("1 of 1 listed edges belong to no tetrahedron") == 1, text)
+
+
 def try_mistakes(dim):
     os.remove("out.mesh")
     text = adapt("in.mesh", "-o", "out.mesh", "--hmxa", "1", status=2)
@@ -369,3 +377,5 @@ for dim, n in ((2, 10), (3, 5)):
     try_places(dim)
     if dim == 2:
         try_mistakes(dim)
+    else:
+        try_loose_edge()
