@@ -8,6 +8,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "listed.hpp"
 
 namespace ductile::petsc {
 
@@ -45,14 +46,6 @@ AnyMesh with_required(const Part& part, const Interfaces& interfaces,
   add_with(Dim == 2 ? mesh.required_triangles : mesh.required_tetrahedra,
            meshadapt::elements_in<Dim>(mesh).reference, options.required_elements);
   return mesh;
-}
-
-template <int Dim>
-void drop_unlabelled_facets(AnyMesh& mesh) {
-  auto& facets = meshadapt::facets_in<Dim>(mesh);
-  auto kept = std::exchange(facets, {});
-  for (std::size_t f = 0; f < kept.size(); ++f)
-    if (kept.reference[f] != unlabelled) facets.add(kept.vertices[f], kept.reference[f]);
 }
 
 template <int Dim>
@@ -116,13 +109,12 @@ AdaptedPart adapt_part(const Executor& executor, Part part, const Interfaces& in
   result.part.mesh = std::move(mesh);
   AnyMesh& after = result.part.mesh;
   after.corners.clear();
-  after.ridges.clear();
   after.required_vertices.clear();
-  after.required_edges.clear();
+  if (Dim == 2) after.required_edges.clear();
   after.required_triangles.clear();
   after.required_tetrahedra.clear();
   restore_vertices(part, result.part, result.interfaces);
-  drop_unlabelled_facets<Dim>(after);
+  drop_unlabelled<Dim>(after);
   result.part.wanted =
       interfaces.vertices.empty() ? std::move(metric) : wanted_on<Dim>(executor, part, after);
   return result;

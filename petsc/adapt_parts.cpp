@@ -1,6 +1,7 @@
 #include "adapt_parts.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "held.hpp"
 #include "migrate.hpp"
 #include "parts_geometry.hpp"
+#include "warnings.hpp"
 
 namespace ductile::petsc {
 
@@ -48,7 +50,10 @@ class Parts {
     find_interfaces();
     const std::int64_t own = number_vertices(comm_, interfaces_, part_);
     end(Phase::balance);
-    return {std::move(part_), std::move(interfaces_), own, std::move(reports), take_costs()};
+    auto warnings = warnings_of_ranks(comm_, warnings_);
+    const auto costs = take_costs();
+    return {std::move(part_),   std::move(interfaces_), own, std::move(reports), costs,
+            std::move(warnings)};
   }
 
  private:
@@ -119,7 +124,7 @@ class Parts {
     const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(part_); });
     expect_countable(comm_, load_of);
     if (imbalance(comm_, load_of) <= accepted) return false;
-    part_ = migrate<Dim>(comm_, part_, balanced<Dim>(comm_, part_, load_of, displaced));
+    part_ = migrate<Dim>(comm_, executor_, part_, balanced<Dim>(comm_, part_, load_of, displaced));
     return true;
   }
 
@@ -127,9 +132,11 @@ class Parts {
     const double begin = MPI_Wtime();
     auto adapted = comm_.on_all([&] {
       if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_);
-      return adapt_zone<Dim>(executor_, part_, interfaces_, held_elements<Dim>(part_, layers),
-                             options_);
+      return adapt_zone<Dim>(executor_, part_, interfaces_,
+                             held_elements<Dim>(executor_, part_, layers), options_);
     });
+    std::move(adapted.report.warnings.begin(), adapted.report.warnings.end(),
+              std::back_inserter(warnings_));
     part_ = std::move(adapted.part);
     interfaces_ = std::move(adapted.interfaces);
     number_vertices(comm_, interfaces_, part_);
@@ -176,6 +183,7 @@ class Parts {
   AdaptPartsOptions options_;  // with the geometry of all parts
   Part part_;
   Interfaces interfaces_;
+  meshadapt::Warnings warnings_;
   std::array<Costs, phase_count> costs_ = {};  // [phase], of this rank
   Costs before_ = comm_.costs();
 };

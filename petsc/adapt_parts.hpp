@@ -14,6 +14,7 @@
 #include "adapt_part.hpp"
 #include "communicator.hpp"
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "interfaces.hpp"
 #include "part.hpp"
@@ -53,6 +54,7 @@ struct AdaptedParts {
   std::int64_t own = 0;  ///< vertices that this rank has numbered
   std::vector<PassReport> passes;
   std::array<Costs, phase_count> last = {};  ///< after the last pass
+  meshadapt::Warnings warnings = {};         ///< of adapt() on all ranks, see warnings_of_ranks()
 };
 
 /// Adapts the part of each rank. On one rank the result is that of adapt(). The same number of

@@ -1,5 +1,6 @@
 #include "adapt_plex.hpp"
 
+#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -28,6 +29,12 @@ void tell(MPI_Comm comm, const PassReport& pass) {
       static_cast<long long>(pass.edges), pass.imbalance, pass.seconds));
 }
 
+/// Of those that the first rank has.
+void warn(const meshadapt::Warnings& warnings) {
+  for (const std::string& warning : warnings)
+    std::fprintf(PETSC_STDERR, "ductile: warning: %s\n", warning.c_str());
+}
+
 DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cells) {
   const Communicator comm(handle);
   Parameters parameters = parameters_of(dm);
@@ -49,6 +56,7 @@ DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cell
       read.part.mesh.dimension == 2
           ? adapt_parts<2>(comm, executor, std::move(read.part), parameters.options)
           : adapt_parts<3>(comm, executor, std::move(read.part), parameters.options);
+  warn(parts.warnings);
   DM adapted = write_plex(comm, parts, labels);
   pass_geometry_on(dm, adapted);
   compose_vectors(comm, executor, dm, parts, adapted);

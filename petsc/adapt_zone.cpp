@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/metric.hpp"
-#include "elements_around.hpp"
+#include "listed.hpp"
 
 namespace ductile::petsc {
 
@@ -27,17 +27,27 @@ VertexId add_vertex(Part& to, const Part& from, VertexId v) {
   return static_cast<VertexId>(to.wanted.vertex_count++);
 }
 
-/// A part in which elements and facets of another are put, with the vertices that they have.
+/// A part in which elements, facets and edges of another are put, with the vertices that they have.
 template <int Dim>
 class Taking {
  public:
   Taking(Part& to, const Part& from) : to_(to), from_(from), now_(from.number_of.size(), none) {}
 
-  template <std::size_t N>
-  void add(meshadapt::Cells<static_cast<int>(N)>& cells, std::array<VertexId, N> corners,
-           std::int32_t reference) {
-    for (VertexId& v : corners) v = vertex(v);
-    cells.add(corners, reference);
+  void add_elements(const AnyMesh& mesh, auto&& is_taken) {
+    const auto& elements = meshadapt::elements_in<Dim>(mesh);
+    for (std::uint32_t e = 0; e < elements.size(); ++e)
+      if (is_taken(e))
+        meshadapt::elements_in<Dim>(to_.mesh).add(there(elements.vertices[e]),
+                                                  elements.reference[e]);
+  }
+
+  /// Facets, or in 3D edges.
+  template <int Corners>
+  void add_listed(const AnyMesh& mesh, const meshadapt::Cells<Corners>& cells, auto&& is_taken) {
+    const std::vector<Marks> marks = marks_of(mesh, cells);
+    for (std::uint32_t i = 0; i < cells.size(); ++i)
+      if (is_taken(cells.vertices[i], cells.reference[i]))
+        list(to_.mesh, there(cells.vertices[i]), cells.reference[i], marks[i]);
   }
 
   /// Its number there, or none.
@@ -46,9 +56,13 @@ class Taking {
   void set(VertexId v, VertexId is) { now_[v] = is; }
 
  private:
-  VertexId vertex(VertexId v) {
-    if (now_[v] == none) now_[v] = add_vertex<Dim>(to_, from_, v);
-    return now_[v];
+  template <std::size_t N>
+  std::array<VertexId, N> there(std::array<VertexId, N> corners) {
+    for (VertexId& v : corners) {
+      if (now_[v] == none) now_[v] = add_vertex<Dim>(to_, from_, v);
+      v = now_[v];
+    }
+    return corners;
   }
 
   Part& to_;
@@ -60,43 +74,45 @@ class Taking {
 template <int Dim>
 class Zone {
  public:
-  Zone(const Part& part, const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held)
+  Zone(const runtime::Executor& executor, const Part& part, const Interfaces& interfaces,
+       const std::vector<std::uint8_t>& is_held)
       : part_(part),
         interfaces_(interfaces),
         is_held_(is_held),
-        around_(part.mesh),
+        executor_(executor),
+        around_(elements_around<Dim>(executor, part.mesh)),
         outer_(empty_part(Dim)),
         inner_(empty_part(Dim)),
         to_outer_(outer_, part),
         to_inner_(inner_, part) {}
 
-  AdaptedPart adapt(const runtime::Executor& executor, const AdaptPartOptions& options) {
+  AdaptedPart adapt(const AdaptPartOptions& options) {
     divide();
-    list_boundary(executor, inner_);
+    inner_.mesh.name = part_.mesh.name;
+    list_boundary(executor_, inner_);
     find_required();
-    AdaptedPart adapted = adapt_part<Dim>(executor, std::move(inner_), required_, options);
+    AdaptedPart adapted = adapt_part<Dim>(executor_, std::move(inner_), required_, options);
     return joined(std::move(adapted));
   }
 
  private:
-  /// Facets between the two go with the inner one.
+  /// Facets and edges between the two go with the inner one.
   void divide() {
-    const auto& elements = meshadapt::elements_in<Dim>(part_.mesh);
-    for (std::uint32_t e = 0; e < elements.size(); ++e) {
-      const bool inside = is_held_[e] != 0;
-      (inside ? to_inner_ : to_outer_)
-          .add(meshadapt::elements_in<Dim>((inside ? inner_ : outer_).mesh), elements.vertices[e],
-               elements.reference[e]);
-    }
-    const auto& facets = meshadapt::facets_in<Dim>(part_.mesh);
-    for (std::size_t f = 0; f < facets.size(); ++f) {
-      if (facets.reference[f] == unlabelled) continue;
-      bool inside = false;
-      around_.visit_beside(facets.vertices[f],
-                           [&](std::uint32_t e) { inside = inside || is_held_[e] != 0; });
-      (inside ? to_inner_ : to_outer_)
-          .add(meshadapt::facets_in<Dim>((inside ? inner_ : outer_).mesh), facets.vertices[f],
-               facets.reference[f]);
+    const AnyMesh& mesh = part_.mesh;
+    for (const bool inside : {true, false}) {
+      Taking<Dim>& to = inside ? to_inner_ : to_outer_;
+      to.add_elements(mesh, [&](std::uint32_t e) { return (is_held_[e] != 0) == inside; });
+      const auto is_taken = [&](const auto& corners, std::int32_t) {
+        bool is_inner = false;
+        visit_beside<Dim>(mesh, around_, corners,
+                          [&](std::uint32_t e) { is_inner = is_inner || is_held_[e] != 0; });
+        return is_inner == inside;
+      };
+      to.add_listed(mesh, meshadapt::facets_in<Dim>(mesh),
+                    [&](const auto& corners, std::int32_t reference) {
+                      return reference != unlabelled && is_taken(corners, reference);
+                    });
+      if constexpr (Dim == 3) to.add_listed(mesh, mesh.edges, is_taken);
     }
   }
 
@@ -125,7 +141,8 @@ class Zone {
       Facet facet = facets[f];
       for (VertexId& v : facet) v = was[v];
       bool cut = on_interfaces.contains(sorted(facet));
-      around_.visit_beside(facet, [&](std::uint32_t e) { cut = cut || is_held_[e] == 0; });
+      visit_beside<Dim>(part_.mesh, around_, facet,
+                        [&](std::uint32_t e) { cut = cut || is_held_[e] == 0; });
       if (cut) required_.facets.push_back({f, 0});
     }
   }
@@ -137,13 +154,10 @@ class Zone {
     for (std::size_t i = 0; i < required.size(); ++i)
       taking.set(required[i].vertex, to_outer_.now(was_required_[i]));
     const AnyMesh& inner = adapted.part.mesh;
-    const auto& elements = meshadapt::elements_in<Dim>(inner);
-    for (std::size_t e = 0; e < elements.size(); ++e)
-      taking.add(meshadapt::elements_in<Dim>(outer_.mesh), elements.vertices[e],
-                 elements.reference[e]);
-    const auto& facets = meshadapt::facets_in<Dim>(inner);
-    for (std::size_t f = 0; f < facets.size(); ++f)
-      taking.add(meshadapt::facets_in<Dim>(outer_.mesh), facets.vertices[f], facets.reference[f]);
+    const auto all = [](const auto&...) { return true; };
+    taking.add_elements(inner, all);
+    taking.add_listed(inner, meshadapt::facets_in<Dim>(inner), all);
+    if constexpr (Dim == 3) taking.add_listed(inner, inner.edges, all);
     std::vector<VertexId> now(part_.number_of.size(), none);
     for (VertexId v = 0; v < now.size(); ++v) now[v] = to_outer_.now(v);
     for (std::size_t i = 0; i < required.size(); ++i)
@@ -157,7 +171,8 @@ class Zone {
   const Part& part_;
   const Interfaces& interfaces_;
   const std::vector<std::uint8_t>& is_held_;
-  ElementsAround<Dim> around_;
+  const runtime::Executor& executor_;
+  meshadapt::VertexElements around_;
   Part outer_, inner_;
   Taking<Dim> to_outer_, to_inner_;
   Interfaces required_;                 // of the inner part
@@ -172,7 +187,7 @@ AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
                        const AdaptPartOptions& options) {
   const auto held = static_cast<std::size_t>(std::count(is_held.begin(), is_held.end(), 1));
   if (held == is_held.size()) return adapt_part<Dim>(executor, part, interfaces, options);
-  if (held > 0) return Zone<Dim>(part, interfaces, is_held).adapt(executor, options);
+  if (held > 0) return Zone<Dim>(executor, part, interfaces, is_held).adapt(options);
   AdaptedPart result{part, interfaces, {}};
   result.interfaces.facets.clear();
   return result;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/metric.hpp"
-#include "elements_around.hpp"
+#include "listed.hpp"
 
 namespace ductile::petsc {
 
@@ -42,10 +42,10 @@ bool has_blocked_edge(const Part& part, std::uint32_t element) {
 template <int Dim>
 class Zone {
  public:
-  explicit Zone(const Part& part)
+  Zone(const runtime::Executor& executor, const Part& part)
       : part_(part),
         elements_(meshadapt::elements_in<Dim>(part.mesh).vertices),
-        around_(part.mesh),
+        around_(elements_around<Dim>(executor, part.mesh)),
         is_held_(elements_.size(), 0),
         is_reached_(part.mesh.vertex_count(), 0) {
     for (VertexId v = 0; v < part.is_held.size(); ++v)
@@ -70,7 +70,7 @@ class Zone {
   }
 
   void add_around(VertexId v, Which which) {
-    for (const std::uint32_t e : around_.of(v)) {
+    for (const std::uint32_t e : around_.elements_of(v)) {
       if (is_held_[e] != 0) continue;
       if (which == Which::blocked && !has_blocked_edge<Dim>(part_, e)) continue;
       is_held_[e] = 1;
@@ -80,7 +80,7 @@ class Zone {
 
   const Part& part_;
   const std::vector<meshadapt::Corners<Dim>>& elements_;
-  ElementsAround<Dim> around_;
+  meshadapt::VertexElements around_;
   std::vector<std::uint8_t> is_held_;     // [element]
   std::vector<std::uint8_t> is_reached_;  // [vertex]
   std::vector<VertexId> reached_;
@@ -113,14 +113,15 @@ EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interf
 }
 
 template <int Dim>
-std::vector<std::uint8_t> held_elements(const Part& part, int layers) {
+std::vector<std::uint8_t> held_elements(const runtime::Executor& executor, const Part& part,
+                                        int layers) {
   if (part.element_count() == 0) return {};
-  return Zone<Dim>(part).spread(layers);
+  return Zone<Dim>(executor, part).spread(layers);
 }
 
 template EdgesAtInterfaces edges_at_interfaces<2>(const Part&, const Interfaces&);
 template EdgesAtInterfaces edges_at_interfaces<3>(const Part&, const Interfaces&);
-template std::vector<std::uint8_t> held_elements<2>(const Part&, int);
-template std::vector<std::uint8_t> held_elements<3>(const Part&, int);
+template std::vector<std::uint8_t> held_elements<2>(const runtime::Executor&, const Part&, int);
+template std::vector<std::uint8_t> held_elements<3>(const runtime::Executor&, const Part&, int);
 
 }  // namespace ductile::petsc

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ductile/runtime/executor.hpp"
 #include "interfaces.hpp"
 #include "part.hpp"
 
@@ -28,11 +29,14 @@ EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interf
 /// blocked edges that are connected with these by others. Blocked edges elsewhere, which any mesh
 /// may have, do not count. Empty of an empty part.
 template <int Dim>
-std::vector<std::uint8_t> held_elements(const Part& part, int layers);
+std::vector<std::uint8_t> held_elements(const runtime::Executor& executor, const Part& part,
+                                        int layers);
 
 extern template EdgesAtInterfaces edges_at_interfaces<2>(const Part&, const Interfaces&);
 extern template EdgesAtInterfaces edges_at_interfaces<3>(const Part&, const Interfaces&);
-extern template std::vector<std::uint8_t> held_elements<2>(const Part&, int);
-extern template std::vector<std::uint8_t> held_elements<3>(const Part&, int);
+extern template std::vector<std::uint8_t> held_elements<2>(const runtime::Executor&, const Part&,
+                                                           int);
+extern template std::vector<std::uint8_t> held_elements<3>(const runtime::Executor&, const Part&,
+                                                           int);
 
 }  // namespace ductile::petsc

@@ -37,8 +37,11 @@ std::int32_t CarriedLabel::value_at(PetscInt point, std::int32_t otherwise) cons
 }
 
 CarriedLabels labels_of(const Communicator& comm, DM dm, DMLabel facets, DMLabel elements) {
+  PetscInt dimension = 0;
+  check(DMGetDimension(dm, &dimension));
   return {given(comm, dm, facets, "Face Sets"), given(comm, dm, elements, "Cell Sets"),
-          label_named(comm, dm, "Vertex Sets")};
+          label_named(comm, dm, "Vertex Sets"),
+          dimension == 3 ? label_named(comm, dm, "Edge Sets") : CarriedLabel()};
 }
 
 }  // namespace ductile::petsc

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/metric.hpp"
-#include "elements_around.hpp"
+#include "listed.hpp"
 
 namespace ductile::petsc {
 
@@ -14,11 +14,17 @@ namespace {
 
 using meshadapt::Metric;
 
-/// An element, or a facet: corners are places in the list of vertices that the same rank sends.
+/// An element: corners are places in the list of vertices that the same rank sends.
 template <std::size_t N>
 struct Simplex {
   std::array<std::uint32_t, N> corners;
   std::int32_t reference;
+};
+
+/// A facet or an edge.
+template <std::size_t N>
+struct Listed : Simplex<N> {
+  Marks marks;
 };
 
 template <int Dim>
@@ -34,49 +40,56 @@ struct Vertex {
 template <int Dim>
 struct Sent {
   PerRank<Simplex<Dim + 1>> elements;
-  PerRank<Simplex<Dim>> facets;
+  PerRank<Listed<Dim>> facets;
+  PerRank<Listed<2>> edges;  // in 3D
   PerRank<Vertex<Dim>> vertices;
+
+  explicit Sent(std::size_t ranks)
+      : elements(ranks), facets(ranks), edges(ranks), vertices(ranks) {}
 };
 
 /// Lists for one rank after the other.
 template <int Dim>
 class Sender {
  public:
-  Sender(const Part& part, const std::vector<int>& target_of, std::size_t ranks)
-      : part_(part), elements_to_(ranks), facets_to_(ranks), place_of_(part.number_of.size(), 0) {
+  Sender(const runtime::Executor& executor, const Part& part, const std::vector<int>& target_of,
+         std::size_t ranks)
+      : part_(part), elements_to_(ranks), place_of_(part.number_of.size(), 0) {
     for (std::uint32_t e = 0; e < target_of.size(); ++e)
       elements_to_[static_cast<std::size_t>(target_of[e])].push_back(e);
-    list_facets(target_of);
+    const auto around = elements_around<Dim>(executor, part.mesh);
+    facets_to_ = targets(meshadapt::facets_in<Dim>(part.mesh), around, target_of);
+    if (Dim == 3) edges_to_ = targets(part.mesh.edges, around, target_of);
   }
 
   Sent<Dim> lists() {
-    const std::size_t ranks = elements_to_.size();
-    Sent<Dim> sent{PerRank<Simplex<Dim + 1>>(ranks), PerRank<Simplex<Dim>>(ranks),
-                   PerRank<Vertex<Dim>>(ranks)};
-    for (std::size_t rank = 0; rank < ranks; ++rank) {
+    Sent<Dim> sent(elements_to_.size());
+    for (std::size_t rank = 0; rank < elements_to_.size(); ++rank) {
       const std::vector<VertexId> needed = vertices_of(elements_to_[rank]);
       for (const VertexId v : needed) sent.vertices[rank].push_back(vertex(v));
-      add(meshadapt::elements_in<Dim>(part_.mesh), elements_to_[rank], sent.elements[rank]);
+      const auto& elements = meshadapt::elements_in<Dim>(part_.mesh);
+      for (const std::uint32_t e : elements_to_[rank])
+        sent.elements[rank].push_back({places_of(elements.vertices[e]), elements.reference[e]});
       add(meshadapt::facets_in<Dim>(part_.mesh), facets_to_[rank], sent.facets[rank]);
+      if constexpr (Dim == 3) add(part_.mesh.edges, edges_to_[rank], sent.edges[rank]);
       for (const VertexId v : needed) place_of_[v] = 0;
     }
     return sent;
   }
 
  private:
-  /// Facets with a label go wherever one of their elements goes.
-  void list_facets(const std::vector<int>& target_of) {
-    const auto& facets = meshadapt::facets_in<Dim>(part_.mesh);
-    const ElementsAround<Dim> around(part_.mesh);
-    for (std::uint32_t f = 0; f < facets.size(); ++f) {
-      if (facets.reference[f] == unlabelled) continue;
-      int sent_to = -1;
-      around.visit_beside(facets.vertices[f], [&](std::uint32_t element) {
-        const int target = target_of[element];
-        if (std::exchange(sent_to, target) != target)
-          facets_to_[static_cast<std::size_t>(target)].push_back(f);
+  /// Facets and edges with a label go wherever one of their elements goes.
+  PerRank<std::uint32_t> targets(const auto& cells, const meshadapt::VertexElements& around,
+                                 const std::vector<int>& target_of) const {
+    PerRank<std::uint32_t> to(elements_to_.size());
+    for (std::uint32_t i = 0; i < cells.size(); ++i) {
+      if (cells.reference[i] == unlabelled) continue;
+      visit_beside<Dim>(part_.mesh, around, cells.vertices[i], [&](std::uint32_t element) {
+        auto& list = to[static_cast<std::size_t>(target_of[element])];
+        if (list.empty() || list.back() != i) list.push_back(i);
       });
     }
+    return to;
   }
 
   /// In the order of their numbers, with their places noted.
@@ -104,17 +117,20 @@ class Sender {
 
   template <std::size_t N>
   void add(const auto& cells, const std::vector<std::uint32_t>& some,
-           std::vector<Simplex<N>>& list) const {
-    list.reserve(some.size());
-    for (const std::uint32_t i : some) {
-      Simplex<N> simplex{{}, cells.reference[i]};
-      for (std::size_t k = 0; k < N; ++k) simplex.corners[k] = place_of_[cells.vertices[i][k]] - 1;
-      list.push_back(simplex);
-    }
+           std::vector<Listed<N>>& list) const {
+    const std::vector<Marks> marks = marks_of(part_.mesh, cells);
+    for (const std::uint32_t i : some)
+      list.push_back({{places_of(cells.vertices[i]), cells.reference[i]}, marks[i]});
+  }
+
+  template <std::size_t N>
+  std::array<std::uint32_t, N> places_of(std::array<VertexId, N> corners) const {
+    for (std::uint32_t& v : corners) v = place_of_[v] - 1;
+    return corners;
   }
 
   const Part& part_;
-  PerRank<std::uint32_t> elements_to_, facets_to_;
+  PerRank<std::uint32_t> elements_to_, facets_to_, edges_to_;
   std::vector<std::uint32_t> place_of_;  // [vertex], in the list for one rank, and 1; 0: not there
 };
 
@@ -138,32 +154,36 @@ class Assembly {
     part_.wanted.vertex_count = part_.number_of.size();
   }
 
-  Part part(const Received<Simplex<Dim + 1>>& elements, const Received<Simplex<Dim>>& facets) {
+  void add_elements(const Received<Simplex<Dim + 1>>& elements) {
     auto& own = meshadapt::elements_in<Dim>(part_.mesh);
     each(elements,
-         [&](const auto& corners, std::int32_t reference) { own.add(corners, reference); });
-    std::vector<std::pair<meshadapt::Facet<Dim>, LabelledFacet>> sorted;
-    each(facets, [&](const auto& corners, std::int32_t reference) {
+         [&](const auto& corners, const auto& simplex) { own.add(corners, simplex.reference); });
+  }
+
+  /// Each facet or edge once. What comes twice is all that either one is.
+  template <std::size_t N>
+  void add_listed(const Received<Listed<N>>& listed) {
+    std::vector<std::pair<std::array<VertexId, N>, Listed<N>>> sorted;
+    each(listed, [&](const auto& corners, Listed<N> one) {
       auto key = corners;
       std::sort(key.begin(), key.end());
-      sorted.push_back({key, {corners, reference}});
+      one.corners = corners;
+      sorted.emplace_back(key, one);
     });
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
-    const auto twice = std::unique(sorted.begin(), sorted.end(),
-                                   [](const auto& a, const auto& b) { return a.first == b.first; });
-    sorted.erase(twice, sorted.end());
-    for (const auto& [key, facet] : sorted)
-      meshadapt::facets_in<Dim>(part_.mesh).add(facet.corners, facet.reference);
-    return std::move(part_);
+    for (std::size_t i = 0; i < sorted.size();) {
+      const std::size_t first = i;
+      Marks marks = 0;
+      for (; i < sorted.size() && sorted[i].first == sorted[first].first; ++i)
+        marks |= sorted[i].second.marks;
+      list(part_.mesh, sorted[first].second.corners, sorted[first].second.reference, marks);
+    }
   }
 
- private:
-  struct LabelledFacet {
-    meshadapt::Facet<Dim> corners;
-    std::int32_t reference;
-  };
+  Part part() { return std::move(part_); }
 
+ private:
   void add(const Vertex<Dim>& vertex) {
     part_.number_of.push_back(vertex.number);
     part_.is_held.push_back(vertex.is_held);
@@ -174,14 +194,14 @@ class Assembly {
                                vertex.wanted.m.end());
   }
 
-  template <std::size_t N>
-  void each(const Received<Simplex<N>>& received, auto&& visit) const {
-    for (std::size_t rank = 0; rank + 1 < vertices_.begin.size(); ++rank)
-      for (const Simplex<N>& simplex : received.from(static_cast<int>(rank))) {
-        std::array<VertexId, N> corners;
-        for (std::size_t k = 0; k < N; ++k)
-          corners[k] = now_[vertices_.begin[rank] + simplex.corners[k]];
-        visit(corners, simplex.reference);
+  /// Calls visit(corners, item) with the corners that it has here.
+  template <class Item>
+  void each(const Received<Item>& items, auto&& visit) const {
+    for (std::size_t rank = 0; rank + 1 < items.begin.size(); ++rank)
+      for (const Item& item : items.from(static_cast<int>(rank))) {
+        auto corners = item.corners;
+        for (auto& corner : corners) corner = now_[vertices_.begin[rank] + corner];
+        visit(corners, item);
       }
   }
 
@@ -196,7 +216,14 @@ Part received(const Communicator& comm, const Sent<Dim>& sent) {
   const auto elements = comm.exchange(sent.elements);
   const auto facets = comm.exchange(sent.facets);
   const auto vertices = comm.exchange(sent.vertices);
-  return comm.on_all([&] { return Assembly<Dim>(vertices).part(elements, facets); });
+  const auto edges = Dim == 3 ? comm.exchange(sent.edges) : Received<Listed<2>>();
+  return comm.on_all([&] {
+    Assembly<Dim> assembly(vertices);
+    assembly.add_elements(elements);
+    assembly.add_listed(facets);
+    if (Dim == 3) assembly.add_listed(edges);
+    return assembly.part();
+  });
 }
 
 }  // namespace
@@ -223,27 +250,43 @@ std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfa
 }
 
 template <int Dim>
-Part migrate(const Communicator& comm, const Part& part, const std::vector<int>& target_of) {
-  return received<Dim>(comm, comm.on_all([&] {
-    return Sender<Dim>(part, target_of, static_cast<std::size_t>(comm.size())).lists();
+Part migrate(const Communicator& comm, const runtime::Executor& executor, const Part& part,
+             const std::vector<int>& target_of) {
+  Part result = received<Dim>(comm, comm.on_all([&] {
+    return Sender<Dim>(executor, part, target_of, static_cast<std::size_t>(comm.size())).lists();
   }));
+  result.mesh.name = part.mesh.name;
+  return result;
+}
+
+Part gather_on_first(const Communicator& comm, const runtime::Executor& executor,
+                     const Part& part) {
+  if (comm.size() == 1) return part;
+  const std::vector<int> to_first(part.element_count(), 0);
+  return part.mesh.dimension == 2 ? migrate<2>(comm, executor, part, to_first)
+                                  : migrate<3>(comm, executor, part, to_first);
 }
 
 template <int Dim>
-Part gather_everywhere(const Communicator& comm, const Part& part) {
+Part gather_everywhere(const Communicator& comm, const runtime::Executor& executor,
+                       const Part& part) {
   return received<Dim>(comm, comm.on_all([&] {
-    Sent<Dim> sent = Sender<Dim>(part, std::vector<int>(part.element_count(), 0), 1).lists();
+    const std::vector<int> to_one(part.element_count(), 0);
+    Sent<Dim> sent = Sender<Dim>(executor, part, to_one, 1).lists();
     const auto ranks = static_cast<std::size_t>(comm.size());
     sent.elements.resize(ranks, sent.elements.front());
     sent.facets.resize(ranks, sent.facets.front());
+    sent.edges.resize(ranks, sent.edges.front());
     sent.vertices.resize(ranks, sent.vertices.front());
     return sent;
   }));
 }
 
-template Part gather_everywhere<2>(const Communicator&, const Part&);
-template Part gather_everywhere<3>(const Communicator&, const Part&);
-template Part migrate<2>(const Communicator&, const Part&, const std::vector<int>&);
-template Part migrate<3>(const Communicator&, const Part&, const std::vector<int>&);
+template Part gather_everywhere<2>(const Communicator&, const runtime::Executor&, const Part&);
+template Part gather_everywhere<3>(const Communicator&, const runtime::Executor&, const Part&);
+template Part migrate<2>(const Communicator&, const runtime::Executor&, const Part&,
+                         const std::vector<int>&);
+template Part migrate<3>(const Communicator&, const runtime::Executor&, const Part&,
+                         const std::vector<int>&);
 
 }  // namespace ductile::petsc

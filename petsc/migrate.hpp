@@ -1,11 +1,13 @@
 /// @file
-/// migrate: elements go to other ranks, with their vertices, the metric there and their facets.
+/// migrate: elements go to other ranks, with their vertices, the metric there, their facets and
+/// their edges.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "communicator.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "interfaces.hpp"
 #include "part.hpp"
 
@@ -16,18 +18,28 @@ namespace ductile::petsc {
 /// Collective.
 std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfaces, Part& part);
 
-/// Sends each element to the rank that target_of names, and makes a part of what comes, in the
-/// order of the ranks that it comes from. Collective.
+/// Sends each element to the rank that target_of names, with its vertices, facets and edges, and
+/// makes a part of what comes, in the order of the ranks that it comes from. Collective.
 template <int Dim>
-Part migrate(const Communicator& comm, const Part& part, const std::vector<int>& target_of);
+Part migrate(const Communicator& comm, const runtime::Executor& executor, const Part& part,
+             const std::vector<int>& target_of);
+
+/// The whole mesh on the first rank, in the order of the ranks, and empty parts on the others; on
+/// one rank the part as it is. Collective.
+Part gather_on_first(const Communicator& comm, const runtime::Executor& executor, const Part& part);
 
 /// The whole mesh on each rank, in the order of the ranks. Collective.
 template <int Dim>
-Part gather_everywhere(const Communicator& comm, const Part& part);
+Part gather_everywhere(const Communicator& comm, const runtime::Executor& executor,
+                       const Part& part);
 
-extern template Part gather_everywhere<2>(const Communicator&, const Part&);
-extern template Part gather_everywhere<3>(const Communicator&, const Part&);
-extern template Part migrate<2>(const Communicator&, const Part&, const std::vector<int>&);
-extern template Part migrate<3>(const Communicator&, const Part&, const std::vector<int>&);
+extern template Part gather_everywhere<2>(const Communicator&, const runtime::Executor&,
+                                          const Part&);
+extern template Part gather_everywhere<3>(const Communicator&, const runtime::Executor&,
+                                          const Part&);
+extern template Part migrate<2>(const Communicator&, const runtime::Executor&, const Part&,
+                                const std::vector<int>&);
+extern template Part migrate<3>(const Communicator&, const runtime::Executor&, const Part&,
+                                const std::vector<int>&);
 
 }  // namespace ductile::petsc

@@ -21,8 +21,8 @@ using meshadapt::VertexId;
 inline constexpr std::int32_t unlabelled = std::numeric_limits<std::int32_t>::min();
 
 struct Part {
-  /// References are values of labels. Facets are listed if they have one; those on interfaces
-  /// between parts in both.
+  /// References are values of labels. Facets, and edges of tetrahedra, are listed if they have one;
+  /// those on interfaces between parts in all that have them.
   AnyMesh mesh;
   AnyField wanted;                      ///< the metric to adapt to, one symmetric tensor a vertex
   std::vector<std::int64_t> number_of;  ///< [vertex], the same on all ranks

@@ -1,24 +1,131 @@
 #include "parts_geometry.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "adapt_part.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "listed.hpp"
 #include "migrate.hpp"
 
 namespace ductile::petsc {
 
+using runtime::Executor;
+
+namespace {
+
+/// What stands in, on the way, for no label of a facet that is on the boundary or between regions.
+constexpr std::int32_t unlabelled_boundary = unlabelled + 1;
+
+/// The elements of a part that touch the boundary, interfaces between regions, and listed edges:
+/// all that a Geometry looks at.
+template <int Dim>
+class BoundaryLayer {
+ public:
+  /// The part lists its boundary.
+  BoundaryLayer(const Communicator& comm, const Executor& executor, Part& part)
+      : comm_(comm), part_(part), interfaces_(find_interfaces<Dim>(comm, part)) {
+    around_ = comm.on_all([&] { return elements_around<Dim>(executor, part.mesh); });
+  }
+
+  /// Leaves the others, and facets that are only between parts, out of the part. Collective.
+  void keep() {
+    mark_facets();
+    mark_vertices();
+    comm_.on_all([&] { drop_elements(); });
+  }
+
+ private:
+  std::int32_t region_beside(const meshadapt::Facet<Dim>& facet) const {
+    std::int32_t region = unlabelled;
+    visit_beside<Dim>(part_.mesh, around_, facet, [&](std::uint32_t e) {
+      region = meshadapt::elements_in<Dim>(part_.mesh).reference[e];
+    });
+    return region;
+  }
+
+  /// Those that are shared are between regions if the other rank has another one beside it.
+  void mark_facets() {
+    auto& facets = meshadapt::facets_in<Dim>(part_.mesh);
+    PerRank<std::int32_t> to(static_cast<std::size_t>(comm_.size()));
+    comm_.on_all([&] {
+      for (const SharedFacet& shared : interfaces_.facets)
+        to[static_cast<std::size_t>(shared.rank)].push_back(
+            region_beside(facets.vertices[shared.facet]));
+    });
+    const auto beyond = comm_.exchange(to);
+    comm_.on_all([&] {
+      std::vector<std::uint8_t> is_inside(facets.size(), 0);
+      std::vector<std::size_t> next(to.size(), 0);
+      for (const SharedFacet& shared : interfaces_.facets) {
+        const auto rank = static_cast<std::size_t>(shared.rank);
+        const std::size_t k = next[rank]++;
+        is_inside[shared.facet] = beyond.from(shared.rank)[k] == to[rank][k] ? 1 : 0;
+      }
+      for (std::size_t f = 0; f < facets.size(); ++f)
+        if (facets.reference[f] == unlabelled && is_inside[f] == 0)
+          facets.reference[f] = unlabelled_boundary;
+      drop_unlabelled<Dim>(part_.mesh);
+    });
+  }
+
+  void mark_vertices() {
+    is_touched_.assign(part_.mesh.vertex_count(), 0);
+    const auto touch = [&](const auto& cells) {
+      for (const auto& corners : cells.vertices)
+        for (const VertexId v : corners) is_touched_[v] = 1;
+    };
+    touch(meshadapt::facets_in<Dim>(part_.mesh));
+    touch(part_.mesh.edges);
+    std::vector<std::uint8_t> of_shared;
+    for (const SharedVertex& shared : interfaces_.vertices)
+      of_shared.push_back(is_touched_[shared.vertex]);
+    exchange_at_vertices(comm_, interfaces_, of_shared,
+                         [&](std::size_t i, int, std::uint8_t is_touched) {
+                           is_touched_[interfaces_.vertices[i].vertex] |= is_touched;
+                         });
+  }
+
+  void drop_elements() {
+    const auto all = std::exchange(meshadapt::elements_in<Dim>(part_.mesh), {});
+    for (std::size_t e = 0; e < all.size(); ++e)
+      if (std::any_of(all.vertices[e].begin(), all.vertices[e].end(),
+                      [&](VertexId v) { return is_touched_[v] != 0; }))
+        meshadapt::elements_in<Dim>(part_.mesh).add(all.vertices[e], all.reference[e]);
+  }
+
+  const Communicator& comm_;
+  Part& part_;
+  const Interfaces interfaces_;
+  meshadapt::VertexElements around_;
+  std::vector<std::uint8_t> is_touched_;  // [vertex]
+};
+
+/// On each rank what of all parts a Geometry is made of.
+template <int Dim>
+Part gathered(const Communicator& comm, const Executor& executor, Part part) {
+  BoundaryLayer<Dim>(comm, executor, part).keep();
+  Part whole = gather_everywhere<Dim>(comm, executor, part);
+  auto& references = meshadapt::facets_in<Dim>(whole.mesh).reference;
+  std::replace(references.begin(), references.end(), unlabelled_boundary, unlabelled);
+  return whole;
+}
+
+}  // namespace
+
 std::shared_ptr<const meshadapt::Geometry> geometry_of_parts(
-    const Communicator& comm, const runtime::Executor& executor, const Part& part,
+    const Communicator& comm, const Executor& executor, const Part& part,
     const meshadapt::MakeMeshOptions& make) {
   Part whole = comm.on_all([&] {
     Part own = part;
     own.wanted = meshadapt::constant_metric(own.mesh, 1);  // which goes with vertices
+    list_boundary(executor, own);
     return own;
   });
   if (comm.size() > 1)
-    whole = part.mesh.dimension == 2 ? gather_everywhere<2>(comm, whole)
-                                     : gather_everywhere<3>(comm, whole);
+    whole = part.mesh.dimension == 2 ? gathered<2>(comm, executor, std::move(whole))
+                                     : gathered<3>(comm, executor, std::move(whole));
   return comm.on_all([&] {
-    list_boundary(executor, whole);
     for (VertexId v = 0; v < whole.mesh.vertex_count(); ++v)
       if (whole.mesh.vertex_reference[v] != unlabelled) whole.mesh.required_vertices.push_back(v);
     return std::make_shared<const meshadapt::Geometry>(

@@ -1,6 +1,6 @@
 /// @file
-/// The Geometry of a distributed mesh: the same on every rank, made of all of the mesh, so that
-/// what is round stays so while parts of it are adapted.
+/// The Geometry of a distributed mesh: the same on every rank, made of the elements of all parts
+/// that touch the boundary, so that what is round stays so while parts of it are adapted.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,9 @@
 
 namespace ductile::petsc {
 
-/// Of all parts together, of which each rank holds a copy meanwhile; with the tolerance and the
-/// ridge angle of `make`. Throws as Geometry() does, as Error on all ranks. Collective.
+/// Of all parts together; each rank holds a copy of the elements that touch boundaries, interfaces
+/// and listed edges meanwhile. With the tolerance and the ridge angle of `make`. Throws as
+/// Geometry() does, as Error on all ranks. Collective.
 std::shared_ptr<const meshadapt::Geometry> geometry_of_parts(
     const Communicator& comm, const runtime::Executor& executor, const Part& part,
     const meshadapt::MakeMeshOptions& make);

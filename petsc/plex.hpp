@@ -47,11 +47,11 @@ struct CarriedLabel {
 };
 
 struct CarriedLabels {
-  CarriedLabel facets, elements, vertices;
+  CarriedLabel facets, elements, vertices, edges;
 };
 
-/// The labels that an adaptor is given, or else "Face Sets" and "Cell Sets", and "Vertex Sets". A
-/// name that is the same in all three is carried once for each. Collective.
+/// The labels that an adaptor is given, or else "Face Sets" and "Cell Sets", and "Vertex Sets", and
+/// in 3D "Edge Sets". A name that is the same in all is carried once for each. Collective.
 CarriedLabels labels_of(const Communicator& comm, DM dm, DMLabel facets, DMLabel elements);
 
 }  // namespace ductile::petsc

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace ductile::petsc {
@@ -26,6 +27,7 @@ class Reader {
     PetscInt dimension = 0;
     check(DMGetDimension(dm, &dimension));
     result_.part = empty_part(static_cast<int>(dimension));
+    result_.part.mesh.name = "mesh";
   }
 
   PlexPart read() {
@@ -99,7 +101,9 @@ class Reader {
     auto& elements = meshadapt::elements_in<Dim>(result_.part.mesh);
     for (PetscInt c = cells_.begin; c < cells_.end; ++c) {
       if (!is_own(c)) continue;
-      elements.add(corners_of<Dim + 1>(c), labels_.elements.value_at(c, unlabelled));
+      auto corners = corners_of<Dim + 1>(c);
+      if (Dim == 3) std::swap(corners[0], corners[1]);  // PETSc's are turned the other way
+      elements.add(corners, labels_.elements.value_at(c, unlabelled));
       result_.cell_of.push_back(c);
     }
     for (const auto& corners : elements.vertices)
@@ -136,28 +140,41 @@ class Reader {
     check(VecRestoreArrayRead(coordinates, &x));
   }
 
-  /// Those with a label that belong to an element of this rank.
+  /// Those with a label that belong to an element of this rank; in 3D edges, too.
   template <int Dim>
   void read_facets() {
     PetscInt depth = 0;
     check(DMPlexGetDepth(dm_, &depth));
     if (depth != Dim) return;  // there are no facets
-    const Stratum facets = stratum_of_height(dm_, 1);
-    for (PetscInt f = facets.begin; f < facets.end; ++f) {
-      const std::int32_t value = labels_.facets.value_at(f, unlabelled);
-      if (value == unlabelled || !is_beside_own(f)) continue;
-      auto corners = corners_of<Dim>(f);
+    AnyMesh& mesh = result_.part.mesh;
+    read_listed<Dim>(stratum_of_height(dm_, 1), labels_.facets, meshadapt::facets_in<Dim>(mesh));
+    if (Dim == 3) read_listed<2>(stratum_of_height(dm_, 2), labels_.edges, mesh.edges);
+  }
+
+  template <int Corners>
+  void read_listed(const Stratum& points, const CarriedLabel& label,
+                   meshadapt::Cells<Corners>& cells) const {
+    if (label.label == nullptr) return;
+    for (PetscInt p = points.begin; p < points.end; ++p) {
+      const std::int32_t value = label.value_at(p, unlabelled);
+      if (value == unlabelled || !is_beside_own(p)) continue;
+      auto corners = corners_of<Corners>(p);
       for (VertexId& v : corners) v = local_of_[v];
-      meshadapt::facets_in<Dim>(result_.part.mesh).add(corners, value);
+      cells.add(corners, value);
     }
   }
 
-  bool is_beside_own(PetscInt facet) const {
-    PetscInt count = 0;
-    const PetscInt* cells = nullptr;
-    check(DMPlexGetSupportSize(dm_, facet, &count));
-    check(DMPlexGetSupport(dm_, facet, &cells));
-    return std::any_of(cells, cells + count, [&](PetscInt c) { return is_own(c); });
+  bool is_beside_own(PetscInt point) const {
+    PetscInt size = 0;
+    PetscInt* star = nullptr;
+    check(DMPlexGetTransitiveClosure(dm_, point, PETSC_FALSE, &size, &star));
+    bool is_beside = false;
+    for (PetscInt i = 0; i < size; ++i) {
+      const PetscInt p = star[static_cast<std::ptrdiff_t>(2) * i];
+      is_beside = is_beside || (cells_.has(p) && is_own(p));
+    }
+    check(DMPlexRestoreTransitiveClosure(dm_, point, PETSC_FALSE, &size, &star));
+    return is_beside;
   }
 
   DM dm_;

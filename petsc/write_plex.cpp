@@ -68,21 +68,28 @@ class Writer {
   }
 
   void write_labels(const CarriedLabels& labels) {
-    DMLabel of_elements = nullptr, of_facets = nullptr, of_vertices = nullptr;
+    DMLabel of_elements = nullptr, of_facets = nullptr, of_vertices = nullptr, of_edges = nullptr;
     create_label(labels.elements, of_elements);
     create_label(labels.facets, of_facets);
     create_label(labels.vertices, of_vertices);
+    create_label(labels.edges, of_edges);
     comm_.on_all([&] {
       number_points();
       for (std::size_t e = 0; e < elements().size(); ++e)
         set(of_elements, static_cast<PetscInt>(e), elements().reference[e]);
       for (VertexId v = 0; v < point_of_.size(); ++v)
         set(of_vertices, point_of_[v], part_.mesh.vertex_reference[v]);
-      const auto& facets = meshadapt::facets_in<Dim>(part_.mesh);
-      for (std::size_t f = 0; f < facets.size(); ++f)
-        if (facets.reference[f] != unlabelled)
-          set(of_facets, point_of_facet(facets.vertices[f]), facets.reference[f]);
+      set_listed(of_facets, meshadapt::facets_in<Dim>(part_.mesh));
+      if (Dim == 3) set_listed(of_edges, part_.mesh.edges);
     });
+  }
+
+  template <int Corners>
+  void set_listed(DMLabel label, const meshadapt::Cells<Corners>& cells) const {
+    if (label == nullptr) return;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (cells.reference[i] != unlabelled)
+        set(label, point_between(cells.vertices[i]), cells.reference[i]);
   }
 
   /// On all ranks, of those that any had.
@@ -99,15 +106,19 @@ class Writer {
     if (label != nullptr && value != unlabelled) check(DMLabelSetValue(label, point, value));
   }
 
-  PetscInt point_of_facet(const std::array<VertexId, Dim>& facet) const {
-    std::array<PetscInt, Dim> corners;
-    for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = point_of_[facet[i]];
+  /// The facet or the edge of some vertices.
+  template <std::size_t N>
+  PetscInt point_between(const std::array<VertexId, N>& vertices) const {
+    constexpr auto size = static_cast<PetscInt>(N);
+    std::array<PetscInt, N> corners;
+    for (std::size_t i = 0; i < N; ++i) corners[i] = point_of_[vertices[i]];
     PetscInt count = 0;
     const PetscInt* joined = nullptr;
-    check(DMPlexGetFullJoin(dm_, Dim, corners.data(), &count, &joined));
+    check(DMPlexGetFullJoin(dm_, size, corners.data(), &count, &joined));
     const PetscInt point = count == 1 ? joined[0] : -1;
-    check(DMPlexRestoreJoin(dm_, Dim, corners.data(), &count, &joined));
-    if (point < 0) throw meshadapt::Error("a facet is missing in the mesh that PETSc has made");
+    check(DMPlexRestoreJoin(dm_, size, corners.data(), &count, &joined));
+    if (point < 0)
+      throw meshadapt::Error("a facet or an edge is missing in the mesh that PETSc has made");
     return point;
   }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "adapt/sizes_again.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -21,14 +22,12 @@ using runtime::Executor;
 
 namespace {
 
-constexpr int most_times = 5;
 constexpr double near_enough = 1.5;  // times the size asked for
 
-/// Whether the mesh was adapted to about the sizes that are asked for at its vertices, or finer.
 template <int Dim>
-bool has_sizes(const Executor& executor, const AdaptedMesh& adapted,
-               const std::vector<double>& size_of, double smallest) {
-  const auto metric_of = tensors_of<Dim>(executor, adapted.metric);
+bool has_sizes_in(const Executor& executor, const AnyField& metric,
+                  const std::vector<double>& size_of, double smallest) {
+  const auto metric_of = tensors_of<Dim>(executor, metric);
   return first_bad(executor, metric_of.size(), [&](std::size_t v) {
            const auto& value = principal_axes(metric_of[v]).value;
            const double size = 1 / std::sqrt(*std::max_element(value.begin(), value.end()));
@@ -54,8 +53,14 @@ TriangleSurface places_of(const AnyMesh& mesh, const EntityList& list) {
   return surface;
 }
 
-/// The same sizes near places instead of near vertices, and edges in 3D, that carry a reference:
-/// adaptation may remove those. Facets and regions stay.
+}  // namespace
+
+bool has_sizes(const Executor& executor, const AnyField& metric, const std::vector<double>& size_of,
+               double smallest) {
+  return metric.dimension == 2 ? has_sizes_in<2>(executor, metric, size_of, smallest)
+                               : has_sizes_in<3>(executor, metric, size_of, smallest);
+}
+
 Sizes lasting(const AnyMesh& mesh, const Sizes& sizes) {
   Sizes result{.elsewhere = sizes.elsewhere, .bounds = sizes.bounds};
   for (const SizeSource& source : sizes.sources) {
@@ -75,6 +80,8 @@ Sizes lasting(const AnyMesh& mesh, const Sizes& sizes) {
   }
   return result;
 }
+
+namespace {
 
 /// Options for what was adapted already: distances are measured from the first mesh.
 MakeMeshOptions with_geometry_of(const Executor& executor, const AnyMesh& mesh,
@@ -112,9 +119,7 @@ AdaptedMesh adapt_to_sizes(const Executor& executor, const AnyMesh& mesh, const 
   const Sizes same = lasting(mesh, sizes);
   for (int times = 1; times < most_times; ++times) {
     const AnyField asked = size_field(executor, adapted.mesh, same);
-    if (mesh.dimension == 2 ? has_sizes<2>(executor, adapted, asked.values, options.smallest_size)
-                            : has_sizes<3>(executor, adapted, asked.values, options.smallest_size))
-      return adapted;
+    if (has_sizes(executor, adapted.metric, asked.values, options.smallest_size)) return adapted;
     if (times == 1) with_geometry.make = with_geometry_of(executor, mesh, options.make);
     AdaptedMesh again = adapt_to(adapted.mesh, asked);
     add_report_of(adapted.report, again.report);

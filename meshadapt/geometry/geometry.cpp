@@ -26,7 +26,9 @@ std::shared_ptr<const ReferenceSurface<Dim>> reference_surface(const runtime::Ex
   make.functions = options.functions;
   Neighbours<Dim> neighbours;
   std::vector<std::string> warnings;
-  const Mesh<Dim> mesh = make_mesh<Dim>(executor, any, make, neighbours, warnings);
+  const Mesh<Dim> mesh =
+      (options.in_parts ? make_cut_mesh<Dim> : make_mesh<Dim>)(executor, any, make, neighbours,
+                                                               warnings);
   auto reference = std::make_shared<ReferenceSurface<Dim>>();
   reference->surface = mesh.surface;
   reference->in_parts = options.in_parts;

@@ -28,7 +28,8 @@ class MeshMaker {
             Neighbours<Dim>& neighbours, std::vector<std::string>& warnings)
       : making_{executor, any, options, neighbours, warnings} {}
 
-  Mesh<Dim> make() {
+  Mesh<Dim> make(bool is_cut) {
+    making_.is_cut = is_cut;
     check_input<Dim>(executor_, any_, making_.options);
     fill();
     orient();
@@ -194,12 +195,23 @@ class MeshMaker {
 template <int Dim>
 Mesh<Dim> make_mesh(const Executor& executor, const AnyMesh& any, const MakeMeshOptions& options,
                     Neighbours<Dim>& neighbours, std::vector<std::string>& warnings) {
-  return MeshMaker<Dim>(executor, any, options, neighbours, warnings).make();
+  return MeshMaker<Dim>(executor, any, options, neighbours, warnings).make(false);
+}
+
+template <int Dim>
+Mesh<Dim> make_cut_mesh(const Executor& executor, const AnyMesh& any,
+                        const MakeMeshOptions& options, Neighbours<Dim>& neighbours,
+                        std::vector<std::string>& warnings) {
+  return MeshMaker<Dim>(executor, any, options, neighbours, warnings).make(true);
 }
 
 template Mesh<2> make_mesh(const Executor&, const AnyMesh&, const MakeMeshOptions&, Neighbours<2>&,
                            std::vector<std::string>&);
 template Mesh<3> make_mesh(const Executor&, const AnyMesh&, const MakeMeshOptions&, Neighbours<3>&,
                            std::vector<std::string>&);
+template Mesh<2> make_cut_mesh(const Executor&, const AnyMesh&, const MakeMeshOptions&,
+                               Neighbours<2>&, std::vector<std::string>&);
+template Mesh<3> make_cut_mesh(const Executor&, const AnyMesh&, const MakeMeshOptions&,
+                               Neighbours<3>&, std::vector<std::string>&);
 
 }  // namespace ductile::meshadapt

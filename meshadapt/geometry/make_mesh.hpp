@@ -24,4 +24,11 @@ Mesh<Dim> make_mesh(const runtime::Executor& executor, const AnyMesh& any,
                     const MakeMeshOptions& options, Neighbours<Dim>& neighbours,
                     std::vector<std::string>& warnings);
 
+/// The same of a mesh that was cut from a larger one: boundary facets that it does not list are
+/// where it was cut, and no boundary, unless options.complete_boundary is set.
+template <int Dim>
+Mesh<Dim> make_cut_mesh(const runtime::Executor& executor, const AnyMesh& any,
+                        const MakeMeshOptions& options, Neighbours<Dim>& neighbours,
+                        std::vector<std::string>& warnings);
+
 }  // namespace ductile::meshadapt

@@ -146,7 +146,10 @@ class BoundaryTagger {
     std::size_t unlisted_boundary = 0;
     for (const auto& [e, i] : unlisted_facets()) {
       const bool boundary = making_.neighbours[e][static_cast<std::size_t>(i)] == none;
-      if (boundary && !making_.options.complete_boundary) fail_unlisted(e, i);
+      if (boundary && !making_.options.complete_boundary) {
+        if (making_.is_cut) continue;
+        fail_unlisted(e, i);
+      }
       unlisted_boundary += boundary;
       TaggedFacet<Dim> facet;
       facet.corners = facet_of<Dim>(making_.mesh.corners_of[e], i);

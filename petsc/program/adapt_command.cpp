@@ -9,6 +9,7 @@
 
 #include "adapt_job.hpp"
 #include "adapt_parts.hpp"
+#include "adapt_to_sizes.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
@@ -39,7 +40,9 @@ using runtime::Executor;
 std::vector<Option> options_here() {
   std::vector<Option> options;
   for (Option option : cli::adapt_command.options) {
-    if (std::find(not_here.begin(), not_here.end(), option.name) != not_here.end()) continue;
+    if (std::any_of(not_here.begin(), not_here.end(),
+                    [&](const NotHere& one) { return one.option == option.name; }))
+      continue;
     if (option.name == "-o")
       option.help =
           "a mesh, gathered; a .pvtu, in pieces; a .h5, of PETSc's (default: NAME.o.mesh)";
@@ -104,12 +107,6 @@ AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
   return options;
 }
 
-AdaptedParts adapted(const Communicator& comm, const Executor& executor, const Part& part,
-                     const AdaptPartsOptions& options) {
-  return part.mesh.dimension == 2 ? adapt_parts<2>(comm, executor, part, options)
-                                  : adapt_parts<3>(comm, executor, part, options);
-}
-
 /// The metric, if it is to be written, and the fields that were carried.
 std::vector<NamedField> fields_of(const Communicator& comm, const Executor& executor,
                                   const Input& input, const AdaptedParts& parts,
@@ -155,12 +152,13 @@ void write_gathered(Input& input, meshadapt::MeshWithFields file) {
   outputs.commit();
 }
 
-void write(const Communicator& comm, Input& input, const DistributedResult& result) {
+void write(const Communicator& comm, const Executor& executor, Input& input,
+           const DistributedResult& result) {
   if (input.form != Form::gathered)
     on_first_rank(comm, [&] { cli::print_warnings(input.warnings, input.job.verbosity); });
   if (input.form == Form::pieces) return write_pieces(comm, input.output, result);
   if (input.form == Form::hdf5) return write_hdf5(comm, input.output, result);
-  meshadapt::MeshWithFields file = gathered(comm, result);
+  meshadapt::MeshWithFields file = gathered(comm, executor, result);
   on_first_rank(comm, [&] { write_gathered(input, std::move(file)); });
 }
 
@@ -170,11 +168,12 @@ void sum_up(const Communicator& comm, const Input& input, const AdaptedParts& pa
   const std::int64_t most = comm.largest(elements);
   if (comm.rank() != 0 || input.job.verbosity <= 0) return;
   std::fprintf(cli::is_standard_output(input.output) ? stderr : stdout,
-               "%s: %s vertices, %s %s on %d ranks, %s on one at most\n",
+               "%s: %s vertices, %s %s on %d rank%s, %s on one at most\n",
                meshadapt::printable(input.output.string()).c_str(),
                cli::with_commas(static_cast<std::size_t>(sums[0])).c_str(),
                cli::with_commas(static_cast<std::size_t>(sums[1])).c_str(),
                parts.part.mesh.dimension == 2 ? "triangles" : "tetrahedra", comm.size(),
+               comm.size() > 1 ? "s" : "",
                cli::with_commas(static_cast<std::size_t>(most)).c_str());
 }
 
@@ -192,14 +191,15 @@ void work(const Communicator& comm, const Executor& executor, Input& input, Carr
   on_first_rank(comm, [&] { read_files(input, executor); });
   tell_others(comm, input);
   const auto options = options_of(comm, input, geometry_of(comm, executor, input));
-  AdaptedParts parts = adapted(comm, executor, input.file.part, options);
+  AdaptedParts parts = adapt_to_sizes(comm, executor, input, options);
+  input.warnings.insert(input.warnings.end(), parts.warnings.begin(), parts.warnings.end());
   if (comm.rank() == 0 && input.job.verbosity > 1) print_costs(parts.last);
   const Costs before = comm.costs();
   auto fields = fields_of(comm, executor, input, parts, carrying);
   tell_costs_of_fields(comm, input, before);
   const DistributedResult result{std::move(parts), std::move(fields), input.file.kept, input.names,
                                  input.dropped_axis};
-  write(comm, input, result);
+  write(comm, executor, input, result);
   sum_up(comm, input, result.parts);
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "listed.hpp"
+
 namespace ductile::petsc {
 
 namespace {
@@ -32,13 +34,6 @@ std::vector<KeptReference> mark_required(std::vector<std::int32_t>& reference_of
   }
   required.clear();
   return kept;
-}
-
-void refuse_required_edges(const AnyMesh& mesh) {
-  if (mesh.dimension == 3 && !mesh.required_edges.empty())
-    throw meshadapt::InputError(mesh.name +
-                                ": expected no required edges of tetrahedra, which are not kept "
-                                "on several ranks, found some; use ductile adapt");
 }
 
 /// Marks vertices that stay by their index in what is returned.
@@ -68,11 +63,7 @@ std::vector<KeptVertex> mark_kept(AnyMesh& mesh, meshadapt::Warnings& warnings) 
 }  // namespace
 
 FilePart part_of_file(AnyMesh mesh, AnyField metric, meshadapt::Warnings& warnings) {
-  refuse_required_edges(mesh);
   const bool is_flat = mesh.dimension == 2;
-  if (mesh.dimension == 3 && mesh.edges.size() > 0)
-    warnings.push_back(mesh.name + ": its " + std::to_string(mesh.edges.size()) +
-                       " edges are left out, which are not kept on several ranks");
   FilePart result{empty_part(mesh.dimension), {mark_kept(mesh, warnings), {}, {}}};
   result.kept.facets =
       is_flat ? mark_required(mesh.edges.reference, mesh.required_edges, mesh.name)
@@ -81,10 +72,8 @@ FilePart part_of_file(AnyMesh mesh, AnyField metric, meshadapt::Warnings& warnin
       is_flat ? mark_required(mesh.triangles.reference, mesh.required_triangles, mesh.name)
               : mark_required(mesh.tetrahedra.reference, mesh.required_tetrahedra, mesh.name);
   mesh.corners.clear();
-  mesh.ridges.clear();
   mesh.required_vertices.clear();
   mesh.names.clear();
-  if (mesh.dimension == 3) mesh.edges = {};
   Part& part = result.part;
   part.number_of.resize(mesh.vertex_count());
   std::iota(part.number_of.begin(), part.number_of.end(), std::int64_t{0});
@@ -119,17 +108,12 @@ AnyMesh mesh_for_file(const Part& part, const Kept& kept) {
     if (vertex.is_required != 0) mesh.required_vertices.push_back(v);
     if (vertex.is_corner != 0) mesh.corners.push_back(v);
   }
-  const auto drop_unlabelled = [](auto& cells) {
-    const auto all = std::exchange(cells, {});
-    for (std::size_t c = 0; c < all.size(); ++c)
-      if (all.reference[c] != unlabelled) cells.add(all.vertices[c], all.reference[c]);
-  };
   if (mesh.dimension == 2) {
-    drop_unlabelled(mesh.edges);
+    drop_unlabelled<2>(mesh);
     mesh.required_edges = restore_references(mesh.edges.reference, kept.facets);
     mesh.required_triangles = restore_references(mesh.triangles.reference, kept.elements);
   } else {
-    drop_unlabelled(mesh.triangles);
+    drop_unlabelled<3>(mesh);
     mesh.required_triangles = restore_references(mesh.triangles.reference, kept.facets);
     mesh.required_tetrahedra = restore_references(mesh.tetrahedra.reference, kept.elements);
   }

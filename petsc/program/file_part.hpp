@@ -35,9 +35,8 @@ struct FilePart {
   Kept kept;
 };
 
-/// Of a mesh and its metric. Says in `warnings` what is not carried on several ranks: edges of
-/// tetrahedra, and references of vertices that may go. Throws InputError for edges of tetrahedra
-/// that are required, or if no label is left for what is.
+/// Of a mesh and its metric. Says in `warnings` what is not carried on several ranks: references of
+/// vertices that may go. Throws InputError if no label is left for what is required.
 FilePart part_of_file(meshadapt::AnyMesh mesh, meshadapt::AnyField metric,
                       meshadapt::Warnings& warnings);
 

@@ -54,6 +54,13 @@ void from_first_rank(const Communicator& comm, std::vector<T>& values) {
   values = comm.exchange(to).items;
 }
 
+/// The same of a text.
+inline void from_first_rank(const Communicator& comm, std::string& text) {
+  std::vector<char> characters(text.begin(), text.end());
+  from_first_rank(comm, characters);
+  text.assign(characters.begin(), characters.end());
+}
+
 /// The same of one value.
 template <class T>
 requires std::is_trivially_copyable_v<T>

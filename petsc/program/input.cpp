@@ -5,11 +5,13 @@
 #include <string>
 #include <utility>
 
+#include "adapt/sizes_again.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
 #include "first_rank.hpp"
+#include "listed.hpp"
 #include "local_parameters.hpp"
 
 namespace ductile::petsc {
@@ -23,11 +25,10 @@ using runtime::Executor;
 namespace {
 
 void refuse_what_is_not_here(const Arguments& arguments) {
-  for (const std::string_view name : not_here)
-    if (arguments.has(name))
-      throw cli::UsageError("option " + std::string(name) +
-                            ": not on several ranks; use ductile adapt, or, for sizes by places, "
-                            "ductile metric first");
+  for (const auto& [option, instead] : not_here)
+    if (arguments.has(option))
+      throw cli::UsageError("option " + std::string(option) + ": not in ductile-mpi; " +
+                            std::string(instead));
 }
 
 /// Those in the file of the mesh, where the output holds fields, and those of --field.
@@ -59,6 +60,30 @@ void read_fields(Input& input, meshadapt::MeshWithFields& file) {
   }
 }
 
+/// Leaves out listed edges that belong to no tetrahedron, as adapt() does: no part would have them.
+void drop_loose_edges(const Executor& executor, AnyMesh& mesh, meshadapt::Warnings& warnings) {
+  if (mesh.dimension != 3 || mesh.edges.size() == 0) return;
+  const auto around = elements_around<3>(executor, mesh);
+  const std::vector<Marks> marks = marks_of(mesh, mesh.edges);
+  const auto all = std::exchange(mesh.edges, {});
+  mesh.ridges.clear();
+  mesh.required_edges.clear();
+  std::size_t first = all.size();  // that is loose
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    bool is_loose = true;
+    visit_beside<3>(mesh, around, all.vertices[i], [&](std::uint32_t) { is_loose = false; });
+    if (!is_loose)
+      list(mesh, all.vertices[i], all.reference[i], marks[i]);
+    else
+      first = std::min(first, i);
+  }
+  if (const std::size_t loose = all.size() - mesh.edges.size(); loose > 0)
+    warnings.push_back(
+        mesh.name + ": " + std::to_string(loose) + " of " + std::to_string(all.size()) +
+        " listed edges belong to no tetrahedron and are left out; the first is edge " +
+        std::to_string(first + 1));
+}
+
 /// A mesh that only says what boundaries are like.
 Part read_geometry(Input& input, const Executor& executor) {
   AnyMesh mesh = meshadapt::read_mesh(*input.job.geometry, &input.warnings);
@@ -68,7 +93,7 @@ Part read_geometry(Input& input, const Executor& executor) {
                                 std::to_string(dimension) + ", found " +
                                 std::to_string(mesh.dimension));
   if (input.job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, mesh);
-  mesh.required_edges.clear();  // of no matter here
+  if (dimension == 2) mesh.required_edges.clear();  // facets, which are of no matter here
   mesh.required_triangles.clear();
   mesh.required_tetrahedra.clear();
   return part_of_file(std::move(mesh), {}, input.warnings).part;
@@ -110,10 +135,15 @@ void read_files(Input& input, const Executor& executor) {
   if (!job.unneeded.empty()) input.warnings.push_back(job.unneeded);
   auto file = meshadapt::read_mesh_with_fields(job.input, &input.warnings);
   if (job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, file.mesh);
-  meshadapt::AnyField metric = cli::choose_metric(executor, job, file, {}, input.warnings);
-  cli::bound_locally(executor, file.mesh,
-                     cli::local_parameters(job.parameters, file.mesh, job.adapt, input.warnings),
-                     metric, job.adapt);
+  drop_loose_edges(executor, file.mesh, input.warnings);
+  const meshadapt::Sizes sizes = job.places.sizes_for(file.mesh, input.warnings);
+  meshadapt::AnyField metric = cli::choose_metric(executor, job, file, sizes, input.warnings);
+  if (job.places.any())
+    input.sizes = meshadapt::lasting(file.mesh, sizes);
+  else
+    cli::bound_locally(executor, file.mesh,
+                       cli::local_parameters(job.parameters, file.mesh, job.adapt, input.warnings),
+                       metric, job.adapt);
   metric =
       meshadapt::metric_of(metric, file.mesh, {job.adapt.smallest_size, job.adapt.largest_size});
   read_fields(input, file);
@@ -135,24 +165,24 @@ void tell_others(const Communicator& comm, Input& input) {
   from_first_rank(comm, input.file.kept.facets);
   from_first_rank(comm, input.file.kept.elements);
   std::vector<Told> fields, names;
-  std::vector<char> output;
+  std::string output = input.output.string(), mesh = input.file.part.mesh.name;
   comm.on_all([&] {
     if (comm.rank() != 0) return;
     for (const NamedField& field : input.fields)
       fields.emplace_back(field.name, static_cast<int>(field.type), static_cast<int>(field.place));
     for (const auto& name : input.names)
       names.emplace_back(name.name, name.reference, name.dimension);
-    const std::string path = input.output.string();
-    output.assign(path.begin(), path.end());
   });
   from_first_rank(comm, fields);
   from_first_rank(comm, names);
   from_first_rank(comm, output);
+  from_first_rank(comm, mesh);
   input.job.adapt.smallest_size = bounds[0];
   input.job.adapt.largest_size = bounds[1];
   if (comm.rank() == 0) return;
-  input.output = std::string(output.begin(), output.end());
+  input.output = output;
   input.file.part = empty_part(dimension);
+  input.file.part.mesh.name = mesh;
   for (const Told& field : fields)
     input.fields.push_back({field.name.data(),
                             static_cast<meshadapt::AnyField::Type>(field.number),

@@ -13,14 +13,20 @@
 #include "adapt_job.hpp"
 #include "communicator.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "file_part.hpp"
 
 namespace ductile::petsc {
 
-/// Options of `ductile adapt` that need all of a mesh in one place, or one order of events.
-inline constexpr std::array<std::string_view, 6> not_here{"--near",   "--on",   "--inside",
-                                                          "--racing", "--json", "--vtu"};
+/// An option of `ductile adapt` that there is not on several ranks, and what does the same.
+struct NotHere {
+  std::string_view option, instead;
+};
+inline constexpr std::array<NotHere, 3> not_here{
+    {{"--racing", "results are the same each time here; use ductile adapt"},
+     {"--json", "use ductile info --json of the adapted mesh"},
+     {"--vtu", "use -o OUT.pvtu, or ductile convert of the adapted mesh"}}};
 
 enum class Form { gathered, pieces, hdf5 };
 
@@ -31,7 +37,8 @@ struct Input {
   std::filesystem::path output;
   Form form = Form::gathered;
   FilePart file;
-  std::optional<Part> geometry;  // of the mesh that -geometry names
+  std::optional<meshadapt::Sizes> sizes;  // by places, for the meshes that come of the file's
+  std::optional<Part> geometry;           // of the mesh that -geometry names
   std::vector<meshadapt::NamedField> fields;
   std::vector<std::size_t> field_count_of;  // [file given by --field]
   std::vector<meshadapt::ReferenceName> names;

@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using meshadapt::NamedField;
+using runtime::Executor;
 
 std::size_t components(const NamedField& field, int dimension) {
   return static_cast<std::size_t>(component_count(field.type, dimension));
@@ -33,14 +34,6 @@ std::vector<double> own_values(const NamedField& field, const AdaptedParts& part
     values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(each));
   }
   return values;
-}
-
-/// On one rank as it is, with facets in the order that adapt() gives them.
-Part on_first(const Communicator& comm, const Part& part) {
-  if (comm.size() == 1) return part;
-  const std::vector<int> to_first(part.element_count(), 0);
-  return part.mesh.dimension == 2 ? migrate<2>(comm, part, to_first)
-                                  : migrate<3>(comm, part, to_first);
 }
 
 // ---- Pieces ----
@@ -111,8 +104,9 @@ std::string index_of_pieces(const std::vector<NamedField>& fields,
 
 }  // namespace
 
-meshadapt::MeshWithFields gathered(const Communicator& comm, const DistributedResult& result) {
-  const Part all = on_first(comm, result.parts.part);
+meshadapt::MeshWithFields gathered(const Communicator& comm, const Executor& executor,
+                                   const DistributedResult& result) {
+  const Part all = gather_on_first(comm, executor, result.parts.part);
   meshadapt::MeshWithFields file;
   comm.on_all([&] {
     file.mesh = mesh_for_file(all, result.kept);

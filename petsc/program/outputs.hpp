@@ -11,6 +11,7 @@
 #include "communicator.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/runtime/executor.hpp"
 #include "file_part.hpp"
 
 namespace ductile::petsc {
@@ -26,7 +27,8 @@ struct DistributedResult {
 
 /// All of it on the first rank; other ranks get a mesh without anything. Vertices come in the order
 /// of their numbers, elements in that of the ranks. Throws Error, on all ranks. Collective.
-meshadapt::MeshWithFields gathered(const Communicator& comm, const DistributedResult& result);
+meshadapt::MeshWithFields gathered(const Communicator& comm, const runtime::Executor& executor,
+                                   const DistributedResult& result);
 
 /// PATH, a .pvtu, and a PATH_RANK.vtu beside it from each rank that has elements. If that fails,
 /// there is no PATH, rather than one that names pieces of two runs. Throws Error, on all ranks.
@@ -34,9 +36,9 @@ meshadapt::MeshWithFields gathered(const Communicator& comm, const DistributedRe
 void write_pieces(const Communicator& comm, const std::filesystem::path& path,
                   const DistributedResult& result);
 
-/// A file that DMPlex reads and draws, with references as the labels "Face Sets", "Cell Sets" and
-/// "Vertex Sets". Fields become "vertex_fields" and "cell_fields". Throws Error, on all ranks.
-/// Collective.
+/// A file that DMPlex reads and draws, with references as the labels "Face Sets", "Cell Sets",
+/// "Vertex Sets" and in 3D "Edge Sets". Fields become "vertex_fields" and "cell_fields". Throws
+/// Error, on all ranks. Collective.
 void write_hdf5(const Communicator& comm, const std::filesystem::path& path,
                 const DistributedResult& result);
 

@@ -101,6 +101,7 @@ void write_hdf5(const Communicator& comm, const fs::path& path, const Distribute
   labels.facets.name = "Face Sets";
   labels.elements.name = "Cell Sets";
   labels.vertices.name = "Vertex Sets";
+  if (result.parts.part.mesh.dimension == 3) labels.edges.name = "Edge Sets";
   const AdaptedParts parts = comm.on_all([&] { return with_references(result); });
   const auto vertices = comm.on_all([&] { return by_number(parts.part); });
   std::vector<std::uint32_t> cells(parts.part.element_count());  // as they are in the part

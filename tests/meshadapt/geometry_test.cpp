@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -193,6 +194,38 @@ TEST_P(GeometryOf, PartsNeedNoneOfItsCurves) {
   options.make.geometry = std::make_shared<const Geometry>(
       executor, mesh, GeometryOptions{.tolerance = tolerance, .in_parts = true});
   EXPECT_NO_THROW(adapt(executor, inner, constant_metric(inner, 0.02), options));
+}
+
+/// The elements of a ball that touch its surface.
+template <int Dim>
+AnyMesh layer_of(const AnyMesh& mesh) {
+  AnyMesh layer = mesh;
+  Cells<Dim + 1>& elements = elements_in<Dim>(layer) = {};
+  for (const Corners<Dim>& corners : elements_in<Dim>(mesh).vertices)
+    if (std::any_of(corners.begin(), corners.end(),
+                    [&](VertexId v) { return norm_of(mesh, v) > 0.99 * radius; }))
+      elements.add(corners, 1);
+  return layer;
+}
+
+TEST_P(GeometryOf, PartsMayHaveBeenCutFromTheirInside) {
+  const Executor executor({.threads = 2});
+  const AnyMesh mesh = start(true);
+  const AnyMesh layer = dimension() == 2 ? layer_of<2>(mesh) : layer_of<3>(mesh);
+  ASSERT_LT(layer.triangles.size() + layer.tetrahedra.size(),
+            mesh.triangles.size() + mesh.tetrahedra.size());
+  GeometryOptions options{.tolerance = tolerance};
+  EXPECT_THROW(Geometry(executor, layer, options), InputError);
+  options.in_parts = true;
+  const Geometry whole(executor, mesh, options), cut(executor, layer, options);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    std::array<double, 3> point{};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dimension()); ++k)
+      point[k] = 1.01 * mesh.coordinates[v * static_cast<std::size_t>(dimension()) + k];
+    const auto a = whole.closest(point, 0.1), b = cut.closest(point, 0.1);
+    ASSERT_EQ(a.has_value(), b.has_value()) << v;
+    if (a) EXPECT_EQ(a->position, b->position) << v;
+  }
 }
 
 TEST_P(GeometryOf, SizesAtCurvedBoundariesAreBoundedByTheTolerance) {

@@ -1,5 +1,5 @@
-"""Curved boundaries are measured from the mesh that is composed as "ductile_geometry", on all ranks and
-in all calls: vertices stay on the true circle and sphere. Prints digests, which separate_runs.sh compares."""
+"""Curved boundaries, and an interface that nobody has labelled, are measured from the mesh that is composed
+as "ductile_geometry", on all ranks and in all calls: vertices stay on the true circles and spheres. Prints digests, which separate_runs.sh compares."""
 
 from support import *
 
@@ -29,6 +29,22 @@ def label_surface(dm):
             dm.setLabelValue("Face Sets", facet, 1)
 
 
+def label_core(dm):
+    dm.createLabel("Cell Sets")
+    for cell in range(*dm.getHeightStratum(0)):
+        dm.setLabelValue("Cell Sets", cell, 1 if np.linalg.norm(centroid(dm, cell)) < 0.5 else 2)
+
+
+def interface_vertices(dm):
+    """[vertex] Those of facets between two regions of this rank."""
+    begin, end = dm.getDepthStratum(0)
+    found = set()
+    for facet in range(*dm.getHeightStratum(1)):
+        if len({dm.getLabelValue("Cell Sets", c) for c in dm.getSupport(facet)}) == 2:
+            found |= {p - begin for p in dm.getTransitiveClosure(facet)[0] if begin <= p < end}
+    return sorted(found)
+
+
 def facet_count(dm):
     facets = own_points(dm, *dm.getHeightStratum(1))
     return int(total(float(sum(dm.getLabelValue("Face Sets", f) == 1 for f in facets))))
@@ -38,6 +54,7 @@ measure_of_ball = {2: np.pi, 3: 4 * np.pi / 3}
 for dim, n, tolerance, coarse in ((2, 24, 0.004, 0.3), (3, 6, 0.02, 0.5)):
     dm = plex(*ball(dim, n))
     label_surface(dm)
+    label_core(dm)
     dm = distributed(dm)
     before = facet_count(dm)
     dm.compose("ductile_geometry", dm.clone())
@@ -50,6 +67,10 @@ for dim, n, tolerance, coarse in ((2, 24, 0.004, 0.3), (3, 6, 0.02, 0.5)):
     x = coordinates(dm)[boundary_vertices(dm)]
     off = abs(np.linalg.norm(x, axis=1) - 1).max() if len(x) else 0.0
     expect(off < 0.1 * tolerance, f"{dim}D: a vertex of the boundary is {off} from the true one")
+    x = coordinates(dm)[interface_vertices(dm)]
+    inside = abs(np.linalg.norm(x, axis=1) - 0.5).max() if len(x) else 0.0
+    expect(inside < 0.1 * tolerance, f"{dim}D: a vertex of the interface is {inside} from the true one")
+    expect(total(float(len(x))) > 10, f"{dim}D: the interface is gone")
     after = facet_count(dm)
     expect(after < 0.8 * before, f"{dim}D: {before} facets became {after}, which is not coarser")
     volume = total(sum(dm.computeCellGeometryFVM(c)[0] for c in own_points(dm, *dm.getHeightStratum(0))))

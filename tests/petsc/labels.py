@@ -1,4 +1,4 @@
-"""Labels of cells, facets and vertices; tagged lines inside of a region; an annulus, whose facets stay
+"""Labels of cells, facets, edges and vertices; tagged lines inside of a region; an annulus, whose facets stay
 where they are; DMAdaptLabel."""
 
 from support import *
@@ -32,6 +32,19 @@ for v in named:
     if not expect_here:
         print("the named vertex has moved", file=sys.stderr)
         sys.exit(1)
+
+# Lines of edges in 3D: where two sides meet, inside of a region, and between regions.
+dm = plex(*box(3, 6))
+label_box(dm)
+label_lines(dm)
+dm = distributed(dm)
+expect(all(abs(length - 1) < 1e-12 for length in line_lengths(dm).values()), "lines are not there")
+for call in range(2):
+    size = lambda x: 0.06 + 0.3 * abs(x[:, 2] - 0.3 - 0.4 * call)
+    dm = dm.adaptMetric(metric_vector(dm, diagonal(size, size, size)), "Face Sets", "Cell Sets")
+    check_plex(dm)
+    for value, length in line_lengths(dm).items():
+        expect(abs(length - 1) < 1e-9, f"call {call}: line {value} is {length} long")
 
 # An annulus keeps its facets, so that its sets keep their measures to the last digits.
 around, across = 40, 5

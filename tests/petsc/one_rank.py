@@ -12,7 +12,7 @@ folder = tempfile.mkdtemp()
 def corners_at(dm, height):
     """Vertices, counted from 1, of the points of a height, and their values in a label."""
     begin, end = dm.getDepthStratum(0)
-    name = ("Cell Sets", "Face Sets")[height]
+    name = ("Cell Sets", "Face Sets", "Edge Sets")[height]
     for point in range(*dm.getHeightStratum(height)):
         closure = dm.getTransitiveClosure(point)[0]
         corners = [p - begin + 1 for p in closure if begin <= p < end]
@@ -21,14 +21,14 @@ def corners_at(dm, height):
 
 def write(dm, metric):
     dim, x = dm.getDimension(), coordinates(dm)
-    words = {2: ("Edges", "Triangles"), 3: ("Triangles", "Tetrahedra")}[dim]
+    words = ("Edges", "Triangles", "Tetrahedra")
     with open(f"{folder}/in.mesh", "w") as file:
         print("MeshVersionFormatted 2\nDimension", dim, "\nVertices", len(x), file=file)
         for p in x:
             print(*p.tolist(), 0, file=file)
-        for height in (1, 0):
+        for height in range(dim):
             lines = [line for line in corners_at(dm, height) if line[-1] >= 0]
-            print(words[1 - height], len(lines), file=file)
+            print(words[dim - 1 - height], len(lines), file=file)
             for line in lines:
                 print(*line, file=file)
         print("End", file=file)
@@ -42,6 +42,8 @@ def write(dm, metric):
 for dim, n in ((2, 16), (3, 6)):
     dm = plex(*box(dim, n))
     label_box(dm)
+    if dim == 3:
+        label_lines(dm)
     size = lambda x: 0.02 * dim + 0.2 * abs(x[:, 0] - 0.4 - 0.2 * x[:, 1])
     tensor_at = diagonal(*[size] * dim)
     write(dm, tensor_at(coordinates(dm)))
@@ -50,6 +52,15 @@ for dim, n in ((2, 16), (3, 6)):
     words = open(f"{folder}/in.o.mesh").read().split()
     begin = words.index("Vertices") + 2
     count = int(words[begin - 1])
+    if dim == 3:
+        begin_of_edges = words.index("Edges") + 2
+        listed = int(words[begin_of_edges - 1])
+        edges = np.array(words[begin_of_edges : begin_of_edges + 3 * listed], dtype=int).reshape(-1, 3)
+        ours = np.array([line for line in corners_at(adapted, 2) if line[-1] >= 0])
+        for array in (edges, ours):
+            array[:, :2].sort()
+        expect(set(map(tuple, edges)) == set(map(tuple, ours)), "3D: other edges than of ductile adapt")
+        expect(listed > 20, f"3D: {listed} edges are on lines")
     serial = np.array(words[begin : begin + count * (dim + 1)], dtype=float).reshape(count, dim + 1)
     same = np.array_equal(serial[:, :dim], coordinates(adapted))
     expect(same, f"{dim}D: {count} vertices of ductile adapt, {len(coordinates(adapted))} others here")

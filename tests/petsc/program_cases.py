@@ -63,11 +63,21 @@ def box(dim, n):
     return points, cells, listed
 
 
+def lines(points):
+    """Edges along the third axis: where two sides meet, inside of a region, between regions."""
+    places = {7: (0.0, 0.0), 8: (0.2, 0.4), 9: (0.6, 0.6)}
+    found = []
+    for reference, place in places.items():
+        along = sorted((p[2], v) for v, p in enumerate(points) if tuple(p[:2]) == place)
+        found += [((a, b), reference) for (_, a), (_, b) in zip(along, along[1:])]
+    return found
+
+
 required_words = {2: ("RequiredEdges", "RequiredTriangles"), 3: ("RequiredTriangles", "RequiredTetrahedra")}
 
 
-def write_mesh(name, dim, points, cells, facets, kept=(), required=()):
-    """required: numbers of facets, and of cells"""
+def write_mesh(name, dim, points, cells, facets, kept=(), required=(), edges=(), marks=None):
+    """required: numbers of facets, and of cells; edges: of tetrahedra; marks: numbers of edges by word"""
     names = {2: ("Edges", "Triangles"), 3: ("Triangles", "Tetrahedra")}[dim]
     with open(name, "w") as file:
         print("MeshVersionFormatted 2\nDimension", dim, "\nVertices", len(points), file=file)
@@ -77,6 +87,12 @@ def write_mesh(name, dim, points, cells, facets, kept=(), required=()):
             print(word, len(list), file=file)
             for corners, reference in list:
                 print(*[c + 1 for c in corners], reference, file=file)
+        if edges:
+            print("Edges", len(edges), file=file)
+        for corners, reference in edges:
+            print(*[c + 1 for c in corners], reference, file=file)
+        for word, numbers in (marks or {}).items():
+            print(word, len(numbers), *[i + 1 for i in numbers], file=file)
         if kept:
             print("RequiredVertices", len(kept), *[v + 1 for v in kept], file=file)
         for word, numbers in zip(required_words[dim], required):
@@ -102,7 +118,7 @@ def sections(name):
             each = width[word] or dim + 1
             count = int(next(words))
             found[word] = [[float(next(words)) for _ in range(each)] for _ in range(count)]
-        elif word == "SolAtVertices" or word.startswith("Required"):
+        elif word in ("SolAtVertices", "Ridges") or word.startswith("Required"):
             count = int(next(words))
             skip = 2 if word == "SolAtVertices" else 0
             for _ in range(skip):
@@ -128,12 +144,14 @@ def measure(points):
 
 
 def measures(name):
-    """{(cell or facet, reference): measure}"""
+    """{(cell, facet or edge, reference): measure}, and of ridges"""
     dim, found = sections(name)
     points = [p[:dim] for p in found["Vertices"]]
     sums = {}
-    for kind, word in (("facet", ("Edges", "Triangles")[dim - 2]), ("cell", ("Triangles", "Tetrahedra")[dim - 2])):
-        for *corners, reference in found[word]:
+    words = {"edge": "Edges", "facet": ("Edges", "Triangles")[dim - 2], "cell": ("Triangles", "Tetrahedra")[dim - 2]}
+    found["ridges"] = [found["Edges"][int(i) - 1][:2] + [0.0] for i in found.get("Ridges", [])]
+    for kind, word in (words | {"ridge": "ridges"}).items():
+        for *corners, reference in found.get(word, []):
             size = measure([points[int(c) - 1] for c in corners])
             sums[kind, reference] = sums.get((kind, reference), 0.0) + size
     return sums
@@ -160,12 +178,18 @@ def try_box(dim, n):
     points, cells, facets = box(dim, n)
     kept = min(range(len(points)), key=lambda v: sum((a - 0.3) ** 2 for a in points[v]))
     required = [[len(facets) // 2], [len(cells) // 2, len(cells) // 3]]
-    write_mesh("in.mesh", dim, points, cells, facets, [kept], required)
+    edges = lines(points) if dim == 3 else []
+    marks = {"Ridges": [0, 1, 2, n]} | ({"RequiredEdges": [n + 1, n + 2, n]} if edges else {})
+    write_mesh("in.mesh", dim, points, cells, facets, [kept], required, edges, marks)
     write_sol("in.sol", dim, [small_near_middle(x) for x in points])
     u = [1 + x[0] * x[0] + (3 if x[1] > 0.5 else 0) for x in points]
     write_sol("u.sol", dim, u)
     text = adapt("in.mesh", "-o", "out.mesh", "--field", "u.sol", "--threads", "1")
     expect("pass 1:" in text and "blocked" in text, text)
+    turned = [line for line in text.splitlines() if "listed the other way round" in line]
+    by_rank = [line.split("warning: ")[1].startswith("rank") for line in turned]
+    expect(all(by_rank) if ranks != "1" else by_rank == [False], text)
+    expect(turned and turned == sorted(set(turned)), text)  # each once, in the order of ranks
     run([ductile, "info", "out.mesh", "-sol", "out.sol"])
     before, after = measures("in.mesh"), measures("out.mesh")
     expect(before.keys() == after.keys(), f"references {sorted(before)} became {sorted(after)}")
@@ -181,6 +205,10 @@ def try_box(dim, n):
         new = [found[name][int(i) - 1] for i in found[word]]
         new = sorted(places(found["Vertices"], [c - 1 for c in cell[:-1]]) for cell in new)
         expect(old == new, f"{dim}D: required: {old} became {new}")
+    held = [places(points, edges[i][0]) for i in marks.get("RequiredEdges", [])]
+    now = [found["Edges"][int(i) - 1] for i in found.get("RequiredEdges", [])] if edges else []
+    now = [places(found["Vertices"], [c - 1 for c in edge[:-1]]) for edge in now]
+    expect(sorted(held) == sorted(now), f"{dim}D: required edges: {held} became {now}")
     carried = sections("out.u.sol")[1]["SolAtVertices"]
     expect(min(u) <= min(carried) and max(carried) <= max(u), f"{dim}D: bounds of a field are lost")
     old, new = integral("in.mesh", u), integral("out.mesh", carried)
@@ -273,12 +301,59 @@ def try_curved(dim, n, tolerance):
     expect(len(facets) < 0.8 * count, f"{dim}D: {count} facets became {len(facets)}")
 
 
+def lengths_near(name, place, radius):
+    """Of edges with a middle within a distance of a place."""
+    dim, found = sections(name)
+    points = [p[:dim] for p in found["Vertices"]]
+    cells = found[("Triangles", "Tetrahedra")[dim - 2]]
+    edges = {tuple(sorted(pair)) for cell in cells for pair in itertools.combinations(map(int, cell[:-1]), 2)}
+    for a, b in edges:
+        p, q = points[a - 1], points[b - 1]
+        if sum(((x + y) / 2 - at) ** 2 for x, y, at in zip(p, q, place)) <= radius**2:
+            yield sum((x - y) ** 2 for x, y in zip(p, q)) ** 0.5
+
+
+def try_places(dim):
+    """Sizes by places, which a coarse mesh shows little of; also of a round thing, again and again."""
+    points, cells, facets = box(dim, 4)
+    write_mesh("coarse.mesh", dim, points, cells, facets, edges=lines(points) if dim == 3 else [])
+    place, size = [0.3, 0.6, 0.45][:dim], 0.025 * (dim - 1)
+    near = f"sphere:{','.join(map(str, [*place, 2 * size]))}:{size}"
+    asked = ("-hsiz", "0.5", "--near", near, "--on", "99:0.1", "--inside", "2:0.25:0", "-hausd", "0.01")
+    adapt("coarse.mesh", *asked, "-o", "places.mesh")
+    run([ductile, "adapt", "coarse.mesh", *asked, "-o", "serial.mesh"])
+    if ranks == "1":
+        for ending in ("mesh", "sol"):
+            same = pathlib.Path(f"places.{ending}").read_bytes() == pathlib.Path(f"serial.{ending}").read_bytes()
+            expect(same, f"{dim}D: places.{ending} is another than on one rank")
+    kind = ("Triangles", "Tetrahedra")[dim - 2]
+    here, serial = (len(sections(f"{name}.mesh")[1][kind]) for name in ("places", "serial"))
+    expect(abs(here / serial - 1) < 0.25, f"{dim}D: {here} elements by places, {serial} on one rank")
+    lengths = list(lengths_near("places.mesh", place, 2 * size))
+    mean, longest = sum(lengths) / len(lengths), max(lengths)
+    # Small meshes on several ranks keep some edges that are blocked.
+    expect(mean < 1.4 * size and longest < 4 * size, f"{dim}D: {mean}, at most {longest} where {size} is wanted")
+    before, after = measures("coarse.mesh"), measures("places.mesh")
+    for key in before:
+        expect(abs(before[key] - after[key]) < 1e-9, f"{dim}D: {key}: {before[key]} became {after[key]}")
+
+
+def try_loose_edge():
+    """One from corner to corner of the box, which no element has."""
+    points, cells, facets = box(3, 2)
+    write_mesh("loose.mesh", 3, points, cells, facets, edges=[((0, len(points) - 1), 5)])
+    text = adapt("loose.mesh", "-hsiz", "0.4", "-o", "loose.out.mesh")
+    expect(text.count("1 of 1 listed edges belong to no tetrahedron") == 1, text)
+
+
 def try_mistakes(dim):
     os.remove("out.mesh")
     text = adapt("in.mesh", "-o", "out.mesh", "--hmxa", "1", status=2)
     expect("did you mean" in text, text)
-    text = adapt("in.mesh", "-o", "out.mesh", "--near", "point:0,0:0.1", status=2)
-    expect("ductile metric" in text, text)
+    text = adapt("in.mesh", "-o", "out.mesh", "--near", "point:0,0,0:0.1", status=2)
+    expect("the mesh has dimension 2, found 3 numbers" in text, text)
+    text = adapt("in.mesh", "-o", "out.mesh", "--json", "out.json", status=2)
+    expect(text.count("ductile-mpi: ") == 1 and "not in ductile-mpi; " in text, text)
     adapt("missing.mesh", "-o", "out.mesh", status=2)
     write_sol("in.sol", dim, [-1.0] * len(sections("in.mesh")[1]["Vertices"]))
     adapt("in.mesh", "-o", "out.mesh", status=2)
@@ -296,5 +371,8 @@ for dim, n in ((2, 10), (3, 5)):
     try_pieces(dim, try_box(dim, n))
     try_hdf5(dim, n)
     try_curved(dim, 24 if dim == 2 else 10, 0.004 if dim == 2 else 0.02)
+    try_places(dim)
     if dim == 2:
         try_mistakes(dim)
+    else:
+        try_loose_edge()

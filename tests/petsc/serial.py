@@ -35,7 +35,10 @@ def run(dim, n, tensor_at, comm):
     return quality(dm, tensor_at)
 
 
-for dim, n, finest in ((2, 40, 0.0015), (3, 8, 0.025)):
+# Edges in range are within 0.3 points, except where more was measured on these small meshes.
+most_lost = {(3, 2): 0.009}  # [dim, ranks]; .0078 measured
+
+for dim, n, finest in ((2, 60, 0.0005), (3, 8, 0.025)):
     tensor_at = waves(dim, finest)
     serial = run(dim, n, tensor_at, PETSc.COMM_SELF)
     serial["cells"] //= ranks  # each rank has made one
@@ -43,7 +46,7 @@ for dim, n, finest in ((2, 40, 0.0015), (3, 8, 0.025)):
     if rank == 0:
         print(f"{dim}D, 1 rank:  {serial}\n{dim}D, {ranks} ranks: {parallel}", flush=True)
     lost = serial["in range"] - parallel["in range"]
-    expect(lost < (0.01 if dim == 2 else 0.02), f"{dim}D: {lost} of the edges out of range")
+    expect(lost < most_lost.get((dim, ranks), 0.003), f"{dim}D: {lost} of the edges out of range")
     expect(parallel["worst"] > 0.5 * serial["worst"], f"{dim}D: the worst is {parallel['worst']}")
     ratio = parallel["cells"] / serial["cells"]
     expect(abs(ratio - 1) < 0.03, f"{dim}D: {ratio} times as many cells")

@@ -93,6 +93,33 @@ def label_box(dm, region=lambda x: 1 + int(x[0] > 0.5)):
             dm.setLabelValue("Face Sets", facet, 99)
 
 
+lines_of_box = {7: (0, 0), 8: (1 / 3, 0.5), 9: (0.5, 2 / 3)}  # [Edge Set] x and y
+
+
+def label_lines(dm):
+    """Edge Sets of lines along the box: an edge of it, one inside of a region, one between regions."""
+    first, x = dm.getDepthStratum(0)[0], coordinates(dm)
+    dm.createLabel("Edge Sets")
+    for edge in range(*dm.getDepthStratum(1)):
+        ends = x[dm.getCone(edge) - first]
+        for value, line in lines_of_box.items():
+            if np.allclose(ends[:, :2], line):
+                dm.setLabelValue("Edge Sets", edge, value)
+
+
+def line_lengths(dm):
+    """{Edge Set: length} of all ranks together; each edge must be on its line."""
+    first, x = dm.getDepthStratum(0)[0], coordinates(dm)
+    found = dict.fromkeys(lines_of_box, 0.0)
+    for edge in own_points(dm, *dm.getDepthStratum(1)):
+        value = dm.getLabelValue("Edge Sets", edge)
+        if value in found:
+            ends = x[dm.getCone(edge) - first]
+            found[value] += np.linalg.norm(ends[1] - ends[0])
+            found[value] += 1e3 * abs(ends[:, :2] - lines_of_box[value]).max()
+    return {value: total(length) for value, length in found.items()}
+
+
 def distributed(dm, overlap=0):
     """By the order of the cells: PETSc's own choice, PT-Scotch, gives other parts each time."""
     if dm.getComm().getSize() > 1:

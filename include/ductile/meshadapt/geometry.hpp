@@ -30,7 +30,9 @@ struct GeometryOptions {
   bool complete_boundary = false;               ///< as MakeMeshOptions::complete_boundary
   std::vector<SurfaceFunction> functions = {};  ///< as MakeMeshOptions::functions
   /// The meshes that are adapted with it are parts of its domain: they may have none of its curved
-  /// boundaries. Otherwise a mesh without any is refused as one of another domain.
+  /// boundaries. Otherwise a mesh without any is refused as one of another domain. It may be made
+  /// of those elements only that touch listed facets and edges: facets of one element that are not
+  /// listed are where these were cut from the others then, unless complete_boundary lists them.
   bool in_parts = false;
 };
 
