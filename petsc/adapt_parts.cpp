@@ -1,7 +1,9 @@
 #include "adapt_parts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -34,17 +36,17 @@ class Parts {
     limit_sizes();
     if (share_out(Displaced::not_at_all, is_scattered() ? 0 : beforehand)) find_interfaces();
     end(Phase::balance);
+    if (is_much_too_fine()) {
+      coarsen();
+      displace();
+    }
     for (int pass = 1;; ++pass) {
       reports.push_back(adapt(pass));
       reports.back().costs = take_costs();
       if (options_.told) options_.told(reports.back());
       const std::int64_t before = pass == 1 ? 0 : reports[reports.size() - 2].blocked;
       if (pass >= options_.passes || !is_worthwhile(reports.back(), before)) break;
-      constexpr std::array displaced{Displaced::not_at_all, Displaced::forth, Displaced::back};
-      share_out(displaced[static_cast<std::size_t>(pass) % displaced.size()], 0);
-      find_interfaces();
-      end(Phase::migration);
-      limit_sizes();
+      displace();
     }
     share_out(Displaced::not_at_all, at_the_end);
     find_interfaces();
@@ -58,7 +60,8 @@ class Parts {
 
  private:
   static constexpr double beforehand = 1.2, at_the_end = 1.05;  // the imbalance that may be
-  static constexpr int layers = 3;  // around what was held, that are adapted with it
+  static constexpr double much_too_fine = 1.75;  // elements over those that are wanted
+  static constexpr int layers = 3;               // around what was held, that are adapted with it
 
   /// What was done since the last phase ended is this phase's.
   void end(Phase phase) {
@@ -128,18 +131,54 @@ class Parts {
     return true;
   }
 
-  PassReport adapt(int pass) {
-    const double begin = MPI_Wtime();
-    auto adapted = comm_.on_all([&] {
-      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_);
-      return adapt_zone<Dim>(executor_, part_, interfaces_,
-                             held_elements<Dim>(executor_, part_, layers), options_);
-    });
+  /// To the next places of planes.
+  void displace() {
+    constexpr std::array places{Displaced::not_at_all, Displaced::forth, Displaced::back};
+    share_out(places[++times_displaced_ % places.size()], 0);
+    find_interfaces();
+    end(Phase::migration);
+    limit_sizes();
+  }
+
+  /// Are most elements to go? Interfaces keep the sizes that the mesh came with, so that most
+  /// elements would be next to them in the end.
+  bool is_much_too_fine() const {
+    if (comm_.size() == 1 || !options_.adapt.insert) return false;
+    const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(part_); });
+    const double wanted = std::accumulate(load_of.begin(), load_of.end(), 0.0);
+    const auto sums = comm_.sums({static_cast<std::int64_t>(load_of.size()), std::llround(wanted)});
+    return static_cast<double>(sums[0]) > much_too_fine * static_cast<double>(sums[1]);
+  }
+
+  /// Collapses most of what is too short. What is left of it at these interfaces goes in the first
+  /// pass, in which they are elsewhere.
+  void coarsen() {
+    AdaptPartOptions options = options_;
+    options.adapt.approach_only = true;
+    options.adapt.iterations = 1;
+    options.adapt.swap = options.adapt.move = false;
+    // What is wanted is limited already, and is adapted to later.
+    options.adapt.gradation = options.adapt.required_gradation = 0;
+    options.adapt.curved_sizes = false;
+    take(comm_.on_all([&] { return adapt_part<Dim>(executor_, part_, interfaces_, options); }));
+    end(Phase::adaptation);
+  }
+
+  void take(AdaptedPart adapted) {
     std::move(adapted.report.warnings.begin(), adapted.report.warnings.end(),
               std::back_inserter(warnings_));
     part_ = std::move(adapted.part);
     interfaces_ = std::move(adapted.interfaces);
     number_vertices(comm_, interfaces_, part_);
+  }
+
+  PassReport adapt(int pass) {
+    const double begin = MPI_Wtime();
+    take(comm_.on_all([&] {
+      if (pass == 1) return adapt_part<Dim>(executor_, part_, interfaces_, options_);
+      return adapt_zone<Dim>(executor_, part_, interfaces_,
+                             held_elements<Dim>(executor_, part_, layers), options_);
+    }));
     const EdgesAtInterfaces edges = comm_.on_all([&] {
       auto at_interfaces = edges_at_interfaces<Dim>(part_, interfaces_);
       part_.is_held = std::move(at_interfaces.is_at_blocked);
@@ -184,6 +223,7 @@ class Parts {
   Part part_;
   Interfaces interfaces_;
   meshadapt::Warnings warnings_;
+  std::size_t times_displaced_ = 0;
   std::array<Costs, phase_count> costs_ = {};  // [phase], of this rank
   Costs before_ = comm_.costs();
 };

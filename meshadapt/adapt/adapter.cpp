@@ -24,6 +24,7 @@ Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& opt
 
 template <int Dim>
 void Adapter<Dim>::run() {
+  if (options_.approach_only) return adapt_anew();
   const double wanted = share_to_change();
   // Rules that refuse what is next to poor elements may hide what there is to do.
   const bool many_are_poor =
@@ -60,6 +61,7 @@ template <int Dim>
 void Adapter<Dim>::adapt_anew() {
   const Schedule<Dim> schedule = schedule_for<Dim>(options_);
   approach(schedule.approach);
+  if (options_.approach_only) return;
   if (options_.insert) run(schedule.rearrange);
   run(schedule.settle);
   run(schedule.polish);

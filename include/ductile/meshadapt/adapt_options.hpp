@@ -112,6 +112,9 @@ struct AdaptOptions {
   bool move = true;         ///< smooth vertices
   bool swap = true;         ///< swap edges and faces
   bool insert = true;       ///< split and collapse edges
+  bool approach_only = false;  ///< brings sizes near the metric, by at most `iterations` rounds,
+                               ///< and leaves elements as these leave them: for a mesh that is to
+                               ///< be adapted once more
   Rules rules = {};
   MakeMeshOptions make = {};
   /// Called on the calling thread after each step, many times a second in small meshes. If it
