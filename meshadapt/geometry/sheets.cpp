@@ -65,6 +65,7 @@ struct Sheets<Dim, Corners>::Search {
   const Sheets& sheets;
   Vector<Dim> direction;
   double tolerance;
+  static constexpr double steepest = 0.3;  // the cosine of 72 degrees
 
   double turn(std::uint32_t part) const {
     const double cosine = dot(direction, sheets.shape_of_[part].direction);
@@ -99,6 +100,16 @@ struct Sheets<Dim, Corners>::Search {
       return std::any_of(corners.begin(), corners.end(),
                          [&](const Vector<Dim>& corner) { return has(own, corner); });
     });
+  }
+
+  /// Is the part turned against the simplex about as at a right angle, and of a sheet that others
+  /// join at a ridge here? A simplex is not turned quite as its sheet is.
+  bool is_beyond_ridge(std::uint32_t part, const Near& beside, const Near& others) const {
+    return std::abs(turn(part)) < steepest &&
+           std::any_of(beside.begin(), beside.end(), [&](std::uint32_t other) {
+             return sheets.parts_[other].sheet == sheets.parts_[part].sheet &&
+                    has_corner_of(other, others);
+           });
   }
 
   /// Of these parts, those that may be within the tolerance of what is inside the box.
@@ -331,8 +342,10 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet,
   const Sphere<Dim> sphere = sphere_around(simplex);
   constexpr double least_turn = 0.70710678118654752;  // the cosine of 45 degrees
   Around around;
+  Near beside;  // of other sheets, turned about as at a right angle
   each_meeting(box_around(simplex, search.tolerance), [&](std::uint32_t part) {
     const double turn = search.turn(part);
+    if (parts_[part].sheet != sheet && std::abs(turn) < Search::steepest) beside.push_back(part);
     if (parts_[part].sheet == sheet && turn > 0)
       (turn >= least_turn ? around.covering : around.steep).push_back(part);
     if (turn < -0.01) around.facing.push_back(part);  // not what is at a right angle, nearly
@@ -345,6 +358,7 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet,
   Near& facing = around.facing = search.close_to(simplex, search.reach(graph), around.facing);
   const auto is_joined = [&](std::uint32_t part) {
     return search.has_corner_of(part, around.covering) ||
+           search.is_beyond_ridge(part, beside, around.covering) ||
            !search.is_across_gap(part, around.covering, sphere.centre);
   };
   facing.erase(std::remove_if(facing.begin(), facing.end(), is_joined), facing.end());

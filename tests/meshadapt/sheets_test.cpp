@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "mesh/distance.hpp"
@@ -197,6 +198,29 @@ TEST(Sheets, CoverNoFacetThatMightMeetATip) {
   EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.03, 0));
   const Vector<2> under_left{{0, -0.02}};
   EXPECT_TRUE(covered({{under_left, right}}, 0.1, 0)) << "of a wedge, joined at its tip";
+}
+
+/// The other side of a ridge is no gap, into however many facets it is divided; that of a thin
+/// wedge is.
+TEST(Sheets, CoverFacetsBesideARidge) {
+  const Vector<2> left{{0, 0}}, ridge{{1, 0}}, down{{0, -0.03}};
+  const auto covered = [&](double degrees, const std::vector<double>& ends) {
+    const double angle = degrees * std::numbers::pi / 180;
+    std::vector<Sheets<2, 2>::Part> parts{{Segment{ridge, left}, 7, false}};  // faces upwards
+    Vector<2> from = ridge;
+    for (const double end : ends) {
+      const Vector<2> to = ridge - end * Vector<2>{{std::cos(angle), std::sin(angle)}};
+      parts.push_back({Segment{to, from}, 8, false});
+      from = to;
+    }
+    return Sheets<2, 2>(parts, 0.1).cover({ridge + down, left + down}, 7);
+  };
+  for (const double degrees : {75.0, 85.0, 95.0, 105.0}) {
+    EXPECT_TRUE(covered(degrees, {0.5})) << degrees;
+    EXPECT_TRUE(covered(degrees, {0.02, 0.5})) << degrees;
+    EXPECT_TRUE(covered(degrees, {0.01, 0.02, 0.04, 0.5})) << degrees;
+  }
+  EXPECT_FALSE(covered(20, {0.02, 0.5}));
 }
 
 TEST(Sheets, FindTheClosestPointWithinReach) {
