@@ -138,13 +138,14 @@ std::size_t Adapter<Dim>::elements_changed_after(std::uint32_t epoch) const {
                                   std::plus<>());
 }
 
-/// Are most elements slivers in the metric, or some, and many to be made where sizes jump?
+/// Are most elements slivers in the metric, or some, and many to be made where sizes jump, or where
+/// facets of curved boundaries, slivers too, can hardly change?
 template <int Dim>
 bool Adapter<Dim>::is_far() const {
   const double slivers = work_.share(elements_below(Tuning<Dim>::far));
-  return slivers > Thresholds::most_slivers ||
-         (slivers > Thresholds::some_slivers &&
-          share_of_steep(executor_, mesh()) > Thresholds::much_of_demand);
+  if (slivers > Thresholds::most_slivers) return true;
+  return slivers > Thresholds::some_slivers &&
+         (mesh().surface || share_of_steep(executor_, mesh()) > Thresholds::much_of_demand);
 }
 
 /// Adapts to metrics on the way to one that is far, roughly, before what is done for any.

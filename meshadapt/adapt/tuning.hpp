@@ -27,7 +27,7 @@ struct Thresholds {
 
   // ---- A metric that is far from the mesh (decisions 19 and 33) ----
   static constexpr double most_slivers = 0.5;    ///< in the metric: it is far
-  static constexpr double some_slivers = 0.02;   ///< it is far if sizes jump, too
+  static constexpr double some_slivers = 0.02;   ///< it is far if sizes jump or surfaces bend, too
   static constexpr double much_of_demand = 0.2;  ///< share of the elements asked for that lie where
                                                  ///< sizes jump
   static constexpr int rounds_on_the_way = 6;    ///< to each metric, at most

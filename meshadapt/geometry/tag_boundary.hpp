@@ -29,8 +29,8 @@ struct MeshInMaking {
 
 /// The facets that are listed, each once, and all others that are on the boundary or between
 /// regions. Throws InputError if one is no facet of an element, or if facets of the boundary are
-/// not listed, unless options.complete_boundary is set or the mesh is cut. Precondition: mesh.elements_of and
-/// neighbours are set. Thread safety: one caller; runs on the executor.
+/// not listed, unless options.complete_boundary is set or the mesh is cut. Precondition:
+/// mesh.elements_of and neighbours are set. Thread safety: one caller; runs on the executor.
 template <int Dim>
 std::vector<TaggedFacet<Dim>> tag_facets(MeshInMaking<Dim>& making);
 

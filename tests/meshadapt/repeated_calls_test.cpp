@@ -11,7 +11,9 @@
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/statistics.hpp"
 #include "support/meshes.hpp"
+#include "support/metrics.hpp"
 #include "support/preserved.hpp"
 
 namespace ductile::meshadapt::repeated_calls_test {
@@ -164,6 +166,28 @@ TEST(RepeatedCalls, OnATorus) {
       SCOPED_TRACE("tolerance " + std::to_string(tolerance) + ", size " + std::to_string(size));
       settles(bent_tube(10, 4), {size, tolerance});
     }
+}
+
+/// Layers across the axis of a cylinder that are thinner than the tolerance, from facets that are
+/// farther from the circle than it: facets there can hardly change, whatever they are like.
+TEST(RepeatedCalls, ComeToThinLayersAlongACylinder) {
+  for (const double thin : {0.001, 0.002}) {
+    SCOPED_TRACE("thin " + std::to_string(thin));
+    AdaptOptions options;
+    options.make.hausdorff_tolerance = 2 * thin;
+    AnyMesh mesh = cylinder_in_box(3, 8, true);
+    for (int call = 0; call < 2; ++call) {
+      const AnyField metric = test::metric_field<3>(mesh, [&](std::uint32_t v) {
+        const double height = thin + 0.2 * std::abs(mesh.coordinates[3 * v + 2] - 0.5);
+        return Metric<3>{{25, 0, 25, 0, 0, 1 / (height * height)}};
+      });
+      const AdaptedMesh result = adapt(executor, mesh, metric, options);
+      const MeshStatistics found = measure(executor, result.mesh, &result.metric);
+      EXPECT_GT(found.quality.low, 0.4);
+      EXPECT_LT(found.edge_length.max, 8);
+      mesh = result.mesh;
+    }
+  }
 }
 
 TEST(RepeatedCalls, OnAFewElements) {
