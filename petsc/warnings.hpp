@@ -1,5 +1,5 @@
 /// @file
-/// Warnings of all ranks, as the first one tells of them.
+/// warnings_of_ranks: gathers the warnings of all ranks on the first one.
 #pragma once
 
 #include "communicator.hpp"
