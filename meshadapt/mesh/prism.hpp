@@ -35,7 +35,14 @@ class Prism {
   class Part {
    public:
     Part() : size_(0) {}
+    Part(const Part& other) { *this = other; }
+    Part& operator=(const Part& other) {  // of the corners that there are
+      size_ = other.size_;
+      std::copy_n(other.places_.begin(), size_, places_.begin());
+      return *this;
+    }
     void push_back(const Place& place) { places_[size_++] = place; }
+    void clear() { size_ = 0; }
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
     const Place& operator[](std::size_t i) const { return places_[i]; }
@@ -74,13 +81,16 @@ class Prism {
   /// Hodgman, Comm. ACM 17, 1974).
   Part inside(const Points& simplex) const {
     Part part;
-    for (const Vector<Dim>& point : simplex) part.push_back(place(point));
-    for (std::size_t side = 0; side < Corners; ++side) {
-      std::size_t inside = 0;
-      for (const Place& place : part) inside += weight(place, side) >= 0 ? 1 : 0;
-      if (inside == 0) return {};
-      if (inside != part.size()) part = cut(part, side);
+    unsigned beyond_any = 0, beyond_all = ~0U;  // sides that some corner, or all, lie beyond
+    for (const Vector<Dim>& point : simplex) {
+      part.push_back(place(point));
+      const unsigned beyond = sides_beyond(part[part.size() - 1]);
+      beyond_any |= beyond;
+      beyond_all &= beyond;
     }
+    if (beyond_all != 0) part.clear();
+    for (std::size_t side = 0; side < Corners && !part.empty(); ++side)
+      if ((beyond_any >> side & 1) != 0) part = cut(part, side);
     return part;
   }
 
@@ -139,6 +149,14 @@ class Prism {
     double rest = 1;
     for (const double w : place.weight) rest -= w;
     return rest;
+  }
+
+  /// A bit for each side of the prism that the place lies beyond.
+  static unsigned sides_beyond(const Place& place) {
+    unsigned sides = 0;
+    for (std::size_t side = 0; side < Corners; ++side)
+      sides |= static_cast<unsigned>(!(weight(place, side) >= 0)) << side;
+    return sides;
   }
 
   static Part cut(const Part& part, std::size_t side) {
