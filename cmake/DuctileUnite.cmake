@@ -1,4 +1,4 @@
-# Headers are read, and templates compiled, once for eight sources of a library or of its tests. The sanitizers' builds
+# Headers are read, and templates compiled, once for eight sources of a target. The sanitizers' builds
 # are made so, and that of the Python package from the sources; others compile each source alone and see
 # what is missing, shadowed or unused in it.
 set(ductile_not_of_units "#pragma GCC diagnostic ignored \"-Wshadow\"
@@ -14,7 +14,18 @@ function(ductile_unite)
     endif()
   endforeach()
 endfunction()
-ductile_unite(ductile_runtime ductile_meshadapt ductile_meshadapt_v3 ductile_meshadapt_v4)
-# It has names in common with others.
+ductile_unite(ductile_runtime ductile_meshadapt ductile_meshadapt_v3 ductile_meshadapt_v4 ductile_cli ductile_c
+  ductile_petsc_parts ductile_mpi ductile_python_module
+  test_support runtime_tests meshadapt_tests io_tests cli_tests process_tests campaign_parts campaign_tests
+  ductile_bench_report ductile_bench_cases ductile_adapt_bench bench_tests adapt_bench_tests
+  irregular_bench_parts runtime_bench_support runtime_report_parts runtime_bench_tests
+  ductile_paper compliance fingering synthetic)
+# They have names in common with others.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/runtime/steal_by_signal.cpp
   TARGET_DIRECTORY ductile_runtime PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+if(TARGET ductile_cli)
+  set(alone adapt_command.cpp convert_command.cpp info_command.cpp metric_command.cpp transfer_command.cpp
+    view_command.cpp picture/ellipses.cpp picture/scene_metric.cpp)
+  list(TRANSFORM alone PREPEND ${PROJECT_SOURCE_DIR}/meshadapt/cli/)
+  set_source_files_properties(${alone} TARGET_DIRECTORY ductile_cli PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endif()

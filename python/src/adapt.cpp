@@ -59,7 +59,7 @@ class Progress {
 
 /// Rows of an array, and what they are; without them the mesh keeps its sizes, or gets those of
 /// curved boundaries.
-using MaybeMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
+using GivenMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
 
 /// What adapt(executor, options) gives, with Python's function as its progress.
 template <class Adapt>
@@ -75,7 +75,7 @@ py::tuple adapted_by(Adapt&& adapt, AdaptOptions options, const runtime::Executo
                         take(std::move(adapted.metric.values), shape), std::move(adapted.report));
 }
 
-py::tuple remesh(const AnyMesh& mesh, const MaybeMetric& metric, const AdaptOptions& given_options,
+py::tuple remesh(const AnyMesh& mesh, const GivenMetric& metric, const AdaptOptions& given_options,
                  const runtime::ExecutorOptions& threads, const py::object& progress) {
   std::optional<AnyField> given;
   if (metric)
