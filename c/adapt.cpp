@@ -2,6 +2,7 @@
 /// Adaptation of ductile.h, and what a program does with its result.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -63,9 +64,9 @@ AnyField solution_of(const AnyMesh& mesh, int components, const double* values) 
 }
 
 meshadapt::SolutionMetricOptions goal_of(const AnyMesh& mesh, const ductile_options& options) {
-  if (!(options.elements > 0))
+  if (!(options.elements > 0 && std::isfinite(options.elements)))
     throw InputError("option elements: expected a number above 0, found " +
-                     std::to_string(options.elements));
+                     number(options.elements));
   return {
       .goal = {.norm = options.norm,
                .complexity = meshadapt::complexity_of_elements(mesh.dimension, options.elements),
@@ -165,6 +166,7 @@ int ductile_mesh_report(const ductile_mesh* adapted, const char* name, double* v
 }
 
 const char* ductile_mesh_warning(const ductile_mesh* adapted, int64_t i) {
+  if (adapted == nullptr) return nullptr;
   const auto& warnings = adapted->report.warnings;
   if (i < 0 || static_cast<std::size_t>(i) >= warnings.size()) return nullptr;
   return warnings[static_cast<std::size_t>(i)].c_str();

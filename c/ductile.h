@@ -5,8 +5,10 @@
  * Functions that can fail return a code: DUCTILE_OK; DUCTILE_FAILED, as where memory runs out or
  * the caller has cancelled; DUCTILE_WRONG_INPUT, for arrays, names or files that are wrong. What
  * went wrong is the text of ductile_last_error(). Results are written only if all went well.
- * Nothing is printed. Handles belong to the caller, who destroys them. Thread safety: any thread;
- * one handle may be read by several threads, and changed by one while no other uses it.
+ * Nothing is printed. Handles belong to the caller, who destroys them. A handle that is NULL is
+ * wrong input where a code is returned; elsewhere it has nothing: arrays and texts are NULL, counts
+ * -1, the dimension 0. Thread safety: any thread; one handle may be read by several threads, and
+ * changed by one while no other uses it.
  */
 #ifndef DUCTILE_H
 #define DUCTILE_H
@@ -49,8 +51,7 @@ const char* ductile_last_error(void);
 int ductile_mesh_create(int dimension, ductile_mesh** mesh);
 
 /** Gives it `count` vertices, in place of all that it had except names: coordinates[vertex *
- * dimension
- * + axis]; reference[vertex], or NULL for 0. Arrays are copied, here and below. */
+ * dimension + axis]; reference[vertex], or NULL for 0. Arrays are copied, here and below. */
 int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* coordinates,
                               const int32_t* reference);
 
@@ -95,7 +96,7 @@ int ductile_mesh_write(const ductile_mesh* mesh, const char* path);
 /** NULL is fine. */
 void ductile_mesh_destroy(ductile_mesh* mesh);
 
-/** 2 or 3. */
+/** 2 or 3; 0 of no mesh. */
 int ductile_mesh_dimension(const ductile_mesh* mesh);
 
 /** How many there are; -1 for an unknown kind. */
@@ -155,9 +156,9 @@ void ductile_geometry_destroy(ductile_geometry* geometry);
 /** Has curved boundaries measured from a geometry, not from the mesh that is adapted, with the
  * "hausd" and the surfaces of the geometry in place of those set before; NULL is none. */
 int ductile_options_set_geometry(ductile_options* options, const ductile_geometry* geometry);
-/** The closest points of a geometry, nearly, that are within `reach` of `count` points, and the unit
- * normals and references there, unless these are NULL: points[point * dimension + axis], the same
- * of closest and normals. NaN and 0 where there is none. */
+/** The closest points of a geometry, nearly, that are within `reach` of `count` points, and the
+ * unit normals and references there, unless these are NULL: points[point * dimension + axis], the
+ * same of closest and normals. NaN and 0 where there is none. */
 int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, const double* points,
                              double reach, double* closest, double* normals, int32_t* references);
 

@@ -120,8 +120,7 @@ int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, co
     if (!std::all_of(points, points + n, [](double x) { return std::isfinite(x); }))
       throw meshadapt::InputError("points: expected finite coordinates");
     if (!(reach > 0))
-      throw meshadapt::InputError("reach: expected a distance above 0, found " +
-                                  std::to_string(reach));
+      throw meshadapt::InputError("reach: expected a distance above 0, found " + c::number(reach));
     const c::Closest all{*geometry, reach, closest, normals, references};
     const runtime::Executor executor(geometry->executor);
     runtime::parallel_for(executor, static_cast<std::size_t>(count),

@@ -36,6 +36,11 @@ namespace ductile::c {
 
 /// Keeps the text for ductile_last_error(). What does not fit into memory is said in fewer words.
 void keep_error(const char* text) noexcept;
+/// The same of what is wrong with the input; options have the names that they have here.
+void keep_wrong_input(const char* text) noexcept;
+
+/// With six digits.
+std::string number(double value);
 
 /// Calls work() and turns what it throws into a code.
 template <class Work>
@@ -44,7 +49,7 @@ int guarded(Work&& work) noexcept {
     work();
     return DUCTILE_OK;
   } catch (const meshadapt::InputError& error) {
-    keep_error(error.what());
+    keep_wrong_input(error.what());
     return DUCTILE_WRONG_INPUT;
   } catch (const std::bad_alloc&) {
     keep_error("there is not enough memory");

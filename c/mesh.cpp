@@ -1,12 +1,15 @@
 /// @file
 /// Meshes of ductile.h: from arrays, from files, and their arrays.
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -157,6 +160,27 @@ void keep_error(const char* text) noexcept {
   }
 }
 
+void keep_wrong_input(const char* text) noexcept {
+  constexpr std::array<std::array<std::string_view, 2>, 5> names{
+      {{"gradation:", "option hgrad:"},
+       {"required_gradation:", "option hgradreq:"},
+       {"hausdorff_tolerance:", "option hausd:"},
+       {"ridge_angle:", "option ar:"},
+       {"bounds on sizes:", "hmin and hmax:"}}};
+  keep_error(text);
+  try {
+    for (const auto& [theirs, ours] : names)
+      if (last_error.starts_with(theirs)) return void(last_error.replace(0, theirs.size(), ours));
+  } catch (...) {  // it stays as it is
+  }
+}
+
+std::string number(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
 }  // namespace ductile::c
 
 using namespace ductile;  // NOLINT: the functions for C are in no namespace
@@ -245,6 +269,7 @@ int ductile_mesh_set_name(ductile_mesh* mesh, int kind, int32_t reference, const
 }
 
 const char* ductile_mesh_name(const ductile_mesh* mesh, int kind, int32_t reference) {
+  if (mesh == nullptr) return nullptr;
   const auto& names = mesh->mesh.names;
   for (const auto& one : names)
     if (one.reference == reference && c::kind_of(one.dimension, mesh->mesh.dimension) == kind)
@@ -254,6 +279,7 @@ const char* ductile_mesh_name(const ductile_mesh* mesh, int kind, int32_t refere
 
 const char* ductile_mesh_name_at(const ductile_mesh* mesh, int64_t i, int* kind,
                                  int32_t* reference) {
+  if (mesh == nullptr) return nullptr;
   const auto& names = mesh->mesh.names;
   if (i < 0 || static_cast<std::size_t>(i) >= names.size()) return nullptr;
   const auto& one = names[static_cast<std::size_t>(i)];
@@ -288,9 +314,12 @@ int ductile_mesh_write(const ductile_mesh* mesh, const char* path) {
 
 void ductile_mesh_destroy(ductile_mesh* mesh) { delete mesh; }
 
-int ductile_mesh_dimension(const ductile_mesh* mesh) { return mesh->mesh.dimension; }
+int ductile_mesh_dimension(const ductile_mesh* mesh) {
+  return mesh == nullptr ? 0 : mesh->mesh.dimension;
+}
 
 int64_t ductile_mesh_count(const ductile_mesh* mesh, int kind) {
+  if (mesh == nullptr) return -1;
   if (kind == DUCTILE_VERTICES) return static_cast<int64_t>(mesh->mesh.vertex_count());
   int64_t count = kind == DUCTILE_RIDGES ? 0 : -1;
   c::visit_cells(mesh->mesh, kind,
@@ -299,11 +328,12 @@ int64_t ductile_mesh_count(const ductile_mesh* mesh, int kind) {
 }
 
 const double* ductile_mesh_coordinates(const ductile_mesh* mesh) {
-  return c::data_of(mesh->mesh.coordinates);
+  return mesh == nullptr ? nullptr : c::data_of(mesh->mesh.coordinates);
 }
 
 const int32_t* ductile_mesh_corners(const ductile_mesh* mesh, int kind) {
   const int32_t* corners = nullptr;
+  if (mesh == nullptr) return corners;
   c::visit_cells(mesh->mesh, kind, [&](const auto& cells) {
     if (cells.size() != 0)  // the signed type of theirs, which may be looked at as that
       corners = reinterpret_cast<const int32_t*>(cells.vertices[0].data());
@@ -312,6 +342,7 @@ const int32_t* ductile_mesh_corners(const ductile_mesh* mesh, int kind) {
 }
 
 const int32_t* ductile_mesh_references(const ductile_mesh* mesh, int kind) {
+  if (mesh == nullptr) return nullptr;
   if (kind == DUCTILE_VERTICES) return c::data_of(mesh->mesh.vertex_reference);
   const int32_t* reference = nullptr;
   c::visit_cells(mesh->mesh, kind,
@@ -320,7 +351,7 @@ const int32_t* ductile_mesh_references(const ductile_mesh* mesh, int kind) {
 }
 
 const double* ductile_mesh_metric(const ductile_mesh* mesh) {
-  return c::data_of(mesh->metric.values);
+  return mesh == nullptr ? nullptr : c::data_of(mesh->metric.values);
 }
 
 }  // extern "C"

@@ -16,8 +16,7 @@ namespace {
 using meshadapt::InputError;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& expected, double found) {
-  throw InputError("option " + name + ": expected " + expected + ", found " +
-                   std::to_string(found));
+  throw InputError("option " + name + ": expected " + expected + ", found " + number(found));
 }
 
 int whole(const std::string& name, double value, int low, int high) {

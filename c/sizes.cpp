@@ -85,7 +85,7 @@ int ductile_sizes_set(ductile_sizes* sizes, const char* name, double value) {
         value == 0 || (value >= meshadapt::smallest_size && value <= meshadapt::largest_size);
     if (std::string_view(name) == "default" && !is_size)
       throw meshadapt::InputError("default: expected a size from 1e-75 to 1e75, or 0, found " +
-                                  std::to_string(value));
+                                  c::number(value));
     c::number_of(*sizes, name) = value;
   });
 }

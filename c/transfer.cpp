@@ -84,6 +84,7 @@ int ductile_transfer_create(const ductile_mesh* before, const ductile_mesh* afte
 void ductile_transfer_destroy(ductile_transfer* transfer) { delete transfer; }
 
 const int32_t* ductile_transfer_origins(const ductile_transfer* transfer, int kind) {
+  if (transfer == nullptr) return nullptr;
   const meshadapt::Origins& origins = transfer->origins;
   return kind == DUCTILE_VERTICES   ? c::signed_data(origins.vertex)
          : kind == DUCTILE_FACETS   ? c::signed_data(origins.facet)
@@ -92,11 +93,12 @@ const int32_t* ductile_transfer_origins(const ductile_transfer* transfer, int ki
 }
 
 const int32_t* ductile_transfer_hosts(const ductile_transfer* transfer) {
-  return c::signed_data(transfer->origins.host);
+  return transfer == nullptr ? nullptr : c::signed_data(transfer->origins.host);
 }
 
 const double* ductile_transfer_weights(const ductile_transfer* transfer) {
-  return transfer->origins.weight.empty() ? nullptr : transfer->origins.weight.data();
+  return transfer == nullptr || transfer->origins.weight.empty() ? nullptr
+                                                                 : transfer->origins.weight.data();
 }
 
 int ductile_transfer_carry(const ductile_transfer* transfer, int how, int components,

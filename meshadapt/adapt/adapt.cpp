@@ -62,7 +62,7 @@ void expect_options(const AdaptOptions& options) {
                      std::to_string(options.iterations));
   expect_bounds({.smallest = options.smallest_size, .largest = options.largest_size});
   expect_gradation(options.gradation);
-  expect_gradation(options.required_gradation);
+  expect_gradation(options.required_gradation, "required_gradation");
   expect_rules(options.rules);
   if (options.make.geometry && !(options.make.hausdorff_tolerance > 0))
     throw InputError("geometry: expected a hausdorff_tolerance with it, " +

@@ -96,7 +96,8 @@ fs::path only_mesh(const Arguments& arguments) {
   std::vector<std::string> meshes = arguments.operands();
   if (const auto mesh = arguments.text("-in")) meshes.push_back(*mesh);
   if (meshes.size() != 1)
-    throw UsageError("expected one mesh, found " + std::to_string(meshes.size()));
+    throw UsageError("expected one mesh, found " + std::to_string(meshes.size()) +
+                     (meshes.size() == 2 ? "; -o says where the adapted one goes" : ""));
   return input_of(meshes[0]);
 }
 
@@ -310,14 +311,21 @@ void expect_right(const meshadapt::AdjacentMesh& before, const meshadapt::Adjace
                            "); nothing was written; please report this with its input");
 }
 
+/// Fields on the adapted mesh: those of each file, and the names of all.
+struct Carried {
+  std::vector<AnyField> fields;
+  std::vector<std::string> names;
+};
+
 /// Says what was warned of, and what does not go into the files, before they have their names: no
 /// memory is taken after that.
-void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector<AnyField>& carried,
+void write_outputs(const Job& job, const AdaptedMesh& adapted, const Carried& carried,
                    const std::string& json, meshadapt::Warnings& warnings) {
   meshadapt::AtomicOutputs outputs;
   std::vector<meshadapt::NamedField> fields;
   if (job.with_metric) fields = meshadapt::named_fields(adapted.metric, "metric");
-  for (auto& field : job.fields.named_fields(carried)) fields.push_back(std::move(field));
+  for (auto& field : CarriedFields::named_fields(carried.fields, carried.names))
+    fields.push_back(std::move(field));
   meshadapt::WriteOptions with_fields;
   with_fields.fields = fields;
   meshadapt::WriteOptions as_named;
@@ -327,7 +335,7 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const std::vector
   as_named.format = ending;
   meshadapt::write_mesh(outputs, place_of(job.output), adapted.mesh, as_named);
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
-  job.fields.write(outputs, carried);
+  job.fields.write(outputs, carried.fields);
   if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, adapted.mesh, with_fields);
   if (job.json) write_bytes(outputs, *job.json, json);
   print_warnings(warnings, job.verbosity);
@@ -376,14 +384,14 @@ int work(const Executor& executor, Job job) {
   if (!job.places.any())
     bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings),
                   metric, job.adapt);
-  const CarriedFields::Values fields = job.fields.read(mesh, warnings);
+  const CarriedFields::Values fields = job.fields.read(mesh, warnings, {"metric"});
   job.adapt.make.geometry = read_geometry(executor, job, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric, sizes);
   const meshadapt::AdjacentMesh before(executor, mesh), after(executor, adapted.mesh);
   if (!adapted.report.checked) expect_right(before, after, job.adapt.make.hausdorff_tolerance);
   adapted.mesh.name = job.output.string();
-  const auto carried = job.fields.carry(executor, mesh, fields, adapted.mesh);
+  const Carried carried{job.fields.carry(executor, mesh, fields, adapted.mesh), fields.names};
   const AdaptSummary summary = summarise(
       before, metric, adapted, after,
       {.before = job.json || job.verbosity > 1,

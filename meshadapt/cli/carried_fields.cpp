@@ -35,6 +35,13 @@ std::vector<AnyField> apart(const AnyField& all, const std::vector<std::size_t>&
   return parts;
 }
 
+/// A name that no field before has: with that of the file where there is one.
+std::string other_name(std::string name, const std::string& file,
+                       const std::vector<std::string>& taken) {
+  while (std::find(taken.begin(), taken.end(), name) != taken.end()) name = file + "_" + name;
+  return name;
+}
+
 }  // namespace
 
 CarriedFields::CarriedFields(const Arguments& arguments, const fs::path& output)
@@ -58,13 +65,20 @@ CarriedFields::CarriedFields(const Arguments& arguments, const fs::path& output)
 }
 
 CarriedFields::Values CarriedFields::read(const meshadapt::AnyMesh& mesh,
-                                          meshadapt::Warnings& warnings) const {
+                                          meshadapt::Warnings& warnings,
+                                          std::vector<std::string> taken) const {
   Values values;
   for (const fs::path& input : inputs_) {
-    AnyField field = read_fields(input, mesh, warnings);
-    values.field_count_of.push_back(field.types.size());
+    const auto fields = read_solutions(input, mesh, warnings);
+    AnyField all = side_by_side(fields, mesh);
+    all.name = input.string();
+    values.field_count_of.push_back(fields.size());
     values.all =
-        values.field_count_of.size() == 1 ? std::move(field) : meshadapt::joined(values.all, field);
+        values.field_count_of.size() == 1 ? std::move(all) : meshadapt::joined(values.all, all);
+    for (const meshadapt::NamedField& field : fields) {
+      values.names.push_back(other_name(field.name, as_utf8(input.stem().string()), taken));
+      taken.push_back(values.names.back());
+    }
   }
   return values;
 }
@@ -86,11 +100,13 @@ void CarriedFields::write(meshadapt::AtomicOutputs& outputs,
 }
 
 std::vector<meshadapt::NamedField> CarriedFields::named_fields(
-    const std::vector<AnyField>& carried) const {
+    const std::vector<AnyField>& carried, const std::vector<std::string>& names) {
   std::vector<meshadapt::NamedField> all;
-  for (std::size_t i = 0; i < carried.size(); ++i)
-    for (auto& field : meshadapt::named_fields(carried[i], as_utf8(inputs_[i].stem().string())))
+  for (const AnyField& fields : carried)
+    for (auto& field : meshadapt::named_fields(fields, "field")) {
+      field.name = names.at(all.size());
       all.push_back(std::move(field));
+    }
   return all;
 }
 

@@ -29,9 +29,12 @@ class CarriedFields {
   struct Values {
     meshadapt::AnyField all;                  ///< the fields in all files, side by side
     std::vector<std::size_t> field_count_of;  ///< [file]
+    std::vector<std::string> names;           ///< [field]
   };
-  /// Throws InputError unless they are fields of this mesh.
-  Values read(const meshadapt::AnyMesh& mesh, meshadapt::Warnings& warnings) const;
+  /// Throws InputError unless they are fields of this mesh. `taken` are names that other fields
+  /// have.
+  Values read(const meshadapt::AnyMesh& mesh, meshadapt::Warnings& warnings,
+              std::vector<std::string> taken) const;
 
   /// One for each file, at the vertices of the mesh `to`.
   std::vector<meshadapt::AnyField> carry(const runtime::Executor& executor,
@@ -40,8 +43,8 @@ class CarriedFields {
 
   void write(meshadapt::AtomicOutputs& outputs,
              const std::vector<meshadapt::AnyField>& carried) const;
-  std::vector<meshadapt::NamedField> named_fields(
-      const std::vector<meshadapt::AnyField>& carried) const;
+  static std::vector<meshadapt::NamedField> named_fields(
+      const std::vector<meshadapt::AnyField>& carried, const std::vector<std::string>& names);
 
  private:
   std::vector<std::filesystem::path> inputs_, outputs_;  // [file]

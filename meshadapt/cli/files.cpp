@@ -177,6 +177,19 @@ std::vector<meshadapt::NamedField> read_named_fields(const fs::path& path,
   return std::move(file.fields);
 }
 
+std::vector<meshadapt::NamedField> read_solutions(const fs::path& path,
+                                                  const meshadapt::AnyMesh& mesh,
+                                                  meshadapt::Warnings& warnings) {
+  auto fields = read_named_fields(path, mesh, warnings);
+  if (!holds_fields(path)) return fields;
+  std::erase_if(fields, [](const auto& field) { return !is_at_vertices(field); });
+  if (fields.empty())
+    throw meshadapt::InputError(path.string() + ": expected fields at vertices, found none");
+  if (fields.size() > 1) std::erase_if(fields, [](const auto& f) { return f.name == "metric"; });
+  if (fields[0].name == "metric") fields[0].name = as_utf8(path.stem().string());
+  return fields;
+}
+
 std::string as_utf8(const std::string& text) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {

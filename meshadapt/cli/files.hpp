@@ -68,6 +68,12 @@ std::vector<meshadapt::NamedField> read_named_fields(const std::filesystem::path
                                                      const meshadapt::AnyMesh& mesh,
                                                      meshadapt::Warnings& warnings);
 
+/// Of those, the ones at vertices, of which there is at least one, except a metric beside others:
+/// it says what the mesh was adapted to and is no solution. One alone is called like the file.
+std::vector<meshadapt::NamedField> read_solutions(const std::filesystem::path& path,
+                                                  const meshadapt::AnyMesh& mesh,
+                                                  meshadapt::Warnings& warnings);
+
 /// Fields at the vertices of a mesh, of which there is at least one, side by side.
 meshadapt::AnyField side_by_side(const std::vector<meshadapt::NamedField>& fields,
                                  const meshadapt::AnyMesh& mesh);

@@ -249,7 +249,8 @@ class Work {
   }
 
   void make() {
-    const AnyField field = read_fields(job_.fields[0], mesh_, warnings_);
+    AnyField field = side_by_side(read_solutions(job_.fields[0], mesh_, warnings_), mesh_);
+    field.name = job_.fields[0].string();
     const auto made = meshadapt::solution_metric(executor_, mesh_, field,
                                                  {goal_, job_.gradation, job_.fit.recovery});
     metric_of_ = meshadapt::tensors_of<Dim>(executor_, made.metric);

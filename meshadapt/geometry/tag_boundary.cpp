@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -144,11 +146,12 @@ class BoundaryTagger {
   void add_unlisted_facets(std::vector<TaggedFacet<Dim>>& facets) {
     const std::size_t listed = facets.size();
     std::size_t unlisted_boundary = 0;
-    for (const auto& [e, i] : unlisted_facets()) {
+    const auto unlisted = unlisted_facets();
+    for (const auto& [e, i] : unlisted) {
       const bool boundary = making_.neighbours[e][static_cast<std::size_t>(i)] == none;
       if (boundary && !making_.options.complete_boundary) {
         if (making_.is_cut) continue;
-        fail_unlisted(e, i);
+        fail_unlisted(e, i, at_one_place(unlisted));
       }
       unlisted_boundary += boundary;
       TaggedFacet<Dim> facet;
@@ -160,10 +163,31 @@ class BoundaryTagger {
     if (unlisted_boundary != 0)
       making_.warnings.push_back(making_.any.name + ": " + std::to_string(unlisted_boundary) +
                                  " boundary " + facet_name<Dim>() + "s were not listed (" +
-                                 std::to_string(listed) + " were); they get reference 0");
+                                 std::to_string(listed) + " were); they get reference 0" +
+                                 at_one_place(unlisted).in_file);
   }
 
-  [[noreturn]] void fail_unlisted(ElementId element, int facet) const {
+  /// Says which vertices of these facets lie where another one does, as on both sides of a crack,
+  /// or where a mesh was put together of pieces. Nothing if there are none.
+  Wording at_one_place(std::span<const std::pair<ElementId, int>> facets) const {
+    std::vector<VertexId> vertices;
+    for (const auto& [element, facet] : facets)
+      for (const VertexId v : facet_of<Dim>(making_.mesh.corners_of[element], facet))
+        vertices.push_back(v);
+    const auto key = [&](VertexId v) { return std::pair(position_in<Dim>(making_.any, v).x, v); };
+    std::sort(vertices.begin(), vertices.end(),
+              [&](VertexId a, VertexId b) { return key(a) < key(b); });
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    const auto together = [&](VertexId a, VertexId b) {
+      return position_in<Dim>(making_.any, a).x == position_in<Dim>(making_.any, b).x;
+    };
+    const auto first = std::adjacent_find(vertices.begin(), vertices.end(), together);
+    if (first == vertices.end()) return "";
+    return "; vertices " + index_word(*first) + " and " + index_word(*(first + 1)) +
+           " are at one place: join such vertices, unless there is a crack";
+  }
+
+  [[noreturn]] void fail_unlisted(ElementId element, int facet, const Wording& note) const {
     Wording corners = "";
     for (const VertexId v : facet_of<Dim>(making_.mesh.corners_of[element], facet))
       corners = corners + " " + index_word(v);
@@ -172,7 +196,7 @@ class BoundaryTagger {
                          "in the file; list it, or pass --complete-boundary");
     fail("the boundary " + std::string(facet_name<Dim>()) + " with vertices" + corners + " (of " +
          cell_word(element_name<Dim>(), element) + ") is not listed " + advice +
-         " to give unlisted ones reference 0");
+         " to give unlisted ones reference 0" + note);
   }
 
   void report_loose_edges(std::size_t count, std::size_t first) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -50,8 +51,8 @@ int msh_corners(const NumberCursor& in, std::int64_t type) {
 std::uint32_t MshCells::vertex(std::uint64_t node) const {
   const std::size_t place = index_of_.find(node);
   if (place == NumberIndex::none)
-    in_.fail("expected the number of a node in $Nodes, found " + std::to_string(node) +
-             "; correct it");
+    in_.fail("expected the number of a node in $Nodes, found " +
+             std::to_string(static_cast<std::int64_t>(node)) + "; correct it");  // below 0, too
   return static_cast<std::uint32_t>(place);
 }
 
@@ -77,6 +78,7 @@ void MshCells::add(std::uint64_t number, int corners, const std::uint64_t* nodes
     const std::uint32_t at = vertex(nodes[0]);
     if (group.physical != 0) to_.mesh.vertex_reference[at] = group.physical;
   } else if (corners == 2) {
+    numbers_[2].push_back(number);
     append(to_.mesh.edges, nodes, group);
   } else if (corners == 3) {
     append_number(to_.cell_of_triangle, 3, number);
@@ -129,9 +131,30 @@ std::size_t MshCells::drop_repeated(Cells<Corners>& cells) {
   return gone;
 }
 
+template <int Corners>
+void MshCells::put_in_order(Cells<Corners>& cells) {
+  const std::vector<std::uint64_t> numbers = numbers_[Corners];
+  if (std::is_sorted(numbers.begin(), numbers.end())) return;
+  std::vector<std::size_t> order(numbers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
+  const Cells<Corners> before = cells;
+  const std::vector<std::int32_t> elementary = elementary_of_[Corners];
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    cells.vertices[i] = before.vertices[order[i]];
+    cells.reference[i] = before.reference[order[i]];
+    elementary_of_[Corners][i] = elementary[order[i]];
+    numbers_[Corners][i] = numbers[order[i]];
+  }
+}
+
 std::size_t MshCells::finish() {
   const std::size_t gone = drop_repeated(to_.mesh.edges) + drop_repeated(to_.mesh.triangles) +
                            drop_repeated(to_.mesh.tetrahedra);
+  put_in_order(to_.mesh.edges);
+  put_in_order(to_.mesh.triangles);
+  put_in_order(to_.mesh.tetrahedra);
   to_.cell_of_triangle.resize(to_.mesh.triangles.size());
   to_.cell_of_tetrahedron.resize(to_.mesh.tetrahedra.size());
   finish(1, to_.mesh.edges.reference);

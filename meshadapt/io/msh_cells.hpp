@@ -33,8 +33,9 @@ class MshCells {
 
   /// `nodes` are numbers of `corners` nodes.
   void add(std::uint64_t number, int corners, const std::uint64_t* nodes, MshGroup group);
-  /// To be called after the last: gives references. Returns how many elements went because they
-  /// were listed before, as version 2 does for each group of an entity.
+  /// To be called after the last: gives references, and puts elements in the order of their
+  /// numbers, which files list by entities. Returns how many elements went because they were listed
+  /// before, as version 2 does for each group of an entity.
   std::size_t finish();
   /// The numbers of the tetrahedra or, if there are none, the triangles.
   const std::vector<std::uint64_t>& numbers() const {
@@ -48,13 +49,15 @@ class MshCells {
   void finish(int dimension, std::vector<std::int32_t>& reference);
   template <int Corners>
   std::size_t drop_repeated(Cells<Corners>& cells);
+  template <int Corners>
+  void put_in_order(Cells<Corners>& cells);
   void append_number(std::vector<std::size_t>& places, std::size_t corners, std::uint64_t number);
 
   const NumberCursor& in_;
   SpatialMesh& to_;
   const NumberIndex& index_of_;
   // [corners][cell of that shape]
-  std::array<std::vector<std::uint64_t>, 5> numbers_;  ///< of triangles and tetrahedra
+  std::array<std::vector<std::uint64_t>, 5> numbers_;  ///< as the file has them
   std::array<std::vector<std::int32_t>, 5> elementary_of_;
   std::array<bool, 5> in_groups_{};  ///< whether any is
   std::array<bool, 5> repeated_{};   ///< whether an entity is in several groups

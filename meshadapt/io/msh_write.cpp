@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -218,21 +221,30 @@ void put_nodes_4(MshSink& sink, const AnyMesh& mesh, const std::vector<double>& 
   sink.text(sink.is_binary() ? "\n$EndNodes\n" : "$EndNodes\n");
 }
 
-/// Blocks of neighbours in the list that have one reference keep the order of cells.
+/// The cells of each reference, in their order. Calls visit(reference, cells of it) in ascending
+/// order of references; without cells not at all.
 template <class Visit>
-std::size_t for_each_block(const std::vector<std::int32_t>& reference, const Visit& visit) {
-  std::size_t blocks = 0;
-  for (std::size_t begin = 0, end = 0; begin < reference.size(); begin = end, ++blocks) {
-    while (end < reference.size() && reference[end] == reference[begin]) ++end;
-    visit(begin, end);
+void for_each_block(const std::vector<std::int32_t>& reference, const Visit& visit) {
+  std::vector<std::uint32_t> order(reference.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto by_reference = [&](std::uint32_t a, std::uint32_t b) {
+    return reference[a] < reference[b];
+  };
+  if (!std::is_sorted(reference.begin(), reference.end()))
+    std::stable_sort(order.begin(), order.end(), by_reference);
+  const std::span<const std::uint32_t> cells = order;
+  for (std::size_t begin = 0, end = 0; begin < cells.size(); begin = end) {
+    while (end < cells.size() && reference[cells[end]] == reference[cells[begin]]) ++end;
+    visit(reference[cells[begin]], cells.subspan(begin, end - begin));
   }
-  return blocks;
 }
 
+/// One block for each entity, as readers expect that keep blocks apart. Numbers are those of the
+/// order of cells, which fields have.
 void put_elements_4(MshSink& sink, const AnyMesh& mesh) {
   std::size_t blocks = msh_point_count(mesh);
   for_each_msh_cells(mesh, [&](int, int, const auto& cells) {
-    blocks += for_each_block(cells.reference, [](std::size_t, std::size_t) {});
+    blocks += std::set<std::int32_t>(cells.reference.begin(), cells.reference.end()).size();
   });
   const std::uint64_t count = element_count(mesh);
   sink.text("$Elements\n");
@@ -253,14 +265,15 @@ void put_elements_4(MshSink& sink, const AnyMesh& mesh) {
     sink.end_record();
   }
   for_each_msh_cells(mesh, [&](int dimension, int type, const auto& cells) {
-    for_each_block(cells.reference, [&](std::size_t begin, std::size_t end) {
-      begin_block(dimension, cells.reference[begin], type, end - begin);
-      for (std::size_t cell = begin; cell < end; ++cell) {
-        sink.put(++number);
+    for_each_block(cells.reference, [&](std::int32_t entity, std::span<const std::uint32_t> block) {
+      begin_block(dimension, entity, type, block.size());
+      for (const std::uint32_t cell : block) {
+        sink.put(number + cell + 1);
         for (const std::uint32_t vertex : cells.vertices[cell]) sink.put(std::uint64_t{vertex} + 1);
         sink.end_record();
       }
     });
+    number += cells.size();
   });
   sink.text(sink.is_binary() ? "\n$EndElements\n" : "$EndElements\n");
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "metric/expect_metrics.hpp"
 #include "metric/spectrum.hpp"
@@ -89,8 +90,7 @@ MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>
   expect_bounds(goal.bounds);
   expect_gradation(goal.gradation);
   if (!(goal.complexity > 0) || !std::isfinite(goal.complexity))
-    throw InputError("complexity: expected a number above 0, found " +
-                     std::to_string(goal.complexity));
+    throw InputError("complexity: expected a number above 0, found " + number(goal.complexity));
   Spectrum<Dim> spectrum{std::vector<PrincipalAxes<Dim>>(metric_of.size()), goal.bounds};
   runtime::parallel_for(executor, metric_of.size(),
                         [&](std::size_t v) { spectrum.axes_of[v] = principal_axes(metric_of[v]); });

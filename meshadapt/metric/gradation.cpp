@@ -152,12 +152,14 @@ class Gradation {
   VertexNeighbours<AMesh> neighbours_;
 };
 
-[[noreturn]] void refuse_gradation(double factor) {
-  throw InputError("gradation: expected a factor of 1 or more, found " + number(factor));
+[[noreturn]] void refuse_gradation(double factor, const char* option) {
+  throw InputError(std::string(option) + ": expected a factor of 1 or more, found " +
+                   number(factor));
 }
 
 void expect_gradable(std::size_t metrics, std::size_t vertices, const GradationOptions& options) {
-  if (!(options.factor >= 1) || !std::isfinite(options.factor)) refuse_gradation(options.factor);
+  if (!(options.factor >= 1) || !std::isfinite(options.factor))
+    refuse_gradation(options.factor, "gradation");
   if (!(options.tolerance >= 0) || options.sweeps < 0)
     throw InputError("gradation: expected a tolerance and sweeps of 0 or more, found " +
                      number(options.tolerance) + " and " + std::to_string(options.sweeps));
@@ -168,8 +170,8 @@ void expect_gradable(std::size_t metrics, std::size_t vertices, const GradationO
 
 }  // namespace
 
-void expect_gradation(double factor) {
-  if (!(factor <= 0 || (factor >= 1 && std::isfinite(factor)))) refuse_gradation(factor);
+void expect_gradation(double factor, const char* option) {
+  if (!(factor <= 0 || (factor >= 1 && std::isfinite(factor)))) refuse_gradation(factor, option);
 }
 
 template <int Dim>

@@ -30,7 +30,7 @@ double largest_of(double a, double b) { return std::max(a, b); }
 void expect_options(const HessianMetricOptions& options) {
   if (!(options.norm >= 1))
     throw InputError("metric of a Hessian: expected an L^p norm with p of 1 or more, found " +
-                     std::to_string(options.norm));
+                     number(options.norm));
   const auto sensible = [](double goal) { return goal >= 0 && std::isfinite(goal); };
   if (!sensible(options.complexity) || !sensible(options.error) ||
       (options.complexity > 0) == (options.error > 0))

@@ -18,8 +18,9 @@ namespace ductile::meshadapt {
 
 /// Throws InputError unless every bound is 0 or makes sense.
 void expect_bounds(const SizeBounds& bounds);
-/// Throws InputError unless a gradation is 0 or less, which is none, or 1 or more and finite.
-void expect_gradation(double factor);
+/// Throws InputError unless a gradation is 0 or less, which is none, or 1 or more and finite. The
+/// text begins with the option's name.
+void expect_gradation(double factor, const char* option = "gradation");
 
 /// Eigenvalues within the sizes and the anisotropy that the bounds allow.
 template <std::size_t N>

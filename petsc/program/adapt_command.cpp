@@ -130,17 +130,13 @@ void write_gathered(Input& input, meshadapt::MeshWithFields file) {
   std::vector<meshadapt::AnyField> of_files;
   std::size_t next = file.fields.size();
   for (const std::size_t count : input.field_count_of) next -= count;
-  const std::size_t first = next;
   for (const std::size_t count : input.field_count_of) {
     const auto at = file.fields.begin() + static_cast<std::ptrdiff_t>(next);
     of_files.push_back(cli::side_by_side({at, at + static_cast<std::ptrdiff_t>(count)}, file.mesh));
     next += count;
   }
-  std::vector<NamedField> inside(file.fields.begin(),
-                                 file.fields.begin() + static_cast<std::ptrdiff_t>(first));
-  for (NamedField& field : job.fields.named_fields(of_files)) inside.push_back(std::move(field));
   meshadapt::WriteOptions options;
-  if (cli::holds_fields(job.output)) options.fields = inside;
+  if (cli::holds_fields(job.output)) options.fields = file.fields;
   options.warnings = &input.warnings;
   options.format = ending;
   meshadapt::write_mesh(outputs, cli::place_of(job.output), file.mesh, options);

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "adapt/sizes_again.hpp"
 #include "command.hpp"
@@ -45,19 +46,13 @@ void read_fields(Input& input, meshadapt::MeshWithFields& file) {
   if (!left.empty())
     input.warnings.push_back(file.mesh.name + ": its fields are left out, which " +
                              job.output.string() + " does not hold: " + left);
-  const auto values = job.fields.read(file.mesh, input.warnings);
+  std::vector<std::string> taken = {"metric"};
+  for (const NamedField& field : input.fields) taken.push_back(field.name);
+  const auto values = job.fields.read(file.mesh, input.warnings, std::move(taken));
   input.field_count_of = values.field_count_of;
   if (values.field_count_of.empty()) return;
-  std::vector<std::string> names;  // as the files are called
-  for (std::size_t f = 0; f < input.field_count_of.size(); ++f)
-    for (std::size_t k = 1; k <= input.field_count_of[f]; ++k)
-      names.push_back(cli::as_utf8(job.fields.inputs()[f].stem().string()) +
-                      (input.field_count_of[f] > 1 ? "_" + std::to_string(k) : ""));
-  auto fields = meshadapt::named_fields(values.all, "field");
-  for (std::size_t k = 0; k < fields.size(); ++k) {
-    fields[k].name = names[k];
-    input.fields.push_back(std::move(fields[k]));
-  }
+  for (NamedField& field : cli::CarriedFields::named_fields({values.all}, values.names))
+    input.fields.push_back(std::move(field));
 }
 
 /// Leaves out listed edges that belong to no tetrahedron, as adapt() does: no part would have them.

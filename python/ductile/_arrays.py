@@ -9,7 +9,7 @@ from typing import Any, Iterator, Sequence
 
 import numpy as np
 
-from ._ductile import FieldType, InputError
+from ._ductile import Executor, FieldType, InputError
 
 Array = np.ndarray
 
@@ -119,6 +119,21 @@ def number(value: Any, name: str) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise InputError(f"{name}: expected a number, found {value!r}") from None
+
+
+def executor(threads: Any, deterministic: Any = True) -> Executor:
+    """What runs the work: so many threads, 0 for as many as there are cores."""
+    if isinstance(threads, (int, np.integer)) and 0 <= threads <= 4096:
+        return Executor(int(threads), bool(deterministic))
+    raise InputError(f"threads: expected a whole number from 0 to 4096, found {threads!r}")
+
+
+def megabytes(value: Any) -> int:
+    """The bytes of a limit on memory."""
+    limit = number(value, "memory")
+    if not 0 <= limit <= 2**30:
+        raise InputError(f"memory: expected megabytes from 0 to {2**30}, found {value!r}")
+    return int(limit) << 20
 
 
 def field_type(components: int, dimension: int) -> FieldType | None:

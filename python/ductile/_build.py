@@ -55,11 +55,24 @@ def data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
     for kind, entities in state.get("required", {}).items():
         if dim == 3 or kind != "edges":
             data.require(kind, entities)
-    names = state["names"]
-    if isinstance(names, Mapping):
-        names = [(name, *where) for name, where in names.items()]
-    data.names = list(names)
+    data.names = _names_of(state["names"])
     return data
+
+
+def _names_of(names: Any) -> list[tuple[str, int, int]]:
+    """Names of references as C++ has them: name, dimension, reference."""
+    if isinstance(names, Mapping):
+        names = [(name, where) for name, where in names.items()]
+    else:
+        names = [(name, where) for name, *where in names]
+    for name, where in names:
+        if not isinstance(name, str):
+            raise InputError(f"names: expected texts, found {name!r}")
+        if not (np.shape(where) == (2,) and np.asarray(where).dtype.kind in "iu"
+                and 0 <= where[0] <= 3 and -2**31 <= where[1] < 2**31):
+            raise InputError(f"names[{name!r}]: expected a dimension from 0 to 3 and a reference of "
+                             f"32 bits, found {where!r}")
+    return [(name, int(where[0]), int(where[1])) for name, where in names]
 
 
 def with_required(data: _ductile.MeshData, **given: Any) -> _ductile.MeshData:
@@ -85,7 +98,8 @@ def options_of(**values: Any) -> _ductile.Options:
     return options
 
 
-def place_of(array: np.ndarray, data: _ductile.MeshData, on: Optional[str]) -> str:
+def place_of(array: np.ndarray, data: _ductile.MeshData, on: Optional[str],
+             name: str = "u") -> str:
     counts = {"vertices": len(data.points), "cells": len(data.cells)}
     if on is not None and on not in counts:
         raise InputError(f"on: expected 'vertices' or 'cells', found {on!r}")
@@ -94,17 +108,17 @@ def place_of(array: np.ndarray, data: _ductile.MeshData, on: Optional[str]) -> s
     if len(places) == 1:
         return places[0]
     if places:
-        raise InputError("u: there are as many vertices as cells: say on='vertices' or on='cells'")
+        raise InputError(f"{name}: there are as many vertices as cells: say on='vertices' or on='cells'")
     expected = f"{counts[on]} {on}" if on is not None else \
         f"{counts['vertices']} vertices or {counts['cells']} cells"
-    raise InputError(f"u: expected a row for each of {expected}, found shape {array.shape}")
+    raise InputError(f"{name}: expected a row for each of {expected}, found shape {array.shape}")
 
 
 def field(name: str, values: Any, data: _ductile.MeshData,
           on: Optional[str]) -> tuple[str, FieldType, bool, np.ndarray]:
     """A field as files have it."""
     array = floats(values, name)
-    place = place_of(array, data, on)
+    place = place_of(array, data, on, name)
     columns = component_count(array.shape)
     kind = field_type(columns, data.dimension)
     if kind is None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, 
 import numpy as np
 
 from . import _ductile
-from ._arrays import finite, floats, named, number
+from ._arrays import executor, finite, floats, named, number
 from ._ductile import InputError
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class Geometry:
                      for key, surface in (surfaces or {}).items() for ref in _refs(mesh, key)]
         with named(mesh.dim):
             self._data = _ductile.GeometryData(mesh._data, number(hausd, "hausd"),
-                                               number(ar, "ar"), functions, _ductile.Executor(threads, True))
+                                               number(ar, "ar"), functions, executor(threads))
 
     def __repr__(self) -> str:
         return f"Geometry(dim={self.dim}, hausd={self.hausd:g})"
@@ -119,4 +119,4 @@ class Geometry:
                              f"{given.shape}")
         if not reach > 0:
             raise InputError(f"reach: expected a distance above 0, found {reach!r}")
-        return Closest(*self._data.closest(given, reach, _ductile.Executor(threads, True)))
+        return Closest(*self._data.closest(given, reach, executor(threads)))

@@ -23,7 +23,7 @@ def _apart(mesh: Mesh, fields: Optional[Mapping[str, Any]]) -> tuple[dict, dict]
     at: tuple[dict, dict] = ({}, {})
     for name, values in fields.items():
         array = np.asarray(values)
-        at[place_of(array, mesh._data, None) == "cells"][name] = array
+        at[place_of(array, mesh._data, None, name) == "cells"][name] = array
     return at
 
 

@@ -8,7 +8,8 @@ from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Union
 import numpy as np
 
 from . import _ductile, _html, _interop
-from ._arrays import component_count, field_type, finite, floats, named, number
+from ._arrays import (component_count, executor, field_type, finite, floats, megabytes, named,
+                      number)
 from ._build import KINDS, data_of, field, options_of, place_of, warn, with_required
 from ._ductile import InputError
 from ._geometry import Geometry
@@ -320,15 +321,15 @@ class Mesh:
                            geometry=geometry and geometry._data, ridge_angle=number(ar, "ar"),
                            iterations=iterations, thorough=thorough, move=not nomove,
                            swap=not noswap, insert=not noinsert, lock_boundary=nosurf,
-                           memory_limit=int(number(memory, "memory")) << 20)
-        executor = _ductile.Executor(threads, deterministic)
+                           memory_limit=megabytes(memory))
+        runs = executor(threads, deterministic)
         if isinstance(metric, Size):
-            with named(self.dim):
-                result = _ductile.remesh_to_sizes(data, metric._sizes, options, executor, progress)
+            with named(self.dim), metric._said_of_places():
+                result = _ductile.remesh_to_sizes(data, metric._sizes, options, runs, progress)
         else:
-            rows = None if metric is None else as_rows(Mesh._of(data), metric, executor)
+            rows = None if metric is None else as_rows(Mesh._of(data), metric, runs)
             with named(self.dim):
-                result = _ductile.remesh(data, rows, options, executor, progress)
+                result = _ductile.remesh(data, rows, options, runs, progress)
         out = Mesh._of(result[0])
         out.metric, out.report = result[1:]
         out._source, out._tolerance = data, options.hausdorff_tolerance
@@ -384,14 +385,14 @@ class Mesh:
             finite(values, "u")
         columns = component_count(values.shape)
         rows = values.reshape(len(values), columns)
-        executor = _ductile.Executor(threads, deterministic)
+        runs = executor(threads, deterministic)
         kind = field_type(columns, before.dimension)
         parts = [(rows, kind)] if kind is not None else \
             [(np.ascontiguousarray(rows[:, [i]]), _ductile.FieldType.scalar)
              for i in range(columns)]
         with named(self.dim):
             carried = [_ductile.transfer(before, self._data, part,
-                                         (part_kind, on_cells, conservative), executor)[0]
+                                         (part_kind, on_cells, conservative), runs)[0]
                        for part, part_kind in parts]
         result = carried[0] if len(carried) == 1 else np.column_stack(carried)
         result = result.reshape(-1, *values.shape[1:])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _ductile
-from ._arrays import component_count, finite, floats, named, number
+from ._arrays import component_count, executor, finite, floats, named, number
 from ._ductile import FieldType, InputError
 from ._size import Size
 
@@ -141,7 +141,7 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
     if len(given) != 1:
         raise InputError("metric: expected one of elements, complexity and error, found "
                          + (" and ".join(given) or "none"))
-    if not all(value > 0 for value in given.values()):
+    if not all(0 < value < np.inf for value in given.values()):
         name, value = next(iter(given.items()))
         raise InputError(f"{name}: expected a number above 0, found {value:g}")
     if elements is not None:
@@ -160,7 +160,7 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
     rows = values.reshape(len(values), component_count(values.shape))
     with named(mesh.dim):
         return _ductile.solution_metric(mesh._data, rows, options,
-                                        _ductile.Executor(threads, deterministic))[0]
+                                        executor(threads, deterministic))[0]
 
 
 def implied(mesh: Mesh) -> np.ndarray:

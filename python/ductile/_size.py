@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import re
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Iterator
 
 import numpy as np
 
 from . import _ductile
-from ._arrays import finite, floats, indices, number, point, points
+from ._arrays import executor, finite, floats, indices, number, point, points
 from ._ductile import InputError
 
 if TYPE_CHECKING:
@@ -38,9 +40,10 @@ class Size:
     """
 
     def __init__(self, default: float = 0, *, hmin: float = 0, hmax: float = 0) -> None:
-        self._sizes = _ductile.Sizes(number(default, "default"), _ductile.SizeBounds(
+        elsewhere = number(default, "default")
+        self._sizes = _ductile.Sizes(elsewhere, _ductile.SizeBounds(
             number(hmin, "hmin"), number(hmax, "hmax")))
-        self._said = [f"Size({default:g})"]
+        self._said = [f"Size({elsewhere:g})"]  # then a call for each place
 
     def __repr__(self) -> str:
         return "".join(self._said)
@@ -77,10 +80,10 @@ class Size:
         if len(given) != 1:
             raise InputError("near: expected one of point, sphere, box, curve and surface, found "
                              + (" and ".join(given) or "none"))
-        growth = self._growth(grow, hmax, distance)
+        growth, size = self._growth(grow, hmax, distance), number(h, "h")
         add = getattr(self, f"_add_{given[0]}")
-        add(places[given[0]], number(h, "h"), growth)
-        self._said.append(f".near({given[0]}=..., h={h:g})")
+        add(places[given[0]], size, growth)
+        self._said.append(f".near({given[0]}=..., h={size:g})")
         return self
 
     def on(self, boundary: str | int, *, h: float, grow: float = 1.3, hmax: float = 0,
@@ -104,7 +107,18 @@ class Size:
 
     def at(self, mesh: Mesh, *, threads: int = 0, deterministic: bool = True) -> np.ndarray:
         """The size at each vertex of a mesh, ``(n,)``."""
-        return self._sizes.at(mesh._data, _ductile.Executor(threads, deterministic))
+        with self._said_of_places():
+            return self._sizes.at(mesh._data, executor(threads, deterministic))
+
+    @contextmanager
+    def _said_of_places(self) -> Iterator[None]:
+        """What C++ says is wrong with a place is raised by the call that asked for it."""
+        try:
+            yield
+        except InputError as error:
+            said = re.sub(r"^sources\[(\d+)\]", lambda match: self._said[int(match[1]) + 1][1:],
+                          str(error))
+            raise InputError(said) from None
 
     # ---- How places are given to C++ ----
 

@@ -64,6 +64,28 @@ static void test_meshes(void) {
   ductile_mesh_destroy(NULL);
 }
 
+/* As after a call that failed and was not looked at. */
+static void test_no_handles(void) {
+  EXPECT(ductile_mesh_dimension(NULL) == 0);
+  EXPECT(ductile_mesh_name_at(NULL, 0, NULL, NULL) == NULL);
+  EXPECT(ductile_mesh_coordinates(NULL) == NULL);
+  EXPECT(ductile_mesh_metric(NULL) == NULL);
+  EXPECT(ductile_mesh_warning(NULL, 0) == NULL);
+  EXPECT(ductile_transfer_hosts(NULL) == NULL);
+  EXPECT(ductile_transfer_weights(NULL) == NULL);
+  for (int kind = DUCTILE_VERTICES; kind <= DUCTILE_ELEMENTS; ++kind) {
+    EXPECT(ductile_mesh_count(NULL, kind) == -1);
+    EXPECT(ductile_mesh_name(NULL, kind, 0) == NULL);
+    EXPECT(ductile_mesh_corners(NULL, kind) == NULL);
+    EXPECT(ductile_mesh_references(NULL, kind) == NULL);
+    EXPECT(ductile_transfer_origins(NULL, kind) == NULL);
+  }
+  double value = 0;
+  EXPECT(ductile_mesh_report(NULL, "seconds", &value) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_mesh_write(NULL, "none.mesh") == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("mesh: expected a pointer, found NULL");
+}
+
 static void test_errors(void) {
   ductile_mesh* mesh = NULL;
   const int32_t wrong[] = {0, 1, 2, 0, 2, 4}, beyond[] = {0, 4};
@@ -111,6 +133,7 @@ static void test_options(void) {
   EXPECT(ductile_options_set(options, "hmax", .2) == DUCTILE_OK);
   EXPECT(ductile_options_set(options, "threads", 2) == DUCTILE_OK);
   EXPECT(ductile_options_set(options, "threads", 1.5) == DUCTILE_WRONG_INPUT);
+  EXPECT_TEXT("option threads: expected a whole number from 0 to 4096, found 1.5");
   EXPECT(ductile_options_set(options, "nosurf", 2) == DUCTILE_WRONG_INPUT);
   EXPECT(ductile_options_set(options, "hgard", 1) == DUCTILE_WRONG_INPUT);
   EXPECT(strncmp(ductile_last_error(), "option hgard: expected one of hmin, hmax,", 41) == 0);
@@ -121,6 +144,19 @@ static void test_options(void) {
   EXPECT(ductile_adapt(mesh, 1, sizes, options, &adapted) == DUCTILE_FAILED);
   EXPECT_TEXT("cancelled, as asked for");
   EXPECT(steps == 3 && adapted == NULL);
+  const char* const names[] = {"hgrad", "hgradreq", "hausd", "ar", "hmin"};
+  const double wrong[] = {.5, .5, -1, 90, -1};
+  const char* const texts[] = {"option hgrad: expected", "option hgradreq: expected",
+                               "option hausd: expected", "option ar: expected",
+                               "hmin and hmax: expected"};
+  for (int i = 0; i < 5; ++i) {
+    ductile_options* one = NULL;
+    EXPECT(ductile_options_create(&one) == DUCTILE_OK);
+    EXPECT(ductile_options_set(one, names[i], wrong[i]) == DUCTILE_OK);
+    EXPECT(ductile_adapt(mesh, 1, sizes, one, &adapted) == DUCTILE_WRONG_INPUT);
+    EXPECT(strncmp(ductile_last_error(), texts[i], strlen(texts[i])) == 0);
+    ductile_options_destroy(one);
+  }
   ductile_options_destroy(options);
   ductile_mesh_destroy(mesh);
 }
@@ -409,6 +445,7 @@ static void test_geometry(void) {
 int main(void) {
   EXPECT(strcmp(ductile_last_error(), "") == 0 && strlen(ductile_version()) >= 5);
   test_meshes();
+  test_no_handles();
   test_errors();
   test_options();
   test_adaptation();

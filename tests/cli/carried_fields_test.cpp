@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "program.hpp"
 
@@ -52,6 +54,38 @@ TEST(CarriedFields, GoEachIntoAFileOfItsOwnAsIfItWereAlone) {
           << name << way;
     }
   }
+}
+
+/// A loop puts solutions into the file of the adapted mesh, which has its metric, too.
+TEST(CarriedFields, KeepTheirNamesAndLeaveTheMetricOut) {
+  using meshadapt::NamedField;
+  const Folder folder;
+  const auto mesh = meshadapt::box_mesh<2>({1, 1}, {6, 6});
+  std::vector<double> u, v, metric(mesh.vertex_count(), 0.2);
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    const double x = mesh.coordinates[2 * i], y = mesh.coordinates[2 * i + 1];
+    u.push_back(x * x);
+    v.insert(v.end(), {x * y, y * y});
+    metric[i] += y * y;
+  }
+  const NamedField heat{"heat", meshadapt::AnyField::Type::scalar, u},
+      flow{"flow", meshadapt::AnyField::Type::vector, v},
+      sizes{"metric", meshadapt::AnyField::Type::scalar, metric};
+  const std::vector<NamedField> all = {heat, sizes, flow}, solutions = {heat, flow};
+  meshadapt::write_mesh(folder.path() / "a.vtu", mesh, {.fields = all});
+  meshadapt::write_mesh(folder.path() / "b.vtu", mesh, {.fields = solutions});
+  ASSERT_EQ(folder.run("adapt a.vtu --field a.vtu --field b.vtu -o c.vtu").status, 0);
+  std::vector<std::string> names;
+  for (const auto& field : meshadapt::read_mesh_with_fields(folder.path() / "c.vtu").fields)
+    names.push_back(field.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"metric", "heat", "flow", "b_heat", "b_flow"}));
+  for (const char* file : {"a", "b"})
+    ASSERT_EQ(folder
+                  .run(std::string("metric make b.vtu ") + file + ".vtu --elements 200 -o " + file +
+                       ".sol")
+                  .status,
+              0);
+  EXPECT_EQ(folder.read("a.sol"), folder.read("b.sol"));
 }
 
 TEST(CarriedFields, AreRefusedBeforeTheWorkWhereNamesCollide) {

@@ -99,7 +99,7 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adapt a.mesh --racing=yes", "takes no value");
   expect("adapt a.mesh -sol a.sol -hsiz 1", "expected one of them");
   expect("adapt", "expected one mesh, found 0");
-  expect("adapt a.mesh b.mesh", "expected one mesh, found 2");
+  expect("adapt a.mesh b.mesh", "expected one mesh, found 2; -o says where");
   expect("adapt a.mesh -o b.xyz", "ending in .mesh, .meshb");
   expect("view a.mesh -o b.gif", "ending in .png or .svg");
   expect("view a.mesh --cut w", "x, y or z");

@@ -101,6 +101,18 @@ TEST(Formats, ReadWhatTheyWrite) {
       }
 }
 
+/// meshio, for one, makes a block of cells of each block in a file.
+TEST(Formats, WriteOneBlockForEachEntityOfGmsh) {
+  const test::TemporaryFolder folder;
+  AnyMesh mesh = box_mesh<2>({1, 1}, {6, 6});
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    mesh.triangles.reference[i] = i % 3 == 0 ? 7 : -2;
+  write_mesh(folder / "a.msh", mesh, {});
+  const std::string text = test::get_bytes(folder / "a.msh");
+  EXPECT_NE(text.find("$Elements\n6 "), std::string::npos);  // four sides, two regions
+  EXPECT_EQ(read_mesh(folder / "a.msh").triangles, mesh.triangles);
+}
+
 TEST(Formats, KeepSurfacesInSpace) {
   const test::TemporaryFolder folder;
   AnyMesh mesh = box_mesh({1, 1, 1}, {2, 2, 2});
@@ -345,6 +357,7 @@ TEST(Formats, RefuseInWords) {
   const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", nodes = "$Nodes\n2\n7 0 0 0\n";
   const std::string twice = head + nodes + "7 1 0 0\n$EndNodes\n",
                     missing = head + nodes + "9 1 0 0\n$EndNodes\n$Elements\n1\n1 1 0 7 8\n",
+                    below = head + nodes + "9 1 0 0\n$EndNodes\n$Elements\n1\n1 1 0 7 -8\n",
                     quad = head + nodes + "9 1 0 0\n$EndNodes\n$Elements\n1\n1 3 0 7 8 9 9\n",
                     many = head + "$Nodes\n4000000000\n1 0 0 0\n$EndNodes\n";
   for (const Case& one : std::initializer_list<Case>{
@@ -353,6 +366,7 @@ TEST(Formats, RefuseInWords) {
            {"$MeshFormat\n4.1 0 8\n", ":3: ", "cut short"},
            {twice.c_str(), ":", "found node 7 twice"},
            {missing.c_str(), ":11: ", "found 8"},
+           {below.c_str(), ":11: ", "found -8"},
            {quad.c_str(), ":11: ", "a quadrangle (type 3)"},
            {many.c_str(), ":5: ", "found a count of 4000000000"},
            {"<VTKFile type=\"PolyData\">\n</VTKFile>", ": ", "found 'PolyData'"},

@@ -363,6 +363,33 @@ TEST(MakeMesh, RefusesOrCompletesAnUnlistedBoundary) {
   }
 }
 
+/// Meshes that were put together of pieces have vertices twice where these meet.
+TEST(MakeMesh, NamesVerticesAtOnePlaceWhereABoundaryIsNotListed) {
+  const auto give_twin = [](auto& elements, std::uint32_t vertex, std::uint32_t twin) {
+    for (auto& corners : elements)
+      for (std::uint32_t& corner : corners)
+        if (corner == vertex) return void(corner = twin);
+  };
+  for (AnyMesh any : {square(2), cube(2)}) {
+    any.name = "pieces.mesh";
+    const auto d = static_cast<std::size_t>(any.dimension);
+    const auto twin = static_cast<std::uint32_t>(any.vertex_count()), middle = twin / 2;
+    for (std::size_t axis = 0; axis < d; ++axis)
+      any.coordinates.push_back(any.coordinates[d * middle + axis]);
+    any.vertex_reference.push_back(0);
+    d == 2 ? give_twin(any.triangles.vertices, middle, twin)
+           : give_twin(any.tetrahedra.vertices, middle, twin);
+    const std::string pair = "vertices " + std::to_string(middle + 1) + " and " +
+                             std::to_string(twin + 1) + " are at one place: join";
+    EXPECT_COMPLAINT(any, pair);
+    const MakeMeshOptions completed{.complete_boundary = true};
+    const auto warnings =
+        any.dimension == 2 ? make<2>(any, completed).warnings : make<3>(any, completed).warnings;
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find(pair), std::string::npos) << warnings[0];
+  }
+}
+
 /// As some mesh generators write construction lines, with end points that nothing else has.
 TEST(MakeMesh, LeavesOutEdgesOfNoTetrahedron) {
   AnyMesh any = cube(2);
