@@ -224,7 +224,9 @@ TEST_P(GeometryOf, PartsMayHaveBeenCutFromTheirInside) {
       point[k] = 1.01 * mesh.coordinates[v * static_cast<std::size_t>(dimension()) + k];
     const auto a = whole.closest(point, 0.1), b = cut.closest(point, 0.1);
     ASSERT_EQ(a.has_value(), b.has_value()) << v;
-    if (a) EXPECT_EQ(a->position, b->position) << v;
+    if (a) {
+      EXPECT_EQ(a->position, b->position) << v;
+    }
   }
 }
 
