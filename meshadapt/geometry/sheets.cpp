@@ -12,6 +12,10 @@ namespace ductile::meshadapt {
 
 namespace {
 
+/// Of the angle of a ridge: so much may an edge be turned against the model where it ends. Half
+/// would do if the next call's model were the same, of which an edge that stays may be turned more.
+constexpr double share_of_ridge = 0.46;
+
 /// Around all corners, not the least one.
 template <int Dim>
 struct Sphere {
@@ -215,6 +219,18 @@ struct Sheets<Dim, Corners>::Search {
     });
   }
 
+  /// Is the simplex turned so little against the sheet at its ends that two of them are no corner
+  /// where they meet, for those who see them without the sheet? In 3D it is not asked.
+  bool stays_smooth(const Points& simplex, const Near& covering) const {
+    const auto is_little = [&](const Vector<Dim>& end) {
+      const Closest there = covering.closest(sheets, end);
+      const double cosine = dot(direction, sheets.direction_at(end, there));
+      return (sheets.parts_[there.part].two_sided ? std::abs(cosine) : cosine) >=
+             sheets.turn_at_ends_;
+    };
+    return Dim == 3 || std::all_of(simplex.begin(), simplex.end(), is_little);
+  }
+
   /// How close what is across a gap may be for it to matter.
   double reach(const Graph& graph) const {
     return graph.whole ? std::min(tolerance, 2 * graph.most_aside) : tolerance;
@@ -257,8 +273,10 @@ struct Sheets<Dim, Corners>::Search {
 template <int Dim, std::size_t Corners>
 Sheets<Dim, Corners>::Sheets(const std::vector<Part>& parts, double tolerance,
                              const std::vector<std::optional<Curved>>& curved,
-                             std::vector<Projection<Dim>> projection_of)
-    : tolerance_(tolerance), projection_of_(std::move(projection_of)) {
+                             std::vector<Projection<Dim>> projection_of, double ridge_turn)
+    : tolerance_(tolerance),
+      turn_at_ends_(std::cos(share_of_ridge * std::acos(ridge_turn))),
+      projection_of_(std::move(projection_of)) {
   divide(parts, curved);
   shape_of_.reserve(parts_.size());
   box_of_.reserve(parts_.size());
@@ -362,7 +380,7 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet,
            !search.is_across_gap(part, around.covering, sphere.centre);
   };
   facing.erase(std::remove_if(facing.begin(), facing.end(), is_joined), facing.end());
-  return search.covered(simplex, graph, around, 0);
+  return search.stays_smooth(simplex, around.covering) && search.covered(simplex, graph, around, 0);
 }
 
 template class Sheets<2, 2>;

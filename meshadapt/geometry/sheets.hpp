@@ -37,10 +37,11 @@ class Sheets {
 
   /// `curved` is what parts are curved into, nothing where they are flat; or empty if all are.
   /// `projection_of` is [sheet], empty where curved pieces are all that is known of it; or empty.
+  /// `ridge_turn` is the cosine of the angle from which on facets that meet make a ridge.
   /// Throws std::bad_alloc. Linear in the parts but for a logarithm.
   Sheets(const std::vector<Part>& parts, double tolerance,
          const std::vector<std::optional<Curved>>& curved = {},
-         std::vector<Projection<Dim>> projection_of = {});
+         std::vector<Projection<Dim>> projection_of = {}, double ridge_turn = 0.70710678118654752);
   ~Sheets();
   Sheets(const Sheets&) = delete;
   Sheets& operator=(const Sheets&) = delete;
@@ -56,7 +57,8 @@ class Sheets {
   /// simplex, where it is turned by less than 45 degrees against it? And is none that close to what
   /// faces the sheet, across a gap or a thin part of the domain, unless it is twice as close to the
   /// sheet? Says yes only if it is certain; where the sheet is the graph of a function over the
-  /// simplex, and nothing faces it closely, it always is.
+  /// simplex, and nothing faces it closely, it always is. In 2D, is it also turned by less than
+  /// nearly half of the angle of a ridge against the sheet at its ends, so that two such make none?
   /// Thread safety: any thread.
   bool cover(const Points& simplex, std::uint32_t sheet) const;
 
@@ -117,6 +119,7 @@ class Sheets {
   std::optional<typename Curved::Weights> weights_at(const Vector<Dim>& point,
                                                      const Closest& closest) const;
   Vector<Dim> on_model(const Vector<Dim>& point, const Closest& closest) const;
+  Vector<Dim> direction_at(const Vector<Dim>& point, const Closest& closest) const;
   Vector<Dim> on_sheet(const Vector<Dim>& point, const Vector<Dim>& model,
                        std::uint32_t sheet) const;
   std::optional<Nearest> nearest_of(const Vector<Dim>& point, double reach, auto&& is_wanted) const;
@@ -130,6 +133,7 @@ class Sheets {
   std::vector<Shape> shape_of_;   // [part]
   std::vector<Box<Dim>> box_of_;  // [part], read by itself most of the time
   double tolerance_;
+  double turn_at_ends_;                         // the least cosine there, in 2D
   std::vector<Projection<Dim>> projection_of_;  // [sheet], or empty
   std::unique_ptr<const Tree> tree_;
 };

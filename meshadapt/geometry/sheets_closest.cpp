@@ -68,6 +68,16 @@ Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Close
   return weights ? curved_[origin_of_[closest.part].curved].at(*weights) : closest.point;
 }
 
+/// Of a facet there: its unit normal, or what it counts as; or along the edge.
+template <int Dim, std::size_t Corners>
+Vector<Dim> Sheets<Dim, Corners>::direction_at(const Vector<Dim>& point,
+                                               const Closest& closest) const {
+  const auto weights = counts_as_turned(closest.part) ? std::nullopt : weights_at(point, closest);
+  if (!weights) return shape_of_[closest.part].direction;
+  const Curved& curved = curved_[origin_of_[closest.part].curved];
+  return direction_along<Dim, Corners>(curved.tangents(*weights));
+}
+
 /// The closest point of a sheet that is a function, if it is near the closest one of the model, and
 /// not beyond where the sheet ends: then that of this one.
 template <int Dim, std::size_t Corners>
@@ -154,6 +164,7 @@ auto Sheets<Dim, Corners>::nearest(const Vector<Dim>& point, const Vector<Dim>& 
 template std::optional<Sheets<2, 2>::Curved::Weights> Sheets<2, 2>::weights_at(
     const Vector<2>&, const Closest&) const;
 template Vector<2> Sheets<2, 2>::on_model(const Vector<2>&, const Closest&) const;
+template Vector<2> Sheets<2, 2>::direction_at(const Vector<2>&, const Closest&) const;
 template Vector<2> Sheets<2, 2>::on_sheet(const Vector<2>&, const Vector<2>&, std::uint32_t) const;
 template std::optional<Vector<2>> Sheets<2, 2>::closest(const Vector<2>&, std::uint32_t,
                                                         double) const;
@@ -165,6 +176,7 @@ template std::optional<Sheets<2, 2>::Nearest> Sheets<2, 2>::nearest(const Vector
 template std::optional<Sheets<3, 2>::Curved::Weights> Sheets<3, 2>::weights_at(
     const Vector<3>&, const Closest&) const;
 template Vector<3> Sheets<3, 2>::on_model(const Vector<3>&, const Closest&) const;
+template Vector<3> Sheets<3, 2>::direction_at(const Vector<3>&, const Closest&) const;
 template Vector<3> Sheets<3, 2>::on_sheet(const Vector<3>&, const Vector<3>&, std::uint32_t) const;
 template std::optional<Vector<3>> Sheets<3, 2>::closest(const Vector<3>&, std::uint32_t,
                                                         double) const;
@@ -173,6 +185,7 @@ template std::optional<Sheets<3, 2>::Nearest> Sheets<3, 2>::nearest(const Vector
                                                                     const Vector<3>&,
                                                                     std::span<const std::int32_t>,
                                                                     std::int32_t, double) const;
+template Vector<3> Sheets<3, 3>::direction_at(const Vector<3>&, const Closest&) const;
 template std::optional<Sheets<3, 3>::Curved::Weights> Sheets<3, 3>::weights_at(
     const Vector<3>&, const Closest&) const;
 template Vector<3> Sheets<3, 3>::on_model(const Vector<3>&, const Closest&) const;

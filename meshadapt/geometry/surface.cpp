@@ -49,9 +49,9 @@ class SurfaceMaker {
     }
     const auto on_patches = projections_of_patches(mesh_, options_.functions, reach());
     expect_on(on_patches);
-    return std::shared_ptr<const Surface<Dim>>(
-        new Surface<Dim>{{facet_parts, options_.tolerance, model.facets, on_patches},
-                         {edge_parts, options_.tolerance, edge_pieces, on_curves(on_patches)}});
+    return std::shared_ptr<const Surface<Dim>>(new Surface<Dim>{
+        {facet_parts, options_.tolerance, model.facets, on_patches, options_.least_turn},
+        {edge_parts, options_.tolerance, edge_pieces, on_curves(on_patches)}});
   }
 
  private:

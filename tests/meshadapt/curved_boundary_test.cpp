@@ -6,8 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <numbers>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "core/unit.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -274,6 +279,47 @@ TEST_P(CurvedBoundary, GivesTheSameBytesAtEachThreadCount) {
     EXPECT_EQ(first.mesh.edges.vertices, other.mesh.edges.vertices);
     EXPECT_EQ(first.mesh.triangles.vertices, other.mesh.triangles.vertices);
     EXPECT_EQ(first.mesh.tetrahedra.vertices, other.mesh.tetrahedra.vertices);
+  }
+}
+
+/// By how many degrees edges of one reference turn at most where they meet, in 2D.
+double greatest_turn(const AnyMesh& mesh, std::int32_t reference) {
+  std::map<std::uint32_t, std::vector<Vector<2>>> away;  // [vertex], along edges
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+    if (mesh.edges.reference[e] != reference) continue;
+    const auto [a, b] = mesh.edges.vertices[e];
+    const Vector<2> along = unit(test::point<2>(mesh, b) - test::point<2>(mesh, a));
+    away[a].push_back(along);
+    away[b].push_back(-1.0 * along);
+  }
+  double least = 1;
+  for (const auto& [vertex, edges] : away)
+    if (edges.size() == 2) least = std::min(least, -dot(edges[0], edges[1]));
+  return std::acos(least) * 180 / std::numbers::pi;
+}
+
+/// Arcs of ellipses, some as small as 4 tolerances, with sizes that change from call to call.
+TEST(CurvedBoundaries, AreSmoothForTheNextCallIfTheyWere) {
+  const Executor executor({.threads = 2});
+  test::Random random(4);
+  for (int trial = 0; trial < 12; ++trial) {
+    AnyMesh mesh = arc(2, 60, test::uniform(random, 1, 2.8));
+    const double flat = test::uniform(random, 0.6, 1);
+    for (std::size_t i = 1; i < mesh.coordinates.size(); i += 2) mesh.coordinates[i] *= flat;
+    AdaptOptions options;
+    options.make.ridge_angle = trial % 3 == 2 ? 30 : 45;
+    options.make.hausdorff_tolerance = 0.5 * flat * flat / test::uniform(random, 4, 13);
+    if (trial % 2 == 1) options.gradation = 1.5;
+    for (int call = 0; call < 6; ++call) {
+      SCOPED_TRACE("trial " + std::to_string(trial) + ", call " + std::to_string(call));
+      AnyField sizes{2, mesh.vertex_count(), {AnyField::Type::scalar}, {}, "sizes"};
+      const double front = test::uniform(random, -0.5, 1.5);
+      for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
+        sizes.values.push_back(0.1 + 0.4 * std::abs(test::point<2>(mesh, v)[0] - front));
+      mesh = adapt(executor, mesh, metric_of(sizes, mesh, {}), options).mesh;
+      for (const int reference : {1, 2})
+        EXPECT_LT(greatest_turn(mesh, reference), options.make.ridge_angle);
+    }
   }
 }
 
