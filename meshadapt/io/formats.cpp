@@ -9,6 +9,7 @@
 #include "msh_write.hpp"
 #include "spatial_mesh.hpp"
 #include "stl_write.hpp"
+#include "su2_read.hpp"
 #include "su2_write.hpp"
 #include "vtk_read.hpp"
 #include "vtk_write.hpp"
@@ -22,6 +23,10 @@ namespace fs = std::filesystem;
 
 MeshWithFields mesh_from_gmf(const FileBytes& bytes, Warnings* warnings) {
   return {read_gmf(bytes, warnings), {}};
+}
+
+MeshWithFields mesh_from_su2(const FileBytes& bytes, Warnings* warnings) {
+  return {read_su2(bytes, warnings), {}};
 }
 
 /// Of readers that know three coordinates only.
@@ -54,7 +59,7 @@ constexpr std::array rows{
               mesh_from<read_vtk>,
               write_vtk},
     FormatRow{
-        {".su2", "SU2, with markers by name", false, true, false}, nullptr, nullptr, write_su2},
+        {".su2", "SU2, with markers by name", true, true, false}, is_su2, mesh_from_su2, write_su2},
     FormatRow{{".stl", "STL, binary, the surface in 3D", false, true, false},
               nullptr,
               nullptr,
