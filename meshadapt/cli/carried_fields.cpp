@@ -38,7 +38,7 @@ std::vector<AnyField> apart(const AnyField& all, const std::vector<std::size_t>&
 /// A name that no field before has: with that of the file where there is one.
 std::string other_name(std::string name, const std::string& file,
                        const std::vector<std::string>& taken) {
-  while (std::find(taken.begin(), taken.end(), name) != taken.end()) name = file + "_" + name;
+  while (std::find(taken.begin(), taken.end(), name) != taken.end()) name.insert(0, file + "_");
   return name;
 }
 

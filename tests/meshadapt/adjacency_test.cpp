@@ -55,7 +55,9 @@ TYPED_TEST(AdjacencyTest, SaysWhatAllElementsHaveInCommon) {
       ASSERT_EQ(adjacency.on_region_boundary(e, i, {}), other == none);
       const ElementFacet there = adjacency.other_side({e, i});
       ASSERT_EQ(there.element, other);
-      if (other != none) ASSERT_EQ(adjacency.across(other, there.facet), e);
+      if (other != none) {
+        ASSERT_EQ(adjacency.across(other, there.facet), e);
+      }
       outside += other == none;
     }
   EXPECT_EQ(outside, facets_in<Dim>(mesh).size());
