@@ -16,9 +16,13 @@ namespace {
 
 std::size_t largest_request = 0;
 
-[[maybe_unused]] void* allocate(std::size_t size) {
+void* memory_or_null(std::size_t size) {
   largest_request = std::max(largest_request, size);
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
+  return std::malloc(size ? size : 1);
+}
+
+[[maybe_unused]] void* allocate(std::size_t size) {
+  if (void* memory = memory_or_null(size)) return memory;
   throw std::bad_alloc();
 }
 
@@ -33,6 +37,10 @@ std::size_t largest_request = 0;
 #ifndef DUCTILE_REQUESTS_UNSEEN
 void* operator new(std::size_t size) { return allocate(size); }
 void* operator new[](std::size_t size) { return allocate(size); }
+// By this std::stable_sort asks for memory.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return memory_or_null(size);
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
