@@ -50,4 +50,4 @@ for dim, n, finest in ((2, 60, 0.0005), (3, 8, 0.025)):
     expect(lost < most_lost.get((dim, ranks), 0.003), f"{dim}D: {lost} of the edges out of range")
     expect(parallel["worst"] > 0.5 * serial["worst"], f"{dim}D: the worst is {parallel['worst']}")
     ratio = parallel["cells"] / serial["cells"]
-    expect(abs(ratio - 1) < 0.03, f"{dim}D: {ratio} times as many cells")
+    expect(abs(ratio - 1) < 0.04, f"{dim}D: {ratio} times as many cells")
