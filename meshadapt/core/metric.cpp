@@ -82,8 +82,8 @@ Metric<Dim> logarithm(const Metric<Dim>& a) {
 
 namespace {
 
-/// In closed form: the rounding error of an eigenvalue of a logarithm, unlike that of a metric, is
-/// absolute, so small ones do not suffer from large ones.
+/// In closed form: the absolute rounding error of an eigenvalue of a logarithm, unlike that of a
+/// metric, is as harmless for small eigenvalues as for large ones.
 Metric<2> exponential_of(const Metric<2>& a) {
   const double mean = 0.5 * (a.m[0] + a.m[2]), half = 0.5 * (a.m[0] - a.m[2]), off = a.m[1];
   const double radius = std::sqrt(half * half + off * off);

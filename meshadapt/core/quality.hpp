@@ -90,10 +90,10 @@ struct ElementMetric {
   double scale = 0;  ///< mean over the corners, at most det(metric)^(1/Dim) (Minkowski)
 };
 
-/// The weighted mean of the metrics of some corners. A much denser corner decides alone. This
-/// extends the rule of the unstructured grid adaptation working group (Ibanez et al., Procedia Eng.
-/// 203, 2017). Equally dense corners have equal weights: if rounding chose one of them,
-/// neighbouring elements would be judged in different directions.
+/// The weighted mean of the metrics of some corners. A much denser corner decides alone. This is
+/// the rule of the unstructured grid adaptation working group (Ibanez et al., Procedia Eng. 203,
+/// 2017). Equally dense corners have equal weights: if rounding chose one of them, neighbouring
+/// elements would be judged in different directions.
 template <int Dim, std::size_t n>
 [[gnu::always_inline]] inline ElementMetric<Dim> mean_metric(
     const std::array<const Site<Dim>*, n>& corner) {

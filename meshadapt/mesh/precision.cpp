@@ -97,8 +97,8 @@ void PrecisionFinder::divide_by(std::int64_t mantissa, int decimals) {
                       in_smaller_units(mantissa, all_.decimals - decimals));
 }
 
-/// With a fixed number of decimals, the largest numbers have the most decimals; with a fixed number
-/// of digits, they have the most digits, and fewer decimals.
+/// With a fixed number of decimals, the largest numbers have as many decimals as all; with a fixed
+/// number of digits, as many digits as all, and fewer decimals.
 Precision PrecisionFinder::precision() const {
   Precision best;
   if (size_ == 0) return best;

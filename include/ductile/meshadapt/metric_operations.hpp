@@ -38,8 +38,9 @@ struct SizeBounds {
 /// Clamps the sizes 1/sqrt(eigenvalue) of every metric to the bounds, then shortens those that
 /// exceed the anisotropy; a metric within the bounds keeps its bits. An eigenvalue that is 0 up to
 /// rounding gets the largest size. Throws InputError if a bound on sizes is neither 0 nor from
-/// 1e-75 to 1e75, the smallest is above the largest, the anisotropy is below 1 or not finite, or a
-/// result is not a metric (see metric_of). Thread safety: one caller; runs on the executor.
+/// 1e-75 to 1e75, the smallest is above the largest, the anisotropy is below 1 or not finite, or an
+/// input is not a metric within the bounds (see metric_of). Thread safety: one caller; runs on the
+/// executor.
 template <int Dim>
 void bound_sizes(const runtime::Executor& executor, std::vector<Metric<Dim>>& metric_of,
                  const SizeBounds& bounds);

@@ -26,8 +26,9 @@ enum class Strategy : std::uint8_t {
                  ///< runs the items of a region, the last woken first; items that reach into
                  ///< another region wait for the next phase, whose cuts lie elsewhere
   in_order,      ///< in the order of the work, with the result of a plain loop over it. Items
-                 ///< neither wake others nor make things. An item may reach only what depends on
-                 ///< earlier items, and if it has no plan it never gets one later
+                 ///< neither wake others nor make things. The resources that an item
+                 ///< reaches may depend only on earlier items, and an item without a plan never
+                 ///< gets one later
   reservations,  ///< items reserve what they reach, in windows of the work; those that hold all of
                  ///< it are applied. The lowest priority() wins, or the first in a random order of
                  ///< the work. Level by level if the operator has level()

@@ -70,7 +70,7 @@ class ItemsByLevel {
   std::uint32_t lowest_ = 0;
 };
 
-/// Tests set it.
+/// Tests use `always`.
 enum class Sharing : std::uint8_t { where_faster, always };
 
 template <LevelledOperator Op>
