@@ -17,8 +17,8 @@ namespace ductile::meshadapt {
 /// other mesh. Throws InputError for inconsistent arrays.
 void flatten(AnyMesh& mesh, Warnings* warnings = nullptr);
 
-/// What a mesh of dimension 3 without tetrahedra contains instead, and what to do about it, as the
-/// end of a message; empty if it has no triangles.
+/// The end of a message about a mesh of dimension 3 without tetrahedra: its other contents and a
+/// remedy; empty if it has no triangles.
 std::string instead_of_tetrahedra(const AnyMesh& mesh);
 
 }  // namespace ductile::meshadapt

@@ -157,7 +157,7 @@ class Grouping {
       keys_of_(item, [&](std::uint32_t key) { visit(key, item); });
   }
 
-  /// Where the keys of one chunk from the items of another are recorded; before that, their number.
+  /// Start of the records of one chunk's keys from the items of another; before that, their number.
   std::uint32_t& noted_begin(std::size_t keys, std::size_t items) {
     return noted_begin_[keys * chunks_ + items];
   }

@@ -15,9 +15,7 @@ namespace ductile::meshadapt {
 struct Wording {
   std::string in_memory, in_file;
 
-  Wording(const char* both)
-      : Wording(std::string(both)) {}                                   // NOLINT: a text converts
-                                                                        // to a Wording
+  Wording(const char* both) : Wording(std::string(both)) {}             // NOLINT: a text is one
   Wording(const std::string& both) : in_memory(both), in_file(both) {}  // NOLINT: as above
   Wording(std::string memory, std::string file)
       : in_memory(std::move(memory)), in_file(std::move(file)) {}

@@ -119,7 +119,7 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
     if (table_[slot].load(std::memory_order_acquire) != nullptr) return;
     T* const fresh = new_elements(segment_size);
     T* expected = nullptr;
-    // Release pairs with the acquire in at(): whoever sees the segment sees it whole.
+    // Release pairs with the acquire in at(): a thread that sees the segment sees its contents.
     if (table_[slot].compare_exchange_strong(expected, fresh, std::memory_order_acq_rel)) {
       held_.fetch_add(segment_size, std::memory_order_relaxed);
     } else {

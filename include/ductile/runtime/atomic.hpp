@@ -70,7 +70,7 @@ class NumberWithLock {
    public:
     explicit Held(std::uint32_t& word) : word_(word) {
       constexpr int spins = 1000;  // after these the holder has probably lost its core
-      // Acquire pairs with the release of whoever held it before.
+      // Acquire pairs with the release by the previous holder.
       for (int tries = 0; (word_.fetch_or(held, std::memory_order_acquire) & held) != 0;
            tries += tries < spins)
         if (tries == spins) std::this_thread::yield();

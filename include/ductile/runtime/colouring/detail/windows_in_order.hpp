@@ -102,7 +102,7 @@ class WindowsRun {
     }
   }
 
-  /// Where the thread will probably be after a piece.
+  /// The probable next vertex of the thread after a piece.
   std::uint32_t after(const Window& piece) const {
     constexpr std::uint32_t near = 64;
     const auto threads = static_cast<std::uint32_t>(executor_.threads());
