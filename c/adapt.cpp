@@ -75,7 +75,7 @@ meshadapt::SolutionMetricOptions goal_of(const AnyMesh& mesh, const ductile_opti
       .gradation = options.adapt.gradation};
 }
 
-/// Of the C library's indices, which are signed.
+/// Throws unless entities can be counted by the C library's signed indices.
 void expect_signed(const AnyMesh& mesh) {
   constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
   if (mesh.vertex_count() > most || mesh.triangles.size() > most || mesh.tetrahedra.size() > most)

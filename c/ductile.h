@@ -1,14 +1,14 @@
 /** @file
- * Ductile from C, Fortran and all that can call C: a mesh is adapted so that its edges have the
- * lengths that a metric asks for. Plain arrays in and out; vertices are numbered from 0.
+ * Mesh adaptation for C, Fortran and all languages that can call C: gives the edges of a mesh the
+ * lengths that a metric asks for. Takes and returns plain arrays; vertices are numbered from 0.
  *
- * Functions that can fail return a code: DUCTILE_OK; DUCTILE_FAILED, as where memory runs out or
- * the caller has cancelled; DUCTILE_WRONG_INPUT, for arrays, names or files that are wrong. What
- * went wrong is the text of ductile_last_error(). Results are written only if all went well.
- * Nothing is printed. Handles belong to the caller, who destroys them. A handle that is NULL is
- * wrong input where a code is returned; elsewhere it has nothing: arrays and texts are NULL, counts
- * -1, the dimension 0. Thread safety: any thread; one handle may be read by several threads, and
- * changed by one while no other uses it.
+ * Functions that can fail return a code: DUCTILE_OK; DUCTILE_FAILED, for example if memory runs out
+ * or the caller has cancelled; DUCTILE_WRONG_INPUT, for invalid arrays, names or files.
+ * ductile_last_error() describes the failure. Results are written only on success. Nothing is
+ * printed. The caller owns handles and destroys them. A NULL handle is wrong input for functions
+ * that return a code; for others it is empty: arrays and texts are NULL, counts -1, the dimension
+ * 0. Thread safety: any thread; one handle may be read by several threads, and changed by one while
+ * no other uses it.
  */
 #ifndef DUCTILE_H
 #define DUCTILE_H
@@ -23,7 +23,7 @@ enum { DUCTILE_OK = 0, DUCTILE_FAILED = 1, DUCTILE_WRONG_INPUT = 2 };
 
 /** Kinds of entities. Elements are triangles in 2D and tetrahedra in 3D; facets, of the boundary
  * and of interfaces, are edges in 2D and triangles in 3D; ridges are edges in 3D, along curves.
- * What may be added to a kind: see ductile_transfer_carry(). */
+ * Modifiers of kinds: see ductile_transfer_carry(). */
 enum {
   DUCTILE_VERTICES = 0,
   DUCTILE_RIDGES = 1,
@@ -41,8 +41,8 @@ typedef struct ductile_transfer ductile_transfer;
 /** The version of the library, such as "0.2.0". */
 const char* ductile_version(void);
 
-/** What the last call on this thread that failed has to say, one line; never NULL. Entries of
- * arrays are counted from 0. Valid until the next call on this thread fails. */
+/** The error of the last call on this thread that failed, one line; never NULL. Entries of arrays
+ * are counted from 0. Valid until the next call on this thread fails. */
 const char* ductile_last_error(void);
 
 /* ---- Meshes ---- */
@@ -50,12 +50,12 @@ const char* ductile_last_error(void);
 /** An empty mesh of dimension 2 or 3. */
 int ductile_mesh_create(int dimension, ductile_mesh** mesh);
 
-/** Gives it `count` vertices, in place of all that it had except names: coordinates[vertex *
+/** Sets `count` vertices, replacing all contents except names: coordinates[vertex *
  * dimension + axis]; reference[vertex], or NULL for 0. Arrays are copied, here and below. */
 int ductile_mesh_set_vertices(ductile_mesh* mesh, int64_t count, const double* coordinates,
                               const int32_t* reference);
 
-/** Gives it elements, triangles in 2D and tetrahedra in 3D, in place of all cells that it had:
+/** Sets elements, triangles in 2D and tetrahedra in 3D, replacing all cells:
  * corners[element * (dimension + 1) + corner]; reference[element], or NULL for 0. The boundary, and
  * interfaces between elements of different references, become facets of reference 0. */
 int ductile_mesh_set_elements(ductile_mesh* mesh, int64_t count, const int32_t* corners,
@@ -72,34 +72,34 @@ int ductile_mesh_set_facets(ductile_mesh* mesh, int64_t count, const int32_t* co
 int ductile_mesh_set_facets_64(ductile_mesh* mesh, int64_t count, const int64_t* corners,
                                const int32_t* reference);
 
-/** The entities that must not change, by their indices, in place of those required before. `kind`
+/** Sets the required entities, by their indices, replacing those required before. `kind`
  * is DUCTILE_VERTICES, DUCTILE_FACETS or DUCTILE_ELEMENTS. */
 int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int32_t* indices);
 
-/** Calls what carries a reference by a name, such as "wall", or by none if that is "" or NULL.
- * Names stay where arrays are replaced, and in adapted meshes; files of formats that hold names
- * have them. There are no ridges in 2D. */
+/** Names the entities with a reference, such as "wall"; "" or NULL removes the name. Names stay
+ * when arrays are replaced, in adapted meshes, and in files whose format holds names. There are no
+ * ridges in 2D. */
 int ductile_mesh_set_name(ductile_mesh* mesh, int kind, int32_t reference, const char* name);
 /** The name of a reference, valid until the mesh is changed or destroyed; NULL if it has none. */
 const char* ductile_mesh_name(const ductile_mesh* mesh, int kind, int32_t reference);
-/** Name i, and what carries it unless that is NULL; NULL beyond the last. Files may name what the
- * mesh cannot have, as volumes in 2D; of such the kind is -1. */
+/** Name i, and its kind and reference unless these are NULL; NULL beyond the last. Files may name
+ * entities that the mesh cannot have, such as volumes in 2D; their kind is -1. */
 const char* ductile_mesh_name_at(const ductile_mesh* mesh, int64_t i, int* kind,
                                  int32_t* reference);
 
-/** Reads a file of any format that `ductile help` lists, which is seen by its content. */
+/** Reads a file of any format that `ductile help` lists, detected by content. */
 int ductile_mesh_read(const char* path, ductile_mesh** mesh);
-/** Writes a mesh in the format that the ending of `path` says. The metric of an adapted mesh goes
- * into those that hold fields, .vtu, .vtk and .msh. */
+/** Writes a mesh in the format of the ending of `path`. The metric of an adapted mesh goes into
+ * formats that hold fields: .vtu, .vtk and .msh. */
 int ductile_mesh_write(const ductile_mesh* mesh, const char* path);
 
-/** NULL is fine. */
+/** Destroys a mesh; NULL is allowed. */
 void ductile_mesh_destroy(ductile_mesh* mesh);
 
-/** 2 or 3; 0 of no mesh. */
+/** 2 or 3; 0 for NULL. */
 int ductile_mesh_dimension(const ductile_mesh* mesh);
 
-/** How many there are; -1 for an unknown kind. */
+/** Number of entities; -1 for an unknown kind. */
 int64_t ductile_mesh_count(const ductile_mesh* mesh, int kind);
 
 /** Arrays of the mesh, valid until it is changed or destroyed; NULL where there are none.
@@ -109,18 +109,18 @@ const double* ductile_mesh_coordinates(const ductile_mesh* mesh);
 const int32_t* ductile_mesh_corners(const ductile_mesh* mesh, int kind);
 /** [entity] */
 const int32_t* ductile_mesh_references(const ductile_mesh* mesh, int kind);
-/** Of an adapted mesh, the metric at its vertices, [vertex * components + component]: in 2D
- * m11 m12 m22, in 3D m11 m12 m22 m13 m23 m33. NULL of others. */
+/** The metric at the vertices of an adapted mesh, [vertex * components + component]: in 2D
+ * m11 m12 m22, in 3D m11 m12 m22 m13 m23 m33. NULL for other meshes. */
 const double* ductile_mesh_metric(const ductile_mesh* mesh);
 
 /* ---- Options ---- */
 
-/** Options that are all at their defaults. */
+/** Makes options with default values. */
 int ductile_options_create(ductile_options** options);
-/** Gives options back; NULL is none. */
+/** Destroys options; NULL is allowed. */
 void ductile_options_destroy(ductile_options* options);
 
-/** Sets one by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hgradreq",
+/** Sets an option by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hgradreq",
  * "hausd", "ar", "iterations", "threads", "memory" in megabytes, "elements", "norm"; "nomove",
  * "noswap", "noinsert", "nosurf", "A", "thorough" and "racing", which are 0 or 1. */
 int ductile_options_set(ductile_options* options, const char* name, double value);
@@ -134,49 +134,49 @@ int ductile_options_set_progress(ductile_options* options, ductile_progress prog
 
 /* ---- Curved boundaries, with the option "hausd" ---- */
 
-/** The closest point of a surface, in 2D a curve, to a point that is near it; both have three
- * coordinates, of which the third is 0 in 2D. Surfaces may go on beyond their ridges: a cylinder
- * need not end. Must tell the same whenever it is asked. Called by several threads at a time, also
- * by such that the caller has not made; must not throw or jump. Returns 0 if it fails, which ends
- * the call that it was needed for with DUCTILE_FAILED. */
+/** Computes the closest point of a surface, in 2D a curve, to a nearby point; both have three
+ * coordinates, the third 0 in 2D. Surfaces may extend beyond their ridges: a cylinder need not end.
+ * Must be deterministic. Called by several threads at a time, including ones that the caller has
+ * not made; must not throw or jump. Returns 0 on failure, which ends the call that needed it with
+ * DUCTILE_FAILED. */
 typedef int (*ductile_surface)(const double* point, double* closest, void* context);
-/** Says that facets of a reference lie on a surface: new and moved vertices are put on it. Ridges
- * are those of the mesh; where two such surfaces meet, or one and a flat side, points go to both.
- * In place of what was set for the reference; NULL is none. */
+/** Sets the surface of the facets with a reference: new and moved vertices are put on it. Ridges
+ * are those of the mesh; where two such surfaces meet, or one and a flat side, points lie on both.
+ * Replaces the previous surface of the reference; NULL removes it. */
 int ductile_options_set_surface(ductile_options* options, int32_t reference,
                                 ductile_surface surface, void* context);
 
-/** What the curved boundaries of a mesh are like, taken once and kept while meshes of the domain
- * come and go. Of the options "hausd", which must be above 0, "ar", "threads" and surfaces are
- * used; what surfaces use must live as long. */
+/** Makes a model of the curved boundaries of a mesh, for many meshes of the domain. Uses the
+ * options "hausd", which must be above 0, "ar", "threads" and surfaces, whose contexts must outlive
+ * the geometry. */
 int ductile_geometry_create(const ductile_mesh* mesh, const ductile_options* options,
                             ductile_geometry** geometry);
-/** NULL is fine. Options that have it keep what they need. */
+/** Destroys a geometry; NULL is allowed. Options that use it keep what they need. */
 void ductile_geometry_destroy(ductile_geometry* geometry);
-/** Has curved boundaries measured from a geometry, not from the mesh that is adapted, with the
- * "hausd" and the surfaces of the geometry in place of those set before; NULL is none. */
+/** Measures curved boundaries from a geometry instead of the adapted mesh, with the "hausd" and the
+ * surfaces of the geometry, which replace those set before; NULL removes it. */
 int ductile_options_set_geometry(ductile_options* options, const ductile_geometry* geometry);
-/** The closest points of a geometry, nearly, that are within `reach` of `count` points, and the
+/** Approximate closest points of a geometry within `reach` of `count` points, and the
  * unit normals and references there, unless these are NULL: points[point * dimension + axis], the
  * same of closest and normals. NaN and 0 where there is none. */
 int ductile_geometry_closest(const ductile_geometry* geometry, int64_t count, const double* points,
                              double reach, double* closest, double* normals, int32_t* references);
 
-/* ---- Sizes by places, without tensors. Where several hold, the finest one does ---- */
+/* ---- Sizes by places, without tensors. The finest of several wins ---- */
 
-/** For meshes of dimension 2 or 3. */
+/** Makes empty sizes, for meshes of dimension 2 or 3. */
 int ductile_sizes_create(int dimension, ductile_sizes** sizes);
-/** Gives sizes back; NULL is none. */
+/** Destroys sizes; NULL is allowed. */
 void ductile_sizes_destroy(ductile_sizes* sizes);
 
-/** Sets a number by its name. "default" is the size where nothing finer is asked for, by default
- * the extent of the mesh; "hmin" and "hmax" are bounds that hold in the end. Others are of the
- * places that are added from then on: from each the size grows by the factor "grow" per unit of
- * metric length, 1.3 unless it is set, 0 for not at all; up to "largest", which is then asked for
- * at most, 0 for without end; or evenly to that over "distance", if it is above 0. */
+/** Sets a number by its name. "default" is the size where nothing finer applies, by default the
+ * extent of the mesh; "hmin" and "hmax" are bounds, applied last. The others apply to places added
+ * afterwards, whose size grows by the factor "grow" per unit of metric length (default 1.3, 0: not
+ * at all), up to "largest" (0: without end), or linearly to that over "distance" if it is above
+ * 0. */
 int ductile_sizes_set(ductile_sizes* sizes, const char* name, double value);
 
-/** Asks for a size in a ball, with the radius 0 at a point. Places are counted from 0 in errors. */
+/** Sets a size in a ball; radius 0 is a point. Places are counted from 0 in errors. */
 int ductile_sizes_near_ball(ductile_sizes* sizes, const double* centre, double radius, double size);
 /** The same in a box between two opposite corners. */
 int ductile_sizes_near_box(ductile_sizes* sizes, const double* low, const double* high,
@@ -199,21 +199,21 @@ int ductile_sizes_at(const ductile_sizes* sizes, const ductile_mesh* mesh, doubl
 
 /* ---- Adaptation ---- */
 
-/** The metric, in the order of ductile_mesh_metric(), in which linear interpolation of a solution
- * has the smallest error that about "elements" elements allow, an option that must be set, in the
+/** Computes the metric, in the order of ductile_mesh_metric(), in which linear interpolation of a
+ * solution has the smallest error for about "elements" elements, an option that must be set, in the
  * norm L^"norm" (2 by default); within "hmin", "hmax" and "hgrad". values[vertex * components +
  * component]: the metric suits all components. */
 int ductile_solution_metric(const ductile_mesh* mesh, int components, const double* values,
                             const ductile_options* options, double* metric);
 
-/** Adapts a mesh. `components` says what the metric has at each vertex: 1, the size wanted; 3 in
- * 2D, 6 in 3D, a symmetric tensor in the order above; 4 in 2D, 9 in 3D, a full matrix. NULL for
- * `metric`: the sizes that the mesh has. NULL for `options`: the defaults. */
+/** Adapts a mesh. `components` is the size of the metric at each vertex: 1, a size; 3 in 2D, 6 in
+ * 3D, a symmetric tensor in the order above; 4 in 2D, 9 in 3D, a full matrix. NULL for `metric`:
+ * the sizes of the mesh. NULL for `options`: the defaults. */
 int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric,
                   const ductile_options* options, ductile_mesh** adapted);
 
-/** Adapts a mesh to sizes, and the result again while its vertices show sizes that those before did
- * not, at most five times in all; once with "hausd". */
+/** Adapts a mesh to sizes, and the result again while sizes evaluated on it are finer than before,
+ * at most five times in all; once with "hausd". */
 int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
                            const ductile_options* options, ductile_mesh** adapted);
 
@@ -225,24 +225,24 @@ const char* ductile_mesh_warning(const ductile_mesh* adapted, int64_t i);
 
 /* ---- From one mesh to another ---- */
 
-/** How the mesh `after` lies in `before`, from which it was made. Refers to both: they must not be
+/** Locates the mesh `after` in `before`, from which it was made. Refers to both: they must not be
  * changed or destroyed before it is. */
 int ductile_transfer_create(const ductile_mesh* before, const ductile_mesh* after,
                             ductile_transfer** transfer);
-/** Gives a transfer back; NULL is none. */
+/** Destroys a transfer; NULL is allowed. */
 void ductile_transfer_destroy(ductile_transfer* transfer);
 
-/** For each vertex, facet or element of `after` the index of what is the same in `before`: a vertex
- * at the same place, what has the same vertices; -1 where there is none. NULL for other kinds. */
+/** For each vertex, facet or element of `after` the index in `before` of the vertex at the same
+ * position or of the entity with the same vertices; -1 if none. NULL for other kinds. */
 const int32_t* ductile_transfer_origins(const ductile_transfer* transfer, int kind);
-/** For each vertex of `after` the element of `before` in which it lies, or which is closest. */
+/** For each vertex of `after` the element of `before` that contains it, or the closest. */
 const int32_t* ductile_transfer_hosts(const ductile_transfer* transfer);
 /** Its barycentric weights there, [vertex * (dimension + 1) + corner]. */
 const double* ductile_transfer_weights(const ductile_transfer* transfer);
 
-/** Carries values, [entity * components + component], to `result`, which has room for those of
+/** Transfers values, [entity * components + component], to `result`, which has room for those of
  * `after`. `how` is DUCTILE_VERTICES, values at vertices, linear in each element, or
- * DUCTILE_ELEMENTS, values on elements; plus DUCTILE_CONSERVATIVE to keep integrals where both
+ * DUCTILE_ELEMENTS, values on elements; plus DUCTILE_CONSERVATIVE to keep integrals if both
  * meshes cover the same domain. */
 int ductile_transfer_carry(const ductile_transfer* transfer, int how, int components,
                            const double* values, double* result);

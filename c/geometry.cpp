@@ -1,5 +1,5 @@
 /// @file
-/// What curved boundaries are like, for ductile.h: a geometry, and surfaces that are functions.
+/// Curved boundaries for ductile.h: a geometry, and surfaces given by functions.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 /// @file
-/// What stands behind the handles of ductile.h, and how exceptions become codes.
+/// The objects behind the handles of ductile.h, and the conversion of exceptions to codes.
 #pragma once
 
 #include <cstdint>

@@ -43,7 +43,7 @@ void expect_count(std::int64_t count, const char* name) {
                      " entries, found " + std::to_string(count));
 }
 
-/// What cells are given as; `each` corners.
+/// The caller's cells, with `each` corners.
 template <class Index>
 struct GivenCells {
   std::int64_t count;

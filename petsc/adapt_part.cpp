@@ -17,7 +17,7 @@ using runtime::Executor;
 
 namespace {
 
-/// Adds the indices of those that have one of some references.
+/// Adds the indices of entities that have one of these references.
 void add_with(std::vector<std::uint32_t>& indices, const std::vector<std::int32_t>& reference_of,
               const std::vector<std::int32_t>& references) {
   if (references.empty()) return;
@@ -26,7 +26,8 @@ void add_with(std::vector<std::uint32_t>& indices, const std::vector<std::int32_
       indices.push_back(i);
 }
 
-/// Requires what must stay, and marks the vertices among it by references: their index, plus 1.
+/// Requires entities that must stay, and marks vertices among them by references: their index plus
+/// 1.
 template <int Dim>
 AnyMesh with_required(const Part& part, const Interfaces& interfaces,
                       const AdaptPartOptions& options) {
@@ -57,7 +58,7 @@ AnyField mapped(const Executor& executor, const AnyField& field,
   return meshadapt::symmetric_field(executor, tensor_of, field.name);
 }
 
-/// What is wanted at the vertices of another mesh of the same part.
+/// Interpolates the target metric to the vertices of another mesh of the same part.
 template <int Dim>
 AnyField wanted_on(const Executor& executor, const Part& part, const AnyMesh& mesh) {
   const AnyField logarithms = mapped<Dim>(executor, part.wanted, meshadapt::logarithm<Dim>);
@@ -65,7 +66,7 @@ AnyField wanted_on(const Executor& executor, const Part& part, const AnyMesh& me
   return mapped<Dim>(executor, carried.field, meshadapt::exponential<Dim>);
 }
 
-/// Gives vertices that were marked the numbers and labels that they had, others none.
+/// Restores the numbers and labels of marked vertices; the others get none.
 void restore_vertices(const Part& before, Part& after, Interfaces& interfaces) {
   std::vector<VertexId> now(before.mesh.vertex_count(), meshadapt::none);
   after.number_of.assign(after.mesh.vertex_count(), -1);

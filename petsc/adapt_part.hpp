@@ -1,5 +1,5 @@
 /// @file
-/// adapt_part: adapts what one rank has, with the interfaces as they are.
+/// adapt_part: adapts the part of one rank and keeps its interfaces.
 #pragma once
 
 #include <cstdint>
@@ -13,30 +13,30 @@
 namespace ductile::petsc {
 
 struct AdaptPartOptions {
-  meshadapt::AdaptOptions adapt = {};  ///< required_gradation holds at interfaces
-  /// References of facets, and of elements, that stay as they are; ascending.
+  meshadapt::AdaptOptions adapt = {};  ///< required_gradation applies at interfaces
+  /// References of facets, and of elements, to be kept unchanged; ascending.
   std::vector<std::int32_t> required_facets = {}, required_elements = {};
 };
 
 struct AdaptedPart {
-  Part part;              ///< numbers are those of before, or -1 of new vertices
+  Part part;              ///< numbers are the old ones, or -1 for new vertices
   Interfaces interfaces;  ///< the shared vertices, in the new part; no facets
   meshadapt::AdaptReport report;
 };
 
-/// Lists the facets that are on the part's boundary, or between references, without a label. An
-/// empty part stays as it is.
+/// Lists the facets on the part's boundary, or between references, that have no label. Keeps an
+/// empty part as it is.
 void list_boundary(const runtime::Executor& executor, Part& part);
 
-/// Adapts a part that lists its boundary to the metric that it wants, with shared vertices and
-/// facets required, vertices that have a label, and what the options require. What is wanted at the
-/// new vertices is interpolated, by logarithms, from the part before: what is adapted to near
-/// interfaces is another, which goes over into the sizes that these have. Throws as adapt() does.
+/// Adapts a part that lists its boundary to its target metric. Shared vertices and facets, labelled
+/// vertices, and entities required by the options are kept. The target at new vertices is
+/// interpolated from the old part by logarithms; near interfaces the mesh is adapted to a modified
+/// metric that blends into the sizes there. Throws as adapt() does.
 template <int Dim>
 AdaptedPart adapt_part(const runtime::Executor& executor, Part part, const Interfaces& interfaces,
                        const AdaptPartOptions& options);
 
-/// What is wanted, made finer at curved boundaries, see bound_at_curved_boundaries().
+/// The target metric refined at curved boundaries, see bound_at_curved_boundaries().
 template <int Dim>
 AnyField bound_at_curves(const runtime::Executor& executor, const Part& part,
                          const Interfaces& interfaces, const AdaptPartOptions& options);

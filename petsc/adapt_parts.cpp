@@ -21,7 +21,7 @@ using runtime::Executor;
 
 namespace {
 
-/// A mesh between two passes.
+/// A distributed mesh between two passes.
 template <int Dim>
 class Parts {
  public:
@@ -59,11 +59,12 @@ class Parts {
   }
 
  private:
-  static constexpr double beforehand = 1.2, at_the_end = 1.05;  // the imbalance that may be
-  static constexpr double much_too_fine = 1.75;  // elements over those that are wanted
-  static constexpr int layers = 3;               // around what was held, that are adapted with it
+  static constexpr double beforehand = 1.2, at_the_end = 1.05;  // accepted imbalance
+  static constexpr double much_too_fine = 1.75;  // ratio of elements to target elements
+  static constexpr int layers = 3;               // layers around held entities that are adapted
+                                                 // with them
 
-  /// What was done since the last phase ended is this phase's.
+  /// Attributes the costs since the last phase ended to this phase.
   void end(Phase phase) {
     const Costs now = comm_.costs();
     Costs& costs = costs_[static_cast<std::size_t>(phase)];
@@ -72,7 +73,7 @@ class Parts {
     before_ = now;
   }
 
-  /// Of all ranks, since they were taken last.
+  /// Costs of all ranks since the last call.
   std::array<Costs, phase_count> take_costs() {
     std::vector<std::int64_t> all;
     for (const Costs& costs : costs_) {
@@ -91,7 +92,7 @@ class Parts {
     if (comm_.size() > 1) interfaces_ = petsc::find_interfaces<Dim>(comm_, part_);
   }
 
-  /// Boundaries are measured from what they are now, in all passes and on all ranks.
+  /// Makes the geometry from the current boundaries, for all passes and ranks.
   void find_geometry() {
     auto& make = options_.adapt.make;
     if (comm_.size() == 1 || make.geometry || make.hausdorff_tolerance == 0 || make.lock_boundary)
@@ -101,7 +102,7 @@ class Parts {
     end(Phase::balance);
   }
 
-  /// What is wanted keeps the sizes and the growth that the options allow, across ranks, too.
+  /// Applies the options' limits on sizes and growth to the target, across ranks too.
   void limit_sizes() {
     if (comm_.size() == 1) return;
     const bool at_curves = bounds_curved_sizes(options_.adapt);
@@ -113,15 +114,15 @@ class Parts {
     end(Phase::gradation);
   }
 
-  /// Interfaces everywhere, as between parts of every second element, leave nothing to adapt and
-  /// nowhere to displace them.
+  /// Are interfaces everywhere, as between parts of every second element? Then nothing can be
+  /// adapted, and interfaces cannot be displaced.
   bool is_scattered() const {
     const auto sums = comm_.sums({static_cast<std::int64_t>(interfaces_.facets.size()),
                                   static_cast<std::int64_t>(part_.element_count())});
     return 4 * sums[0] > sums[1];  // facets count on both sides
   }
 
-  /// Unless loads differ by less than is accepted. Returns whether elements have moved.
+  /// Redistributes elements unless the imbalance is accepted. Returns whether elements have moved.
   bool share_out(Displaced displaced, double accepted) {
     if (comm_.size() == 1) return false;
     const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(part_); });
@@ -131,7 +132,7 @@ class Parts {
     return true;
   }
 
-  /// To the next places of planes.
+  /// Moves the planes to their next position.
   void displace() {
     constexpr std::array places{Displaced::not_at_all, Displaced::forth, Displaced::back};
     share_out(places[++times_displaced_ % places.size()], 0);
@@ -140,8 +141,8 @@ class Parts {
     limit_sizes();
   }
 
-  /// Are most elements to go? Interfaces keep the sizes that the mesh came with, so that most
-  /// elements would be next to them in the end.
+  /// Will most elements be removed? Interfaces keep their sizes, so most elements would end up next
+  /// to them.
   bool is_much_too_fine() const {
     if (comm_.size() == 1 || !options_.adapt.insert) return false;
     const auto load_of = comm_.on_all([&] { return predicted_elements<Dim>(part_); });
@@ -150,14 +151,14 @@ class Parts {
     return static_cast<double>(sums[0]) > much_too_fine * static_cast<double>(sums[1]);
   }
 
-  /// Collapses most of what is too short. What is left of it at these interfaces goes in the first
-  /// pass, in which they are elsewhere.
+  /// Collapses most short edges. The rest, at these interfaces, is removed in the first pass, in
+  /// which interfaces are elsewhere.
   void coarsen() {
     AdaptPartOptions options = options_;
     options.adapt.approach_only = true;
     options.adapt.iterations = 1;
     options.adapt.swap = options.adapt.move = false;
-    // What is wanted is limited already, and is adapted to later.
+    // The target is limited already, and is reached later.
     options.adapt.gradation = options.adapt.required_gradation = 0;
     options.adapt.curved_sizes = false;
     take(comm_.on_all([&] { return adapt_part<Dim>(executor_, part_, interfaces_, options); }));
@@ -182,7 +183,7 @@ class Parts {
     const EdgesAtInterfaces edges = comm_.on_all([&] {
       auto at_interfaces = edges_at_interfaces<Dim>(part_, interfaces_);
       part_.is_held = std::move(at_interfaces.is_at_blocked);
-      // Interfaces of later passes are where the first pass has adapted.
+      // Interfaces of later passes lie where the first pass has adapted.
       if (pass == 1)
         for (const SharedVertex& shared : interfaces_.vertices) part_.is_held[shared.vertex] = 1;
       return at_interfaces;
@@ -203,9 +204,9 @@ class Parts {
             {}};
   }
 
-  /// A second pass always is: the interfaces of the first were there before. Without insertion no
-  /// more can be done to what is blocked; and a few edges, or as many as before, are so on any
-  /// mesh.
+  /// Is another pass worthwhile? A second pass always is, because the interfaces of the first come
+  /// from the input. Without insertion, blocked edges cannot improve; and any mesh has a few of
+  /// them, or as many as before.
   bool is_worthwhile(const PassReport& report, std::int64_t before) const {
     const auto& [insert, swap, move] =
         std::tie(options_.adapt.insert, options_.adapt.swap, options_.adapt.move);

@@ -1,8 +1,7 @@
 /// @file
-/// adapt_parts: adapts a mesh that is distributed over ranks. Each pass adapts all parts at once,
-/// with the interfaces between them as they are and sizes that go over into theirs; then the
-/// interfaces are displaced, so that what was held is adapted in the next pass. At the end elements
-/// are shared out anew.
+/// adapt_parts: adapts a mesh distributed over ranks. Each pass adapts all parts at once, keeping
+/// the interfaces between them and blending sizes into theirs; then the interfaces are displaced,
+/// so that the next pass adapts what was held. At the end elements are redistributed.
 #pragma once
 
 #include <array>
@@ -21,45 +20,44 @@
 
 namespace ductile::petsc {
 
-/// What passes consist of.
+/// The phases of a pass.
 enum class Phase : std::uint8_t { balance, migration, gradation, adaptation };
 inline constexpr std::size_t phase_count = 4;
 
-/// How the mesh stands after a pass; figures of all ranks.
+/// State of the mesh after a pass; figures over all ranks.
 struct PassReport {
   int pass = 0;  ///< from 1
   std::int64_t elements = 0;
   std::int64_t edges = 0;    ///< around shared vertices
-  std::int64_t blocked = 0;  ///< of these, far from what is wanted (see EdgesAtInterfaces)
-  double imbalance = 1;      ///< the largest number of elements of a rank over the mean
+  std::int64_t blocked = 0;  ///< of these, far from the target length (see EdgesAtInterfaces)
+  double imbalance = 1;      ///< largest number of elements of a rank divided by the mean
   double seconds = 0;        ///< of this pass, on the slowest rank
-  /// [phase] Of all ranks together, since the last pass.
+  /// [phase] Costs of all ranks since the last pass.
   std::array<Costs, phase_count> costs = {};
 };
 
-/// The required_gradation at interfaces: sizes go over into theirs within a few elements. With less
-/// there are many elements of those sizes to be replaced in the next pass; without any limit, poor
-/// ones along the interface are tried again and again, for nothing.
+/// The required_gradation at interfaces: sizes blend into theirs within a few elements. A smaller
+/// value leaves many elements of those sizes to be replaced in the next pass; without a limit,
+/// kernels try in vain to improve poor elements along the interface.
 inline constexpr double gradation_at_interfaces = 60;
 
 struct AdaptPartsOptions : AdaptPartOptions {
-  int passes = 3;                                    ///< at most; at least one is made
+  int passes = 3;                                    ///< at most; at least one
   std::function<void(const PassReport&)> told = {};  ///< called after each pass, on all ranks
 };
 
-/// A distributed mesh that may be made something else of.
+/// An adapted mesh, distributed.
 struct AdaptedParts {
   Part part;  ///< numbered in the order of the ranks; lists its boundary
   Interfaces interfaces;
-  std::int64_t own = 0;  ///< vertices that this rank has numbered
+  std::int64_t own = 0;  ///< number of vertices that this rank has numbered
   std::vector<PassReport> passes;
   std::array<Costs, phase_count> last = {};  ///< after the last pass
   meshadapt::Warnings warnings = {};         ///< of adapt() on all ranks, see warnings_of_ranks()
 };
 
-/// Adapts the part of each rank. On one rank the result is that of adapt(). The same number of
-/// ranks gives the same result, whatever the number of threads. What goes wrong on one rank is
-/// thrown on all, as Error. Collective.
+/// Adapts the part of each rank. On one rank the result is that of adapt(). It depends on the
+/// number of ranks, not of threads. A failure on one rank is thrown on all, as Error. Collective.
 template <int Dim>
 AdaptedParts adapt_parts(const Communicator& comm, const runtime::Executor& executor, Part part,
                          const AdaptPartsOptions& options);

@@ -19,7 +19,7 @@ namespace ductile::petsc {
 
 namespace {
 
-/// A line for each pass, on the first rank.
+/// Prints a line for each pass on the first rank.
 void tell(MPI_Comm comm, const PassReport& pass) {
   check(PetscPrintf(
       comm,
@@ -29,7 +29,7 @@ void tell(MPI_Comm comm, const PassReport& pass) {
       static_cast<long long>(pass.edges), pass.imbalance, pass.seconds));
 }
 
-/// Of those that the first rank has.
+/// Prints warnings, which the first rank has.
 void warn(const meshadapt::Warnings& warnings) {
   for (const std::string& warning : warnings)
     std::fprintf(PETSC_STDERR, "ductile: warning: %s\n", warning.c_str());

@@ -1,5 +1,5 @@
 /// @file
-/// adapt_plex: what DMAdaptMetric() and DMAdaptLabel() call.
+/// adapt_plex: the adaptor behind DMAdaptMetric() and DMAdaptLabel().
 #pragma once
 
 #include <petscdmplex.h>
@@ -7,8 +7,8 @@
 namespace ductile::petsc {
 
 /// Adapts a DMPlex to a metric, or by the flags of the first label if there is no metric. The
-/// labels are those of facets and of cells that are to be kept; they may be null. Returns the code
-/// of an error, the same on all ranks. Collective; it never throws.
+/// labels of facets and of cells to be kept may be null. Returns an error code, the same on all
+/// ranks; never throws. Collective.
 PetscErrorCode adapt_plex(DM dm, Vec metric, DMLabel facets, DMLabel cells, DM* adapted);
 
 }  // namespace ductile::petsc

@@ -14,7 +14,7 @@ using meshadapt::none;
 
 namespace {
 
-/// Adds a vertex of one part to another. Returns its number there.
+/// Copies a vertex to another part. Returns its number there.
 template <int Dim>
 VertexId add_vertex(Part& to, const Part& from, VertexId v) {
   const auto tensor =
@@ -27,7 +27,7 @@ VertexId add_vertex(Part& to, const Part& from, VertexId v) {
   return static_cast<VertexId>(to.wanted.vertex_count++);
 }
 
-/// A part in which elements, facets and edges of another are put, with the vertices that they have.
+/// Copies elements, facets and edges with their vertices from one part to another.
 template <int Dim>
 class Taking {
  public:
@@ -41,7 +41,7 @@ class Taking {
                                                   elements.reference[e]);
   }
 
-  /// Facets, or in 3D edges.
+  /// Copies facets or, in 3D, edges.
   template <int Corners>
   void add_listed(const AnyMesh& mesh, const meshadapt::Cells<Corners>& cells, auto&& is_taken) {
     const std::vector<Marks> marks = marks_of(mesh, cells);
@@ -50,9 +50,9 @@ class Taking {
         list(to_.mesh, there(cells.vertices[i]), cells.reference[i], marks[i]);
   }
 
-  /// Its number there, or none.
+  /// The number of a vertex in the new part, or none.
   VertexId now(VertexId v) const { return now_[v]; }
-  /// Says that a vertex is there already.
+  /// Sets the number of a vertex that is already there.
   void set(VertexId v, VertexId is) { now_[v] = is; }
 
  private:
@@ -70,7 +70,7 @@ class Taking {
   std::vector<VertexId> now_;  // [vertex of from]
 };
 
-/// One part as two, of which the second is adapted, and put together again.
+/// Splits a part in two, adapts the second and joins them again.
 template <int Dim>
 class Zone {
  public:
@@ -96,7 +96,7 @@ class Zone {
   }
 
  private:
-  /// Facets and edges between the two go with the inner one.
+  /// Splits the part. Facets and edges on the border go with the inner part.
   void divide() {
     const AnyMesh& mesh = part_.mesh;
     for (const bool inside : {true, false}) {
@@ -116,7 +116,7 @@ class Zone {
     }
   }
 
-  /// What the inner part shares with the outer one or with other ranks.
+  /// Finds what the inner part shares with the outer one or with other ranks.
   void find_required() {
     std::vector<VertexId> was(inner_.number_of.size(), none);  // [inner vertex]
     for (VertexId v = 0; v < part_.number_of.size(); ++v)
@@ -147,7 +147,7 @@ class Zone {
     }
   }
 
-  /// The outer part with what came out of the inner one.
+  /// Joins the outer part and the adapted inner one.
   AdaptedPart joined(AdaptedPart adapted) {
     Taking<Dim> taking(outer_, adapted.part);
     const auto& required = adapted.interfaces.vertices;
@@ -175,7 +175,7 @@ class Zone {
   meshadapt::VertexElements around_;
   Part outer_, inner_;
   Taking<Dim> to_outer_, to_inner_;
-  Interfaces required_;                 // of the inner part
+  Interfaces required_;                 // in the inner part
   std::vector<VertexId> was_required_;  // [required vertex], in the whole part
 };
 

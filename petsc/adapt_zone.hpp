@@ -1,6 +1,6 @@
 /// @file
-/// adapt_zone: adapts some of a part's elements and leaves the others. From the second pass on only
-/// what is near the last interfaces has to be done.
+/// adapt_zone: adapts some elements of a part and keeps the others. From the second pass on, only
+/// the surroundings of the previous interfaces need adapting.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,7 @@
 
 namespace ductile::petsc {
 
-/// As adapt_part() of the elements that `is_held` marks, with what they share with others required
-/// too.
+/// adapt_part() for the elements that `is_held` marks; what they share with others is required too.
 template <int Dim>
 AdaptedPart adapt_zone(const runtime::Executor& executor, const Part& part,
                        const Interfaces& interfaces, const std::vector<std::uint8_t>& is_held,

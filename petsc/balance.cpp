@@ -22,7 +22,7 @@ std::int64_t in_thousandths(const std::vector<double>& load_of) {
   return sum;
 }
 
-/// Area in 2D.
+/// Volume of an element; area in 2D.
 template <int Dim>
 double volume(const AnyMesh& mesh, const meshadapt::Corners<Dim>& corners) {
   std::array<meshadapt::Vector<Dim>, Dim> edge;
@@ -40,7 +40,7 @@ double volume(const AnyMesh& mesh, const meshadapt::Corners<Dim>& corners) {
            6;
 }
 
-/// Which rank gets which part: the pairs with most elements that stay come first.
+/// Assigns parts to ranks, starting with the pairs that keep most elements.
 std::vector<int> ranks_of_parts(const Communicator& comm, const std::vector<int>& part_of) {
   const auto ranks = static_cast<std::size_t>(comm.size());
   std::vector<std::int64_t> stays(ranks * ranks, 0);
@@ -62,7 +62,7 @@ std::vector<int> ranks_of_parts(const Communicator& comm, const std::vector<int>
   return rank_of;
 }
 
-/// Parts of equal load in the order of the elements, which are where bisection leaves one empty.
+/// Parts of equal load in the order of the elements, used if bisection leaves a part empty.
 std::vector<int> parts_in_order(const Communicator& comm, const std::vector<double>& load_of) {
   const std::int64_t own = in_thousandths(load_of), before = comm.sum_before(own);
   const auto all = static_cast<double>(std::max<std::int64_t>(1, comm.sum(own)));
@@ -88,7 +88,7 @@ bool leaves_one_empty(const Communicator& comm, const std::vector<int>& part_of)
 template <int Dim>
 std::vector<double> predicted_elements(const Part& part) {
   if (part.element_count() == 0) return {};
-  constexpr double elements_of_one = Dim == 2 ? 2.35 : 11;  // as complexity_of_elements() has it
+  constexpr double elements_of_one = Dim == 2 ? 2.35 : 11;  // see complexity_of_elements()
   constexpr double at_least = 0.1;
   const auto& elements = meshadapt::elements_in<Dim>(part.mesh).vertices;
   std::vector<double> density_of(part.mesh.vertex_count());

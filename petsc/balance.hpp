@@ -1,5 +1,5 @@
 /// @file
-/// Balance: elements are shared out so that each rank has about as much to do.
+/// Load balance: distributes elements so that each rank has about equal work.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 namespace ductile::petsc {
 
-/// How many elements each element is going to be, by the metric that is wanted; at least a tenth,
-/// because elements that go are work, too. None of an empty part.
+/// Predicted number of elements in place of each element, by the target metric; at least a tenth,
+/// because removing elements is work too. Empty for an empty part.
 template <int Dim>
 std::vector<double> predicted_elements(const Part& part);
 
-/// The largest load of a rank over the mean. Collective.
+/// Largest load of a rank divided by the mean. Collective.
 double imbalance(const Communicator& comm, const std::vector<double>& load_of);
 
-/// Throws InputError, on all ranks, if loads are more elements than ranks can count. Where sizes
-/// are that small, a part of few elements has hardly a vertex that is not held, and would not see
-/// it. Collective.
+/// Throws InputError, on all ranks, if the loads predict more elements than ranks can number. With
+/// such small sizes, most vertices of small parts are held, so the parts would not notice.
+/// Collective.
 void expect_countable(const Communicator& comm, const std::vector<double>& load_of);
 
-/// The rank to which each element goes so that loads are about equal, except for what planes are
-/// displaced, and interfaces small; parts go to those ranks that have most of them. Every rank gets
-/// elements, unless there are fewer than ranks. Collective.
+/// The rank for each element: loads are about equal, apart from the displacement of planes, and
+/// interfaces are small; parts go to the ranks that hold most of them. Every rank gets elements
+/// unless there are fewer than ranks. Collective.
 template <int Dim>
 std::vector<int> balanced(const Communicator& comm, const Part& part,
                           const std::vector<double>& load_of, Displaced displaced);

@@ -18,21 +18,21 @@ struct Range {
   double low, high;
 };
 
-/// Where an element is along each axis.
+/// Extent and middle of an element along each axis.
 template <int Dim>
 struct Place {
   std::array<double, Dim> low, middle, high;
 };
 
-/// Some ranks, and the space that they share.
+/// A range of ranks and the box that they share.
 template <int Dim>
 struct Node {
   int first, count;  // ranks
-  int sign;          // which way its plane is displaced, if any is
+  int sign;          // direction in which its plane is displaced
   std::array<Range, Dim> along;
 };
 
-/// Along one axis: the plane is in `range`, and `below` what is certainly before it.
+/// A search along one axis: the plane is in `range`, and the load `below` certainly before it.
 struct Search {
   Range range;
   std::int64_t below = 0;
@@ -69,12 +69,12 @@ class Bisection {
 
  private:
   static constexpr std::size_t bins = 64, not_open = -1;
-  static constexpr int searches = 4;  // each in one of the bins of the last
-  /// How far planes are displaced: over this share of what is before the plane between two ranks,
-  /// and over about as much space between more, which is a smaller share of theirs.
+  static constexpr int searches = 4;  // each within a bin of the previous one
+  /// Displacement of planes: this share of the load before a plane between two ranks; between more
+  /// ranks about the same distance, which is a smaller share.
   static constexpr double displacement = 0.3;
 
-  /// Axes are turned a little, because in rows of elements many are at the same place along a side.
+  /// Axes are tilted a little, because in structured meshes many elements have equal coordinates.
   static double along(const std::array<double, Dim>& x, std::size_t axis) {
     constexpr std::array<double, 3> turned{1, 0.01, 0.003};
     double sum = 0;
@@ -127,7 +127,7 @@ class Bisection {
     const auto searches_of = search(open);
     const std::vector<std::int64_t> cut = cut_by(searches_of);
     std::vector<std::size_t> axis_of;
-    std::vector<std::size_t> second_of;  // [open node], the node behind its plane
+    std::vector<std::size_t> second_of;  // [open node], the node beyond its plane
     for (std::size_t i = 0; i < open.size(); ++i) {
       const auto first = cut.begin() + static_cast<std::ptrdiff_t>(i * Dim);
       axis_of.push_back(static_cast<std::size_t>(std::min_element(first, first + Dim) - first));
@@ -141,7 +141,7 @@ class Bisection {
     return true;
   }
 
-  /// Calls visit(element, open node) for the elements of these.
+  /// Calls visit(element, open node) for the elements of open nodes.
   void visit_open(auto&& visit) const {
     for (std::size_t e = 0; e < elements_.size(); ++e)
       if (const std::size_t i = open_of_[node_of_[e]]; i != not_open) visit(e, i);
@@ -160,12 +160,12 @@ class Bisection {
     nodes_.push_back(second);
   }
 
-  /// [open node, axis] The low end of each range is where the plane is.
+  /// [open node, axis] Finds planes: each is at the low end of the returned range.
   std::vector<Search> search(const std::vector<std::size_t>& open) const {
     std::vector<Search> all;
     for (const std::size_t n : open)
       for (const Range& range : nodes_[n].along) all.push_back({range});
-    std::vector<std::int64_t> wanted;  // [open node], before its plane
+    std::vector<std::int64_t> wanted;  // [open node], load wanted before its plane
     for (int time = 0; time < searches; ++time) {
       const std::vector<std::int64_t> loads = loads_in(all);
       if (time == 0) wanted = wanted_before(open, loads);
@@ -175,7 +175,7 @@ class Bisection {
     return all;
   }
 
-  /// [open node, axis, bin] The loads of elements, of all ranks.
+  /// [open node, axis, bin] Loads of elements over all ranks.
   std::vector<std::int64_t> loads_in(const std::vector<Search>& all) const {
     std::vector<std::int64_t> loads = comm_.on_all([&] { return own_loads_in(all); });
     return comm_.sums(std::move(loads));
@@ -211,7 +211,7 @@ class Bisection {
     return wanted;
   }
 
-  /// To the bin in which what is wanted ends; in the end, to its closer end.
+  /// Narrows to the bin in which the wanted load ends; finally, to its closer end.
   static void narrow(Search& search, const std::int64_t* loads, std::int64_t wanted, bool is_last) {
     std::size_t bin = 0;
     while (bin + 1 < bins && search.below + loads[bin] <= wanted) search.below += loads[bin++];
@@ -222,8 +222,7 @@ class Bisection {
     if (is_last && 2 * (wanted - search.below) > loads[bin]) search.range.low = search.range.high;
   }
 
-  /// [open node, axis] How many of the elements that are wanted the plane would cut, in
-  /// thousandths.
+  /// [open node, axis] Number of target elements that the plane would cut, in thousandths.
   std::vector<std::int64_t> cut_by(const std::vector<Search>& all) const {
     std::vector<std::int64_t> cut = comm_.on_all([&] { return own_cut_by(all); });
     return comm_.sums(std::move(cut));
@@ -243,7 +242,7 @@ class Bisection {
     return cut;
   }
 
-  /// Along an axis.
+  /// Target size of an element along an axis.
   double wanted_size(std::size_t element, std::size_t axis) const {
     Metric<Dim> sum{};
     for (const VertexId v : elements_[element])
@@ -262,7 +261,7 @@ class Bisection {
   std::vector<Place<Dim>> place_of_;  // [element]
   std::vector<std::size_t> node_of_;  // [element]
   std::vector<Node<Dim>> nodes_;
-  std::vector<std::size_t> open_of_;  // [node], its number among those divided, or not_open
+  std::vector<std::size_t> open_of_;  // [node], its index among the open ones, or not_open
 };
 
 }  // namespace

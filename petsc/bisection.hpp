@@ -1,7 +1,7 @@
 /// @file
-/// Bisection: elements are shared out by planes across the axes, each of which divides what is on
-/// one side of the planes before it. The planes of one pass are not where those of the last one
-/// were, so that what was held on an interface is inside of a part in the next.
+/// Bisection: distributes elements by planes across the axes, each of which divides one side of a
+/// previous plane. Planes move from pass to pass, so that what was held on an interface is inside a
+/// part in the next.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace ductile::petsc {
 
-/// Which way planes are displaced from where they share loads out evenly: by some layers of
-/// elements, neighbouring planes in opposite ways.
+/// Direction in which planes are displaced from equal loads: by some layers of elements,
+/// neighbouring planes in opposite directions.
 enum class Displaced : std::int8_t { back = -1, not_at_all = 0, forth = 1 };
 
-/// [element] One of as many parts as ranks. Each plane is across the axis along which it cuts least
-/// of the elements that are wanted. A part may be empty where there are few elements. The same
-/// loads and places give the same parts, however they are distributed. Collective.
+/// [element] The part, one per rank. Each plane is across the axis along which it cuts the fewest
+/// target elements. Parts may be empty if there are few elements. The same loads and places give
+/// the same parts, however they are distributed. Collective.
 template <int Dim>
 std::vector<int> bisected(const Communicator& comm, const Part& part,
                           const std::vector<double>& load_of, Displaced displaced);

@@ -1,7 +1,6 @@
 /// @file
-/// Communicator: what ranks say to each other: sums, lists for each other rank, and failures. All
-/// of it is collective: every rank of the communicator calls it, on the thread that initialised
-/// MPI.
+/// Communicator: collective operations between ranks: sums, a list for each other rank, and
+/// failures. Every rank of the communicator must call them, on the thread that initialised MPI.
 #pragma once
 
 #include <mpi.h>
@@ -21,17 +20,17 @@
 
 namespace ductile::petsc {
 
-/// What went wrong on one rank, thrown on all.
+/// A failure on one rank, thrown on all.
 class AgreedError : public meshadapt::Error {
  public:
   using meshadapt::Error::Error;
 };
 
-/// What came from each rank.
+/// Items received from each rank.
 template <class T>
 struct Received {
   std::vector<T> items;            // of rank 0, of rank 1, ...
-  std::vector<std::size_t> begin;  // [rank], and the end
+  std::vector<std::size_t> begin;  // [rank], and one past the last
 
   std::span<const T> from(int rank) const {
     const auto r = static_cast<std::size_t>(rank);
@@ -43,15 +42,15 @@ struct Received {
 template <class T>
 using PerRank = std::vector<std::vector<T>>;
 
-/// What a rank has done since it made its Communicator.
+/// Work of a rank since it made its Communicator.
 struct Costs {
-  double seconds = 0;      ///< processor time of work between messages, on all threads
+  double seconds = 0;      ///< processor time between messages, on all threads
   std::int64_t bytes = 0;  ///< of lists, sent to other ranks
 };
 
 class Communicator {
  public:
-  /// Refers to `handle`, which stays the caller's.
+  /// Refers to `handle`, which the caller owns.
   explicit Communicator(MPI_Comm handle);
 
   MPI_Comm handle() const { return handle_; }
@@ -60,23 +59,23 @@ class Communicator {
 
   std::int64_t sum(std::int64_t value) const;
   std::int64_t largest(std::int64_t value) const;
-  /// The largest of several values, each over the ranks.
+  /// The maximum over the ranks of each of several values.
   std::vector<double> largest(std::vector<double> values) const;
-  /// Of the ranks before this one.
+  /// Sum over the ranks before this one.
   std::int64_t sum_before(std::int64_t value) const;
-  /// Sums of several values, each over the ranks.
+  /// The sum over the ranks of each of several values.
   std::vector<std::int64_t> sums(std::vector<std::int64_t> values) const;
 
   const Costs& costs() const { return costs_; }
   /// Processor time of this rank so far.
   static double processor_seconds();
-  /// Adds work that costs() would not see.
+  /// Adds processor time that costs() cannot see.
   void add_work(double seconds) const { costs_.seconds += seconds; }
 
-  /// Throws AgreedError on all ranks if `failure` is set on any, with the words of the first.
+  /// Throws AgreedError on all ranks if `failure` is set on any, with the text of the first.
   void agree(const std::optional<std::string>& failure) const;
 
-  /// Calls work() on each rank, which may not communicate; if it throws on one, an Error is thrown
+  /// Calls work() on each rank; work() may not communicate. If it throws on one, an Error is thrown
   /// on all.
   template <class Work>
   auto on_all(Work&& work) const;
@@ -87,7 +86,7 @@ class Communicator {
   Received<T> exchange(const PerRank<T>& to) const;
 
  private:
-  /// The counts that others send; the offsets of both, checked to be small enough for MPI.
+  /// Numbers of items sent and received, and their offsets, checked to be small enough for MPI.
   struct Counts {
     std::vector<int> sent, sent_begin, received, received_begin;
     std::vector<std::size_t> begin;
@@ -98,7 +97,7 @@ class Communicator {
 
   MPI_Comm handle_;
   int rank_ = 0, size_ = 1;
-  mutable Costs costs_;  // of what const members do
+  mutable Costs costs_;  // mutable, because const members do the work
 };
 
 template <class Work>

@@ -50,7 +50,7 @@ Box<Dim> box_of(const AnyMesh& mesh, const meshadapt::Corners<Dim>& corners) {
 
 // ---- Boxes of a part ----
 
-/// Divides elements at the median along the longest side, a few times.
+/// Divides elements at the median of the longest side, a few times.
 template <int Dim>
 class Boxes {
  public:
@@ -87,7 +87,7 @@ class Boxes {
     divide(some.subspan(half), depth + 1);
   }
 
-  /// A little larger, so that what is closest to a boundary that has moved comes, too.
+  /// Adds a slightly enlarged box, to include elements closest to a boundary that has moved.
   void put(const Box<Dim>& box, double longest) {
     constexpr double margin = 0.05;
     for (const double x : box.low) boxes_.push_back(x - margin * longest);
@@ -109,7 +109,7 @@ std::vector<Box<Dim>> boxes_in(std::span<const double> numbers) {
   return boxes;
 }
 
-/// The elements of a part that reach into boxes.
+/// The elements of a part that intersect any of these boxes.
 template <int Dim>
 std::vector<std::uint32_t> touching(const Part& part, const std::vector<Box<Dim>>& boxes) {
   auto all = Box<Dim>::empty();
@@ -124,13 +124,13 @@ std::vector<std::uint32_t> touching(const Part& part, const std::vector<Box<Dim>
   return found;
 }
 
-// ---- What goes from rank to rank ----
+// ---- Messages between ranks ----
 
 std::size_t components(const NamedField& field, int dimension) {
   return static_cast<std::size_t>(component_count(field.type, dimension));
 }
 
-/// Values of fields at one place, side by side.
+/// Values of fields at one kind of place, interleaved.
 struct Values {
   const std::vector<NamedField>& fields;
   NamedField::Place place;
@@ -150,7 +150,7 @@ struct Values {
       if (field.place == place) sum += components(field, dimension);
     return sum;
   }
-  /// Appends what append() has put there to fields.
+  /// Appends values written by append() to fields.
   void take(const double* values, std::vector<NamedField>& to) const {
     for (NamedField& field : to) {
       if (field.place != place) continue;
@@ -161,7 +161,7 @@ struct Values {
   }
 };
 
-/// Lists of one kind for each rank.
+/// Lists of elements and vertices for each rank.
 template <int Dim>
 struct Sent {
   PerRank<std::array<std::int64_t, Dim + 1>> corners;
@@ -230,7 +230,7 @@ class Gatherer {
     PartWithFields result{empty_part(Dim).mesh, {}};
     for (const NamedField& field : at_vertices_.fields)
       result.fields.push_back({field.name, field.type, {}, field.place});
-    std::vector<std::size_t> order(numbers.size());  // what is shared comes several times
+    std::vector<std::size_t> order(numbers.size());  // shared vertices come several times
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });

@@ -1,6 +1,7 @@
 /// @file
-/// gather_overlap: what of one distributed mesh lies where the parts of another are. Ranks tell
-/// each other in which boxes their elements are, and get the elements that reach into these.
+/// gather_overlap: collects the parts of one distributed mesh that overlap those of another. Ranks
+/// send each other the bounding boxes of their elements and receive the elements that intersect
+/// them.
 #pragma once
 
 #include <vector>
@@ -16,13 +17,13 @@ struct PartWithFields {
   std::vector<meshadapt::NamedField> fields;
 };
 
-/// Where elements are, as a few boxes: [box * 2 * dimension + axis], low corners before high ones.
-/// None of an empty part.
+/// Boxes around the elements of a part: [box * 2 * dimension + axis], low corners before high ones.
+/// Empty for an empty part.
 std::vector<double> boxes_of(const Part& part);
 
-/// The elements of the parts `from`, with the values of fields there, that reach into the boxes of
-/// this rank. They come in the order of the ranks, their vertices in that of their numbers, so
-/// that the same parts give the same. Collective.
+/// The elements of the parts `from`, with the values of fields there, that intersect the boxes of
+/// this rank. They are in the order of the ranks, vertices in that of their numbers, so the result
+/// is deterministic. Collective.
 PartWithFields gather_overlap(const Communicator& comm, const Part& from,
                               const std::vector<meshadapt::NamedField>& fields,
                               const std::vector<double>& boxes);

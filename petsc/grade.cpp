@@ -13,11 +13,11 @@ using meshadapt::Metric;
 
 namespace {
 
-/// Intersects the metrics at shared vertices. Returns how many became finer, on all ranks.
+/// Intersects the metrics at shared vertices. Returns the number of refined ones over all ranks.
 template <int Dim>
 std::int64_t take_finer(const Communicator& comm, const Interfaces& interfaces,
                         std::vector<Metric<Dim>>& metric_of) {
-  constexpr double tolerance = 1e-3;  // of a determinant
+  constexpr double tolerance = 1e-3;  // relative, for determinants
   std::vector<Metric<Dim>> at_shared;
   for (const SharedVertex& shared : interfaces.vertices)
     at_shared.push_back(metric_of[shared.vertex]);
@@ -37,7 +37,7 @@ std::int64_t take_finer(const Communicator& comm, const Interfaces& interfaces,
 template <int Dim>
 void grade(const Communicator& comm, const runtime::Executor& executor, Part& part,
            const Interfaces& interfaces, double factor) {
-  constexpr int most_times = 50;  // sizes that grow from one part cross few others
+  constexpr int most_times = 50;  // growth from one part crosses few others
   std::optional<meshadapt::FixedMesh<Dim>> mesh;
   std::vector<Metric<Dim>> metric_of;
   comm.on_all([&] {

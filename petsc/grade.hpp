@@ -1,5 +1,5 @@
 /// @file
-/// grade: limits how fast sizes grow over the whole distributed mesh, not within each part alone.
+/// grade: limits how fast sizes grow over the whole distributed mesh, not only within each part.
 #pragma once
 
 #include "communicator.hpp"
@@ -9,10 +9,10 @@
 
 namespace ductile::petsc {
 
-/// Makes what is wanted finer until sizes grow by at most `factor` per unit of metric length, as
-/// limit_gradation() does, across interfaces too: parts are graded, shared vertices take the finer
-/// metric, until none does. With a factor of 0 these only take the finer metric. Throws as
-/// limit_gradation() does, as Error on all ranks. Collective.
+/// Refines the target until sizes grow by at most `factor` per unit of metric length, as
+/// limit_gradation() does, across interfaces too: alternately grades parts and intersects metrics
+/// at shared vertices. A factor of 0 only intersects. Throws as limit_gradation() does, as Error on
+/// all ranks. Collective.
 template <int Dim>
 void grade(const Communicator& comm, const runtime::Executor& executor, Part& part,
            const Interfaces& interfaces, double factor);

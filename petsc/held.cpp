@@ -14,7 +14,7 @@ using meshadapt::Vector;
 
 namespace {
 
-/// Length of an edge by what is wanted at its ends.
+/// Length of an edge in the target metric.
 template <int Dim>
 double wanted_length(const Part& part, VertexId a, VertexId b) {
   const Vector<Dim> edge =
@@ -27,7 +27,7 @@ double wanted_length(const Part& part, VertexId a, VertexId b) {
   return meshadapt::mean_length(length_at(a), length_at(b));
 }
 
-/// Whether any edge of an element is blocked.
+/// Is any edge of an element blocked?
 template <int Dim>
 bool has_blocked_edge(const Part& part, std::uint32_t element) {
   const auto& corners = meshadapt::elements_in<Dim>(part.mesh).vertices[element];
@@ -38,7 +38,7 @@ bool has_blocked_edge(const Part& part, std::uint32_t element) {
   return false;
 }
 
-/// What spreads from vertices that were held, layer by layer.
+/// A region that grows in layers from held vertices.
 template <int Dim>
 class Zone {
  public:
@@ -53,9 +53,9 @@ class Zone {
   }
 
   std::vector<std::uint8_t> spread(int layers) {
-    for (std::size_t next = 0; next < reached_.size();)  // more are reached meanwhile
+    for (std::size_t next = 0; next < reached_.size();)  // the list grows meanwhile
       add_around(reached_[next++], Which::blocked);
-    std::size_t first = 0;  // of those around which no layer is yet
+    std::size_t first = 0;  // first vertex not yet surrounded by the layer
     for (int layer = 0; layer < layers; ++layer)
       for (const std::size_t end = reached_.size(); first < end; ++first)
         add_around(reached_[first], Which::all);

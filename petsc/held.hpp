@@ -1,6 +1,6 @@
 /// @file
-/// What interfaces hold: how far edges around them are from what is wanted, and which elements the
-/// next pass has to adapt.
+/// The effect of interfaces: how far edges around them are from the target length, and which
+/// elements the next pass has to adapt.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,22 @@
 
 namespace ductile::petsc {
 
-/// Far from what is wanted; what is just out of the usual range may be so on any mesh.
+/// Is an edge far from the target length? Edges just out of the usual range occur in any mesh.
 inline bool is_blocked(double length) { return length > 2 || length < 0.5; }
 
-/// Edges around shared vertices, measured by what is wanted.
+/// Edges around shared vertices, measured in the target metric.
 struct EdgesAtInterfaces {
-  std::int64_t all = 0;      ///< with an end that is shared; those on interfaces count on each side
+  std::int64_t all = 0;      ///< with a shared end; edges on interfaces count on each side
   std::int64_t blocked = 0;  ///< of these
-  std::vector<std::uint8_t> is_at_blocked;  ///< [vertex], 1 of shared ones at an end of these
+  std::vector<std::uint8_t> is_at_blocked;  ///< [vertex], 1 for shared vertices of blocked edges
 };
 
 template <int Dim>
 EdgesAtInterfaces edges_at_interfaces(const Part& part, const Interfaces& interfaces);
 
-/// [element] 1 of those in `layers` layers around vertices that were held, and around elements with
-/// blocked edges that are connected with these by others. Blocked edges elsewhere, which any mesh
-/// may have, do not count. Empty of an empty part.
+/// [element] 1 within `layers` layers around held vertices, and around elements with blocked edges
+/// that are connected to these by such elements. Blocked edges elsewhere, as any mesh has, do not
+/// count. Empty for an empty part.
 template <int Dim>
 std::vector<std::uint8_t> held_elements(const runtime::Executor& executor, const Part& part,
                                         int layers);

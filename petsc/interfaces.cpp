@@ -11,7 +11,7 @@ namespace {
 
 struct Question {
   Key key;
-  std::size_t index;  // in the list of the rank that asks
+  std::size_t index;  // in the list of the asking rank
 };
 struct Answer {
   std::size_t index;
@@ -25,14 +25,14 @@ std::size_t place_of(const Key& key, int size) {
   return static_cast<std::size_t>(hash % static_cast<std::uint64_t>(size));
 }
 
-/// A key, and who asked about it, at which index.
+/// A key, the rank that asks about it, and its index there.
 struct Asked {
   Key key;
   int rank;
   std::size_t index;
 };
 
-/// For each rank, who else asked about what it asked about.
+/// For each rank, the other ranks that asked about the same keys.
 PerRank<Answer> answers_to(const Received<Question>& questions, int size) {
   std::vector<Asked> asked;
   for (int rank = 0; rank < size; ++rank)

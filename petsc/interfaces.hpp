@@ -1,7 +1,8 @@
 /// @file
-/// Interfaces: what parts share. Ranks find out by sending the facets and vertices of their parts'
-/// boundaries to a rank that the numbers say, which tells each of them who else has sent the same.
-/// Both sides list what they share in the same order, so that values need no names to be exchanged.
+/// Interfaces: entities shared by parts. Ranks find them by sending the facets and vertices on the
+/// boundaries of their parts to a rank determined by their numbers, which tells each sender the
+/// other senders. Both sides list shared entities in the same order, so values are exchanged
+/// without names.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@ namespace ductile::petsc {
 
 struct SharedVertex {
   VertexId vertex;         ///< in this part
-  std::vector<int> ranks;  ///< that have it, this one too, ascending
+  std::vector<int> ranks;  ///< that have it, including this one, ascending
 };
 
 struct SharedFacet {
@@ -28,12 +29,12 @@ struct Interfaces {
   std::vector<SharedFacet> facets;     ///< in the order of the numbers of their vertices
 };
 
-/// The part must list all of its boundary. Collective.
+/// Finds shared vertices and facets of a part that lists its whole boundary. Collective.
 template <int Dim>
 Interfaces find_interfaces(const Communicator& comm, const Part& part);
 
 /// Exchanges a value for each shared vertex: calls take(index, rank, value) for each other rank
-/// that has it, in the order of the ranks; the index is that into Interfaces::vertices. Collective.
+/// that has it, in the order of the ranks; index refers to Interfaces::vertices. Collective.
 template <class T, class Take>
 void exchange_at_vertices(const Communicator& comm, const Interfaces& interfaces,
                           const std::vector<T>& value_of, Take&& take) {
@@ -53,8 +54,8 @@ void exchange_at_vertices(const Communicator& comm, const Interfaces& interfaces
   }
 }
 
-/// The ranks with the key at each index of a list, of keys that other ranks have, too: all of them,
-/// ascending; empty for others. No rank has a key twice. Collective.
+/// For each key of a list, all ranks that have it, ascending, if other ranks do; otherwise empty.
+/// No rank has a key twice. Collective.
 using Key = std::array<std::int64_t, 3>;
 std::vector<std::vector<int>> holders_of(const Communicator& comm, const std::vector<Key>& keys);
 

@@ -6,7 +6,7 @@ namespace ductile::petsc {
 
 namespace {
 
-/// The label of this name, if any rank has it.
+/// The label with this name, if any rank has it.
 CarriedLabel label_named(const Communicator& comm, DM dm, const char* name) {
   CarriedLabel carried;
   check(DMGetLabel(dm, name, &carried.label));

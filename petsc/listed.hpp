@@ -1,6 +1,6 @@
 /// @file
-/// Facets and edges that a part lists, while they get other numbers: which of them elements have,
-/// and what edges are besides their reference.
+/// Listed facets and edges while they are renumbered: the elements that have them, and the marks of
+/// edges besides their reference.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ meshadapt::VertexElements elements_around(const runtime::Executor& executor, con
                                        mesh.vertex_count());
 }
 
-/// Calls visit(element) for those that have all corners of a facet or an edge.
+/// Calls visit(element) for the elements that have all corners of a facet or an edge.
 template <int Dim, std::size_t N>
 void visit_beside(const AnyMesh& mesh, const meshadapt::VertexElements& around,
                   const std::array<VertexId, N>& corners, auto&& visit) {
@@ -35,11 +35,11 @@ void visit_beside(const AnyMesh& mesh, const meshadapt::VertexElements& around,
   }
 }
 
-/// What an edge is besides its reference, as bits. Triangles have none.
+/// Properties of an edge besides its reference, as bits. Triangles have none.
 using Marks = std::uint8_t;
 inline constexpr Marks ridge_mark = 1, required_mark = 2;
 
-/// [edge or triangle]
+/// [edge or triangle] Marks of all cells.
 template <int Corners>
 std::vector<Marks> marks_of(const AnyMesh& mesh, const meshadapt::Cells<Corners>& cells) {
   std::vector<Marks> marks(cells.size(), 0);
@@ -49,7 +49,7 @@ std::vector<Marks> marks_of(const AnyMesh& mesh, const meshadapt::Cells<Corners>
   return marks;
 }
 
-/// Lists an edge or a triangle with its marks.
+/// Lists an edge or a triangle, with its marks.
 template <std::size_t N>
 void list(AnyMesh& mesh, const std::array<VertexId, N>& corners, std::int32_t reference,
           Marks marks) {
@@ -63,7 +63,7 @@ void list(AnyMesh& mesh, const std::array<VertexId, N>& corners, std::int32_t re
   }
 }
 
-/// Leaves out the facets that have no label. None of them is required.
+/// Removes facets without a label. None of them is required.
 template <int Dim>
 void drop_unlabelled(AnyMesh& mesh) {
   const std::vector<Marks> marks = marks_of(mesh, meshadapt::facets_in<Dim>(mesh));

@@ -15,7 +15,7 @@ using meshadapt::Metric;
 
 namespace {
 
-/// One value or one tensor of a vector, for a vertex of the DMPlex.
+/// Layout of a vector with one value or tensor for each vertex of the DMPlex.
 struct Layout {
   PetscInt each;  ///< components of a vertex
   bool same_for_all;
@@ -31,7 +31,7 @@ Layout layout_of(DM dm, PetscInt dimension) {
   return {one ? 1 : dimension * dimension, uniform == PETSC_TRUE};
 }
 
-/// Symmetric tensors of the upper triangles, or a value times the unit tensor.
+/// Symmetric tensors from upper triangles, or from a value times the unit tensor.
 AnyField tensors(const PetscScalar* values, const Layout& layout, const PlexPart& part) {
   const int dimension = part.part.mesh.dimension;
   AnyField field{dimension, part.point_of.size(), {AnyField::Type::symmetric}, {}, "metric"};
@@ -52,7 +52,7 @@ std::int32_t flag_at(DMLabel label, PetscInt cell) {
   return static_cast<std::int32_t>(value);
 }
 
-/// [vertex] What its sizes are multiplied by.
+/// [vertex] Factor for its sizes.
 template <int Dim>
 std::vector<double> factors(const Part& part, const std::vector<std::int32_t>& flag_of) {
   std::vector<double> factor_of(part.mesh.vertex_count(), 1);
@@ -64,7 +64,7 @@ std::vector<double> factors(const Part& part, const std::vector<std::int32_t>& f
   return factor_of;
 }
 
-/// Mean logarithms and least factors of all ranks at shared vertices.
+/// Averages logarithms, and takes the least factor, over all ranks at shared vertices.
 template <int Dim>
 AnyField agreed(const Communicator& comm, const runtime::Executor& executor, const Part& part,
                 const AnyField& sizes, std::vector<double> factor_of) {
@@ -82,7 +82,7 @@ AnyField agreed(const Communicator& comm, const runtime::Executor& executor, con
   std::vector<AtVertex> own;
   for (const SharedVertex& shared : interfaces.vertices)
     own.push_back({meshadapt::logarithm(tensor_of[shared.vertex]), factor_of[shared.vertex], 1});
-  // Summed in the order of ranks, so that all come to the same.
+  // Summed in the order of ranks, so that all get the same result.
   std::vector<std::vector<std::pair<int, AtVertex>>> all(own.size());
   for (std::size_t i = 0; i < own.size(); ++i) all[i].emplace_back(comm.rank(), own[i]);
   exchange_at_vertices(comm, interfaces, own, [&](std::size_t i, int rank, const AtVertex& other) {

@@ -14,7 +14,7 @@ namespace {
 
 using meshadapt::Metric;
 
-/// An element: corners are places in the list of vertices that the same rank sends.
+/// An element; its corners are indices into the vertices sent by the same rank.
 template <std::size_t N>
 struct Simplex {
   std::array<std::uint32_t, N> corners;
@@ -36,7 +36,7 @@ struct Vertex {
   std::uint8_t is_held;
 };
 
-/// What a part sends to each rank.
+/// The lists that a part sends to each rank.
 template <int Dim>
 struct Sent {
   PerRank<Simplex<Dim + 1>> elements;
@@ -48,7 +48,7 @@ struct Sent {
       : elements(ranks), facets(ranks), edges(ranks), vertices(ranks) {}
 };
 
-/// Lists for one rank after the other.
+/// Makes the lists for one rank after another.
 template <int Dim>
 class Sender {
  public:
@@ -92,7 +92,7 @@ class Sender {
     return to;
   }
 
-  /// In the order of their numbers, with their places noted.
+  /// Vertices of elements in the order of their numbers; records their positions.
   std::vector<VertexId> vertices_of(const std::vector<std::uint32_t>& elements) {
     std::vector<VertexId> needed;
     for (const std::uint32_t e : elements)
@@ -131,10 +131,11 @@ class Sender {
 
   const Part& part_;
   PerRank<std::uint32_t> elements_to_, facets_to_, edges_to_;
-  std::vector<std::uint32_t> place_of_;  // [vertex], in the list for one rank, and 1; 0: not there
+  std::vector<std::uint32_t> place_of_;  // [vertex], position in the current list plus 1; 0: not in
+                                         // it
 };
 
-/// A part made of what ranks have sent; what is shared comes several times.
+/// Makes a part from received lists, in which shared entities come several times.
 template <int Dim>
 class Assembly {
  public:
@@ -160,7 +161,7 @@ class Assembly {
          [&](const auto& corners, const auto& simplex) { own.add(corners, simplex.reference); });
   }
 
-  /// Each facet or edge once. What comes twice is all that either one is.
+  /// Adds each facet or edge once. Repeated ones combine their marks.
   template <std::size_t N>
   void add_listed(const Received<Listed<N>>& listed) {
     std::vector<std::pair<std::array<VertexId, N>, Listed<N>>> sorted;
@@ -194,7 +195,7 @@ class Assembly {
                                vertex.wanted.m.end());
   }
 
-  /// Calls visit(corners, item) with the corners that it has here.
+  /// Calls visit(corners, item) with the corners numbered in this part.
   template <class Item>
   void each(const Received<Item>& items, auto&& visit) const {
     for (std::size_t rank = 0; rank + 1 < items.begin.size(); ++rank)
@@ -210,7 +211,7 @@ class Assembly {
   std::vector<VertexId> now_;  // [received vertex]
 };
 
-/// The part made of what all ranks send. Collective.
+/// Makes the part from the lists of all ranks. Collective.
 template <int Dim>
 Part received(const Communicator& comm, const Sent<Dim>& sent) {
   const auto elements = comm.exchange(sent.elements);

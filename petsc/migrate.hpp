@@ -1,5 +1,5 @@
 /// @file
-/// migrate: elements go to other ranks, with their vertices, the metric there, their facets and
+/// migrate: moves elements to other ranks, with their vertices, the metric there, their facets and
 /// their edges.
 #pragma once
 
@@ -13,19 +13,18 @@
 
 namespace ductile::petsc {
 
-/// Gives all vertices numbers, in the order of ranks; shared ones get theirs from the first rank
-/// that has them, so that the numbers of each rank follow each other. Returns how many it gave.
-/// Collective.
+/// Numbers all vertices in the order of ranks; the first rank that has a shared vertex numbers it,
+/// so the numbers of each rank are consecutive. Returns how many this rank numbered. Collective.
 std::int64_t number_vertices(const Communicator& comm, const Interfaces& interfaces, Part& part);
 
-/// Sends each element to the rank that target_of names, with its vertices, facets and edges, and
-/// makes a part of what comes, in the order of the ranks that it comes from. Collective.
+/// Sends each element, with its vertices, facets and edges, to the rank in target_of, and makes a
+/// part of the received ones, in the order of the sending ranks. Collective.
 template <int Dim>
 Part migrate(const Communicator& comm, const runtime::Executor& executor, const Part& part,
              const std::vector<int>& target_of);
 
-/// The whole mesh on the first rank, in the order of the ranks, and empty parts on the others; on
-/// one rank the part as it is. Collective.
+/// The whole mesh on the first rank, in the order of the ranks, and empty parts on the others; with
+/// one rank, the part itself. Collective.
 Part gather_on_first(const Communicator& comm, const runtime::Executor& executor, const Part& part);
 
 /// The whole mesh on each rank, in the order of the ranks. Collective.

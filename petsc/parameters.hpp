@@ -1,5 +1,5 @@
 /// @file
-/// What a DM's DMPlexMetric parameters say of the adaptation.
+/// The options of adaptation from a DM's DMPlexMetric parameters.
 #pragma once
 
 #include "adapt_parts.hpp"
@@ -9,16 +9,16 @@ namespace ductile::petsc {
 
 struct Parameters {
   AdaptPartsOptions options;
-  int verbosity = -1;  ///< a line for each pass from 1 on
+  int verbosity = -1;  ///< from 1 on, prints a line for each pass
 };
 
-/// Gradation factor, Hausdorff number, smallest and largest size, no insertion, swapping, movement
-/// or change of the surface, the number of iterations and the verbosity. An iteration is two passes
-/// at most: in each, one of two ranks takes what lies beyond the interface between them. A
-/// Hausdorff number counts if it is not PETSc's default of 0.01, a length that nobody has chosen,
-/// or if a geometry is composed with the mesh. Otherwise boundaries keep the facets that they have,
-/// except where these are flat. Target complexity, order of normalisation and largest anisotropy
-/// are for DMPlexMetricNormalize(), which has used them. Throws Error.
+/// Uses gradation factor, Hausdorff number, smallest and largest size, the switches for insertion,
+/// swapping, movement and surface changes, the number of iterations and the verbosity. An iteration
+/// is at most two passes: in each, one of two ranks takes what lies beyond their interface. The
+/// Hausdorff number is used if it is not PETSc's default of 0.01, which nobody has chosen, or if a
+/// geometry is composed with the mesh; otherwise curved boundaries keep their facets. Target
+/// complexity, order of normalisation and largest anisotropy have been used by
+/// DMPlexMetricNormalize() already. Throws Error.
 Parameters parameters_of(DM dm);
 
 }  // namespace ductile::petsc

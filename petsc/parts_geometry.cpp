@@ -14,21 +14,21 @@ using runtime::Executor;
 
 namespace {
 
-/// What stands in, on the way, for no label of a facet that is on the boundary or between regions.
+/// Temporary label of unlabelled facets on the boundary or between regions.
 constexpr std::int32_t unlabelled_boundary = unlabelled + 1;
 
-/// The elements of a part that touch the boundary, interfaces between regions, and listed edges:
-/// all that a Geometry looks at.
+/// The elements of a part that touch the boundary, interfaces between regions, or listed edges: all
+/// that a Geometry reads.
 template <int Dim>
 class BoundaryLayer {
  public:
-  /// The part lists its boundary.
+  /// The part must list its boundary.
   BoundaryLayer(const Communicator& comm, const Executor& executor, Part& part)
       : comm_(comm), part_(part), interfaces_(find_interfaces<Dim>(comm, part)) {
     around_ = comm.on_all([&] { return elements_around<Dim>(executor, part.mesh); });
   }
 
-  /// Leaves the others, and facets that are only between parts, out of the part. Collective.
+  /// Removes the other elements, and facets that are only between parts. Collective.
   void keep() {
     mark_facets();
     mark_vertices();
@@ -44,7 +44,7 @@ class BoundaryLayer {
     return region;
   }
 
-  /// Those that are shared are between regions if the other rank has another one beside it.
+  /// A shared facet is between regions if the other rank's element has a different reference.
   void mark_facets() {
     auto& facets = meshadapt::facets_in<Dim>(part_.mesh);
     PerRank<std::int32_t> to(static_cast<std::size_t>(comm_.size()));
@@ -101,7 +101,7 @@ class BoundaryLayer {
   std::vector<std::uint8_t> is_touched_;  // [vertex]
 };
 
-/// On each rank what of all parts a Geometry is made of.
+/// On each rank, the elements of all parts that make the Geometry.
 template <int Dim>
 Part gathered(const Communicator& comm, const Executor& executor, Part part) {
   BoundaryLayer<Dim>(comm, executor, part).keep();
@@ -118,7 +118,7 @@ std::shared_ptr<const meshadapt::Geometry> geometry_of_parts(
     const meshadapt::MakeMeshOptions& make) {
   Part whole = comm.on_all([&] {
     Part own = part;
-    own.wanted = meshadapt::constant_metric(own.mesh, 1);  // which goes with vertices
+    own.wanted = meshadapt::constant_metric(own.mesh, 1);  // required by code that copies vertices
     list_boundary(executor, own);
     return own;
   });

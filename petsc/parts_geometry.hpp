@@ -1,6 +1,6 @@
 /// @file
-/// The Geometry of a distributed mesh: the same on every rank, made of the elements of all parts
-/// that touch the boundary, so that what is round stays so while parts of it are adapted.
+/// The Geometry of a distributed mesh: the same on every rank, made from the elements of all parts
+/// that touch the boundary, so that round boundaries stay round while parts are adapted.
 #pragma once
 
 #include <memory>
@@ -14,18 +14,17 @@
 
 namespace ductile::petsc {
 
-/// Of all parts together; each rank holds a copy of the elements that touch boundaries, interfaces
-/// and listed edges meanwhile. With the tolerance and the ridge angle of `make`. Throws as
+/// Makes the geometry of all parts, with the tolerance and the ridge angle of `make`; each rank
+/// temporarily holds all elements that touch boundaries, interfaces and listed edges. Throws as
 /// Geometry() does, as Error on all ranks. Collective.
 std::shared_ptr<const meshadapt::Geometry> geometry_of_parts(
     const Communicator& comm, const runtime::Executor& executor, const Part& part,
     const meshadapt::MakeMeshOptions& make);
 
-/// Whether adapt() makes sizes at curved boundaries finer by itself, which parts beyond an
-/// interface have to know of.
+/// Does adapt() itself refine sizes at curved boundaries? Parts beyond an interface must then know.
 bool bounds_curved_sizes(const meshadapt::AdaptOptions& options);
 
-/// By how much sizes may grow; 0 for as much as is asked for.
+/// The factor by which sizes may grow; 0: no limit.
 double growth_of(const meshadapt::AdaptOptions& options);
 
 }  // namespace ductile::petsc

@@ -1,5 +1,5 @@
 /// @file
-/// What is used of PETSc everywhere: codes of errors as exceptions, strata, labels.
+/// Helpers for PETSc: error codes as exceptions, strata, labels.
 #pragma once
 
 #include <petscdmlabel.h>
@@ -12,12 +12,12 @@
 
 namespace ductile::petsc {
 
-/// Throws Error for the code of an error, of which PETSc has told by itself where it was.
+/// Throws Error for an error code; PETSc has already printed where it occurred.
 inline void check(PetscErrorCode code) {
   if (code != 0) throw meshadapt::Error("PETSc has failed with error " + std::to_string(code));
 }
 
-/// Points from begin to end, without end.
+/// A range of points; the end is exclusive.
 struct Stratum {
   PetscInt begin = 0, end = 0;
   bool has(PetscInt point) const { return point >= begin && point < end; }
@@ -36,12 +36,12 @@ inline Stratum vertices_of(DM dm) {
   return stratum;
 }
 
-/// A label that is carried along; it may not be there.
+/// A label that is kept by the adaptation; it may not exist.
 struct CarriedLabel {
   std::string name;         ///< empty if no rank has it
-  DMLabel label = nullptr;  ///< of the mesh before; null where a rank has none
+  DMLabel label = nullptr;  ///< of the old mesh; null if this rank has none
 
-  /// The value of a point that has one, else `otherwise`. Throws InputError if it needs more than
+  /// The value of a point, or `otherwise` if it has none. Throws InputError if it needs more than
   /// 32 bits.
   std::int32_t value_at(PetscInt point, std::int32_t otherwise) const;
 };
@@ -50,8 +50,8 @@ struct CarriedLabels {
   CarriedLabel facets, elements, vertices, edges;
 };
 
-/// The labels that an adaptor is given, or else "Face Sets" and "Cell Sets", and "Vertex Sets", and
-/// in 3D "Edge Sets". A name that is the same in all is carried once for each. Collective.
+/// The labels given to the adaptor, otherwise "Face Sets" and "Cell Sets", and always "Vertex Sets"
+/// and in 3D "Edge Sets". A name used several times is kept once for each. Collective.
 CarriedLabels labels_of(const Communicator& comm, DM dm, DMLabel facets, DMLabel elements);
 
 }  // namespace ductile::petsc

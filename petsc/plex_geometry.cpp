@@ -12,9 +12,10 @@ namespace ductile::petsc {
 namespace {
 
 constexpr const char* of_caller = "ductile_geometry";  // a DMPlex
-constexpr const char* made_of_it = "ductile_surface";  // what is made of it, with itself
+constexpr const char* made_of_it = "ductile_surface";  // the geometry made from it, composed with
+                                                       // the same mesh
 
-/// A Geometry, and of what it was made.
+/// A Geometry and the data it was made from.
 struct MadeGeometry {
   double tolerance;
   std::string facets, elements;  // names of labels
@@ -32,7 +33,7 @@ PetscObject composed(DM dm, const char* name) {
   return object;
 }
 
-/// What was made of a mesh before, if it is the same; or null.
+/// The geometry made from a mesh earlier, if for the same data; otherwise null.
 std::shared_ptr<const meshadapt::Geometry> kept(DM dm, const MadeGeometry& wanted) {
   PetscObject container = composed(dm, made_of_it);
   if (container == nullptr) return nullptr;
@@ -52,7 +53,7 @@ void keep(const Communicator& comm, DM dm, const MadeGeometry& made) {
   check(PetscContainerSetUserDestroy(container, destroy));
   check(PetscObjectCompose(reinterpret_cast<PetscObject>(dm), made_of_it,
                            reinterpret_cast<PetscObject>(container)));
-  check(PetscContainerDestroy(&container));  // the mesh has it
+  check(PetscContainerDestroy(&container));  // the mesh keeps a reference
 }
 
 DMLabel label_named(DM dm, const std::string& name) {

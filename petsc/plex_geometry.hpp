@@ -1,6 +1,6 @@
 /// @file
-/// The geometry that a caller keeps over several calls: a DMPlex, composed with the one that is
-/// adapted as "ductile_geometry".
+/// The caller's geometry over several calls: a DMPlex composed with the adapted one as
+/// "ductile_geometry".
 #pragma once
 
 #include <memory>
@@ -13,17 +13,17 @@
 
 namespace ductile::petsc {
 
-/// Is one composed with `dm`? Throws InputError if it is no DM.
+/// Is a geometry composed with `dm`? Throws InputError if it is no DM.
 bool has_geometry(DM dm);
 
-/// The geometry of the composed mesh, with labels of the same names; null without one. It is made
+/// The geometry of the composed mesh, from labels of the same names; null without one. It is made
 /// once for each tolerance and kept with that mesh. Throws Error, on all ranks. Collective.
 std::shared_ptr<const meshadapt::Geometry> geometry_of_plex(const Communicator& comm,
                                                             const runtime::Executor& executor,
                                                             DM dm, const CarriedLabels& labels,
                                                             const meshadapt::MakeMeshOptions& make);
 
-/// Composes with `after` what is composed with `before`, if anything is.
+/// Composes the geometry of `before`, if any, with `after`.
 void pass_geometry_on(DM before, DM after);
 
 }  // namespace ductile::petsc

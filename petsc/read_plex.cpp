@@ -62,7 +62,7 @@ class Reader {
     }
   }
 
-  /// Cells that another rank owns are leaves of the point SF.
+  /// Marks cells that another rank owns: leaves of the point SF.
   void find_ghosts() {
     PetscSF sf = nullptr;
     check(DMGetPointSF(dm_, &sf));
@@ -79,7 +79,7 @@ class Reader {
     return is_ghost_[static_cast<std::size_t>(cell - cells_.begin)] == 0;
   }
 
-  /// The vertices of a point, as numbers from the first.
+  /// The vertices of a point, numbered from the first one.
   template <std::size_t N>
   std::array<VertexId, N> corners_of(PetscInt point) const {
     PetscInt size = 0;
@@ -102,7 +102,7 @@ class Reader {
     for (PetscInt c = cells_.begin; c < cells_.end; ++c) {
       if (!is_own(c)) continue;
       auto corners = corners_of<Dim + 1>(c);
-      if (Dim == 3) std::swap(corners[0], corners[1]);  // PETSc's are turned the other way
+      if (Dim == 3) std::swap(corners[0], corners[1]);  // PETSc orients them the other way
       elements.add(corners, labels_.elements.value_at(c, unlabelled));
       result_.cell_of.push_back(c);
     }
@@ -114,7 +114,7 @@ class Reader {
       for (VertexId& v : corners) v = local_of_[v];
   }
 
-  /// Those that elements have, with numbers of their own.
+  /// Reads the vertices of elements and numbers them.
   void read_vertices() {
     Vec coordinates = nullptr;
     PetscSection section = nullptr;
@@ -128,7 +128,7 @@ class Reader {
       if (local == meshadapt::none) continue;
       local = static_cast<VertexId>(result_.point_of.size());
       result_.point_of.push_back(v);
-      const PetscInt number = number_of_[v];  // below 0 if another rank owns it
+      const PetscInt number = number_of_[v];  // negative if another rank owns it
       part.number_of.push_back(number < 0 ? -(number + 1) : number);
       part.mesh.vertex_reference.push_back(
           labels_.vertices.value_at(vertices_.begin + v, unlabelled));
@@ -140,7 +140,7 @@ class Reader {
     check(VecRestoreArrayRead(coordinates, &x));
   }
 
-  /// Those with a label that belong to an element of this rank; in 3D edges, too.
+  /// Reads labelled facets, in 3D also edges, that belong to an element of this rank.
   template <int Dim>
   void read_facets() {
     PetscInt depth = 0;
@@ -191,7 +191,7 @@ class Reader {
 PlexPart read_plex(const Communicator& comm, DM dm, const CarriedLabels& labels) {
   IS numbers = nullptr;
   const PetscInt* number_of = nullptr;
-  check(DMPlexGetVertexNumbering(dm, &numbers));  // the DM keeps it
+  check(DMPlexGetVertexNumbering(dm, &numbers));  // owned by the DM
   check(ISGetIndices(numbers, &number_of));
   PlexPart result = comm.on_all([&] { return Reader(dm, labels, number_of).read(); });
   check(ISRestoreIndices(numbers, &number_of));

@@ -1,5 +1,5 @@
 /// @file
-/// read_plex: a DMPlex as parts. Cells of an overlap are left out.
+/// read_plex: reads a DMPlex as parts, without cells of an overlap.
 #pragma once
 
 #include "communicator.hpp"
@@ -8,14 +8,14 @@
 
 namespace ductile::petsc {
 
-/// What each rank owns of a mesh.
+/// The cells that each rank owns.
 struct PlexPart {
   Part part;                       ///< without the metric
   std::vector<PetscInt> point_of;  ///< [vertex], counted from the first vertex of the DMPlex
   std::vector<PetscInt> cell_of;   ///< [element]
 };
 
-/// Throws Error, on all ranks, if the mesh is not one of triangles in the plane or tetrahedra.
+/// Throws Error, on all ranks, if the mesh does not consist of planar triangles or of tetrahedra.
 /// Collective.
 PlexPart read_plex(const Communicator& comm, DM dm, const CarriedLabels& labels);
 

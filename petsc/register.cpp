@@ -1,6 +1,6 @@
 /// @file
-/// What C sees: how PETSc gets to know the adaptor, by a call, or when it loads the library; and
-/// fields that are carried.
+/// The C interface: registration of the adaptor with PETSc, by a call or when PETSc loads the
+/// library, and transfer of fields.
 #include <petscdm.h>
 
 #include <exception>
@@ -48,7 +48,7 @@ PetscErrorCode DuctilePetscTransfer(DM before, Vec values, PetscBool on_cells,
   PetscFunctionReturn(0);
 }
 
-/// PETSc calls the function of this name in a library that -dll_append names.
+/// PETSc calls the function of this name in a library given by -dll_append.
 PETSC_EXTERN PetscErrorCode PetscDLLibraryRegister_ductile_petsc() {  // NOLINT: PETSc looks for it
   PetscFunctionBegin;
   PetscCall(DuctilePetscRegister());

@@ -14,7 +14,7 @@ namespace ductile::petsc {
 
 namespace {
 
-/// The ranks on this rank's machine that share their cores, this one too: all or none do.
+/// Number of ranks on this machine that share this rank's cores, including it: all or none do.
 int ranks_on_same_cores(const Communicator& comm) {
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(comm.handle(), MPI_COMM_TYPE_SHARED, comm.rank(), MPI_INFO_NULL, &machine);

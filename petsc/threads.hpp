@@ -1,5 +1,5 @@
 /// @file
-/// How many threads each rank works with.
+/// The number of threads of each rank.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@
 
 namespace ductile::petsc {
 
-/// What is given, or OMP_NUM_THREADS; otherwise the cores that the rank is bound to, or,
-/// where the ranks of a machine may all use the same cores, its share of them. Collective.
+/// The given number, or OMP_NUM_THREADS; otherwise the number of cores that the rank is bound to,
+/// or its share if all ranks of a machine may use the same cores. Collective.
 int threads_of(const Communicator& comm, std::optional<int> given);
-/// The same; -dm_ductile_threads is what is given. Collective.
+/// The same; -dm_ductile_threads gives the number. Collective.
 int threads_of(const Communicator& comm, DM dm);
 
 }  // namespace ductile::petsc

@@ -14,7 +14,7 @@ namespace {
 using meshadapt::Joining;
 using meshadapt::NamedField;
 
-/// The ranks that have elements; the others have no part in it.
+/// A communicator of the ranks that have elements.
 class Busy {
  public:
   Busy(const Communicator& comm, const Part& part) {
@@ -36,13 +36,13 @@ class Busy {
   MPI_Comm handle_ = MPI_COMM_NULL;
 };
 
-/// The values of all ranks at shared vertices, made one.
+/// Combines the values of all ranks at shared vertices.
 class Joiner {
  public:
   Joiner(const Communicator& comm, const Interfaces& interfaces)
       : comm_(comm), interfaces_(interfaces) {}
 
-  /// Collective; begins by asking whether a rank has failed on its way here.
+  /// Combines values; first asks whether a rank has failed before. Collective.
   void join(std::span<double> values, std::size_t stride, Joining how) {
     has_told_ = true;
     comm_.agree(std::nullopt);
@@ -66,7 +66,7 @@ class Joiner {
     }
   }
 
-  /// Whether what is thrown now is thrown on all ranks.
+  /// Is an exception thrown now thrown on all ranks?
   bool has_told() const { return has_told_; }
 
  private:
@@ -82,7 +82,7 @@ class Joiner {
     return to;
   }
 
-  /// In the order of the ranks, so that all come to the same bits.
+  /// Combines in the order of the ranks, so that all get the same bits.
   static void combine(std::span<double> result, const double* other, bool is_first, Joining how) {
     for (std::size_t k = 0; k < result.size(); ++k) {
       if (is_first)
@@ -104,7 +104,8 @@ Interfaces interfaces_of(const Communicator& comm, const Part& part) {
   return part.mesh.dimension == 2 ? find_interfaces<2>(comm, part) : find_interfaces<3>(comm, part);
 }
 
-/// What this rank has, together with the others that have elements. Throws the same on these.
+/// Transfers this rank's fields, together with the other ranks that have elements. Throws the same
+/// on all of these.
 std::vector<NamedField> carried(const Communicator& comm, const runtime::Executor& executor,
                                 const PartWithFields& from, const AnyMesh& to,
                                 const Interfaces& interfaces,
@@ -138,7 +139,7 @@ std::vector<NamedField> transfer_parts(const Communicator& comm, const runtime::
       gather_overlap(comm, from.part, from.fields, comm.on_all([&] { return boxes_of(to); }));
   std::vector<NamedField> fields;
   std::optional<std::string> failure;
-  const double start = Communicator::processor_seconds();  // which includes that of waiting
+  const double start = Communicator::processor_seconds();  // includes waiting
   {
     const Busy busy(comm, to);
     try {

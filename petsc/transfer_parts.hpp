@@ -1,7 +1,7 @@
 /// @file
-/// transfer_parts: carries fields from one distributed mesh to another of the same domain, whose
-/// parts are elsewhere. Each rank gets what its new part overlaps, and does what transfer_fields()
-/// does; sums at vertices that parts share are made over all of them.
+/// transfer_parts: transfers fields between distributed meshes of the same domain with different
+/// parts. Each rank receives what its new part overlaps and calls transfer_fields(); sums at shared
+/// vertices include all parts.
 #pragma once
 
 #include <vector>
@@ -19,11 +19,10 @@ struct FieldsOnPart {
   const std::vector<meshadapt::NamedField>& fields;
 };
 
-/// The fields at the vertices and on the elements of the part `to`, whose vertices are numbered
-/// and that lists its boundary. The order and kinds of fields are the same on all ranks, those of
-/// an empty part have no values. One way of carrying, or one for each. Integrals over all ranks
-/// are kept as transfer_fields() keeps them. Throws as that does, as Error on all ranks.
-/// Collective.
+/// Transfers fields to the vertices and elements of the part `to`, which has numbered vertices and
+/// lists its boundary. Order and kinds of fields are the same on all ranks; fields of an empty part
+/// have no values. `carrying` has one entry, or one for each field. Integrals over all ranks are
+/// kept as in transfer_fields(). Throws as that does, as Error on all ranks. Collective.
 std::vector<meshadapt::NamedField> transfer_parts(const Communicator& comm,
                                                   const runtime::Executor& executor,
                                                   const FieldsOnPart& from, const Part& to,

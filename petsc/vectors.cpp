@@ -31,7 +31,7 @@ PetscInt count_of(DM dm, Place place) {
   return (place == Place::vertices ? vertices_of(dm) : stratum_of_height(dm, 0)).size();
 }
 
-/// Values for each entity, the same on all ranks. Throws where a vector has another length.
+/// Number of values per entity, the same on all ranks. Throws if a vector has the wrong length.
 PetscInt components(const Communicator& comm, DM dm, const CarriedVector& vector) {
   PetscInt length = 0;
   check(VecGetLocalSize(vector.values, &length));
@@ -47,7 +47,7 @@ PetscInt components(const Communicator& comm, DM dm, const CarriedVector& vector
   return each;
 }
 
-/// A scalar field for each component.
+/// Appends a scalar field for each component.
 void append_fields(std::vector<NamedField>& fields, const PlexPart& part,
                    const CarriedVector& vector, PetscInt each) {
   const PetscScalar* values = nullptr;
@@ -61,7 +61,7 @@ void append_fields(std::vector<NamedField>& fields, const PlexPart& part,
   check(VecRestoreArrayRead(vector.values, &values));
 }
 
-/// A local vector with `each` values for so many entities; value(entity, component).
+/// Makes a local vector with `each` values per entity; value(entity, component).
 template <class Value>
 Vec local_vector(std::size_t count, PetscInt each, Value&& value) {
   Vec vector = nullptr;
@@ -113,10 +113,10 @@ std::vector<CarriedVector> composed(DM dm) {
 void compose(DM dm, const std::string& name, Vec vector) {
   check(PetscObjectCompose(reinterpret_cast<PetscObject>(dm), name.c_str(),
                            reinterpret_cast<PetscObject>(vector)));
-  check(VecDestroy(&vector));  // the mesh has it
+  check(VecDestroy(&vector));  // the mesh keeps a reference
 }
 
-/// PETSc sorts the vertices of a rank by their numbers.
+/// The adapted metric as a vector. PETSc sorts the vertices of a rank by number.
 Vec metric_vector(const Part& part) {
   std::vector<VertexId> order(part.number_of.size());
   for (VertexId v = 0; v < order.size(); ++v) order[v] = v;
@@ -158,7 +158,7 @@ std::vector<Vec> carry_vectors(const Communicator& comm, const runtime::Executor
     std::size_t first = 0;
     for (std::size_t i = 0; i < vectors.size(); ++i) {
       const auto& points = entities(to, vectors[i].place);
-      std::vector<std::size_t> at(points.size());  // [entity of the DMPlex] that of the part
+      std::vector<std::size_t> at(points.size());  // [entity of the DMPlex], its index in the part
       for (std::size_t p = 0; p < points.size(); ++p) at[static_cast<std::size_t>(points[p])] = p;
       carried.push_back(local_vector(at.size(), each_of[i], [&](std::size_t e, std::size_t k) {
         return fields[first + k].values[at[e]];

@@ -1,6 +1,6 @@
 /// @file
-/// Fields of a DMPlex as vectors of PETSc's: local ones, so many values for each vertex or cell, in
-/// the order of the DMPlex, those of other ranks that it knows included.
+/// Fields of a DMPlex as local PETSc vectors: values for each vertex or cell, in the order of the
+/// DMPlex, including those that other ranks own.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@
 
 namespace ductile::petsc {
 
-/// A vector that is to be carried, and how.
+/// A vector to transfer, and the method.
 struct CarriedVector {
   std::string name;  ///< for messages
   Vec values;
@@ -23,15 +23,15 @@ struct CarriedVector {
   meshadapt::Carrying carrying;
 };
 
-/// The vectors on the mesh `after`, which has no overlap; the caller's. Throws Error, on all ranks.
-/// Collective.
+/// Returns the vectors on the mesh `after`, which has no overlap; the caller owns them. Throws
+/// Error, on all ranks. Collective.
 std::vector<Vec> carry_vectors(const Communicator& comm, const runtime::Executor& executor,
                                DM before, const std::vector<CarriedVector>& vectors, DM after);
 
-/// Carries the vectors that are composed with `before` under the names that -dm_ductile_fields and
-/// -dm_ductile_cell_fields list, by value those of -dm_ductile_by_value, and composes what comes
-/// out with `after`. Composes the metric that was adapted to as "ductile_metric" with it: a tensor
-/// for each vertex, row by row. Throws Error, on all ranks. Collective.
+/// Transfers the vectors composed with `before` under the names in -dm_ductile_fields and
+/// -dm_ductile_cell_fields, by value if in -dm_ductile_by_value, and composes the results with
+/// `after`. Also composes the target metric as "ductile_metric": a tensor for each vertex, row by
+/// row. Throws Error, on all ranks. Collective.
 void compose_vectors(const Communicator& comm, const runtime::Executor& executor, DM before,
                      const AdaptedParts& parts, DM after);
 

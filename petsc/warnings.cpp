@@ -14,7 +14,7 @@ struct Told {
   std::vector<int> ranks;  // ascending
 };
 
-/// Adds what one rank warns of, whose warnings end in zeros.
+/// Adds the warnings of one rank, each terminated by a zero.
 void add(std::vector<Told>& told, std::span<const char> text, int rank) {
   std::string warning;
   for (const char c : text) {

@@ -7,9 +7,8 @@
 
 namespace ductile::petsc {
 
-/// On the first rank: what ranks warn of, each once, in the order of the ranks, after the numbers
-/// of those that do ("ranks 0, 2: ..."), if there are several ranks. Nothing on the others.
-/// Collective.
+/// On the first rank: the warnings of all ranks, each once, in the order of the ranks, and with
+/// several ranks prefixed by their numbers ("ranks 0, 2: ..."). Empty on the others. Collective.
 meshadapt::Warnings warnings_of_ranks(const Communicator& comm, const meshadapt::Warnings& own);
 
 }  // namespace ductile::petsc

@@ -25,7 +25,7 @@ class Writer {
  private:
   const auto& elements() const { return meshadapt::elements_in<Dim>(part_.mesh); }
 
-  /// From the corners of this rank's elements, and the places of the vertices that it has numbered.
+  /// Creates the mesh from the corners of this rank's elements and the positions of its vertices.
   void create() {
     std::vector<PetscInt> corners;
     std::vector<PetscReal> places;
@@ -55,7 +55,7 @@ class Writer {
     return places;
   }
 
-  /// PETSc sorts the vertices of a rank by their numbers.
+  /// Numbers points: PETSc sorts the vertices of a rank by number.
   void number_points() {
     const auto& number_of = part_.number_of;
     std::vector<std::int64_t> sorted(number_of);
@@ -92,7 +92,7 @@ class Writer {
         set(label, point_between(cells.vertices[i]), cells.reference[i]);
   }
 
-  /// On all ranks, of those that any had.
+  /// Creates a label on all ranks if any rank had it.
   void create_label(const CarriedLabel& before, DMLabel& label) {
     if (before.name.empty()) return;
     check(DMCreateLabel(dm_, before.name.c_str()));
@@ -106,7 +106,7 @@ class Writer {
     if (label != nullptr && value != unlabelled) check(DMLabelSetValue(label, point, value));
   }
 
-  /// The facet or the edge of some vertices.
+  /// The facet or edge between some vertices.
   template <std::size_t N>
   PetscInt point_between(const std::array<VertexId, N>& vertices) const {
     constexpr auto size = static_cast<PetscInt>(N);

@@ -1,5 +1,5 @@
 /// @file
-/// write_plex: parts as a DMPlex, interpolated, without an overlap, with its labels.
+/// write_plex: makes an interpolated DMPlex from parts, without an overlap, with its labels.
 #pragma once
 
 #include "adapt_parts.hpp"
@@ -8,7 +8,7 @@
 
 namespace ductile::petsc {
 
-/// The mesh is the caller's. Collective.
+/// The caller owns the mesh. Collective.
 DM write_plex(const Communicator& comm, const AdaptedParts& parts, const CarriedLabels& labels);
 
 }  // namespace ductile::petsc

@@ -27,7 +27,7 @@ std::size_t page_size() {
 
 constexpr std::size_t most_at_once = 64;  // pages
 
-/// Of which to ask whether they are there takes longer than it gains: mostly they are.
+/// Testing for residency costs more than it gains for few pages, which mostly are resident.
 bool are_few_pages(std::size_t bytes) { return bytes < 256 * page_size(); }
 
 std::size_t offset_in_page(const void* memory) {

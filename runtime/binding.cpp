@@ -30,8 +30,8 @@ class Places {
 
 namespace {
 
-/// A processing unit, with what decides its turn: packages, cores and hyperthreads are counted
-/// among those that the process may use.
+/// A processing unit with its sort key: packages, cores and hyperthreads are numbered among those
+/// that the process may use.
 struct Unit {
   hwloc_cpuset_t set;
   std::size_t package, core, hyperthread;
@@ -42,11 +42,11 @@ std::vector<Unit> usable_units(hwloc_topology_t topology) {
   std::map<hwloc_obj_t, std::size_t> packages, cores_in_package, core_number, units_in_core;
   const hwloc_bitmap_t mask = hwloc_bitmap_dup(hwloc_topology_get_allowed_cpuset(topology));
   if (mask == nullptr) return units;
-  hwloc_get_cpubind(topology, mask, HWLOC_CPUBIND_PROCESS);  // leaves the mask as it is if it fails
+  hwloc_get_cpubind(topology, mask, HWLOC_CPUBIND_PROCESS);  // leaves the mask unchanged on failure
   hwloc_obj_t unit = nullptr;
   while ((unit = hwloc_get_next_obj_by_type(topology, HWLOC_OBJ_PU, unit)) != nullptr) {
     if (!hwloc_bitmap_isset(mask, unit->os_index)) continue;
-    // Null where the system does not tell: then all units count as one package or as own cores.
+    // Null if the system does not tell: all units then count as one package, or as separate cores.
     hwloc_obj_t package = hwloc_get_ancestor_obj_by_type(topology, HWLOC_OBJ_PACKAGE, unit);
     hwloc_obj_t core = hwloc_get_ancestor_obj_by_type(topology, HWLOC_OBJ_CORE, unit);
     if (core == nullptr) core = unit;
@@ -59,7 +59,7 @@ std::vector<Unit> usable_units(hwloc_topology_t topology) {
 }
 
 /// Physical cores before their second hyperthreads; compact fills a package before the next,
-/// scatter takes packages in turn.
+/// scatter alternates packages.
 void order_units(std::vector<Unit>& units, Placement placement) {
   const auto turn = [placement](const Unit& unit) {
     const bool compact = placement == Placement::compact;

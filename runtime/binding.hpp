@@ -1,7 +1,7 @@
 /// @file
-/// Where the threads of an executor sit (private to the runtime). Binding lasts for a loop: a
-/// thread is bound when it enters a team and gets back the mask it had when it leaves, so nothing
-/// leaks to the caller, to OpenMP's pool of threads, or past the life of an Executor.
+/// Binding of an executor's threads to processing units (private to the runtime). It lasts for a
+/// loop: a thread is bound when it enters a team and gets back its previous mask when it leaves, so
+/// nothing leaks to the caller, to OpenMP's threads, or beyond the life of an Executor.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,11 @@
 
 namespace ductile::runtime::detail {
 
-/// The processing units for threads 0, 1, 2, ... or null if threads are not to be bound, or the
-/// topology is hidden. With more threads than units, units are used again. Never throws but
-/// std::bad_alloc.
+/// The processing units for threads 0, 1, 2, ..., or null if threads are not to be bound or the
+/// topology is hidden. Units are reused if there are more threads. Throws std::bad_alloc only.
 std::shared_ptr<const Places> make_places(Placement placement);
 
-/// The system's numbers of these processing units.
+/// The operating system's numbers of these units.
 std::vector<unsigned> processors(const Places& places);
 
 /// Binds the calling thread until destruction; does nothing if the system refuses.
@@ -39,7 +38,7 @@ class ScopedBinding {
   void restore() noexcept;
 
   const Places* places_ = nullptr;
-  void* before_ = nullptr;  // the mask to go back to, null if not bound
+  void* before_ = nullptr;  // the previous mask, null if not bound
 };
 
 }  // namespace ductile::runtime::detail

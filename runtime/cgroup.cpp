@@ -10,7 +10,7 @@ namespace {
 
 using std::filesystem::path;
 
-/// quota / period of one group in version 2's cpu.max ("max 100000", "150000 100000") or version
+/// quota / period of one group, from version 2's cpu.max ("max 100000", "150000 100000") or version
 /// 1's two files; 0 if there is none.
 double cpu_of_group(const path& group) {
   double quota = 0, period = 0;
@@ -39,7 +39,7 @@ void keep_least(double& limit, double other) {
   if (other > 0 && (limit == 0 || other < limit)) limit = other;
 }
 
-/// The least limit from `group`, below `hierarchy`, up to the hierarchy's root.
+/// The least limit from `group`, a path below `hierarchy`, up to the root.
 double limit_upwards(const path& hierarchy, path group, LimitOfGroup limit_of_group) {
   double limit = limit_of_group(hierarchy);
   for (; group.has_relative_path(); group = group.parent_path())
@@ -71,7 +71,7 @@ double least_limit(const path& mount, const path& membership, const std::string&
       keep_least(limit, limit_upwards(mount / controller, group, limit_of_group));
     }
   } catch (...) {
-    return 0;  // a machine that cannot be read sets no limit
+    return 0;  // treat an unreadable machine as unlimited
   }
   return limit;
 }

@@ -10,7 +10,7 @@
 
 #include "ductile/runtime/parallel_for.hpp"
 
-// Sanitizers watch what malloc gives, not mappings.
+// Sanitizers check malloc's memory, not mappings.
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define DUCTILE_MOVES_PAGES 1
 #include <sys/mman.h>
@@ -38,9 +38,9 @@ void GrowingMemory::reserve_from_malloc(std::size_t bytes) {
 
 namespace {
 
-/// What malloc may give. Unmapping pages interrupts all threads, which for a few takes longer than
-/// all that is done to them: up to 2 ms on a virtual machine whose host lets that wait until the
-/// threads that spin there happen to call it.
+/// Below this size malloc is used. Unmapping pages interrupts all threads, which for few pages
+/// takes longer than their use: up to 2 ms on a virtual machine whose host defers it until spinning
+/// threads call it.
 constexpr std::size_t small = std::size_t{1} << 16U;
 
 std::size_t whole_pages(std::size_t bytes) {
@@ -48,7 +48,7 @@ std::size_t whole_pages(std::size_t bytes) {
   return (bytes + page - 1) / page * page;
 }
 
-/// Addresses cost nothing, unless the user has limited them.
+/// Reserves addresses generously, which costs nothing unless the user has limited them.
 std::size_t with_room_to_grow(std::size_t bytes) {
   constexpr std::size_t times = 32, most = std::numeric_limits<std::size_t>::max();
   rlimit limit{};
@@ -56,7 +56,7 @@ std::size_t with_room_to_grow(std::size_t bytes) {
   return limited || bytes > most / times ? bytes : times * bytes;
 }
 
-/// Addresses that nothing may be read from or written to yet; null if there are none.
+/// Reserved addresses without access; null if there are none.
 std::byte* map_space(std::size_t bytes) {
   void* const place =
       mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -79,7 +79,7 @@ void GrowingMemory::reserve(std::size_t bytes) {
   if (bytes <= small) return reserve_from_malloc(std::clamp(2 * bytes_, bytes, small));
   GrowingMemory mapped;
   mapped.reserve_pages(bytes);
-  get_pages(mapped.data_, bytes_);  // at once, as but one thread writes them
+  get_pages(mapped.data_, bytes_);  // at once, because only one thread writes them
   std::copy_n(data_, bytes_, mapped.data_);
   swap(mapped);
 }
@@ -90,24 +90,23 @@ void GrowingMemory::reserve_pages(std::size_t bytes) {
   const auto may_write = [&](std::size_t end) {
     return mprotect(data_ + bytes_, end - bytes_, PROT_READ | PROT_WRITE) == 0;
   };
-  // In few steps, as each takes some microseconds; but no further, as programs may lock all memory
-  // that they may write.
+  // In few steps, because each takes some microseconds; but not far, because programs may lock all
+  // their writable memory.
   std::size_t end = std::min(4 * wanted, space_);
   if (!may_write(end) && !may_write(end = wanted)) throw std::bad_alloc();
   bytes_ = end;
 }
 
-/// Pages are moved one by one, so they should be seldom.
+/// Should be rare, because pages are moved one by one.
 void GrowingMemory::move_to_larger_space(std::size_t wanted) {
   std::size_t space = with_room_to_grow(wanted);
   std::byte* place = map_space(space);
   if (place == nullptr) place = map_space(space = wanted);
   if (place == nullptr) throw std::bad_alloc();
-  std::size_t gone = bytes_;  // from where they were
+  std::size_t gone = bytes_;  // bytes moved away from the old place
   if (bytes_ > 0 &&
       mremap(data_, bytes_, bytes_, MREMAP_MAYMOVE | MREMAP_FIXED, place) == MAP_FAILED) {
-    // Linux before 6.17 does not if they belong to several mappings, as they do from the second
-    // time on.
+    // Linux before 6.17 refuses if the pages belong to several mappings, as after the first move.
     gone = 0;
     if (mprotect(place, bytes_, PROT_READ | PROT_WRITE) != 0) {
       munmap(place, space);
@@ -121,7 +120,7 @@ void GrowingMemory::move_to_larger_space(std::size_t wanted) {
 }
 
 void GrowingMemory::add_pages(std::size_t bytes, FreshMemory& fresh) {
-  constexpr std::size_t ahead = std::size_t{1} << 13U;  // for those who grow little by little
+  constexpr std::size_t ahead = std::size_t{1} << 13U;  // for arrays that grow in small steps
   if (bytes <= added_ || !is_mapped()) return;
   const std::size_t end = std::min(bytes_, whole_pages(bytes + ahead));
   fresh.add(data_ + added_, end - added_);
@@ -149,7 +148,7 @@ void SpentMemory::give_back(const Executor& executor) {
   const auto threads = static_cast<std::size_t>(executor.threads());
   std::size_t all = 0;
   for (const Part& part : parts_) all += part.memory.is_mapped() ? part.used : 0;
-  // In large parts, as each interrupts all threads; the largest first.
+  // In large parts, because each interrupts all threads; the largest first.
   const std::size_t most = detail::whole_pages(std::max(all / threads, least));
   std::vector<std::span<std::byte>> parts;
   for (const auto& [memory, used] : parts_)
@@ -160,7 +159,7 @@ void SpentMemory::give_back(const Executor& executor) {
   const auto give_back = [&](std::size_t i) {
     madvise(parts[i].data(), parts[i].size(), MADV_DONTNEED);
   };
-  // Unmapping what has no pages any more takes no time. If it could not be, this takes it.
+  // Unmapping is fast without pages; otherwise it frees them here.
   if (all > most) parallel_for(executor, parts.size(), give_back, {.grain = 1});
   parts_.clear();
 }

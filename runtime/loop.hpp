@@ -1,5 +1,5 @@
 /// @file
-/// What the schedulers share (private to the runtime): the loop being run, the team of threads that
+/// Shared by the schedulers (private to the runtime): the current loop, the team of threads that
 /// runs it, and the first exception thrown in it.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace ductile::runtime {
 
-/// The first exception of a loop. Thread safety: any thread, rethrow() after the join.
+/// The first exception of a loop. Thread safety: any thread; rethrow() after the join.
 class FirstError {
  public:
   void keep_current() noexcept {
@@ -63,7 +63,7 @@ struct Loop {
   }
 };
 
-/// Puts the calling thread into a loop until destruction: loops inside run on it alone.
+/// Puts the calling thread into a loop during its lifetime: nested loops run on it alone.
 class TeamMember {
  public:
   explicit TeamMember(const detail::LoopPlace& place) noexcept
@@ -76,16 +76,16 @@ class TeamMember {
   detail::LoopPlace before_;
 };
 
-/// Whether the calling thread runs iterations of a loop.
+/// Does the calling thread run iterations of a loop?
 inline bool inside_a_loop() noexcept { return detail::loop_place.threads != 0; }
 
 inline std::size_t everyone_of(const Executor& executor) {
   return static_cast<std::size_t>(executor.threads());
 }
 
-/// Calls work(thread) on the first `wanted` threads of the caller's team, or else of one of
-/// OpenMP's, of executor.threads() threads or fewer, or alone (threads_to_be_had.hpp). Its size
-/// does not follow the loop's: OpenMP runtimes end and create threads when it changes.
+/// Calls work(thread) on the first `wanted` threads of the caller's team; without one, of an OpenMP
+/// team of at most executor.threads() threads; or alone (threads_to_be_had.hpp). The team's size
+/// does not follow the loop's, because OpenMP runtimes end and create threads when it changes.
 template <class Work>
 void run_team(const Executor& executor, Turnout turnout, std::size_t wanted, Work&& work) {
   auto as_member = [&, loop = detail::loop_place.loop](int thread) {
@@ -111,7 +111,7 @@ void run_omp_static(const Executor& executor, Loop& loop);
 void run_omp_dynamic(const Executor& executor, Loop& loop);
 void run_omp_guided(const Executor& executor, Loop& loop);
 void run_steal_by_atomics(const Executor& executor, Loop& loop);
-/// Steals by atomics instead where no signal can be had.
+/// Steals by atomics instead if no signal is available.
 void run_steal_by_signal(const Executor& executor, Loop& loop);
 
 }  // namespace ductile::runtime

@@ -13,8 +13,8 @@
 namespace ductile::runtime {
 namespace {
 
-/// The kilobytes behind a name in a file of lines such as "VmHWM:  1234 kB", in bytes; 0 if it is
-/// not there.
+/// The kilobytes after a name in a file with lines such as "VmHWM:  1234 kB", in bytes; 0 if
+/// missing.
 std::size_t bytes_told(const char* file, const std::string& name) {
   std::ifstream lines(file);
   for (std::string word; lines >> word;) {
@@ -25,7 +25,7 @@ std::size_t bytes_told(const char* file, const std::string& name) {
   return 0;
 }
 
-/// The least of those that are limits.
+/// Lowers `limit` to `other` if that is a limit and lower.
 void keep_least(std::size_t& limit, double other) {
   constexpr double most = 1e18;
   if (other > 0 && other < most && (limit == 0 || other < static_cast<double>(limit)))
@@ -38,7 +38,7 @@ std::size_t held_memory() { return bytes_told("/proc/self/status", "VmRSS"); }
 
 std::size_t peak_memory() {
   if (const std::size_t peak = bytes_told("/proc/self/status", "VmHWM")) return peak;
-  rusage usage{};  // that of a child begins with what its parent held
+  rusage usage{};  // for a child it includes what its parent held
   getrusage(RUSAGE_SELF, &usage);
 #ifdef __APPLE__
   return static_cast<std::size_t>(usage.ru_maxrss);

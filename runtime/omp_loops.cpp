@@ -1,5 +1,5 @@
 /// @file
-/// OpenMP's own schedules, over chunks of the loop's grain.
+/// Schedules of OpenMP, over chunks of the loop's grain.
 
 #include "loop.hpp"
 

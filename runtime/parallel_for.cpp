@@ -23,13 +23,14 @@ void expect_loop_of(const Executor& executor, const char* what) {
 
 namespace {
 
-/// Long enough to hide the cost of taking a chunk, short enough to balance the load to a percent.
+/// Long enough to hide the cost of taking a chunk, short enough to balance the load within one per
+/// cent.
 std::size_t chosen_grain(std::size_t n, int threads) {
   return std::clamp<std::size_t>(n / (128 * static_cast<std::size_t>(threads)), 1, 256);
 }
 
-/// A loop inside another one, or too short to share. It keeps the number of the thread, so that
-/// per-thread data of the outer loop stay this thread's, unless its executor has no such thread.
+/// Runs a nested loop, or one too short to share. It keeps the thread's number, so that per-thread
+/// data of the outer loop remain this thread's, unless its executor has no such thread.
 void run_alone(const Executor& executor, std::size_t n, RangeBody body, void* context) {
   detail::LoopPlace place = detail::loop_place;
   if (!inside_a_loop()) place.begin = 0, place.end = n;
@@ -66,7 +67,7 @@ void run_loop(const Executor& executor, std::size_t n, RangeBody body, void* con
     case Schedule::steal_by_signal:
       run_steal_by_signal(executor, loop);
       break;
-    case Schedule::automatic:  // the one that measures best in every shape of loop
+    case Schedule::automatic:  // the fastest for every kind of loop measured
     case Schedule::steal_by_atomics:
       run_steal_by_atomics(executor, loop);
       break;

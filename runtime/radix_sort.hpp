@@ -28,7 +28,8 @@ using DigitCounts = std::array<std::size_t, digit_count>;
 /// One pass over the digit at `shift`, in blocks of `block` values.
 struct DigitPass {
   std::size_t block, blocks;
-  std::unique_ptr<DigitCounts[]> counts;  // [block], of each digit; then where its values go
+  std::unique_ptr<DigitCounts[]> counts;  // [block], counts of each digit; later, where its values
+                                          // go
   unsigned shift = 0;
 
   std::size_t digit(std::unsigned_integral auto value) const {
@@ -36,7 +37,7 @@ struct DigitPass {
   }
 };
 
-/// Puts values where `place_of` says for their digit, and counts it up.
+/// Puts each value where `place_of` says for its digit, and advances that.
 template <std::unsigned_integral T>
 void scatter_singly(std::span<const T> values, T* to, const DigitPass& pass,
                     DigitCounts& place_of) {
@@ -46,7 +47,7 @@ void scatter_singly(std::span<const T> values, T* to, const DigitPass& pass,
 template <std::unsigned_integral T>
 using Line = std::array<T, 64 / sizeof(T)>;
 
-/// The same, but gathers cache lines, one of each digit, and writes whole ones.
+/// The same, but collects a cache line per digit and writes whole lines.
 template <std::unsigned_integral T>
 void scatter_lines(std::span<const T> values, T* to, const DigitPass& pass, DigitCounts& place_of,
                    Line<T>* gathered) {
@@ -67,9 +68,9 @@ void scatter_lines(std::span<const T> values, T* to, const DigitPass& pass, Digi
       flush(digit, place_of[digit]);
 }
 
-/// Whether many digits' places fall into the same set of a cache, which cannot hold them side by
-/// side: so it is with numbers that are all there, whose digits begin powers of two apart.
-/// `bytes` is the size of a value.
+/// Do the places of many digits fall into the same set of a cache, which cannot hold them all? This
+/// happens for dense numbers, whose digits begin powers of two apart. `bytes` is the size of a
+/// value.
 inline bool crowd_a_cache_set(const DigitCounts& place_of, std::size_t bytes) {
   constexpr std::size_t sets = 64, line = 64;
   std::array<std::size_t, sets> digits_in{};
@@ -82,9 +83,9 @@ inline bool crowd_a_cache_set(const DigitCounts& place_of, std::size_t bytes) {
   return *std::max_element(digits_in.begin(), digits_in.end()) > 4 * (used / sets + 4);
 }
 
-/// Makes of each block's counts where its values go: those of a digit follow each other, block by
-/// block. Some digits at a time, each on the thread that comes, but block by block, as that is how
-/// counts lie in memory. Returns where the values of each digit begin, from which places count.
+/// Turns each block's counts into the positions of its values: those of a digit are consecutive,
+/// block by block. Threads take slices of digits and go through the blocks in order, as the counts
+/// are stored. Returns the beginnings of the digits.
 inline DigitCounts counts_to_places(const Executor& executor, std::span<DigitCounts> counts_of) {
   constexpr std::size_t slice = 128, slices = digit_count / slice, few_blocks = 16;
   DigitCounts begin_of{};
@@ -99,8 +100,8 @@ inline DigitCounts counts_to_places(const Executor& executor, std::span<DigitCou
   return begin_of;
 }
 
-/// Stable: sorts `from` by the pass's digit into `to`. `lines` has room for one of each digit for
-/// every block, or is null if there are too few values for that to be of use.
+/// Stable: sorts `from` by the pass's digit into `to`. `lines` has room for a line per digit and
+/// block, or is null if there are too few values to benefit.
 template <std::unsigned_integral T>
 void scatter_by_digit(const Executor& executor, std::span<const T> from, std::span<T> to,
                       DigitPass& pass, Line<T>* lines) {
@@ -123,8 +124,8 @@ void scatter_by_digit(const Executor& executor, std::span<const T> from, std::sp
   parallel_for_blocks(executor, from.size(), pass.block, scatter);
 }
 
-/// One block for each thread, as long as one thread needs less to add up all counts than another
-/// takes off the work; or some more, if they are long.
+/// One block per thread while adding up the counts takes one thread less than another thread saves;
+/// or a few more, if blocks are long.
 inline std::size_t radix_blocks(std::size_t size, std::size_t threads) {
   const auto worth_it = static_cast<std::size_t>(std::sqrt(static_cast<double>(size) / 512));
   return std::max(
@@ -143,7 +144,8 @@ void radix_sort(const Executor& executor, std::span<T> values, unsigned low) {
   const std::size_t blocks = (values.size() + block - 1) / block;
   DigitPass pass{block, blocks, std::make_unique_for_overwrite<DigitCounts[]>(blocks), low};
   auto scratch = make_unset_vector<T>(executor, values.size());
-  // All memory is taken before the first pass: later, running out of it would lose values.
+  // All memory is allocated before the first pass, because running out of it later would lose
+  // values.
   std::unique_ptr<Line<T>[]> lines;
   if (values.size_bytes() > 262144)
     lines = std::make_unique_for_overwrite<Line<T>[]>(blocks * digit_count);

@@ -1,8 +1,8 @@
 /// @file
-/// A sample sort of unsigned integers for many threads: a sample says which keys cut them into
-/// about equal buckets, all threads put each value into its bucket, and then sort bucket by bucket,
-/// each in a cache. Values are moved between caches once, where a radix sort of all of them moves
-/// them once for each digit, to places that lie apart.
+/// A sample sort of unsigned integers for many threads: keys from a sample cut the values into
+/// about equal buckets; all threads distribute the values and then sort bucket by bucket, each in a
+/// cache. Values move between caches once, where a radix sort of all of them moves them once per
+/// digit, to scattered places.
 #pragma once
 
 #include <algorithm>
@@ -23,16 +23,16 @@
 
 namespace ductile::runtime::sort_detail {
 
-constexpr std::size_t most_buckets = 256;  // so that a byte says which
+constexpr std::size_t most_buckets = 256;  // so that a byte holds a bucket's number
 
-/// Keys that cut values into buckets, which are as many as a power of two.
+/// Keys that cut values into buckets, whose number is a power of two.
 template <std::unsigned_integral T>
 class Splitters {
  public:
-  /// Of the keys value >> low.
+  /// Samples the keys value >> low.
   Splitters(std::span<const T> values, unsigned low, std::size_t buckets)
       : low_(low), key_(buckets - 1) {
-    constexpr std::size_t samples = 4;  // of each bucket
+    constexpr std::size_t samples = 4;  // per bucket
     std::vector<T> sample(samples * buckets);
     for (std::size_t i = 0; i < sample.size(); ++i)
       sample[i] = static_cast<T>(values[values.size() * i / sample.size()] >> low);
@@ -41,14 +41,14 @@ class Splitters {
       const T key = sample[samples * (i + 1)];
       const bool repeats =
           i > 0 && key == sample[samples * i] && key != std::numeric_limits<T>::max();
-      // The values of a key that many have get a bucket of their own, which is in order.
+      // A frequent key gets its own bucket, which is already in order.
       key_[i] = static_cast<T>(key + static_cast<T>(repeats));
     }
   }
 
   std::size_t bucket_count() const { return key_.size() + 1; }
 
-  /// The same for the same key. Without branches, as the answers cannot be foreseen.
+  /// Equal keys get the same bucket. Branch-free, because the comparisons are unpredictable.
   std::size_t bucket_of(T value) const {
     const T key = static_cast<T>(value >> low_);
     std::size_t bucket = 0;
@@ -62,8 +62,8 @@ class Splitters {
   std::vector<T> key_;
 };
 
-/// Stable: sorts `from` by value >> low into `to`, of the same size, digit by digit. Both are
-/// written.
+/// Stable: sorts `from` by value >> low into `to`, of the same size, digit by digit. Overwrites
+/// both.
 template <std::unsigned_integral T>
 void sort_bucket(std::span<T> from, std::span<T> to, unsigned low) {
   constexpr unsigned digit_size = 8;
@@ -91,7 +91,7 @@ void sample_sort(const Executor& executor, std::span<T> values, unsigned low) {
   const std::size_t buckets = splitters.bucket_count();
   const std::size_t block = std::max<std::size_t>(1024, values.size() / (2 * threads) + 1);
   const std::size_t blocks = (values.size() + block - 1) / block;
-  // All memory is taken before values are moved: later, running out of it would lose some.
+  // All memory is allocated before values move, because running out of it later would lose some.
   auto bucket_of = make_unset_vector<std::uint8_t>(executor, values.size());
   std::vector<std::uint32_t> place_of(blocks * buckets), begin_of(buckets + 1);  // [block][bucket]
   auto scratch = make_unset_vector<T>(executor, values.size());

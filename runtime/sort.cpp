@@ -11,8 +11,8 @@ namespace ductile::runtime::sort_detail {
 
 namespace {
 
-/// Few values are sorted soonest by one thread; of many, two or three threads share the passes of a
-/// radix sort as well as the buckets of a sample sort.
+/// One thread is fastest for few values; for many values, two or three threads share the passes of
+/// a radix sort as well as the buckets of a sample sort.
 template <class T>
 void sort_by_digits(const Executor& executor, std::span<T> values, unsigned low) {
   const auto threads = static_cast<std::size_t>(executor.threads());

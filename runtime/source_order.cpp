@@ -6,7 +6,7 @@ namespace ductile::runtime::detail {
 
 namespace {
 
-/// Heaps of the standard library have the greatest element first.
+/// Heaps of the standard library have the greatest element first, so the comparison is reversed.
 bool comes_later(const SourcePiece& a, const SourcePiece& b) {
   return a.first != b.first ? a.first > b.first : a.number > b.number;
 }
@@ -25,13 +25,13 @@ SourcePiece take_first(std::vector<SourcePiece>& heap) {
 }
 
 void put_back(std::vector<SourcePiece>& heap, const SourcePiece& piece) {
-  heap.push_back(piece);  // has room for what was taken
+  heap.push_back(piece);  // there is room, because a piece was taken
   std::push_heap(heap.begin(), heap.end(), comes_later);
 }
 
 std::uint64_t ahead_up_to(const std::vector<SourcePiece>& heap, const SourcePiece& piece) {
   if (heap.empty()) return ~std::uint64_t{0};
-  // The piece was first: if it does not come first among equals, it begins with a lower source.
+  // The piece was first: if its number is greater, it begins with a lower source.
   const SourcePiece& next = heap.front();
   return piece.number < next.number ? next.first : next.first - 1;
 }

@@ -1,13 +1,11 @@
 /// @file
-/// Work stealing by compare-and-swap. Every thread, or as many as there are chunks, starts with an
-/// equal part of the chunks, kept as one packed word, and takes chunks from its front: many at once
-/// while it has many, so that taking them costs nothing, and single ones in the end. A thread
-/// without work looks for the longest part and takes the back half of it. The last chunk of all is
-/// begun first: in order it would be begun last, and if it is a long one, everybody would wait for
-/// it. A thread leaves when it finds nothing to take: what others still run cannot be shared any
-/// more, so nobody waits here but for the join. The words carry numbers of chunks only, so all
-/// orders are relaxed: what bodies read was written before the loop began, what they write is read
-/// after the join.
+/// Work stealing by compare-and-swap. Each of min(threads, chunks) threads starts with an equal
+/// part of the chunks, packed into one word, and takes chunks from its front: many at once while it
+/// has many, which makes taking cheap, single ones at the end. A thread without work takes the back
+/// half of the longest part. The very last chunk is begun first: in order it would be begun last,
+/// and if it is long, all would wait for it. A thread leaves when there is nothing to take, so it
+/// waits only at the join. The words carry only chunk numbers, so all orders are relaxed: the start
+/// of the loop and the join order the bodies' data.
 
 #include <algorithm>
 #include <array>
@@ -38,7 +36,7 @@ struct Part {
 struct alignas(128) PartOfThread {
   std::atomic<std::uint64_t> word{0};
 
-  /// Takes a 64th of the part from its front, at least a chunk; nothing if there is none.
+  /// Takes a 64th of the part from its front, at least one chunk; an empty part if there is none.
   Part take_front() {
     std::uint64_t seen = word.load(std::memory_order_relaxed);
     for (;;) {
@@ -65,9 +63,9 @@ struct alignas(128) PartOfThread {
 
 using Parts = std::span<PartOfThread>;
 
-/// Moves the back half of the longest part to `mine`, which is empty; false if all are empty.
-/// No word is seen twice with different chunks left to run behind it, so that a compare-and-swap
-/// which succeeds is right even if the word changed and came back in between.
+/// Moves the back half of the longest part to `mine`, which is empty; false if all are empty. A
+/// word never recurs with different remaining chunks, so a compare-and-swap that succeeds is right
+/// even if the word changed and came back in between.
 bool steal(Parts parts, PartOfThread& mine) {
   for (;;) {
     PartOfThread* victim = nullptr;
@@ -87,7 +85,7 @@ bool steal(Parts parts, PartOfThread& mine) {
   }
 }
 
-/// False if the loop is to stop.
+/// False if the loop must stop.
 bool run_chunks(Loop& loop, Part part) {
   return part.size() == 0 ||
          loop.run(part.begin * loop.grain, std::min(loop.n, part.end * loop.grain));
@@ -106,7 +104,7 @@ void run_steal_by_atomics(const Executor& executor, Loop& loop) {
   const auto threads = static_cast<std::size_t>(executor.threads());
   while (loop.chunk_count() > UINT32_MAX) loop.grain *= 2;
   const std::size_t chunks = loop.chunk_count(), wanted = std::min(threads, chunks);
-  // Up to 64 lie on the stack, so that a loop asks for no memory.
+  // Up to 64 lie on the stack, so that a loop allocates no memory.
   alignas(PartOfThread) std::array<std::byte, 64 * sizeof(PartOfThread)> room;
   std::pmr::monotonic_buffer_resource pool(room.data(), room.size());
   std::pmr::vector<PartOfThread> of_threads(wanted, &pool);
@@ -117,7 +115,7 @@ void run_steal_by_atomics(const Executor& executor, Loop& loop) {
     };
     parts[t].word.store(Part{bound(t), bound(t + 1)}.word(), std::memory_order_relaxed);
   }
-  // The parts of threads that do not come, or not in time, are stolen.
+  // Parts of threads that do not come in time are stolen.
   run_team(executor, Turnout::whoever_comes, wanted, [&](int thread) {
     const auto own = static_cast<std::size_t>(thread);
     PartOfThread& mine = parts[own];

@@ -1,12 +1,12 @@
 /// @file
 /// Work stealing by signal, after the interrupt-driven scheduler of Rokos, Gorman and Kelly (arXiv
-/// 1505.04134). A thread walks through its own part without any synchronisation. One that has no
-/// work left picks the thread with most work left and sends it a real-time signal; the handler,
-/// on the victim's own thread, gives away the back half of what remains.
-/// Victim and handler are one thread, so they need no atomic read-modify-write: the handler leaves
-/// the first `grain` iterations alone, which the victim may be about to claim. A signal costs some
-/// microseconds, so none is sent for less work than that. A thief waits for its answer before it
-/// does anything else, so no signal is under way when the loop ends.
+/// 1505.04134). A thread works through its own part without synchronisation. A thread without work
+/// sends a real-time signal to the one with most work left; the handler, on the victim's own
+/// thread, gives away the back half of the rest.
+/// Victim and handler are the same thread, so they need no atomic read-modify-write: the handler
+/// leaves alone the first `grain` iterations, which the victim may be about to claim. A signal
+/// costs some microseconds, so none is sent for less work. A thief waits for the answer before it
+/// does anything else, so no signal is pending when the loop ends.
 
 #include <pthread.h>
 
@@ -21,7 +21,7 @@
 #include "loop.hpp"
 #include "steal_signal.hpp"
 
-// ThreadSanitizer holds signals back until a thread makes a system call, which may be never.
+// ThreadSanitizer holds signals back until a thread makes a system call, which may never happen.
 #if defined(__SANITIZE_THREAD__)
 #define DUCTILE_SIGNALS_ARRIVE 0
 #elif defined(__has_feature)
@@ -45,14 +45,14 @@ std::int64_t now_ns() {
       .count();
 }
 
-/// One thread's part of the loop. Written by its own thread, and its handler, only, but for
-/// `thief`, and for the answer, which the handler of the victim writes. Others read the part to
-/// guess how much is left. All is lock-free, so a handler may touch it.
+/// One thread's part of the loop. Only its own thread and handler write it, except `thief` and the
+/// answer, which the victim's handler writes. Others read the part to estimate the rest. All
+/// members are lock-free, so handlers may access them.
 struct alignas(128) Part {
   enum Answer : int { pending, given, refused };
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-  // ---- What this thread has to do: [begin, end), started at `first` at `since_ns` ----
+  // ---- Work of this thread: [begin, end), started at `first` at `since_ns` ----
   std::atomic<std::uint64_t> begin{0}, end{0}, first{0};
   std::atomic<std::int64_t> since_ns{0};
   std::uint64_t grain = 1;
@@ -84,7 +84,7 @@ struct alignas(128) Part {
     return from < to ? to - from : 0;
   }
 
-  /// A guess from the pace so far.
+  /// An estimate from the pace so far.
   std::int64_t ns_left(std::int64_t now) const {
     const std::uint64_t from = begin.load(std::memory_order_relaxed);
     const std::uint64_t done = from - std::min(from, first.load(std::memory_order_relaxed));
@@ -94,7 +94,7 @@ struct alignas(128) Part {
   }
 };
 
-/// In the victim's handler: gives the back half to the thief who asked.
+/// Runs in the victim's handler: gives the back half to the thief that asked.
 void give_half(void* sent) {
   Part& victim = *static_cast<Part*>(sent);
   // Acquire pairs with the release in ask().
@@ -110,8 +110,8 @@ void give_half(void* sent) {
     answer = Part::given;
   }
   victim.thief.store(nullptr, std::memory_order_relaxed);
-  // Release pairs with the acquire in ask(): the thief sees what it was given, and that the
-  // victim may be asked again.
+  // Release pairs with the acquire in ask(): the thief sees what it was given, and that the victim
+  // may be asked again.
   thief->answer.store(answer, std::memory_order_release);
 }
 
@@ -120,7 +120,7 @@ class SignalLoop {
   SignalLoop(const StealSignal& signal, Loop& loop, std::span<Part> parts)
       : signal_(signal), loop_(loop), parts_(parts) {}
 
-  /// On each thread of the team.
+  /// Called on each thread of the team.
   void run(std::size_t thread, std::size_t team_size) {
     const StealSignal::Reception reception(signal_);
     Part& mine = parts_[thread];
@@ -148,7 +148,7 @@ class SignalLoop {
     }
   }
 
-  /// Waits until there is work to be had or none left worth having.
+  /// Waits until there is work to take, or none left worth taking.
   bool find_work(Part& mine, std::size_t team_size) {
     for (unsigned tries = 0;; ++tries) {
       const std::int64_t now = now_ns();
@@ -168,7 +168,7 @@ class SignalLoop {
     }
   }
 
-  /// Asks the victim for half of its work; true if `mine` has got some.
+  /// Asks the victim for half of its work; true if `mine` got some.
   bool ask(Part& victim, Part& mine) {
     if (!victim.ready.load(std::memory_order_acquire)) return false;
     mine.answer.store(Part::pending, std::memory_order_relaxed);

@@ -11,9 +11,9 @@ namespace ductile::runtime {
 
 namespace {
 
-// A signal's disposition belongs to the process, and so does this record of it. Guarded by the
-// mutex, but for `handler` and `before`, which the signal handler reads: they change only while
-// the handler is not installed.
+// A signal's disposition belongs to the process, and so does this record. The mutex guards it,
+// except `handler` and `before`, which the signal handler reads: they change only while the handler
+// is not installed.
 struct Loan {
   std::mutex mutex;
   int users = 0;
@@ -47,8 +47,8 @@ extern "C" void on_steal_signal(int number, siginfo_t* info, void* context) {
   errno = error_before;
 }
 
-/// Whether the calling thread does not want it handled: it may wait for it, by sigwait() or a
-/// signalfd, and no handler shows that.
+/// Does the calling thread block the signal? It may wait for it by sigwait() or a signalfd, which
+/// no handler shows.
 bool is_blocked(int number) {
   sigset_t blocked;
   sigemptyset(&blocked);
@@ -56,8 +56,8 @@ bool is_blocked(int number) {
   return sigismember(&blocked, number) == 1;
 }
 
-/// The highest number that nobody handles, or else the highest; of those that the calling thread
-/// does not block. 0 if there are none.
+/// The highest unhandled signal, otherwise the highest, among those that the calling thread does
+/// not block. 0 if there are none.
 int choose_number() {
   int highest = 0;
   for (int number = SIGRTMAX; number >= SIGRTMIN; --number) {

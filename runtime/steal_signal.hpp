@@ -1,9 +1,9 @@
 /// @file
-/// StealSignal: the loan of a real-time signal while loops steal by signal (private to the
-/// runtime). The number is one without a handler, chosen when the first loop asks; it is given
-/// back, with the disposition it had, when the last one is over. If all numbers have handlers, one
-/// is shared: signals that no thief sent go on to the handler that was there. One that the calling
-/// thread blocks is never taken, as the program may wait for it: sigwait(), a signalfd, a timer.
+/// StealSignal: borrows a real-time signal while loops steal by signal (private to the runtime). It
+/// takes a signal without a handler when the first such loop starts, and restores its disposition
+/// after the last one ends. If all signals have handlers, it shares one and forwards signals that
+/// no thief sent. It never takes a signal that the calling thread blocks, because the program may
+/// wait for it: sigwait(), a signalfd, a timer.
 #pragma once
 
 #include <csignal>
@@ -12,12 +12,12 @@ namespace ductile::runtime {
 
 class StealSignal {
  public:
-  /// Called in the handler, on the thread that got the signal, with what was sent. Touches
-  /// lock-free atomics only.
+  /// Called in the handler, on the thread that received the signal, with the value sent. May only
+  /// touch lock-free atomics.
   using Handler = void (*)(void* sent);
 
-  /// Throws nothing: ask available(). There is none where the calling thread blocks them all, or
-  /// the one that another loop has on loan.
+  /// Does not throw; check available(). None is available if the calling thread blocks them all, or
+  /// blocks the one that another loop has borrowed.
   explicit StealSignal(Handler handler) noexcept;
   ~StealSignal();
   StealSignal(const StealSignal&) = delete;
@@ -29,7 +29,7 @@ class StealSignal {
   /// Thread safety: any thread. A signal sent is handled before the loan ends, or not at all.
   bool send(pthread_t to, void* what) const noexcept;
 
-  /// Lets the calling thread receive the signal until destruction.
+  /// Lets the calling thread receive the signal during its lifetime.
   class Reception {
    public:
     explicit Reception(const StealSignal& signal) noexcept;
@@ -42,7 +42,7 @@ class StealSignal {
   };
 
  private:
-  int number_ = 0;  // 0: none to be had
+  int number_ = 0;  // 0: none available
 };
 
 }  // namespace ductile::runtime

@@ -13,8 +13,8 @@ namespace ductile::runtime {
 namespace {
 
 constexpr std::size_t children = 4;
-/// About as long as it takes to wake such a team, which may cost no more than to have it wait.
-/// None where threads have no core each: those that wait would hold one that others need.
+/// About the time to wake such a team, so that waiting costs no more than waking. 0 if threads
+/// outnumber cores: waiting threads would occupy a core that others need.
 std::chrono::microseconds spin_time(int threads) {
   constexpr int of_each = 25, least = 50, most = 200;
   return std::chrono::microseconds(
@@ -23,7 +23,7 @@ std::chrono::microseconds spin_time(int threads) {
 
 thread_local Team* led_team = nullptr;
 
-/// Tells the processor that its thread waits: its other thread may go ahead.
+/// Hints to the processor that this thread spins, so that its sibling hyperthread may proceed.
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
@@ -32,7 +32,7 @@ void pause() {
 #endif
 }
 
-/// Asks again and again for so long; false if the answer was never yes.
+/// Polls for this long; false if the answer was never true.
 template <class Answer>
 bool spin_until(std::chrono::nanoseconds time, Answer&& yes) {
   constexpr int between_looks_at_the_clock = 16;
@@ -87,17 +87,17 @@ void Team::serve(int thread) {
     if (task.work == nullptr) return;
     task.work(task.context, thread);
     join(own, task);
-    // Releases what the loop has written to who finds that in join_one(). Sequentially consistent,
-    // as notify_one() looks for somebody who waits after that; in call(), too.
+    // Releases the loop's writes to the thread that sees this state in join_one(). Sequentially
+    // consistent because notify_one() then looks for a waiter; likewise in call().
     if (seat.state.exchange(State::idle) == State::awaited) seat.state.notify_one();
   }
 }
 
-/// Waits for a call and takes it: it cannot be taken back any more.
+/// Waits for a call and takes it; afterwards it cannot be taken back.
 void Team::take_call(Seat& seat) const {
   const auto take = [&] {
-    // Acquires the task, and what its caller has written. To look first would take the caller's
-    // cache line twice.
+    // Acquires the task and its caller's writes. A load first would fetch the caller's cache line
+    // twice.
     State expected = State::called;
     return seat.state.compare_exchange_strong(expected, State::busy, std::memory_order_acquire,
                                               std::memory_order_relaxed);
@@ -140,7 +140,7 @@ void Team::join_one(Seat& seat, const Task& task) const {
     if (seat.state.compare_exchange_strong(expected, State::awaited, std::memory_order_relaxed)) {
       seat.state.wait(State::awaited, std::memory_order_relaxed);
     } else {
-      std::this_thread::yield();  // it has not begun, or is done just now
+      std::this_thread::yield();  // it has not begun, or has just finished
     }
   }
 }

@@ -1,9 +1,9 @@
 /// @file
 /// Team: threads that wait for the loops of one thread, the leader (private to the runtime). Work
-/// is passed on along a tree: each thread calls four others and waits for them when it is done
-/// itself, so a message takes as many steps as the tree is high, and no thread writes to many.
-/// Nobody waits for a thread that has not begun: it may sleep, or have no core to run on, which
-/// takes longer than most loops. Its call is taken back, once the others have done its share.
+/// is passed along a tree: each thread calls four others and waits for them after its own share, so
+/// a message takes as many steps as the tree has levels, and no thread writes to many. Nobody waits
+/// for a thread that has not begun: it may be asleep or have no core, which takes longer than most
+/// loops. Its call is taken back once the others have done its share.
 #pragma once
 
 #include <atomic>
@@ -17,31 +17,31 @@
 
 namespace ductile::runtime {
 
-/// Which threads a loop runs on: those that begin before its work is done, or each of them.
+/// The threads that a loop runs on: those that begin before its work is done, or all of them.
 enum class Turnout : std::uint8_t { whoever_comes, everyone };
 
 class Team {
  public:
-  /// A loop's work, without its type, called with the number of the thread.
+  /// A loop's type-erased work, called with the number of the thread.
   struct Task {
-    void (*work)(void* context, int thread) = nullptr;  // null: the thread is to go home
+    void (*work)(void* context, int thread) = nullptr;  // null: the thread ends its service
     void* context = nullptr;
     Turnout turnout = Turnout::everyone;
-    /// It runs on the first so many of the team, or on all if there are fewer.
+    /// Runs on this many threads of the team, or on all if there are fewer.
     std::uint32_t threads = ~std::uint32_t{0};
   };
 
   explicit Team(const Executor& executor);
 
-  /// The calling thread's, if it leads one for such an executor; null otherwise.
+  /// The calling thread's team if it leads one for such an executor; null otherwise.
   static Team* of(const Executor& executor) noexcept;
 
-  /// Makes this the calling thread's team until destruction.
+  /// Makes this the calling thread's team during its lifetime.
   class Leading {
    public:
     /// The team has `size` threads, of which OpenMP may give fewer than the executor has.
     Leading(Team& team, int size) noexcept;
-    ~Leading();  // sends the other threads home
+    ~Leading();  // dismisses the other threads
     Leading(const Leading&) = delete;
     Leading& operator=(const Leading&) = delete;
 
@@ -52,13 +52,13 @@ class Team {
   /// Leader only: runs the task on the calling thread and the others; returns when all are done.
   void run(const Task& task);
 
-  /// On each other thread: does what comes until it is sent home.
+  /// Called on each other thread: runs tasks until it is dismissed.
   void serve(int thread);
 
  private:
   enum class State : std::uint32_t { idle, asleep, called, busy, awaited };
 
-  /// One thread's, and where its caller leaves a task for it.
+  /// One thread's state, and the slot where its caller leaves a task.
   struct alignas(128) Seat {
     std::atomic<State> state{State::idle};
     Task task;
@@ -73,7 +73,7 @@ class Team {
   const Executor& executor_;
   const std::chrono::nanoseconds spin_;
   const std::unique_ptr<Seat[]> seats_;
-  std::size_t size_ = 0;  // written before the first call
+  std::size_t size_ = 0;  // set before the first call
 };
 
 }  // namespace ductile::runtime

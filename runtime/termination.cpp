@@ -14,17 +14,17 @@
 namespace ductile::runtime {
 namespace {
 
-/// Those by which others end a process or a system limits it. Not those of its own faults.
+/// Signals by which users end a process or a system limits it, not those of program faults.
 constexpr std::array signals{SIGHUP,  SIGINT,  SIGQUIT, SIGPIPE,   SIGALRM, SIGTERM,
                              SIGUSR1, SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF};
 
-// The handlers are the process's, and so is this record of them. Guarded by the mutex.
+// Handlers belong to the process, and so does this record. Guarded by the mutex.
 constinit std::mutex mutex;
 constinit int users = 0;
 constinit std::array<bool, signals.size()> is_ours{};
 
-// What the handler reads and writes.
-constinit std::atomic<pid_t> owner{0};  // a forked child has files that are its parent's
+// Read and written by the handler.
+constinit std::atomic<pid_t> owner{0};  // the files of a forked child belong to its parent
 constinit std::atomic<int> holders{0};
 constinit std::atomic<bool> ending{false};
 constinit std::array<std::atomic<bool>, signals.size()> waiting{};
@@ -37,7 +37,7 @@ void end_by(int number) {
   struct sigaction action = {};
   action.sa_handler = SIG_DFL;
   sigaction(number, &action, nullptr);
-  raise(number);  // at once, or when the handler is left
+  raise(number);  // takes effect now, or when the handler returns
 }
 
 void let_wait(int number) {
@@ -45,8 +45,8 @@ void let_wait(int number) {
     if (signals[i] == number) waiting[i] = true;
 }
 
-/// Whoever comes to hold signals now waits for the end, and whoever has come first is found here,
-/// because all accesses of `ending` and `holders` are in one order.
+/// A thread that starts to hold signals now waits for the end; one that started earlier is found
+/// here, because all accesses of `ending` and `holders` are totally ordered.
 extern "C" void ductile_on_ending_signal(int number) {
   const int error_before = errno;
   if (getpid() != owner) {
@@ -88,7 +88,7 @@ void give_signals_back() {
   for (std::size_t i = 0; i < signals.size(); ++i) {
     struct sigaction now = {};
     if (!is_ours[i] || sigaction(signals[i], nullptr, &now) != 0) continue;
-    if (now.sa_handler != ductile_on_ending_signal) continue;  // somebody else's by now
+    if (now.sa_handler != ductile_on_ending_signal) continue;  // another handler has replaced ours
     now = {};
     now.sa_handler = SIG_DFL;
     sigaction(signals[i], &now, nullptr);
@@ -105,7 +105,7 @@ HeldSignals::HeldSignals() noexcept {
 
 HeldSignals::~HeldSignals() {
   const bool last = --holders == 0;
-  while (ending) std::this_thread::yield();  // a handler may be about to let its signal wait
+  while (ending) std::this_thread::yield();  // a handler may be about to defer its signal
   give_signals_back();
   for (std::size_t i = 0; last && i < signals.size(); ++i)
     if (waiting[i].exchange(false)) raise(signals[i]);

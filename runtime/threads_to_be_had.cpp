@@ -21,8 +21,9 @@ namespace {
 // Written while a process forks, and by its child.
 constinit bool had_threads = false, is_alone = false;
 
-/// Whether this process has other threads than the calling one, or may have: the 20th field of its
-/// stat, the 18th after the name in brackets. Takes no memory: fork() may be called anywhere.
+/// Does this process have, or may it have, other threads than the calling one? Reads the 20th field
+/// of its stat, the 18th after the name in brackets. Allocates no memory, because fork() may be
+/// called anywhere.
 bool has_threads() noexcept {
   const int file = ::open("/proc/self/stat", O_RDONLY | O_CLOEXEC);
   if (file < 0) return true;
@@ -37,14 +38,14 @@ bool has_threads() noexcept {
 void before_fork() noexcept { had_threads = has_threads(); }
 void in_child() noexcept { is_alone = is_alone || had_threads; }
 
-/// Other users of OpenMP's threads count as well, so it is not enough to look when loops run.
+/// Registered early, because other code may use OpenMP's threads too.
 [[maybe_unused]] const int registered = ::pthread_atfork(before_fork, nullptr, in_child);
 
 // ---- Threads that cannot be had ----
 
-/// Of the calling thread's last region, which its OpenMP library keeps.
+/// Number of threads in the calling thread's last region, which its OpenMP library keeps.
 thread_local int kept = 1;
-/// So often it runs alone before threads are tried out again.
+/// Number of calls that run alone before threads are tried again.
 thread_local int calls_alone = 0;
 
 extern "C" void* wait_at_gate(void* gate) {
@@ -52,7 +53,7 @@ extern "C" void* wait_at_gate(void* gate) {
   return nullptr;
 }
 
-/// All at a time, so that each has its stack.
+/// Tries all at once, so that all stacks exist together.
 bool can_make_threads(std::size_t count) {
   std::vector<pthread_t> threads;
   threads.reserve(count);
@@ -66,7 +67,7 @@ bool can_make_threads(std::size_t count) {
   return threads.size() == count;
 }
 
-/// About what OpenMP's libraries take for a team.
+/// About the memory that OpenMP libraries take for a team.
 bool has_memory_for(std::size_t threads) {
   constexpr std::size_t of_team = 8192, of_each = 1024;
   void* const memory = std::malloc(of_team + of_each * threads);
@@ -74,7 +75,7 @@ bool has_memory_for(std::size_t threads) {
   return memory != nullptr;
 }
 
-/// A region within another one has threads of its own, which it does not keep.
+/// A nested region has its own threads, which it does not keep.
 bool is_nested() noexcept { return omp_get_level() > 0; }
 
 }  // namespace

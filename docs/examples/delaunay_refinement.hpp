@@ -73,7 +73,7 @@ class RefineTriangles {
     cavity.fill(mesh_, vertex, [&] { return commit.fresh(0); });
     for (const TriangleId t : cavity.triangles)
       if (is_bad(t)) commit.wake({t, vertex});
-    // Where an edge in its way was halved, the triangle may still be there.
+    // If an edge in its way was halved, the triangle may still be there.
     if (mesh_.corners_of[item.triangle][2] == item.last) commit.wake(item);
   }
 

@@ -1,6 +1,6 @@
 /// @file
-/// What the examples of the runtime share, and no part of Ductile: arguments, and a table of runs
-/// at several thread counts whose results must be identical.
+/// Shared by the runtime's examples, not part of Ductile: arguments, and a table of runs at several
+/// thread counts whose results must be identical.
 ///   PROGRAM [SIZE [THREADS...]]
 #pragma once
 

@@ -1,6 +1,6 @@
 /// @file
-/// What a simulation does with Ductile, without the simulation: in each step a solution is advanced
-/// on the mesh, the mesh adapted to it, and the solution carried to the new mesh.
+/// A simulation loop with Ductile, without the simulation: in each step a solution is advanced on
+/// the mesh, the mesh is adapted to it, and the solution is transferred to the new mesh.
 ///   follow_a_solution MESH OUTPUT.vtu
 
 #include <cmath>

@@ -198,7 +198,7 @@ inline std::vector<Edge> shuffled(const std::vector<Edge>& edges) {
   return result;
 }
 
-/// What edges weigh by weight_of(a, b).
+/// The weights of edges, by weight_of(a, b).
 inline std::vector<Weight> weights_of(std::span<const Edge> edges) {
   std::vector<Weight> weights(edges.size());
   std::transform(edges.begin(), edges.end(), weights.begin(),

@@ -99,7 +99,7 @@ class MinimumDegree {
     }
   }
 
-  /// What the run has done: vertices by their steps, since those of one step do not meet.
+  /// The ordering found: vertices sorted by step, because those of one step do not touch.
   Ordering ordering(const runtime::Executor& executor) const {
     std::vector<std::uint64_t> pivots;  // steps and vertices
     for (Vertex v = 0; v < graph_.size(); ++v)

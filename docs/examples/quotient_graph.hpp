@@ -19,13 +19,13 @@ namespace example {
 
 class QuotientGraph {
  public:
-  /// What eliminate() works with, to be used again.
+  /// Scratch memory of eliminate(), reused.
   struct Scratch {
     std::vector<Vertex> kept;
     std::vector<std::pair<std::uint64_t, Vertex>> hashes;
   };
 
-  /// Of a graph without loops and repeated edges, whose rows are ascending.
+  /// The graph has no loops or repeated edges, and ascending rows.
   explicit QuotientGraph(ductile::runtime::CsrGraph<> graph)
       : nodes_(graph.vertex_count()),
         lists_(graph.neighbour.begin(), graph.neighbour.end()),
@@ -133,7 +133,7 @@ class QuotientGraph {
       }
   }
 
-  /// What is in two elements beside the new one counts twice.
+  /// Bounds the degree of v; vertices in two elements other than the new one count twice.
   void bound_degree(Vertex pivot, Vertex v) {
     const std::uint32_t others = nodes_[pivot].degree - nodes_[v].size;
     std::uint32_t sum = others;

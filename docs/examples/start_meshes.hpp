@@ -1,7 +1,6 @@
 /// @file
-/// What to start from: random points in a square, alone or sorted into rows, with the stripe
-/// between two rows triangulated from left to right, which is far from Delaunay; and a plate with
-/// holes.
+/// Start meshes: random points in a square, alone or sorted into rows, with the strip between two
+/// rows triangulated from left to right, which is far from Delaunay; and a plate with holes.
 #pragma once
 
 #include <algorithm>

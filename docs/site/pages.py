@@ -3,9 +3,10 @@
 
     pages.py check          fails, naming file and line, where a relative link leads nowhere
     pages.py filter FILE    prints a page as Doxygen wants it, headings and links by labels, or a header
-    pages.py linked         prints the other files of the repository that pages link to
+    pages.py linked         prints the other files of the repository that pages of the site link to
+    pages.py off-site       prints the pages that the site leaves out
 
-To be run at the top of the repository. On the site such a file is files/PATH.txt, so that a browser shows its text.
+To be run at the top of the repository. On the site a linked file is files/PATH.txt, so that a browser shows its text.
 """
 
 import os
@@ -23,6 +24,12 @@ def pages():
     for folder, folders, files in os.walk("."):
         folders[:] = sorted(f for f in folders if not re.match(r"\.|build|broken$", f))
         yield from (os.path.normpath(os.path.join(folder, f)) for f in sorted(files) if f.endswith(".md"))
+
+
+def is_off_site(page):
+    """Is the page only in the repository? So are the notebook, and decisions that are superseded."""
+    return page.startswith("docs/notebook/") or (
+        page.startswith("docs/decisions/") and "\nStatus: superseded" in read(page))
 
 
 def read(page):
@@ -106,6 +113,8 @@ def for_doxygen(page):
         if not found or picture:
             return match[0]
         text = " ".join(text.split())  # Doxygen wants it in one line
+        if found[0].endswith(".md") and is_off_site(found[0]):
+            return text
         if not found[1] and is_below(page, found[0]) and found not in seen:
             seen.add(found)
             return f'@subpage {label(*found)} "{text}"'
@@ -131,8 +140,10 @@ def main():
         path = os.path.relpath(sys.argv[2])
         print((for_doxygen if path.endswith(".md") else header_for_doxygen)(path), end="")
     elif command == "linked":
-        found = {path for _, _, path, _ in links() if os.path.isfile(path)}
+        found = {path for page, _, path, _ in links() if not is_off_site(page) and os.path.isfile(path)}
         print("\n".join(sorted(path for path in found if not path.endswith((".md", ".png", ".svg")))))
+    elif command == "off-site":
+        print("\n".join(page for page in pages() if is_off_site(page)))
     else:
         print(__doc__, file=sys.stderr)
         return 2

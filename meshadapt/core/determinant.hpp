@@ -1,5 +1,5 @@
 /// @file
-/// Volumes of elements by determinants, as rounding leaves them or certain in their sign.
+/// Volumes of elements as determinants: rounded, or with a certain sign.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace ductile::meshadapt {
 
-/// Twice the signed area, positive when a, b, c turn counter-clockwise. A result whose sign
-/// rounding could have changed is returned as 0 (forward error bound: Shewchuk, Discrete Comput.
-/// Geom. 18, 1997), so a positive result proves a positive area.
+/// Twice the signed area, positive when a, b, c turn counter-clockwise. If rounding could have
+/// changed the sign, returns 0 (forward error bound: Shewchuk, Discrete Comput. Geom. 18, 1997), so
+/// a positive result proves a positive area.
 inline double certain_determinant(const Vector<2>& a, const Vector<2>& b, const Vector<2>& c) {
   constexpr double bound = 3.5 * std::numeric_limits<double>::epsilon();
   const double left = (b[0] - a[0]) * (c[1] - a[1]);
@@ -35,7 +35,7 @@ inline double certain_determinant(const Vector<3>& a, const Vector<3>& b, const 
   return std::abs(determinant) > bound * permanent ? determinant : 0;
 }
 
-/// The same of the corners of an element.
+/// The same for the corners of an element.
 template <int Dim>
 double certain_determinant(const std::array<Vector<Dim>, Dim + 1>& p) {
   if constexpr (Dim == 2)
@@ -44,18 +44,18 @@ double certain_determinant(const std::array<Vector<Dim>, Dim + 1>& p) {
     return certain_determinant(p[0], p[1], p[2], p[3]);
 }
 
-/// Twice the signed area, as rounding leaves it.
+/// Twice the signed area, with rounding errors.
 inline double plain_determinant(const std::array<Vector<2>, 3>& p) {
   const Vector<2> u = p[1] - p[0], v = p[2] - p[0];
   return u[0] * v[1] - u[1] * v[0];
 }
-/// Six times the signed volume, as rounding leaves it.
+/// Six times the signed volume, with rounding errors.
 inline double plain_determinant(const std::array<Vector<3>, 4>& p) {
   return dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0]));
 }
 
-/// The facet opposite `vertex`, which is one of the corners; without branches, because which one it
-/// is cannot be foreseen.
+/// The facet opposite `vertex`, which is one of the corners. Branch-free, because branches would be
+/// unpredictable.
 template <int Dim>
 [[gnu::always_inline]] inline Facet<Dim> facet_opposite(const Corners<Dim>& corners,
                                                         VertexId vertex) {

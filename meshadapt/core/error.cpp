@@ -24,7 +24,8 @@ std::string escaped(char c) {
   }
 }
 
-/// How many bytes of a control character in UTF-8 are here: those of ASCII have one, others two.
+/// Number of bytes of the UTF-8 control character at this place: one in ASCII, otherwise two; 0 if
+/// it is none.
 std::size_t control_bytes(std::string_view text, std::size_t at) {
   const auto byte = static_cast<unsigned char>(text[at]);
   if (byte < 0x20 || byte == 0x7f) return 1;

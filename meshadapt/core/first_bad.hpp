@@ -1,6 +1,6 @@
 /// @file
-/// What checks of a mesh have in common: the first entity that is not as it should be, on all
-/// threads, and what entities and numbers look like in messages.
+/// Shared by checks of a mesh: a parallel search for the first bad entity, and texts for entities
+/// and numbers in messages.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ inline std::string entity(const char* kind, std::size_t index) {
   return std::string(kind) + " " + std::to_string(index + 1);
 }
 
-/// With six digits.
+/// A number with six digits.
 inline std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);

@@ -1,6 +1,6 @@
 /// @file
 /// Lanes: numbers of eight elements side by side. Loops over them have no branches and a fixed
-/// length, so that the compiler evaluates several elements at a time, as many as its vectors hold.
+/// length, so that the compiler vectorises them.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace ductile::meshadapt {
 inline constexpr std::size_t lane_count = 8;
 template <class Number>
 using LanesIn = std::array<Number, lane_count>;
-using Lanes = LanesIn<double>;        ///< one number of each of so many elements
-using QualityLanes = LanesIn<float>;  ///< their quality, as a mesh keeps them
+using Lanes = LanesIn<double>;        ///< one number for each of eight elements
+using QualityLanes = LanesIn<float>;  ///< their qualities, in the mesh's precision
 template <int Size>
-using LanesOf = std::array<Lanes, Size>;  ///< a vector or tensor of each
+using LanesOf = std::array<Lanes, Size>;  ///< a vector or tensor for each element
 
 /// The tensor of one lane.
 template <int Dim>
@@ -39,7 +39,7 @@ inline QualityLanes first_lanes(std::size_t count) {
   return lanes;
 }
 
-/// All lanes joined in pairs.
+/// Reduces all lanes by joining pairs.
 template <class Number>
 Number folded(LanesIn<Number> lanes, auto&& join) {
   for (std::size_t half = lane_count / 2; half > 0; half /= 2)
@@ -50,7 +50,7 @@ template <class Number>
 Number total(const LanesIn<Number>& lanes) {
   return folded(lanes, std::plus<>());
 }
-/// These two may overlook what is no number.
+/// least() and the next may ignore NaNs.
 template <class Number>
 Number least(const LanesIn<Number>& lanes) {
   return folded(lanes, [](Number a, Number b) { return a < b ? a : b; });
@@ -60,9 +60,9 @@ Number greatest(const LanesIn<Number>& lanes) {
   return folded(lanes, [](Number a, Number b) { return a > b ? a : b; });
 }
 
-/// Of each of eight objects made of doubles, those from number `at` to `at` + 3 become a lane of
-/// to[0] to to[3]; null is not wanted. Numbers come and go by four: what is stored one by one and
-/// read by four at once has to wait in between.
+/// Transposes: the numbers `at` to `at` + 3 of eight objects made of doubles become the lanes to[0]
+/// to to[3]; null is skipped. Numbers move in groups of four, because loading four at once after
+/// storing single ones would stall.
 template <class Object>
 [[gnu::always_inline]] inline void transpose(const std::array<const Object*, lane_count>& from,
                                              std::size_t at, const std::array<Lanes*, 4>& to) {

@@ -82,14 +82,14 @@ Metric<Dim> logarithm(const Metric<Dim>& a) {
 
 namespace {
 
-/// In closed form: what rounding adds to an eigenvalue of a logarithm is, unlike what it adds to
-/// one of a metric, as harmless beside small ones as beside large ones.
+/// In closed form: the absolute rounding error of an eigenvalue of a logarithm, unlike that of a
+/// metric, is as harmless for small eigenvalues as for large ones.
 Metric<2> exponential_of(const Metric<2>& a) {
   const double mean = 0.5 * (a.m[0] + a.m[2]), half = 0.5 * (a.m[0] - a.m[2]), off = a.m[1];
   const double radius = std::sqrt(half * half + off * off);
-  if (!(radius > 1e-150)) return isotropic<2>(std::exp(-0.5 * mean));  // its square is hardly there
+  if (!(radius > 1e-150)) return isotropic<2>(std::exp(-0.5 * mean));  // its square underflows
   const double large = std::exp(mean + radius), small = std::exp(mean - radius);
-  // the eigenvectors are (far, off) and (-off, far), or that with axes exchanged
+  // The eigenvectors are (far, off) and (-off, far), or the same with axes exchanged.
   const double far = radius + std::abs(half), share = 0.5 / (radius * far);
   const double near2 = share * off * off, far2 = share * far * far;
   const double first = large * far2 + small * near2, second = large * near2 + small * far2;

@@ -31,7 +31,7 @@ int rational_orientation(const std::array<Vector<Dim>, Dim + 1>& p) {
 
 template <int Dim>
 int orientation(const std::array<Vector<Dim>, Dim + 1>& corners) {
-  // Below this, products may be denormal, and the error bound of the fast way does not hold.
+  // Below this, products may be denormal, and the error bound of the fast method does not hold.
   constexpr double smallest_trusted = 1e-270;
   const double fast = certain_determinant<Dim>(corners);
   if (std::abs(fast) > smallest_trusted && std::isfinite(fast)) return fast > 0 ? 1 : -1;

@@ -1,6 +1,6 @@
 /// @file
-/// orientation: the exact sign of an element's volume, for those that must not be wrong about it.
-/// The kernels need no more than certain_determinant(), which may answer that it does not know.
+/// orientation: the exact sign of an element's volume, for code that must not be wrong about it.
+/// The kernels only need certain_determinant(), which may leave the sign open.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 namespace ductile::meshadapt {
 
 /// 1 if the corners are positively oriented, -1 if negatively, 0 if they lie in one hyperplane or
-/// one is not finite. Never wrong: what floating point cannot decide, rational arithmetic does.
-/// Thread safety: any thread.
+/// one is not finite. Exact: rational arithmetic decides if floating point cannot. Thread safety:
+/// any thread.
 template <int Dim>
 int orientation(const std::array<Vector<Dim>, Dim + 1>& corners);
 

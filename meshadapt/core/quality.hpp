@@ -1,7 +1,7 @@
 /// @file
-/// Quality of elements, and lengths of edges, in the metric. A quality of 1 is ideal, towards 0 the
-/// element is degenerate. The kernels compare it as quality(), which needs no cubic root; reports
-/// show mean_ratio(), which orders elements alike.
+/// Quality of elements, and lengths of edges, in the metric. A quality of 1 is ideal; near 0 the
+/// element is degenerate. The kernels compare quality(), which needs no cubic root; reports show
+/// mean_ratio(), which has the same order.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,7 @@
 
 namespace ductile::meshadapt {
 
-/// A site: what a kernel needs to know of a vertex to compute the quality of the elements around
-/// it.
+/// A site: the data of a vertex that determine the quality of the elements around it.
 template <int Dim>
 struct Site {
   Vector<Dim> position;
@@ -26,19 +25,19 @@ struct Site {
   friend bool operator==(const Site&, const Site&) = default;
 };
 
-/// The state of a vertex with this position and metric.
+/// Makes the site of a vertex with this position and metric.
 template <int Dim>
 Site<Dim> make_site(const Vector<Dim>& position, const Metric<Dim>& metric) {
   const double product = determinant(metric);
   return {position, metric, Dim == 2 ? std::sqrt(product) : std::cbrt(product)};
 }
 
-/// The squares of an edge's metric length, as the metric at either end measures it.
+/// The squared metric length of an edge, measured by the metric at either end.
 struct EndSquares {
   double at_a, at_b;
 };
 
-/// Both of the edge from a to b.
+/// End squares of the edge from a to b.
 template <int Dim>
 [[gnu::always_inline]] inline EndSquares end_squares(const Site<Dim>& a, const Site<Dim>& b) {
   const Vector<Dim> d = b.position - a.position;
@@ -63,38 +62,38 @@ inline bool shorter_than(const EndSquares& edge, double limit) {
   if (std::max(edge.at_a, edge.at_b) < square) return true;
   return edge_length(edge) < limit;
 }
-/// The same of the edge from a to b.
+/// The same for the edge from a to b.
 template <int Dim>
 bool shorter_than(const Site<Dim>& a, const Site<Dim>& b, double limit) {
   return shorter_than(end_squares(a, b), limit);
 }
 
-/// The metric volume of what has this volume, by the scale of the metric.
+/// Metric volume of this Euclidean volume, by the scale of the metric.
 template <int Dim>
 [[gnu::always_inline]] inline double metric_volume(double volume, double scale) {
   return Dim == 2 ? scale * volume : scale * volume * std::sqrt(scale);
 }
 
-/// How much a corner counts beside another in the metric of an element, by the ratio of their
-/// scales: the fourth power of the ratio of their densities. From the bound on the other no longer
-/// matters; larger weights would leave the range of single precision.
+/// Weight of a corner relative to another in the metric of an element, by the ratio of their
+/// scales: the fourth power of the ratio of their densities. Bounded, because beyond that the other
+/// corner no longer matters and weights would leave the range of single precision.
 template <int Dim>
 [[gnu::always_inline]] inline double corner_weight(double ratio) {
   const double square = std::min(ratio, 100.0) * std::min(ratio, 100.0);
   return Dim == 2 ? square * square : square * square * square;
 }
 
-/// The metric that an element is judged by, up to a factor, which qualities do not depend on.
+/// The metric in which an element's quality is computed, up to a factor that cancels.
 template <int Dim>
 struct ElementMetric {
   Metric<Dim> metric;
-  double scale = 0;  ///< the mean of the corners', at most det(metric)^(1/Dim) (Minkowski)
+  double scale = 0;  ///< mean over the corners, at most det(metric)^(1/Dim) (Minkowski)
 };
 
-/// The mean of the metrics of some corners by their weights. A corner that is much denser than the
-/// others decides alone. This is the rule of the unstructured grid adaptation working group (Ibanez
-/// et al., Procedia Eng. 203, 2017). Corners that are equally dense count alike: if rounding chose
-/// one of them, neighbouring elements would be judged in different directions.
+/// The weighted mean of the metrics of some corners. A much denser corner decides alone. This is
+/// the rule of the unstructured grid adaptation working group (Ibanez et al., Procedia Eng. 203,
+/// 2017). Equally dense corners have equal weights: if rounding chose one of them, neighbouring
+/// elements would be judged in different directions.
 template <int Dim, std::size_t n>
 [[gnu::always_inline]] inline ElementMetric<Dim> mean_metric(
     const std::array<const Site<Dim>*, n>& corner) {
@@ -150,8 +149,8 @@ double quality(const std::array<const Site<Dim>*, Dim + 1>& corner) {
                            sum_of_squared_lengths<Dim>(metric, corner));
 }
 
-/// What quality() is made of; a volume of 0 if quality(corner) > bar does not hold, which is
-/// decided without the root and the division; bar is not negative.
+/// The ingredients of quality(); the volume is 0 unless quality(corner) > bar, which is decided
+/// without root and division; bar is not negative.
 struct VolumeAndSquares {
   double volume = 0, squares = 0;
 };
@@ -191,7 +190,7 @@ double mean_ratio(double quality) {
   return Dim == 2 || quality <= 0 ? quality : std::cbrt(quality * quality);
 }
 
-/// The quality whose mean ratio is this.
+/// The quality with this mean ratio.
 template <int Dim>
 double quality_of_mean_ratio(double ratio) {
   return Dim == 2 ? ratio : ratio * std::sqrt(ratio);

@@ -1,6 +1,6 @@
 /// @file
-/// SmallSystem<N>: the normal equations of a least squares problem with N unknowns, gathered row by
-/// row and solved by Cholesky's factors.
+/// SmallSystem<N>: the normal equations of a least squares problem with N unknowns, accumulated row
+/// by row and solved by Cholesky factorisation.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ class SmallSystem {
     }
   }
 
-  /// Adds `amount` of the largest diagonal entry to all of them: unknowns that the equations do not
-  /// determine become the smallest ones possible.
+  /// Adds `amount` of the largest diagonal entry to the diagonal: unknowns that the equations do
+  /// not determine become as small as possible.
   void regularise(double amount) {
     double largest = 0;
     for (std::size_t i = 0; i < N; ++i) largest = std::max(largest, matrix_[i][i]);

@@ -6,7 +6,7 @@
 
 namespace ductile::meshadapt {
 
-/// Of length 1; 0 if the vector is.
+/// The vector scaled to length 1; 0 if it is 0.
 template <int Dim>
 Vector<Dim> unit(const Vector<Dim>& v) {
   const double length = norm(v);

@@ -1,7 +1,6 @@
 /// @file
-/// Adjacency<Dim>: what lies beside what in a mesh: the elements around each vertex and the element
-/// across each facet. It is made once from a mesh, in parallel; whatever asks for neighbours or for
-/// the boundary takes it.
+/// Adjacency<Dim>: the elements around each vertex and the element across each facet. It is made
+/// once per mesh, in parallel, and used by all code that needs neighbours or the boundary.
 #pragma once
 
 #include <array>
@@ -21,10 +20,10 @@ namespace ductile::meshadapt {
 
 /// The elements around each vertex.
 struct VertexElements {
-  std::vector<std::uint32_t> first_around;  // [vertex], and the end
+  std::vector<std::uint32_t> first_around;  // [vertex], and one past the last
   std::vector<ElementId> around;            // one more than is used, so that its end has an address
 
-  /// In ascending order.
+  /// The elements around a vertex, ascending.
   std::span<const ElementId> elements_of(VertexId vertex) const {
     return {&around[first_around[vertex]], &around[first_around[vertex + 1]]};
   }
@@ -39,36 +38,36 @@ struct Adjacency : VertexElements {
     return neighbour_of[element][static_cast<std::size_t>(facet)];
   }
 
-  /// The first element that has these corners, and which of its facets they are; element `none`:
-  /// there is none.
+  /// The first element with these corners, and the number of the facet; element `none` if there is
+  /// none.
   ElementFacet find(const Facet<Dim>& corners) const;
 
-  /// The facet as that of the element across; element `none`: there is none, or it is crowded.
+  /// The facet as seen from the element across; element `none` if there is none, or it is crowded.
   ElementFacet other_side(const ElementFacet& at) const;
 
-  /// Whether no element of a lower number has the facet.
+  /// Is this the element of lowest number that has the facet?
   bool is_first(const ElementFacet& at) const;
 
-  /// Whether there is no element of the same region on the other side; region_of may be empty.
+  /// Is there no element of the same region across? region_of may be empty.
   bool on_region_boundary(ElementId element, int facet,
                           std::span<const std::uint32_t> region_of) const;
 };
 
-/// Precondition: corners are below vertex_count. Nearly linear; throws std::bad_alloc, and
-/// std::length_error if lists have more than 2^32 entries.
-/// Thread safety: one caller; runs on the executor. So does what follows.
+/// Lists the elements around each vertex. Precondition: corners are below vertex_count. Nearly
+/// linear; throws std::bad_alloc, and std::length_error if lists have more than 2^32 entries.
+/// Thread safety of this and the following: one caller; runs on the executor.
 template <int Dim>
 VertexElements list_elements(const runtime::Executor& executor,
                              std::span<const Corners<Dim>> corners_of, std::size_t vertex_count);
 
-/// Takes the lists, and refers to the corners.
+/// Makes an adjacency that owns the lists and refers to the corners.
 template <int Dim>
 Adjacency<Dim> make_adjacency(const runtime::Executor& executor,
                               std::span<const Corners<Dim>> corners_of, VertexElements lists);
 
-/// A mesh, and what of its adjacency has been asked for, made then and kept. Refers to both.
-/// Precondition of asking: the mesh has this dimension, and the vertices that its elements name.
-/// Thread safety: one caller, outside of loops; what is returned may be read by any thread.
+/// A mesh with its adjacency, made when first asked for and kept. Refers to executor and mesh.
+/// Precondition of asking: the mesh has this dimension, and its elements name existing vertices.
+/// Thread safety: one caller, outside of loops; any thread may read what is returned.
 class AdjacentMesh {
  public:
   AdjacentMesh(const runtime::Executor& executor, const AnyMesh& mesh)
@@ -77,7 +76,7 @@ class AdjacentMesh {
   const runtime::Executor& executor() const { return executor_; }
   const AnyMesh& mesh() const { return mesh_; }
 
-  /// The elements around each vertex; takes less than half the time of all.
+  /// The elements around each vertex; takes less than half the time of the whole adjacency.
   template <int Dim>
   const VertexElements& lists() const;
   template <int Dim>
@@ -91,7 +90,7 @@ class AdjacentMesh {
 
   const runtime::Executor& executor_;
   const AnyMesh& mesh_;
-  mutable std::optional<VertexElements> lists_;  // until there is an adjacency, which takes them
+  mutable std::optional<VertexElements> lists_;  // moved into the adjacency once there is one
   mutable std::tuple<std::optional<Adjacency<2>>, std::optional<Adjacency<3>>> kept_;
 };
 

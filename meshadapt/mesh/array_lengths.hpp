@@ -1,6 +1,6 @@
 /// @file
-/// Whether the arrays of a mesh or of fields that a caller made have the lengths that belong
-/// together, to be asked before anything is looked up in them; indices are another matter.
+/// Checks that the arrays of a mesh or of fields made by a caller have consistent lengths, before
+/// anything is looked up in them. Indices are checked elsewhere.
 #pragma once
 
 #include "ductile/meshadapt/any_mesh.hpp"
@@ -14,8 +14,8 @@ void expect_coordinates(const AnyMesh& mesh);
 /// Throws InputError unless there is a reference for each edge, triangle and tetrahedron.
 void expect_references(const AnyMesh& mesh);
 
-/// Throws InputError unless there are fields of known types, of dimension 2 or 3, that have as many
-/// values as they should.
+/// Throws InputError unless the fields have known types, dimension 2 or 3, and the right number of
+/// values.
 void expect_values(const AnyField& field);
 
 }  // namespace ductile::meshadapt

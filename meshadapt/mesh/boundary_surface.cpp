@@ -84,7 +84,7 @@ void BoundarySurface<Dim>::connect(const runtime::Executor& executor) {
   });
 }
 
-/// Two sides at a joint that no third has.
+/// Connects the two sides at a joint that no third has.
 template <int Dim>
 void BoundarySurface<Dim>::connect(const BoundaryJoint& one, const BoundaryJoint& other) {
   sheets_.unite(one.side, other.side);

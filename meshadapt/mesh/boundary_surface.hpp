@@ -1,8 +1,7 @@
 /// @file
-/// BoundarySurface: the facets around the regions of a mesh as a surface of its own, in 2D curves:
-/// which of them hang together at which of their joints, which are edges, in 2D vertices. Where not
-/// two but more facets of one region have a joint, the surface meets itself: the joint is
-/// non-manifold.
+/// BoundarySurface: connectivity of the boundary facets of regions across shared joints: edges, in
+/// 2D vertices. If more than two facets of one region share a joint, the surface touches itself:
+/// the joint is non-manifold.
 #pragma once
 
 #include <array>
@@ -19,28 +18,28 @@
 
 namespace ductile::meshadapt {
 
-/// A facet of a region that has no other element of it on its other side.
+/// A facet of a region with no element of that region on its other side.
 template <int Dim>
 struct BoundarySide {
   Facet<Dim> corners;    ///< ascending
-  std::uint32_t region;  ///< the number of its element's
+  std::uint32_t region;  ///< number of its element's region
   friend auto operator<=>(const BoundarySide&, const BoundarySide&) = default;
 };
 
-/// Where sides of one region meet.
+/// A place where sides of one region meet.
 struct BoundaryJoint {
-  std::uint64_t key;     ///< the ends of an edge, the lower in the upper half; in 2D the vertex
+  std::uint64_t key;     ///< the ends of an edge, the lower in the upper half; in 2D, the vertex
   std::uint32_t region;  ///< of the side
   std::uint32_t side;
-  std::uint32_t number;  ///< among the side's: that of the corner which it has not
+  std::uint32_t number;  ///< within the side: the number of the opposite corner
   friend auto operator<=>(const BoundaryJoint&, const BoundaryJoint&) = default;
   bool is_at(const BoundaryJoint& other) const {
     return key == other.key && region == other.region;
   }
 };
 
-/// The sides of all regions, sorted. `region_of` numbers them by element; empty: all are of one.
-/// Nearly linear in the mesh. Thread safety: one caller; runs on the executor.
+/// The sides of all regions, sorted. `region_of` gives the region of each element; empty: there is
+/// one. Nearly linear in the mesh. Thread safety: one caller; runs on the executor.
 template <int Dim>
 runtime::UnsetVector<BoundarySide<Dim>> sides_of(const runtime::Executor& executor,
                                                  const Adjacency<Dim>& adjacency,
@@ -56,7 +55,7 @@ class BoundarySurface {
   std::size_t size() const { return sides_.size(); }
   const BoundarySide<Dim>& side(std::size_t i) const { return sides_[i]; }
 
-  /// A vertex of a side's region: its number in the upper half.
+  /// A vertex of a side's region: its number is in the upper half.
   using Vertex = std::uint64_t;
   std::size_t vertex_count() const { return vertices_.size(); }
   VertexId vertex(std::size_t i) const { return static_cast<VertexId>(vertices_[i] >> 32U); }
@@ -64,7 +63,7 @@ class BoundarySurface {
     return static_cast<std::uint32_t>(vertices_[i]);
   }
 
-  /// Calls visit(joints) for the joints of sides that meet at one place, place by place.
+  /// Calls visit(joints) once for each place, with the joints there.
   void each_meeting(auto&& visit) const {
     for (std::size_t begin = 0, end = 0; begin < joints_.size(); begin = end) {
       end = end_of_run(begin);
@@ -72,19 +71,19 @@ class BoundarySurface {
     }
   }
 
-  /// The lowest vertex with which one is connected, by sides that have vertices in common.
+  /// The lowest vertex connected to this one by sides that share vertices.
   std::uint32_t part_of_vertex(std::size_t i) {
     return parts_.lowest(static_cast<std::uint32_t>(i));
   }
   std::uint32_t part_of_side(std::size_t i) { return part_of_vertex(index_of(sides_[i], 0)); }
-  /// The lowest side with which one is connected, by joints of two sides.
+  /// The lowest side connected to this one by joints of two sides.
   std::uint32_t sheet_of_side(std::size_t i) {
     return sheets_.lowest(static_cast<std::uint32_t>(i));
   }
-  /// Of those corners of sides (Dim * side + corner) at one vertex that are connected by joints of
-  /// two sides, the lowest.
+  /// The lowest corner (Dim * side + corner) at the same vertex that is connected to this one by
+  /// joints of two sides.
   std::uint32_t fan_of_corner(std::size_t i) { return fans_.lowest(static_cast<std::uint32_t>(i)); }
-  /// Of a side's corner.
+  /// Index of a side's corner among the vertices.
   std::size_t index_of(const BoundarySide<Dim>& side, std::size_t corner) const;
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// Box: an axis-parallel box, and those around points.
+/// Box: an axis-parallel box, and bounding boxes of points.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ template <int Dim>
 struct Box {
   Vector<Dim> low, high;
 
-  /// Contains nothing.
+  /// A box without points.
   static Box empty() {
     Box box;
     box.low.x.fill(std::numeric_limits<double>::infinity());

@@ -32,8 +32,8 @@ double squared_distance(const Box<Dim>& box, const Vector<Dim>& point) {
 template <int Dim>
 class BoxHierarchy {
  public:
-  /// Of n things, box_of(i). Throws std::bad_alloc. Thread safety: one caller; runs on the
-  /// executor.
+  /// Builds the tree over n things with boxes box_of(i). Throws std::bad_alloc. Thread safety: one
+  /// caller; runs on the executor.
   BoxHierarchy(const runtime::Executor& executor, std::size_t n, const auto& box_of) {
     const auto all =
         runtime::parallel_reduce(executor, n, Box<Dim>::empty(), box_of,
@@ -56,9 +56,9 @@ class BoxHierarchy {
   /// The things along a space-filling curve.
   const std::vector<std::uint32_t>& order() const { return order_; }
 
-  /// Calls look_at(place) for the things whose boxes are nearer than `square`, a squared distance
-  /// that look_at may lower, with their places in order(); the nearer ones first. Thread safety:
-  /// any thread.
+  /// Calls look_at(place) for things whose boxes are closer than `square`, a squared distance that
+  /// look_at may lower; place is an index into order(). Closer ones come first. Thread safety: any
+  /// thread.
   void visit_near(const Vector<Dim>& point, const double& square, const auto& look_at) const {
     if (!order_.empty()) look_into(boxes_of_.size() - 1, 0, Search{point, square}, look_at);
   }
@@ -93,7 +93,7 @@ class BoxHierarchy {
     boxes_of_.push_back(std::move(boxes));
   }
 
-  /// Looks into the nearer boxes first, and not into those that are too far away.
+  /// Visits the closer boxes first and skips those that are too far.
   void look_into(std::size_t level, std::size_t index, const Search& search,
                  const auto& look_at) const {
     if (level == 0) return look_at(index);
@@ -108,7 +108,8 @@ class BoxHierarchy {
   }
 
   std::vector<std::uint32_t> order_;
-  std::vector<std::vector<Box<Dim>>> boxes_of_;  // [level][index]: of `width` boxes a level below
+  std::vector<std::vector<Box<Dim>>> boxes_of_;  // [level][index]: box around `width` boxes of the
+                                                 // level below
 };
 
 }  // namespace ductile::meshadapt

@@ -1,5 +1,5 @@
 /// @file
-/// BoxIndex: which of many boxes meet another, by an R-tree. Large to compile: for sources only.
+/// BoxIndex: finds intersecting boxes by an R-tree. Expensive to compile: include in sources only.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace ductile::meshadapt {
 template <int Dim>
 class BoxIndex {
  public:
-  /// Of n boxes, box_of(i). Throws std::bad_alloc.
+  /// Builds the index of n boxes box_of(i). Throws std::bad_alloc.
   template <class BoxOf>
   BoxIndex(std::size_t n, BoxOf&& box_of) {
     std::vector<Value> values;
@@ -29,8 +29,8 @@ class BoxIndex {
     tree_ = Tree(values);
   }
 
-  /// Calls visit(i) for each box that has a point in common with this one, in any order, the same
-  /// each time. Thread safety: any thread.
+  /// Calls visit(i) for each box that intersects this one, in arbitrary but reproducible order.
+  /// Thread safety: any thread.
   template <class Visit>
   void each_meeting(const Box<Dim>& box, Visit&& visit) const {
     tree_.query(

@@ -51,8 +51,8 @@ void add_vertices(AnyMesh& mesh, const std::array<double, 3>& extent,
       }
 }
 
-/// The corners of a cell from its first on, along axes in the order of a permutation: one of the
-/// six tetrahedra of Kuhn's cut. Odd permutations are turned over.
+/// Adds the tetrahedron of Kuhn's subdivision of a cell that follows the axes in the order of a
+/// permutation. Odd permutations are reoriented.
 void add_tetrahedron(AnyMesh& mesh, const GridNumbers& number, std::array<int, 3> at,
                      const std::array<std::size_t, 3>& axes) {
   std::array<std::uint32_t, 4> corners{number(at), 0, 0, 0};
@@ -76,7 +76,7 @@ void add_tetrahedra(AnyMesh& mesh, const std::array<int, 3>& cells) {
       }
 }
 
-/// Both sides across an axis, cut along the diagonal from the first corner as the cells are.
+/// Adds both sides across an axis, cut along the diagonal from the first corner, as the cells are.
 void add_sides(AnyMesh& mesh, const std::array<int, 3>& cells, std::size_t axis) {
   const GridNumbers number{cells};
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;

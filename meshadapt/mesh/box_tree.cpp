@@ -11,8 +11,8 @@ using runtime::Executor;
 
 namespace {
 
-/// The point closest to the origin among those that the chosen corners span: weights that add up
-/// to 1, not all of them positive perhaps. False if the corners do not lie in general position.
+/// The point closest to the origin in the affine span of the chosen corners: weights that sum to 1
+/// and may be negative. False if the corners are degenerate.
 template <int Dim>
 bool closest_in_span(const std::array<Vector<Dim>, Dim + 1>& corner, unsigned chosen,
                      Weights<Dim>& weight) {

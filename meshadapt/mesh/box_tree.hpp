@@ -1,6 +1,6 @@
 /// @file
-/// BoxTree<Dim>: finds the point of a mesh that is closest to a given one, by a tree of boxes over
-/// its elements. For what a walk does not find: points outside, or behind a hole.
+/// BoxTree<Dim>: finds the closest point of a mesh by a tree of boxes around its elements, where a
+/// walk fails: for points outside, or behind a hole.
 #pragma once
 
 #include "ductile/meshadapt/simplex.hpp"
@@ -13,17 +13,17 @@ namespace ductile::meshadapt {
 template <int Dim>
 struct ClosestPoint {
   ElementId element = none;
-  Weights<Dim> weight{};  // of the point, none below 0
+  Weights<Dim> weight{};  // barycentric weights of the point, none below 0
   double squared_distance = 0;
 };
 
 template <int Dim>
 class BoxTree {
  public:
-  /// Refers to what `mesh` refers to. Throws std::bad_alloc.
+  /// Refers to the arrays of `mesh`. Throws std::bad_alloc.
   BoxTree(const runtime::Executor& executor, const Simplices<Dim>& mesh);
 
-  /// Thread safety: any thread.
+  /// Finds the closest point of the mesh. Thread safety: any thread.
   ClosestPoint<Dim> closest(const Vector<Dim>& point) const;
 
   std::size_t bytes() const { return boxes_.bytes(); }

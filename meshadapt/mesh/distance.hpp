@@ -1,5 +1,5 @@
 /// @file
-/// Distances to the simplices that boundaries are made of: segments, in 3D triangles as well.
+/// Distances to the simplices of boundaries: segments, and triangles in 3D.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace ductile::meshadapt {
 
-/// The point of a segment that is closest to a point.
+/// The closest point of a segment.
 template <int Dim>
 Vector<Dim> closest_point(const std::array<Vector<Dim>, 2>& segment, const Vector<Dim>& point) {
   const Vector<Dim> along = segment[1] - segment[0];
@@ -18,9 +18,8 @@ Vector<Dim> closest_point(const std::array<Vector<Dim>, 2>& segment, const Vecto
   return segment[0] + std::clamp(dot(point - segment[0], along) / length2, 0.0, 1.0) * along;
 }
 
-/// The point of a triangle that is closest to a point: where it lies in the triangle's plane if
-/// that is inside, else the closest of the sides that this is beyond, as the way to the others
-/// leads over them.
+/// The closest point of a triangle: the projection to its plane if that is inside, otherwise the
+/// closest point of the sides that it lies beyond.
 inline Vector<3> closest_point(const std::array<Vector<3>, 3>& triangle, const Vector<3>& point) {
   const auto& [a, b, c] = triangle;
   const Vector<3> u = b - a, v = c - a, d = point - a, normal = cross(u, v);

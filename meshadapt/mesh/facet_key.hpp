@@ -1,5 +1,5 @@
 /// @file
-/// FacetKey: what tells a facet from others of the same lowest corner, and a table to find it in.
+/// FacetKey: identifies a facet among those with the same lowest corner; and a hash table for them.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace ductile::meshadapt {
 
 struct FacetKey {
-  std::uint64_t others;  ///< its corners but the lowest, ascending
-  bool odd;              ///< is their order of odd parity? So it is from one side of two
+  std::uint64_t others;  ///< its other corners, ascending
+  bool odd;              ///< is their order of odd parity? It differs between the two sides
 };
 
-/// Sorts the corners without branches, as their order is a matter of chance.
+/// Sorts the corners without branches, because their order is random.
 template <int Dim>
 FacetKey key_of(Facet<Dim> corners) {
   unsigned odd = 0;
@@ -36,11 +36,11 @@ FacetKey key_of(Facet<Dim> corners) {
   return {std::uint64_t{corners[1]} << 32U | corners[Dim - 1], odd != 0};
 }
 
-/// The places that a table for so many facets is to have.
+/// Number of slots of a table for so many facets.
 inline std::size_t facet_table_size(std::size_t facets) { return std::bit_ceil(2 * facets + 2); }
 
-/// Where a table has a facet, or the free place where it would have it. Its size is that of
-/// facet_table_size() for so many or more.
+/// The slot of a facet, or the free one where it belongs. The table's size is facet_table_size() of
+/// at least the number of facets.
 template <class Place>
 Place& facet_place(std::span<Place> table, std::uint64_t others, auto&& is_free) {
   const auto shift = static_cast<unsigned>(64 - std::countr_zero(table.size()));

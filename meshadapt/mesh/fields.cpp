@@ -10,7 +10,7 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// The first component of a field among those of a vertex. Throws unless it is of this type.
+/// The first component of a field within a vertex. Throws unless the field is of this type.
 std::size_t first_component(const AnyField& field, std::size_t index, AnyField::Type type) {
   if (index >= field.types.size() || field.types[index] != type)
     throw InputError(name_of(field) + ": expected a field of " +

@@ -1,6 +1,6 @@
 /// @file
-/// Whether all values of a field, or coordinates of a mesh, are numbers, to be asked before one
-/// that is not spreads.
+/// Checks that all values of a field, or coordinates of a mesh, are finite, before others are
+/// computed from them.
 #pragma once
 
 #include <cmath>

@@ -80,7 +80,7 @@ class FixedMeshMaker {
            " has no volume; remove or repair it");
   }
 
-  /// What a crowded facet has on its other side cannot be told, so it counts as a boundary.
+  /// The neighbour across a crowded facet is ambiguous, so the facet counts as a boundary.
   void connect() {
     const std::span<const Corners<Dim>> corners_of = mesh_.corners_of;
     Adjacency<Dim> adjacency = make_adjacency<Dim>(

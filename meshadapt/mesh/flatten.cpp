@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
-/// Where the corners of triangles and edges lie along one axis.
+/// Range of the corners of triangles and edges along one axis.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ template <int Corners>
 void extend(std::array<Range, 3>& range_of, const AnyMesh& mesh, const Cells<Corners>& cells) {
   for (const auto& corners : cells.vertices)
     for (const std::uint32_t vertex : corners) {
-      if (vertex >= mesh.vertex_count()) continue;  // for others to say
+      if (vertex >= mesh.vertex_count()) continue;  // reported elsewhere
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double x = mesh.coordinates[3 * std::size_t{vertex} + axis];
         range_of[axis].low = std::min(range_of[axis].low, x);
@@ -44,7 +44,7 @@ std::array<Range, 3> ranges(const AnyMesh& mesh) {
   return range_of;
 }
 
-/// The coordinate that varies least; of several, the last.
+/// The axis with the smallest extent; the last one if several are equal.
 std::size_t flattest(const std::array<Range, 3>& range_of) {
   std::size_t best = 2;
   for (const std::size_t axis : {std::size_t{1}, std::size_t{0}})
@@ -58,7 +58,7 @@ double extent(const std::array<Range, 3>& range_of) {
   return widest;
 }
 
-/// A surface that is thicker is one; whatever is taken for flat could not be adapted otherwise.
+/// A thicker mesh is a surface in space, which cannot be adapted.
 bool is_flat(const std::array<Range, 3>& range_of, std::size_t axis) {
   constexpr double share = 1e-6, single = 2 * std::numeric_limits<float>::epsilon();
   const double across = extent(range_of);

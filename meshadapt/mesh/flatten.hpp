@@ -1,6 +1,6 @@
 /// @file
-/// flatten: a mesh of triangles in a plane of space, as many programs write those of dimension 2,
-/// becomes one of dimension 2. Thread safety of all: any thread.
+/// flatten: converts a planar mesh of triangles in space, as many programs write meshes of
+/// dimension 2, to dimension 2. Thread safety of all: any thread.
 #pragma once
 
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace ductile::meshadapt {
 
-/// Turns a mesh of dimension 3 that has triangles and no tetrahedra into one of dimension 2 if one
-/// coordinate, z rather than y or x, is the same at all corners of its triangles and edges: up to
-/// 1e-6 of the extent of the others and the rounding of its own value to single precision. That
-/// coordinate is dropped, see AnyMesh::dropped_axis; a line in `warnings`, if that is given, says
-/// so. Any other mesh stays as it is. Throws InputError for arrays that do not fit together.
+/// Turns a mesh of dimension 3 with triangles and no tetrahedra into one of dimension 2 if one
+/// coordinate (preferably z, then y, then x) is the same at all corners of its triangles and edges,
+/// up to 1e-6 of the extent of the others and the rounding of its value to single precision. Drops
+/// that coordinate, see AnyMesh::dropped_axis, and adds a line to `warnings` if given. Keeps any
+/// other mesh. Throws InputError for inconsistent arrays.
 void flatten(AnyMesh& mesh, Warnings* warnings = nullptr);
 
-/// What a mesh of dimension 3 without tetrahedra has instead and what may be done about it, to
-/// follow what says that there are none; empty if it has no triangles.
+/// The end of a message about a mesh of dimension 3 without tetrahedra: its other contents and a
+/// remedy; empty if it has no triangles.
 std::string instead_of_tetrahedra(const AnyMesh& mesh);
 
 }  // namespace ductile::meshadapt

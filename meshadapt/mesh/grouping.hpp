@@ -1,9 +1,9 @@
 /// @file
-/// Grouping: items by the keys they have, elements by their corners, those of a key in order, on
-/// many threads and without atomics. Items and keys are cut into as many chunks: what an item has
-/// in the chunk of keys of the same number is taken from the item where it is needed. The rest is
-/// noted first, chunk by chunk, so that it is in order, too. That works for any items; where they
-/// are in the order of their keys, little is noted.
+/// Grouping: groups items by their keys (elements by their corners), each group in order, on many
+/// threads without atomics. Items and keys are cut into the same number of chunks. Keys of an item
+/// that belong to the chunk of the same number are read from the item when needed; the others are
+/// recorded first, chunk by chunk, and so in order. It works for any items; if they are in the
+/// order of their keys, little is recorded.
 #pragma once
 
 #include <algorithm>
@@ -23,14 +23,14 @@
 
 namespace ductile::meshadapt {
 
-/// Chunk c has the items and the keys from bound c to bound c + 1. There is one at least.
+/// Chunk c has the items and the keys from bound c to bound c + 1. There is at least one.
 struct GroupingBounds {
   std::vector<std::uint32_t> items, keys;
 
   std::size_t chunk_count() const { return items.size() - 1; }
 
-  /// Equal parts, as many as threads can use. Throws std::bad_alloc, and std::length_error if there
-  /// are more items or keys than 32-bit numbers can count.
+  /// Equal chunks, as many as threads can use. Throws std::bad_alloc, and std::length_error if
+  /// there are more items or keys than 32-bit numbers can count.
   static GroupingBounds even(const runtime::Executor& executor, std::size_t items,
                              std::size_t keys) {
     if (std::max(items, keys) > std::numeric_limits<std::uint32_t>::max())
@@ -53,9 +53,9 @@ struct GroupingBounds {
 template <class KeysOf>
 class Grouping {
  public:
-  /// Counts in `count_of`, [key], which need not be set. Thread safety: one caller; runs on the
-  /// executor. Throws std::bad_alloc, and std::length_error if all items have more keys than 32-bit
-  /// numbers can count.
+  /// Counts the items of each key into `count_of`, which need not be initialised. Throws
+  /// std::bad_alloc, and std::length_error if the items have more keys than 32-bit numbers can
+  /// count. Thread safety: one caller; runs on the executor.
   Grouping(const runtime::Executor& executor, GroupingBounds bounds,
            std::span<std::uint32_t> count_of, KeysOf keys_of)
       : executor_(executor),
@@ -77,8 +77,8 @@ class Grouping {
     spread_.clear();
   }
 
-  /// Once: calls put(place, item) for each key of each item, in order, where places are numbered
-  /// key by key; count_of becomes where each key's end.
+  /// May be called once: calls put(place, item) for each key of each item, in order; places are
+  /// numbered key by key, and count_of becomes the end of each key's places.
   void list(auto&& put) {
     const auto begin_lists = [count_of = count_of_](std::uint32_t begin, std::uint32_t end,
                                                     std::uint32_t before) {
@@ -90,16 +90,16 @@ class Grouping {
     });
   }
 
-  /// How many keys all items have.
+  /// Total number of keys of all items.
   std::uint32_t size() const {
     std::uint32_t sum = noted_begin_.back();
     for (const std::uint32_t own : own_) sum += own;
     return sum;
   }
 
-  /// Once, for each chunk of keys: calls prepare(begin, end, before), when count_of of the keys
-  /// [begin, end) is how many items have each, and `before` how many have those below; then
-  /// put(key, item) for each of them, the items of a key in order.
+  /// May be called once. For each chunk of keys: calls prepare(begin, end, before), where count_of
+  /// of the keys [begin, end) is the number of items of each and `before` that of all lower keys;
+  /// then put(key, item) for each of them, the items of a key in order.
   void visit(auto&& prepare, auto&& put) {
     std::vector<std::uint32_t> before(chunks_);
     for (std::size_t c = 0; c + 1 < chunks_; ++c)
@@ -130,7 +130,7 @@ class Grouping {
     runtime::parallel_for(executor_, chunks_, body, {.grain = 1});
   }
 
-  /// A chunk of keys. By value, so that compilers know that it stays the same.
+  /// A chunk of keys. Passed by value, so that compilers know that it does not change.
   struct Range {
     std::uint32_t begin, size;
     bool contains(std::uint32_t key) const { return key - begin < size; }
@@ -138,7 +138,7 @@ class Grouping {
   Range range(std::size_t chunk) const {
     return {bounds_.keys[chunk], bounds_.keys[chunk + 1] - bounds_.keys[chunk]};
   }
-  /// The chunk of a key, which most often is the one of the key before.
+  /// The chunk of a key, usually the same as the previous key's.
   std::size_t chunk_of(std::uint32_t key, std::size_t likely) const {
     if (range(likely).contains(key)) return likely;
     const auto after = std::upper_bound(bounds_.keys.begin(), bounds_.keys.end(), key);
@@ -157,7 +157,7 @@ class Grouping {
       keys_of_(item, [&](std::uint32_t key) { visit(key, item); });
   }
 
-  /// Where those keys in a chunk are noted that items of another chunk have; at first their number.
+  /// Start of the records of one chunk's keys from the items of another; before that, their number.
   std::uint32_t& noted_begin(std::size_t keys, std::size_t items) {
     return noted_begin_[keys * chunks_ + items];
   }
@@ -200,7 +200,8 @@ class Grouping {
   std::size_t chunks_;
   std::span<std::uint32_t> count_of_;
   KeysOf keys_of_;
-  std::vector<std::uint32_t> own_;                  // [chunk], keys in it of its own items
+  std::vector<std::uint32_t> own_;                  // [chunk], number of keys of its own items in
+                                                    // it
   std::vector<std::vector<std::uint64_t>> spread_;  // [chunk], bits of items, for each_spread()
   std::vector<std::uint32_t> noted_begin_;          // [chunk of keys][chunk of items]
   runtime::UnsetVector<Pair> noted_;

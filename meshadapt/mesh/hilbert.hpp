@@ -1,6 +1,6 @@
 /// @file
-/// hilbert_key: where a point lies along a Hilbert curve through a box. What is near along the
-/// curve is near in space.
+/// hilbert_key: the position of a point along a Hilbert curve through a box. Points that are close
+/// along the curve are close in space.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,12 @@
 
 namespace ductile::meshadapt {
 
-/// How the curve runs in a square or a cube: in which cells of a grid it arrives in which order,
-/// and how it runs in each of them.
+/// The course of the curve through a square or cube, as a table: the order in which it visits the
+/// cells of a grid, and its orientation in each.
 template <int Dim>
 class HilbertTable {
  public:
-  static constexpr int step = Dim == 2 ? 4 : 2;  // bits an axis: 16 x 16, or 4 x 4 x 4 cells
+  static constexpr int step = Dim == 2 ? 4 : 2;  // bits per axis: 16 x 16, or 4 x 4 x 4 cells
   using Cell = std::array<std::uint32_t, Dim>;
   struct Place {
     unsigned place, state;
@@ -43,8 +43,8 @@ class HilbertTable {
     }
   }
 
-  /// The place along the curve of the cell that these bits of coordinates give, in a square of this
-  /// state, 0 at first; the state of the cell.
+  /// The position along the curve of the cell given by these bits of coordinates, in a square of
+  /// this state (0 at first), and the state in that cell.
   constexpr Place of(unsigned state, const Cell& x, int shift) const {
     unsigned cell = 0;
     for (unsigned i = Dim; i-- > 0;) cell = cell << unsigned{step} | (x[i] >> shift & (side - 1));
@@ -58,8 +58,9 @@ class HilbertTable {
   static constexpr std::array<std::array<std::uint8_t, 3>, 6> axes{
       {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}}};
 
-  /// hilbert_key() for one bit of each coordinate, the first lowest. A state says what it did to
-  /// those below: which coordinates were turned over, then its `t`, then how they were exchanged.
+  /// hilbert_key() for one bit of each coordinate, the first lowest. The state encodes what
+  /// happened to the bits below: which coordinates were inverted, then its `t`, then how they were
+  /// exchanged.
   static constexpr Place pass(unsigned state, unsigned bits) {
     auto axis = axes[state >> (Dim + 1)];
     std::array<unsigned, Dim> turned{}, x{};
@@ -93,7 +94,7 @@ class HilbertTable {
 template <int Dim>
 inline constexpr HilbertTable<Dim> hilbert_table;
 
-/// hilbert_key() by table; `bits` is a multiple of its step.
+/// hilbert_key() by table lookup; `bits` is a multiple of the table's step.
 template <int Dim>
 std::uint64_t hilbert_key_by_table(const std::array<std::uint32_t, Dim>& x, int bits) {
   constexpr int step = HilbertTable<Dim>::step;
@@ -106,7 +107,7 @@ std::uint64_t hilbert_key_by_table(const std::array<std::uint32_t, Dim>& x, int 
   return key;
 }
 
-/// Bits of the key of a point.
+/// Number of bits in the key of a point.
 template <int Dim>
 inline constexpr unsigned hilbert_bits = Dim == 2 ? 48 : 60;
 static_assert(hilbert_bits<2> / 2 % HilbertTable<2>::step == 0);

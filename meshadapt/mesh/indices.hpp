@@ -1,5 +1,5 @@
 /// @file
-/// Whether the elements of a mesh that a caller made name vertices that there are.
+/// Checks that the elements of a mesh made by a caller name existing vertices.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ template <int Dim>
          " names a vertex beyond the " + std::to_string(mesh.vertex_count()) + " that there are");
 }
 
-/// Throws InputError, naming the first element that has a corner beyond the vertices.
+/// Throws InputError, naming the first element with an invalid corner.
 template <int Dim>
 void expect_corners(const runtime::Executor& executor, const AnyMesh& mesh) {
   const std::size_t bad =
@@ -34,7 +34,7 @@ void expect_corners(const runtime::Executor& executor, const AnyMesh& mesh) {
   if (bad != no_index) refuse_corners<Dim>(mesh, bad);
 }
 
-/// The same of cells of any shape; `kind` is what one is called, `array` holds them.
+/// The same for cells of any shape; `kind` is the name of one, `array` that of their array.
 template <int N>
 void expect_vertices(const AnyMesh& mesh, const Cells<N>& cells, const char* array,
                      const char* kind) {
@@ -45,7 +45,7 @@ void expect_vertices(const AnyMesh& mesh, const Cells<N>& cells, const char* arr
                ", beyond the " + std::to_string(mesh.vertex_count()) + " that there are");
 }
 
-/// Of all cells.
+/// The same for all cells of a mesh.
 inline void expect_all_vertices(const AnyMesh& mesh) {
   expect_vertices(mesh, mesh.edges, "edges.vertices", "edge");
   expect_vertices(mesh, mesh.triangles, "triangles.vertices", "triangle");

@@ -18,14 +18,14 @@
 
 namespace ductile::meshadapt {
 
-/// Many short lists in one memory; see the top of this file.
+/// Many short lists in one arena; see the top of this file.
 template <class T>
 class ListPool {
  public:
   std::size_t size() const { return slot_of_.size(); }
 
-  /// Forgets all lists and makes n empty ones. Throws std::bad_alloc.
-  /// Thread safety: one caller; runs on the executor.
+  /// Replaces all lists by n empty ones. Throws std::bad_alloc. Thread safety: one caller; runs on
+  /// the executor.
   void reset(const runtime::Executor& executor, std::size_t n) {
     slot_of_.resize_for_overwrite(n);
     const auto empty = [](Slot* begin, Slot* end) { std::fill(begin, end, Slot{}); };
@@ -34,22 +34,21 @@ class ListPool {
     arena_->clear();
   }
 
-  /// The same, but each list is to be given room by reserve_all() before anything else.
-  /// Thread safety: one thread.
+  /// The same, but the lists are invalid until reserve_all(). Thread safety: one thread.
   void reset_for_overwrite(std::size_t n, runtime::FreshMemory& fresh) {
     slot_of_.resize_for_overwrite(n, fresh);
     arena_->clear();
   }
 
-  /// Forgets all lists and gives their memory back. Thread safety: one caller; runs on the
+  /// Removes all lists and gives their memory back. Thread safety: one caller; runs on the
   /// executor.
   void release(const runtime::Executor& executor) {
     slot_of_.release(executor);
     arena_->release(executor);
   }
 
-  /// Appends empty lists until there are n. Pages for them are added to `fresh`.
-  /// Thread safety: one thread.
+  /// Appends empty lists until there are n, and adds their pages to `fresh`. Thread safety: one
+  /// thread.
   void grow(std::size_t n, runtime::FreshMemory& fresh) { slot_of_.resize(n, fresh); }
 
   [[gnu::always_inline]] std::span<const T> of(std::uint32_t index) const {
@@ -60,7 +59,7 @@ class ListPool {
 
   bool empty(std::uint32_t index) const { return slot_of_[index].count == 0; }
 
-  /// Starts to bring a list into the cache; the first and the last of its lines.
+  /// Starts to bring a list into the cache: its first and last cache lines.
   void prefetch(std::uint32_t index) const {
     const Slot& slot = slot_of_[index];
     if (slot.count == 0) return;
@@ -69,14 +68,15 @@ class ListPool {
     __builtin_prefetch(begin + slot.count - 1);
   }
 
-  /// For threads that change a list at the same time, which come in any order: it is sorted.
-  /// Thread safety: any thread, if nobody changes or reads the list without holding it.
+  /// Locks a list for threads that change it concurrently; their order does not matter because the
+  /// list is sorted. Thread safety: any thread, if all threads hold the list while they change or
+  /// read it.
   [[nodiscard]] runtime::NumberWithLock::Held hold(std::uint32_t index) {
     return slot_of_[index].capacity.hold();
   }
 
-  // What follows changes one list. Thread safety: the owner of that list, or the thread that holds
-  // it.
+  // The following members change one list. Thread safety: the owner of that list, or the thread
+  // that holds it.
 
   void insert(std::uint32_t index, const T& value) {
     Slot& slot = slot_of_[index];
@@ -99,13 +99,13 @@ class ListPool {
     --slot.count;
   }
 
-  /// Erases some values and inserts others, both ascending; the former must be in the list, too.
+  /// Erases some values and inserts others, both ascending; the erased ones must be in the list.
   void replace(std::uint32_t index, std::span<const T> gone, std::span<const T> come) {
     Slot& slot = slot_of_[index];
     const auto count = static_cast<std::uint32_t>(slot.count - gone.size() + come.size());
     if (count > slot.capacity.get()) reserve(index, count + count / 2);
     T* const begin = arena_->at(slot.begin);
-    T* from = begin;  // where those that stay end
+    T* from = begin;  // end of the values that stay
     auto next = gone.begin();
     for (const T *at = begin, *end = begin + slot.count; at != end; ++at)
       if (next != gone.end() && *at == *next)
@@ -113,7 +113,7 @@ class ListPool {
       else
         *from++ = *at;
     assert(next == gone.end());
-    // From behind, so that nothing is overwritten that has not been moved.
+    // Goes backwards, so that nothing is overwritten before it has been moved.
     T* to = begin + count;
     for (std::size_t i = come.size(); i-- > 0; *--to = come[i])
       while (from != begin && come[i] < from[-1]) *--to = *--from;
@@ -131,8 +131,8 @@ class ListPool {
     slot.capacity.set(capacity);
   }
 
-  /// Makes the lists [begin, end) empty ones with room for capacity_of(index) each, side by side:
-  /// one request to the arena, which threads would otherwise wait for each other to make.
+  /// Makes the lists [begin, end) empty with room for capacity_of(index) each, side by side: one
+  /// request to the arena instead of many for which threads would compete.
   void reserve_all(std::uint32_t begin, std::uint32_t end, auto&& capacity_of) {
     std::uint32_t total = 0;
     for (std::uint32_t i = begin; i < end; ++i) {

@@ -1,6 +1,6 @@
 /// @file
-/// ListedTwice: facets or edges that are listed more than once, as programs do that write each from
-/// both sides. The first one stands for all of them, and one warning tells of it.
+/// ListedTwice: facets or edges that are listed more than once, as by programs that write each from
+/// both sides. The first one is kept, with one warning for all.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@ namespace ductile::meshadapt {
 
 class ListedTwice {
  public:
-  /// "edge" or "triangle", and [entity] the references of those that are listed.
+  /// The kind is "edge" or "triangle"; [entity] are the references of the listed ones.
   ListedTwice(const char* kind, const std::vector<std::int32_t>& reference_of)
       : kind_(kind), reference_of_(reference_of) {}
 
-  /// `again` has the corners of `first`, which comes before it.
+  /// Notes that `again` has the corners of `first`, which precedes it.
   void add(std::size_t first, std::size_t again) {
     if (count_++ == 0) example_ = {first, again};
     if (reference_of_[first] == reference_of_[again]) return;
@@ -27,7 +27,7 @@ class ListedTwice {
 
   bool empty() const { return count_ == 0; }
 
-  /// What was merged and, where references differ, which was kept.
+  /// A warning that says what was merged and, if references differ, which was kept.
   std::string warning() const {
     const std::string plural = std::string(kind_) + "s";
     std::string text = std::to_string(count_) + " of " + std::to_string(reference_of_.size()) +

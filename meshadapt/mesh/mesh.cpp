@@ -27,7 +27,7 @@ void Mesh<Dim>::grow(const Executor& executor, std::size_t vertices, std::size_t
   fresh.touch(executor);
 }
 
-/// Cut where the elements, if they are in order, go on with another lowest corner.
+/// Chunks that end where the lowest corner of the elements, if they are in order, changes.
 template <int Dim>
 static GroupingBounds bounds_by_lowest(const Executor& executor, const Mesh<Dim>& mesh) {
   auto bounds = GroupingBounds::even(executor, mesh.element_slots(), mesh.vertex_slots());
@@ -63,7 +63,7 @@ void rebuild_elements_of(const Executor& executor, Mesh<Dim>& mesh) {
   });
 }
 
-/// Is any of these numbers larger than a bound? Without branches, so several at once.
+/// Is any of these numbers larger than a bound? Branch-free, so it is vectorised.
 static bool any_above(std::span<const std::uint32_t> numbers, std::uint32_t bound) {
   std::uint32_t any = 0;
   for (const std::uint32_t number : numbers) any |= static_cast<std::uint32_t>(number > bound);
@@ -77,7 +77,7 @@ runtime::UnsetVector<std::uint8_t> mark_changed(const Executor& executor, const 
   auto marked = runtime::make_filled<std::uint8_t>(executor, mesh.vertex_slots());
   const auto mark = [&](std::size_t, std::size_t begin, std::size_t end) {
     if (!any_above(std::span(mesh.changed_at).subspan(begin, end - begin), after)) return;
-    // Listed first, without branches, as which have changed cannot be foreseen.
+    // Lists them first, branch-free, because branches on changes would be unpredictable.
     std::array<ElementId, stretch> changed;
     std::size_t count = 0;
     for (std::size_t e = begin; e < end; ++e) {

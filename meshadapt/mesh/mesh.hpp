@@ -28,25 +28,25 @@ using runtime::GrowingArray;
 using PatchId = std::uint32_t;
 using CurveId = std::uint32_t;
 
-/// A maximal flat set of facets that share everything below: part of the boundary or of an
-/// interface between regions. In 2D, a straight chain of edges. A smooth one may bend, and be
-/// replaced by another close to it (MakeMeshOptions::hausdorff_tolerance).
+/// A maximal flat set of facets with the same properties below: part of the boundary or of an
+/// interface between regions. In 2D, a straight chain of edges. A smooth one may bend, and may be
+/// replaced by a nearby one (MakeMeshOptions::hausdorff_tolerance).
 template <int Dim>
 struct Patch {
-  Vector<Dim> normal;  ///< unit length; of no use if smooth
+  Vector<Dim> normal;  ///< unit length; unused if smooth
   std::int32_t reference = 0;
   bool listed = true;     ///< was in the file, and is written
   bool required = false;  ///< its facets may not change
   bool ridge = false;     ///< 2D: its edges were listed as ridges
   bool smooth = false;
-  bool crack_side = false;  ///< another patch lies against it between the same rims
+  bool crack_side = false;  ///< the other side of a crack, with the same rims, is another patch
   std::uint32_t sheet = 0;  ///< its number in Mesh::surface
 };
 
-/// A maximal straight chain of edges in 3D: between patches, or listed in the file. A smooth one
-/// may bend.
+/// A maximal straight chain of edges in 3D, between patches or listed in the file. A smooth one may
+/// bend.
 struct Curve {
-  Vector<3> direction;  ///< unit length; of no use if smooth
+  Vector<3> direction;  ///< unit length; unused if smooth
   std::int32_t reference = 0;
   bool listed = false;
   bool required = false;
@@ -66,9 +66,9 @@ struct CurveLink {
 template <int Dim>
 using Neighbours = GrowingArray<std::array<ElementId, Dim + 1>>;
 
-/// What a vertex may do. `class_dimension` is the dimension of the geometric entity in
-/// which it may move: 0 never moves and is never removed (corner or required), 1 moves along a
-/// curve, 2 in a patch or, in 2D, anywhere, 3 anywhere.
+/// The freedom of a vertex. `class_dimension` is the dimension of the geometric entity in which it
+/// may move: 0 never moves and is never removed (corner or required), 1 moves along a curve, 2 in a
+/// patch or, in 2D, anywhere, 3 anywhere.
 struct VertexKind {
   std::uint8_t class_dimension = 0;
   bool corner = false;    ///< listed as a corner
@@ -76,24 +76,24 @@ struct VertexKind {
   friend bool operator==(const VertexKind&, const VertexKind&) = default;
 };
 
-/// An element reference, and whether elements that carry it may not change.
+/// An element reference, and whether its elements are required.
 struct Region {
   std::int32_t reference = 0;
   bool required = false;
 };
 
-/// What smooth patches and curves are to be like; see geometry/surface.hpp.
+/// The model of smooth patches and curves; see geometry/surface.hpp.
 template <int Dim>
 struct Surface;
 
-/// How precisely coordinates were written; see geometry/rounding.hpp.
+/// The precision in which coordinates were written; see geometry/rounding.hpp.
 template <int Dim>
 struct Rounding;
 
 /// A mesh while it is being adapted; see the top of this file.
 template <int Dim>
 struct Mesh {
-  // ---- Elements; one is gone when its first corner is none ----
+  // ---- Elements; deleted if the first corner is none ----
   GrowingArray<Corners<Dim>> corners_of;                  // [element], positively oriented
   GrowingArray<std::array<PatchId, Dim + 1>> patches_of;  // [element][facet], 0 inside
   GrowingArray<std::uint32_t> region_of;                  // [element], index into regions
@@ -101,14 +101,14 @@ struct Mesh {
   // the value that they computed while planning.
   GrowingArray<float> quality_of;
   GrowingArray<std::uint32_t> changed_at;  // [element], epoch of its last change
-  std::uint32_t epoch = 1;  ///< what changes now is marked with this; a scan ends an epoch
+  std::uint32_t epoch = 1;                 ///< changes are marked with it; a scan ends an epoch
 
-  // ---- Vertices; one is gone when it has no elements ----
+  // ---- Vertices; deleted if there are no elements ----
   GrowingArray<Site<Dim>> site_of;          // [vertex]
   GrowingArray<VertexKind> kind_of;         // [vertex]
   GrowingArray<std::uint32_t> entity_of;    // [vertex], its patch or curve, or 0
   GrowingArray<std::int32_t> reference_of;  // [vertex]
-  GrowingArray<ElementId> host_of;          // [vertex], background element it lies in
+  GrowingArray<ElementId> host_of;          // [vertex], background element that contains it
   ListPool<ElementId> elements_of;          // [vertex], sorted
   ListPool<CurveLink> links_of;             // [vertex], 3D only
 
@@ -117,7 +117,7 @@ struct Mesh {
   std::vector<Curve> curves;
   std::vector<Region> regions;
   std::shared_ptr<const Surface<Dim>> surface;  ///< null if no patch or curve is smooth
-  /// Null unless a patch or curve is flat, or straight, only up to how precisely it was written.
+  /// Null unless a patch is flat, or a curve straight, only up to the precision of its coordinates.
   std::shared_ptr<const Rounding<Dim>> rounding;
 
   std::size_t element_slots() const { return corners_of.size(); }
@@ -125,7 +125,7 @@ struct Mesh {
   bool alive(ElementId element) const { return corners_of[element][0] != none; }
   bool vertex_alive(VertexId vertex) const { return !elements_of.empty(vertex); }
 
-  /// Pointers to the sites of an element's corners, as the quality functions want them.
+  /// Pointers to the sites of an element's corners, as the quality functions take them.
   std::array<const Site<Dim>*, Dim + 1> sites(const Corners<Dim>& corners) const {
     std::array<const Site<Dim>*, Dim + 1> result;
     for (std::size_t i = 0; i < corners.size(); ++i) result[i] = &site_of[corners[i]];
@@ -144,47 +144,47 @@ struct Mesh {
     return 0;
   }
 
-  /// A vertex with more elements than this is left where it is; its edges can still be split.
+  /// A vertex with more elements than this does not move; its edges can still be split.
   static constexpr std::size_t largest_ball = 512;
 
-  /// Makes room for this many vertices and elements; new ones are to be set before anything else
-  /// looks at the mesh. Thread safety: one caller; runs on the executor.
+  /// Makes room for this many vertices and elements; set the new ones before anything else reads
+  /// the mesh. Thread safety: one caller; runs on the executor.
   void grow(const runtime::Executor& executor, std::size_t vertices, std::size_t elements);
 };
 
-/// Elements that a vertex's list has room for beyond those it was made with.
+/// Spare room in a vertex's list of elements when it is made.
 template <int Dim>
 inline constexpr std::uint32_t list_slack = Dim == 2 ? 2 : 10;
 
-/// Vertices whose lists are made together.
+/// Number of vertices whose lists are made together.
 inline constexpr std::uint32_t list_block = 64;
 
 /// Rebuilds elements_of from corners_of. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void rebuild_elements_of(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
-/// Recomputes quality_of. Thread safety: as above.
+/// Recomputes quality_of. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void update_qualities(const runtime::Executor& executor, Mesh<Dim>& mesh);
 
-/// Removes what is gone and renumbers what is left along a space-filling curve, so that what is
-/// near in space is near in memory. Rebuilds elements_of: on entry lists may be out of date, but an
-/// empty list must still mean a deleted vertex; vertices from `unlisted` on are alive in any case.
-/// The result does not depend on the number of threads.
+/// Removes deleted entities and renumbers the others along a space-filling curve, so that
+/// neighbours in space are close in memory. Rebuilds elements_of: on entry lists may be out of
+/// date, but an empty list must still mean a deleted vertex; vertices from `unlisted` on count as
+/// existing. The result does not depend on the number of threads.
 template <int Dim>
 void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, VertexId unlisted = none);
 
-/// The same, for the neighbours of its elements too. None may be gone.
+/// The same, also for the neighbours of its elements. Nothing may be deleted.
 template <int Dim>
 void renumber(const runtime::Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>& neighbours);
 
-/// Marks the vertices next to an element that changed after this epoch.
+/// Marks the vertices of elements that changed after this epoch.
 template <int Dim>
 runtime::UnsetVector<std::uint8_t> mark_changed(const runtime::Executor& executor,
                                                 const Mesh<Dim>& mesh, std::uint32_t after);
 
-/// Starts to bring a vertex's site into the cache. Inlined always: GCC 12 leaves out calls of
-/// functions that only prefetch.
+/// Starts to bring a vertex's site into the cache. Always inlined: GCC 12 drops calls of functions
+/// that only prefetch.
 template <int Dim>
 [[gnu::always_inline]] inline void prefetch_site(const Mesh<Dim>& mesh, VertexId vertex) {
   const auto* const site = reinterpret_cast<const char*>(&mesh.site_of[vertex]);
@@ -192,9 +192,9 @@ template <int Dim>
   __builtin_prefetch(site + sizeof(Site<Dim>) - 1);
 }
 
-/// Starts to bring what is around a vertex into the cache, in stages that build on each other: 2,
-/// its list of elements; 1, those elements; 0, the sites of their corners. A stage is of use if
-/// some time passes before the next one. Reads only.
+/// Starts to bring the ball of a vertex into the cache, in stages that build on each other: 2, its
+/// list of elements; 1, those elements; 0, the sites of their corners. Let some time pass between
+/// stages. Reads only.
 template <int Dim>
 void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
   if (stage == 2) return mesh.elements_of.prefetch(vertex);
@@ -209,8 +209,8 @@ void prefetch_ball(const Mesh<Dim>& mesh, VertexId vertex, int stage) {
   }
 }
 
-/// The same for what the elements around the edge a-b are found in: 2, the lists of both ends; 1,
-/// the corners of the elements of the shorter one. There is no stage 0.
+/// The same for the elements around the edge a-b: 2, the lists of both ends; 1, the corners of the
+/// elements of the shorter one. There is no stage 0.
 template <int Dim>
 [[gnu::always_inline]] inline void prefetch_shell(const Mesh<Dim>& mesh, VertexId a, VertexId b,
                                                   int stage) {
@@ -224,8 +224,9 @@ template <int Dim>
     __builtin_prefetch(&mesh.corners_of[e]);
 }
 
-/// Visits the elements around the edge a-b in order: those of the shorter of two lists that have
-/// the other vertex, too. Which do cannot be foreseen, so they are listed without branches first.
+/// Visits the elements around the edge a-b in order: those in the shorter of the two lists that
+/// have the other vertex. They are collected branch-free first, because branches would be
+/// unpredictable.
 template <int Dim>
 void visit_shell(const Mesh<Dim>& mesh, VertexId a, VertexId b, auto&& visit) {
   const auto of_a = mesh.elements_of.of(a), of_b = mesh.elements_of.of(b);
@@ -252,7 +253,8 @@ void shell_of(const Mesh<Dim>& mesh, VertexId a, VertexId b, Buffer& shell) {
   visit_shell(mesh, a, b, [&](ElementId element) { shell.push_back(element); });
 }
 
-/// Of the elements around a facet's first corner, the one beside `element` that has all, or none.
+/// Among the elements around a facet's first corner, the one besides `element` that has all
+/// corners, or none.
 template <int Dim>
 ElementId sharer_of(const Mesh<Dim>& mesh, std::span<const ElementId> around, ElementId element,
                     const Facet<Dim>& corners) {

@@ -28,14 +28,14 @@ using runtime::Executor;
 
 namespace {
 
-/// What cells of one shape are given as.
+/// The given cells of one shape.
 template <class Index>
 struct GivenCells {
   std::span<const Index> corners;
   std::span<const std::int32_t> reference;
 };
 
-/// References as given, or 0 for each of so many entities.
+/// The given references, or 0 for each of so many entities.
 std::vector<std::int32_t> references(std::span<const std::int32_t> given, std::size_t count) {
   if (given.empty()) return std::vector<std::int32_t>(count, 0);
   return {given.begin(), given.end()};
@@ -79,7 +79,7 @@ void take_cells(const Executor& executor, const GivenCells<Index>& given, const 
   cells.reference = references(given.reference, count);
 }
 
-/// Those to be listed, of the elements of lower numbers, in their order.
+/// The facets to be listed, from the elements of lower numbers, in order.
 template <int Dim>
 runtime::UnsetVector<ElementFacet> unlisted_boundary(const Executor& executor,
                                                      const AnyMesh& mesh) {
@@ -107,7 +107,7 @@ runtime::UnsetVector<ElementFacet> unlisted_boundary(const Executor& executor,
       });
 }
 
-/// The corners of an element's facet as they turn seen from outside.
+/// The corners of an element's facet, oriented outwards.
 template <int Dim>
 Facet<Dim> outward(const AnyMesh& mesh, const ElementFacet& at) {
   const Corners<Dim>& corners = elements_in<Dim>(mesh).vertices[at.element];

@@ -1,5 +1,5 @@
 /// @file
-/// find_neighbours(): the elements on the other sides of all facets of a mesh.
+/// find_neighbours(): the elements across all facets of a mesh.
 #pragma once
 
 #include <algorithm>
@@ -23,13 +23,13 @@ struct ElementFacet {
   int facet = 0;
 };
 
-/// Whether an element has all corners of a facet.
+/// Does an element have all corners of a facet?
 template <int Dim>
 bool has_facet(const Corners<Dim>& element, const Facet<Dim>& corners) {
   return std::ranges::all_of(corners, [&](VertexId v) { return contains(element, v); });
 }
 
-/// Which facet of an element has these corners, of which it has all.
+/// The number of the facet of an element that has these corners, all of them the element's.
 template <int Dim>
 int facet_number(const Corners<Dim>& element, const Facet<Dim>& corners) {
   int i = 0;
@@ -37,7 +37,8 @@ int facet_number(const Corners<Dim>& element, const Facet<Dim>& corners) {
   return i;
 }
 
-/// Among the elements around a corner of a facet, the first that has it; element `none`: none has.
+/// Among the elements around a corner of a facet, the first that has it; element `none` if there is
+/// none.
 template <int Dim>
 ElementFacet find_facet(std::span<const ElementId> around, std::span<const Corners<Dim>> corners_of,
                         const Facet<Dim>& corners) {
@@ -47,7 +48,7 @@ ElementFacet find_facet(std::span<const ElementId> around, std::span<const Corne
   return {};
 }
 
-/// Stands for a neighbour where more than two elements have a facet, or two on one side of it.
+/// Replaces a neighbour if more than two elements have a facet, or two on one side of it.
 inline constexpr ElementId crowded = none - 1;
 
 /// ElementsAt: elements_at(vertex) is a span of the elements around a vertex, ascending.
@@ -71,8 +72,8 @@ class NeighbourFinder {
   }
 
  private:
-  /// A facet that has been met, and of which element first; by its lowest corner, because a table
-  /// keeps what it has of others.
+  /// A facet seen before, and its first element. The lowest corner is stored, because tables keep
+  /// entries of earlier vertices.
   struct Met {
     std::uint64_t others = 0;
     VertexId lowest = none;
@@ -98,7 +99,7 @@ class NeighbourFinder {
     }
   }
 
-  /// Elements come in order, so the first is the lowest. Facets belong to two, one on each side.
+  /// Elements come in order, so the first is the lowest. A facet belongs to two, one on each side.
   void meet(VertexId lowest, ElementId element, int facet, std::span<Met> table) {
     const FacetKey key = key_of<Dim>(facet_of<Dim>(corners_of_[element], facet));
     const auto is_free = [lowest](const Met& met) { return met.lowest != lowest; };
@@ -115,7 +116,7 @@ class NeighbourFinder {
     }
   }
 
-  /// What has been met has another element on the same side, or a third.
+  /// Marks a facet that has another element on the same side, or a third.
   void crowd(Met& met) {
     ElementId& other = neighbour_at(met.element, met.facet);
     if (met.twice && other != crowded)
@@ -133,9 +134,9 @@ class NeighbourFinder {
   NeighbourOf neighbour_of_;
 };
 
-/// Sets neighbour_of, [element][facet]: the element across it, `none` if there is none, `crowded`.
-/// elements_at(vertex) is a span of the elements around a vertex, ascending. Nearly linear.
-/// Thread safety: one caller; runs on the executor.
+/// Sets neighbour_of, [element][facet]: the element across it, `none` if there is none, or
+/// `crowded`. elements_at(vertex) is a span of the elements around a vertex, ascending. Nearly
+/// linear. Thread safety: one caller; runs on the executor.
 template <int Dim>
 void find_neighbours(const runtime::Executor& executor, std::span<const Corners<Dim>> corners_of,
                      std::size_t vertex_count, auto elements_at,

@@ -30,18 +30,18 @@ Box<Dim> bounding_box(const Executor& executor, const Mesh<Dim>& mesh, auto&& is
       [](const Box<Dim>& a, const Box<Dim>& b) { return join(a, b); });
 }
 
-/// Keys with their ids in the low bits of a word, so that sorting words sorts ids by their keys,
-/// those of equal keys in order.
+/// Keys with their ids in the low bits of a word, so that sorting words sorts ids by key, equal
+/// keys in order.
 class KeyedWords {
  public:
-  /// As many of a key's `key_bits` highest bits count as find place beside an id below `count`.
+  /// Uses as many of the highest of a key's `key_bits` bits as fit beside an id below `count`.
   KeyedWords(std::size_t count, unsigned key_bits)
       : id_bits_(static_cast<unsigned>(std::bit_width(count))), key_bits_(key_bits) {}
 
   std::uint64_t word(std::uint64_t key, std::uint64_t id) const {
     return fits() ? key << id_bits_ | id : (key << (64 - key_bits_) & ~ids()) | id;
   }
-  /// Greater than all others; the greatest id is below the number that all its bits would make.
+  /// Greater than all other words; the greatest id is below the number with all id bits set.
   std::uint64_t gone() const { return word(greatest_key(), ids()); }
   std::uint64_t greatest_key() const { return (std::uint64_t{1} << key_bits_) - 1; }
   unsigned id_bits() const { return id_bits_; }
@@ -54,8 +54,8 @@ class KeyedWords {
   unsigned id_bits_, key_bits_;
 };
 
-/// Moves the words that are not `gone` to the front, in order, and returns their end. Mostly all
-/// are gone.
+/// Moves the words that are not `gone` to the front, in order, and returns their end. Most are
+/// gone.
 std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> words,
                            std::uint64_t gone) {
   const auto find = [&](std::size_t i, auto&& append) {
@@ -66,7 +66,7 @@ std::uint64_t* remove_gone(const Executor& executor, std::span<std::uint64_t> wo
   return std::to_address(std::copy(living.begin(), living.end(), words.begin()));
 }
 
-/// The ids below `count` that are alive, by key_of(id); is_alive(id) says whether one is.
+/// The existing ids below `count`, sorted by key_of(id); is_alive(id) says whether one exists.
 Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, auto&& is_alive,
                auto&& key_of) {
   const KeyedWords keyed(count, key_bits);
@@ -76,7 +76,7 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
   });
   const std::span all(words);
   runtime::parallel_sort_above(executor, all, keyed.id_bits());  // ids are in order
-  // Those that are gone may lie among living ones of the greatest key.
+  // Deleted ids may lie among existing ones of the greatest key.
   const auto last = std::lower_bound(all.begin(), all.end(), keyed.word(keyed.greatest_key(), 0));
   const auto end = remove_gone(executor, std::span(last, all.end()), keyed.gone());
   auto order = runtime::make_unset_vector<std::uint32_t>(
@@ -85,8 +85,7 @@ Ids sorted_ids(const Executor& executor, std::size_t count, unsigned key_bits, a
   return order;
 }
 
-/// Gives corners their new numbers. Returns the lowest of each element, none for those that are
-/// gone.
+/// Renumbers corners. Returns the lowest corner of each element, none for deleted ones.
 template <int Dim>
 Ids renumbered_lowest(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex) {
   auto lowest_of = runtime::make_unset_vector<std::uint32_t>(executor, mesh.element_slots());
@@ -102,8 +101,8 @@ Ids renumbered_lowest(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_
   return lowest_of;
 }
 
-/// Puts living elements by their lowest vertex, those of a vertex in order, into an array of room
-/// for all, and shrinks it. lowest_of is none for others.
+/// Sorts existing elements by their lowest vertex, stably, into an array with room for all, and
+/// shrinks it. lowest_of is none for the others.
 void sort_elements(Ids& order, const Executor& executor, const Ids& lowest_of,
                    std::size_t vertex_count) {
   auto count_of = runtime::make_unset_vector<std::uint32_t>(executor, vertex_count);
@@ -137,7 +136,7 @@ Ids places_in(const Executor& executor, const Ids& order, std::size_t count) {
 template <int Dim>
 Ids renumber_corners(const Executor& executor, Mesh<Dim>& mesh, const Ids& new_vertex,
                      std::size_t vertex_count) {
-  // First: what is freed behind it is one piece then.
+  // Allocated first, so that memory freed afterwards is contiguous.
   auto order = runtime::make_unset_vector<std::uint32_t>(executor, mesh.element_slots());
   const Ids lowest_of = renumbered_lowest(executor, mesh, new_vertex);
   sort_elements(order, executor, lowest_of, vertex_count);

@@ -13,9 +13,9 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// A number as 15 digits show it, without the zeros at their end.
+/// A number in 15 digits, without trailing zeros.
 struct Decimal {
-  int digits, exponent;   // the first digit counts 10^exponent
+  int digits, exponent;   // the value of the first digit is 10^exponent
   std::int64_t mantissa;  // all digits as one number
   int decimals() const { return digits - 1 - exponent; }
 };
@@ -27,16 +27,16 @@ Decimal decimal(double x) {
   std::size_t end = mark;
   while (end > 2 && view[end - 1] == '0') --end;
   Decimal result{static_cast<int>(end) - 1, std::atoi(view.data() + mark + 1), view[0] - '0'};
-  if (end == 2) result.digits = 1;  // the point is none
+  if (end == 2) result.digits = 1;  // there is no decimal point
   for (std::size_t i = 2; i < end; ++i) result.mantissa = 10 * result.mantissa + (view[i] - '0');
   return result;
 }
 
-/// Is it a number of single precision, or what became of one that was printed with few digits?
+/// Is it a number of single precision, or one that was printed with few digits?
 bool is_single(double x, const Decimal& as_decimal) {
   const double nearest = static_cast<float>(x);
   if (nearest == x) return true;
-  constexpr int most_digits = 9;  // are printed to tell all of them apart
+  constexpr int most_digits = 9;  // enough to distinguish all
   if (as_decimal.digits > most_digits) return false;
   const double unit = std::pow(10.0, as_decimal.exponent - as_decimal.digits + 1);
   return std::abs(x - nearest) <= 0.5 * unit * (1 + 1e-6);
@@ -55,7 +55,7 @@ double Precision::rounded(double x) const {
     case Kind::full:
       return x;
     case Kind::decimals:
-      return parsed("%.*f", digits, x) + 0.0;  // no -0
+      return parsed("%.*f", digits, x) + 0.0;  // avoids -0
     case Kind::significant:
       return parsed("%.*e", digits - 1, x);
     case Kind::single:
@@ -66,7 +66,7 @@ double Precision::rounded(double x) const {
 
 bool PrecisionFinder::add(double x) {
   if (x == 0) return is_decimal_ || is_single_;
-  constexpr int most_digits = 13;  // 15 would show numbers of double precision as they are
+  constexpr int most_digits = 13;  // 15 digits show even numbers of double precision unchanged
   const Decimal as_decimal = decimal(x);
   is_decimal_ = is_decimal_ && as_decimal.digits <= most_digits;
   is_single_ = is_single_ && is_single(x, as_decimal);
@@ -88,7 +88,7 @@ bool PrecisionFinder::add(double x) {
 void PrecisionFinder::divide_by(std::int64_t mantissa, int decimals) {
   const auto in_smaller_units = [](std::int64_t x, int by) {
     for (; by > 0; --by) {
-      if (x >= std::int64_t{1} << 59) return std::int64_t{1};  // of numbers of very different sizes
+      if (x >= std::int64_t{1} << 59) return std::int64_t{1};  // the numbers differ greatly in size
       x *= 10;
     }
     return x;
@@ -97,8 +97,8 @@ void PrecisionFinder::divide_by(std::int64_t mantissa, int decimals) {
                       in_smaller_units(mantissa, all_.decimals - decimals));
 }
 
-/// Of numbers with a fixed number of decimals, the largest have as many as all; of those with a
-/// fixed number of digits, as many digits as all, and fewer decimals.
+/// With a fixed number of decimals, the largest numbers have as many decimals as all; with a fixed
+/// number of digits, as many digits as all, and fewer decimals.
 Precision PrecisionFinder::precision() const {
   Precision best;
   if (size_ == 0) return best;

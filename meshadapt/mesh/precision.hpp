@@ -1,5 +1,5 @@
 /// @file
-/// Precision: with how many digits coordinates were written, told from the numbers themselves.
+/// Precision: the number of digits in which coordinates were written, detected from the numbers.
 #pragma once
 
 #include <cstdint>
@@ -8,25 +8,25 @@ namespace ductile::meshadapt {
 
 struct Precision {
   enum class Kind {
-    full,         ///< that of double precision, nearly
+    full,         ///< nearly double precision
     decimals,     ///< digits after the point
-    significant,  ///< decimal digits in all
+    significant,  ///< decimal digits in total
     single        ///< single precision, printed with any number of digits
   };
   Kind kind = Kind::full;
   int digits = 0;
-  double unit = 0;  ///< the last digit of the largest number; 0 if full
+  double unit = 0;  ///< the last digit of the largest number; 0 for full precision
 
-  /// The closest number that is written as precisely; the number itself if it is.
+  /// The closest number of this precision; the number itself if it has that.
   double rounded(double x) const;
 };
 
-/// Finds the precision of all numbers that it is shown. Decimals tell nothing about it if all are
-/// multiples of more than one unit of their last digit, as 0.25, 0.1 and 0.35 are of 0.05: such
-/// numbers were chosen. Thread safety: one caller.
+/// Finds the common precision of all numbers added. Decimals mean nothing if all are multiples of
+/// more than one unit of their last digit, like 0.25, 0.1 and 0.35 of 0.05: such numbers were
+/// chosen by hand. Thread safety: one caller.
 class PrecisionFinder {
  public:
-  /// Returns false as soon as the precision is full, whatever follows.
+  /// Returns false as soon as the precision is known to be full.
   bool add(double x);
   Precision precision() const;
 
@@ -37,8 +37,9 @@ class PrecisionFinder {
   void divide_by(std::int64_t mantissa, int decimals);
 
   bool is_decimal_ = true, is_single_ = true;
-  Most all_, largest_;        // of all numbers, and of those with as many digits before the point
-  std::int64_t divisor_ = 0;  // of all numbers, in units of the last decimal of all
+  Most all_, largest_;        // over all numbers, and over those with the most digits before the
+                              // point
+  std::int64_t divisor_ = 0;  // common divisor, in units of the last decimal
   int exponent_ = -400;
   double size_ = 0;
 };

@@ -1,5 +1,5 @@
 /// @file
-/// Prism: all that lies over a simplex, at a right angle to it, and what of other simplices does.
+/// Prism: the region perpendicular to a simplex, and the parts of other simplices in it.
 #pragma once
 
 #include <algorithm>
@@ -12,31 +12,31 @@
 
 namespace ductile::meshadapt {
 
-/// Over a triangle in 3D, or over a segment (in 3D all around it).
+/// The prism over a triangle in 3D, or over a segment (in 3D, all around it).
 template <int Dim, std::size_t Corners>
 class Prism {
  public:
   using Points = std::array<Vector<Dim>, Corners>;
 
-  /// A point by the weights of the simplex's corners after the first in the point below, and by
-  /// where it is across the simplex, a length in each direction there is. Not set by itself: there
-  /// are many.
+  /// A point by the weights of the simplex's corners, except the first, in its projection, and by
+  /// its offsets across the simplex, one for each normal direction. Uninitialised by default,
+  /// because there are many.
   struct Place {
     std::array<double, Corners - 1> weight;
     std::array<double, Dim - Corners + 1> across;
 
-    /// How far it is from where the simplex goes on to.
+    /// Distance from the simplex's affine span.
     double aside() const {
       if constexpr (Dim == Corners) return std::abs(across[0]);
       return std::hypot(across.front(), across.back());
     }
   };
-  /// The corners of a part of a simplex, convex but for rounding.
+  /// The corners of a part of a simplex, convex up to rounding.
   class Part {
    public:
     Part() : size_(0) {}
     Part(const Part& other) { *this = other; }
-    Part& operator=(const Part& other) {  // of the corners that there are
+    Part& operator=(const Part& other) {  // copies the existing corners only
       size_ = other.size_;
       std::copy_n(other.places_.begin(), size_, places_.begin());
       return *this;
@@ -50,11 +50,11 @@ class Prism {
     const Place* end() const { return places_.data() + size_; }
 
    private:
-    std::array<Place, 3 * Corners> places_;  // each side adds half as many at most
+    std::array<Place, 3 * Corners> places_;  // each side adds at most half as many
     std::size_t size_;
   };
 
-  /// Over one that is flat there is nothing.
+  /// For a degenerate simplex the prism is empty.
   explicit Prism(const Points& simplex) : corner_(simplex) {
     const Vector<Dim> u = simplex[1] - simplex[0];
     if constexpr (Corners == 2) {
@@ -77,11 +77,11 @@ class Prism {
     for (std::size_t i = 0; i < gradient_.size(); ++i) size_[i] = norm(gradient_[i]);
   }
 
-  /// What of this simplex lies over the prism's: cut by one side after another (Sutherland and
+  /// The part of this simplex in the prism: clipped by one side after another (Sutherland and
   /// Hodgman, Comm. ACM 17, 1974).
   Part inside(const Points& simplex) const {
     Part part;
-    unsigned beyond_any = 0, beyond_all = ~0U;  // sides that some corner, or all, lie beyond
+    unsigned beyond_any = 0, beyond_all = ~0U;  // sides that some, or all, corners lie beyond
     for (const Vector<Dim>& point : simplex) {
       part.push_back(place(point));
       const unsigned beyond = sides_beyond(part[part.size() - 1]);
@@ -94,7 +94,7 @@ class Prism {
     return part;
   }
 
-  /// Is it certain that nothing of a sphere lies over the simplex?
+  /// Does the sphere certainly not reach into the prism?
   bool is_beside(const Vector<Dim>& centre, double radius) const {
     const Vector<Dim> offset = centre - corner_[0];
     double rest = 1, rests_size = 0;
@@ -107,7 +107,7 @@ class Prism {
     return rest < -radius * rests_size;
   }
 
-  /// How much of the simplex is below a part, 1 being all.
+  /// The share of the simplex that a part covers, from 0 to 1.
   double share(const Part& part) const {
     double sum = 0;
     if constexpr (Corners == 2) {
@@ -126,7 +126,7 @@ class Prism {
     return std::abs(sum);
   }
 
-  /// The point of the simplex below a place.
+  /// The projection of a place to the simplex.
   Vector<Dim> below(const Place& place) const {
     Vector<Dim> point = corner_[0];
     for (std::size_t i = 0; i + 1 < Corners; ++i)
@@ -143,7 +143,7 @@ class Prism {
     return result;
   }
 
-  /// The weight of a corner, 0 on the side across.
+  /// The weight of a corner, which is 0 on the opposite side.
   static double weight(const Place& place, std::size_t corner) {
     if (corner > 0) return place.weight[corner - 1];
     double rest = 1;
@@ -151,7 +151,7 @@ class Prism {
     return rest;
   }
 
-  /// A bit for each side of the prism that the place lies beyond.
+  /// A bit for each side of the prism beyond which the place lies.
   static unsigned sides_beyond(const Place& place) {
     unsigned sides = 0;
     for (std::size_t side = 0; side < Corners; ++side)

@@ -1,5 +1,5 @@
 /// @file
-/// Puts the arrays of a mesh into the order of its new numbers.
+/// Permutes the arrays of a mesh into the order of its new numbers.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -22,25 +22,25 @@ using runtime::parallel_for;
 
 namespace {
 
-/// Puts arrays in a new order by way of a scratch array. There and back again: pages that are there
-/// cost less than new ones.
+/// Permutes arrays through a scratch array and back, because reusing its pages is cheaper than new
+/// ones.
 class Permutation {
  public:
-  /// At most so many bytes are moved at once for each place.
+  /// Moves at most this many bytes per entry at once.
   Permutation(const Executor& executor, const Ids& order, std::size_t largest)
       : executor_(executor),
         order_(order),
         largest_(largest),
         scratch_(runtime::make_unset_vector<std::byte>(executor, order.size() * largest)) {}
 
-  /// values[i] becomes the old values[order[i]], of several arrays at once.
+  /// Sets values[i] to the old values[order[i]], for several arrays at once.
   template <class... T>
   void operator()(GrowingArray<T>&... values) {
     permute<T...>([&values](std::size_t i) -> T& { return values[i]; }...);
     (values.resize(order_.size()), ...);
   }
 
-  /// The same of an array of arrays, two members at a time.
+  /// The same for an array of arrays, two members at a time.
   template <class T, std::size_t N>
   void by_pairs(GrowingArray<std::array<T, N>>& values) {
     const auto member = [&values](std::size_t k) {
@@ -51,7 +51,7 @@ class Permutation {
     values.resize(order_.size());
   }
 
-  /// The same of members, but leaves the array as long as it was.
+  /// The same for members, but the array keeps its length.
   template <class T, class... Members>
   void members(GrowingArray<T>& values, Members T::*... members) {
     permute<Members...>(
@@ -59,7 +59,7 @@ class Permutation {
   }
 
  private:
-  /// The most strictly aligned come first.
+  /// Types with the strictest alignment come first.
   template <class... T>
   void permute(auto&&... value_at) {
     assert((sizeof(T) + ...) <= largest_);
@@ -114,7 +114,7 @@ void permute_vertices(const Executor& executor, Mesh<Dim>& mesh, const Ids& orde
   permute(mesh.entity_of, mesh.reference_of, mesh.host_of, mesh.kind_of);
 }
 
-/// Vertices. Returns what they were renumbered to.
+/// Renumbers vertices; returns their new numbers.
 template <int Dim>
 Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, Ids order) {
   Ids new_vertex = places_in(executor, order, mesh.vertex_slots());
@@ -123,7 +123,7 @@ Ids renumber_vertices(const Executor& executor, Mesh<Dim>& mesh, Ids order) {
   return new_vertex;
 }
 
-/// Elements and, if there are any, their neighbours.
+/// Renumbers elements and, if given, their neighbours.
 template <int Dim>
 void renumber_elements(const Executor& executor, Mesh<Dim>& mesh, const Ids& order,
                        Neighbours<Dim>* neighbours) {
@@ -152,13 +152,13 @@ void renumber_all(const Executor& executor, Mesh<Dim>& mesh, Ids order_of_vertic
   rebuild_elements_of(executor, mesh);
 }
 
-/// Is every vertex where the order has it?
+/// Is every vertex in its place already?
 bool keeps_all(const Executor& executor, const Ids& order, std::size_t count) {
   return order.size() == count &&
          first_bad(executor, count, [&](std::size_t i) { return order[i] != i; }) == no_index;
 }
 
-/// Do elements lie in the order of their lowest corners, and are there no others?
+/// Are elements in the order of their lowest corners, and none deleted?
 template <int Dim>
 bool elements_are_in_order(const Executor& executor, const Mesh<Dim>& mesh) {
   const auto lowest_of = [&](std::size_t element) {
@@ -180,7 +180,7 @@ void renumber(const Executor& executor, Mesh<Dim>& mesh, VertexId unlisted) {
 template <int Dim>
 void renumber(const Executor& executor, Mesh<Dim>& mesh, Neighbours<Dim>& neighbours) {
   Ids order = order_of_vertices(executor, mesh, none);
-  // As it is if the mesh has been adapted before.
+  // True if the mesh has been adapted before.
   if (keeps_all(executor, order, mesh.vertex_slots()) && elements_are_in_order(executor, mesh))
     return;
   renumber_all<Dim>(executor, mesh, std::move(order), &neighbours);

@@ -1,6 +1,5 @@
 /// @file
-/// Scale: how large a mesh is, and how far points that are meant to lie on its flat boundary may be
-/// off it.
+/// Scale: the extent of a mesh, and the tolerance for points on its flat boundary.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +10,8 @@
 
 namespace ductile::meshadapt {
 
-/// How far a mesh reaches, and how far its boundary may go astray: what counts as flat is so by
-/// this fraction of the extent (see boundary_parts.cpp), and coordinates are rounded.
+/// The extent of a mesh, and the possible error of its boundary: flatness is tested to this
+/// fraction of the extent (see boundary_parts.cpp), and coordinates are rounded.
 struct Scale {
   double extent = 0, slack = 0;
 };

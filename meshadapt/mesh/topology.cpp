@@ -18,7 +18,7 @@ namespace ductile::meshadapt {
 namespace {
 
 using runtime::Executor;
-using Regions = std::span<const std::uint32_t>;  // [element], empty: all are of one
+using Regions = std::span<const std::uint32_t>;  // [element]; empty: a single region
 
 std::vector<std::int32_t> references_of(const std::vector<std::int32_t>& reference_of) {
   std::set<std::int32_t> found;
@@ -27,8 +27,8 @@ std::vector<std::int32_t> references_of(const std::vector<std::int32_t>& referen
   return {found.begin(), found.end()};
 }
 
-/// Parts of elements that share vertices of their region. A vertex stands for itself in the region
-/// of the lowest number at it; for others there, numbers are added.
+/// Connected parts of elements by shared vertices of their region. A vertex represents itself in
+/// its region of lowest number; for its other regions, numbers are added.
 template <int Dim>
 class Parts {
  public:
@@ -83,7 +83,7 @@ class Parts {
 
   const std::vector<Corners<Dim>>& elements_;
   Regions region_of_;
-  runtime::UnsetVector<std::uint32_t> lowest_;  // [vertex], region; none: of no element
+  runtime::UnsetVector<std::uint32_t> lowest_;  // [vertex], region; none: no element
   runtime::UnsetVector<Other> others_;          // sorted
   runtime::DisjointSets sets_;
 };
@@ -119,7 +119,7 @@ void count(const AdjacentMesh& mesh, Regions region_of, std::vector<RegionTopolo
                       regions);
 }
 
-/// Which number differs, for a message.
+/// Describes the number that differs.
 std::string difference(const RegionTopology& now, const RegionTopology& expected) {
   const auto says = [](const char* what, auto is, auto was) {
     return std::string(what) + std::to_string(is) + ", expected " + std::to_string(was);
@@ -138,7 +138,7 @@ std::string difference(const RegionTopology& now, const RegionTopology& expected
               now.euler_of_sheets, expected.euler_of_sheets);
 }
 
-/// References that are gone are not for this check to report.
+/// Ignores references that are gone, which another check reports.
 std::vector<std::string> differences(const std::vector<RegionTopology>& expected,
                                      const std::vector<RegionTopology>& now) {
   std::vector<std::string> faults;
@@ -154,7 +154,7 @@ std::vector<std::string> differences(const std::vector<RegionTopology>& expected
   return faults;
 }
 
-/// Of all elements and, if there are several references, of the elements of each, by reference.
+/// The topology of all elements and, if there are several references, of those of each.
 template <int Dim>
 std::vector<RegionTopology> topology_of(const AdjacentMesh& mesh) {
   const Executor& executor = mesh.executor();

@@ -1,5 +1,5 @@
 /// @file
-/// walk: finds the element that a point lies in by stepping from one nearby towards it.
+/// walk: finds the element that contains a point by stepping towards it from a nearby one.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace ductile::meshadapt {
 
-/// Where the elements of a mesh lie.
+/// Positions and corners of the elements of a mesh.
 template <int Dim>
 struct Simplices {
   std::span<const Corners<Dim>> corners_of;  // [element]
@@ -23,7 +23,7 @@ struct Simplices {
   }
 };
 
-/// What a walk needs of a mesh.
+/// The data that a walk uses.
 template <int Dim>
 struct Walkable {
   Simplices<Dim> elements;
@@ -49,24 +49,24 @@ Weights<Dim> barycentric(const std::array<Vector<Dim>, Dim + 1>& corner, const V
   }
 }
 
-/// A point this far outside, as a barycentric weight, still counts as inside: it is on the boundary
-/// up to rounding.
+/// A point outside by at most this barycentric weight counts as inside: it is on the boundary up to
+/// rounding.
 inline constexpr double walk_tolerance = 1e-9;
 
 template <int Dim>
 struct WalkEnd {
   ElementId element;
   Weights<Dim> weight;
-  bool inside;  ///< false: the walk met the boundary, or went on for too long
+  bool inside;  ///< false: the walk met the boundary or took too long
 };
 
-/// Steps over the facet that the point is farthest behind, until it is behind none.
+/// Steps across the facet that the point is farthest beyond, until it is beyond none.
 template <int Dim>
 WalkEnd<Dim> walk(const Walkable<Dim>& mesh, const Vector<Dim>& point, ElementId near) {
-  constexpr int longest_walk = 2000;  // more go in circles or around a hole
+  constexpr int longest_walk = 2000;  // longer walks circle, or go around a hole
   WalkEnd<Dim> at{near, {}, false};
   for (int step = 0; step < longest_walk; ++step) {
-    if constexpr (Dim == 3)  // large meshes, long walks: where to go next is known too late
+    if constexpr (Dim == 3)  // hides latency: in large meshes the next step is known late
       for (const ElementId e : mesh.neighbour_of[at.element])
         if (e != none) {
           __builtin_prefetch(&mesh.elements.corners_of[e]);

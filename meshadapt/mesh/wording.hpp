@@ -1,7 +1,6 @@
 /// @file
-/// Wording: a message about entries of arrays, told in two ways. Who made the arrays knows them by
-/// their names and counts from 0, "triangles.vertices[6]"; who gave a file knows its entities and
-/// counts from 1, "triangle 7".
+/// Wording: a message about entries of arrays, in two forms. Callers with arrays see names and
+/// indices from 0, "triangles.vertices[6]"; users with files see entities from 1, "triangle 7".
 #pragma once
 
 #include <cstddef>
@@ -26,7 +25,7 @@ struct Wording {
   }
 };
 
-/// An index that stands for itself: "6", and "7" in a file.
+/// An index: "6", and "7" in a file.
 inline Wording index_word(std::size_t index) {
   return {std::to_string(index), std::to_string(index + 1)};
 }
@@ -36,21 +35,20 @@ inline Wording entry(const std::string& array, const std::string& kind, std::siz
   return {array + "[" + std::to_string(index) + "]", kind + " " + std::to_string(index + 1)};
 }
 
-/// Where a mesh or a field came from, or what it is.
+/// The name of a mesh or a field: its origin, or its kind.
 inline std::string name_of(const AnyMesh& mesh) { return mesh.name.empty() ? "mesh" : mesh.name; }
 inline std::string name_of(const AnyField& field) {
   return field.name.empty() ? "field" : field.name;
 }
 
-/// The values that a field has at a vertex: "values[18]", the first of them, and "vertex 7" in a
-/// file.
+/// The values of a field at a vertex: "values[18]", the first of them, and "vertex 7" in a file.
 inline Wording value_at(const AnyField& field, std::size_t vertex) {
   return {
       "values[" + std::to_string(vertex * stride_of(field)) + "], vertex " + std::to_string(vertex),
       "vertex " + std::to_string(vertex + 1)};
 }
 
-/// The arrays of a mesh that hold its elements and its facets.
+/// The names of the arrays that hold elements and facets.
 template <int Dim>
 const char* elements_array() {
   return Dim == 2 ? "triangles.vertices" : "tetrahedra.vertices";

@@ -1,7 +1,7 @@
 /// @file
-/// Clipper<Dim>: what two elements have in common, cut into simplices, and the integrals over it of
-/// the products of their hat functions. Points are kept by their barycentric coordinates in both
-/// elements, in which every facet is a coordinate plane and every hat function a coordinate.
+/// Clipper<Dim>: the intersection of two elements, cut into simplices, and integrals over it of
+/// products of their hat functions. Points are stored by their barycentric coordinates in both
+/// elements, where every facet is a coordinate plane and every hat function a coordinate.
 #pragma once
 
 #include <algorithm>
@@ -15,28 +15,29 @@
 
 namespace ductile::meshadapt {
 
-/// An element as the clipper wants it.
+/// The clipper's representation of an element.
 template <int Dim>
 struct Cell {
   std::array<Vector<Dim>, Dim + 1> corner;
   double volume;
 };
 
-/// Volume that two elements share, and the integrals over it of hat i of one times hat j of the
-/// other.
+/// The volume that two elements share, and the integrals over it of hat function i of one times hat
+/// function j of the other.
 template <int Dim>
 struct Overlap {
   double volume = 0;
   std::array<std::array<double, Dim + 1>, Dim + 1> product{};  // [i of one][j of other]
 };
 
-/// A buffer to use for one pair after another.
+/// Clips pairs of elements one after another; reuses its buffer.
 template <int Dim>
 class Clipper {
  public:
-  /// Elements that only touch share nothing.
+  /// Elements that only touch have no overlap.
   Overlap<Dim> overlap(const Cell<Dim>& one, const Cell<Dim>& other) {
-    // The larger cuts the smaller, so that rounding is small beside the smaller.
+    // The larger element cuts the smaller, so that rounding errors are small relative to the
+    // smaller.
     const bool one_cuts = one.volume >= other.volume;
     const Cell<Dim>& cut = one_cuts ? other : one;
     Piece start;
@@ -59,11 +60,11 @@ class Clipper {
 
  private:
   struct Point {
-    std::array<Weights<Dim>, 2> in{};  // barycentric, in one and in the other
+    std::array<Weights<Dim>, 2> in{};  // barycentric coordinates in both elements
   };
   using Piece = std::array<Point, Dim + 1>;
 
-  /// Does a facet of either have the other element behind it?
+  /// Does a facet of either element separate them?
   static bool apart(const Piece& start) {
     constexpr double touching = 1e-14;
     for (std::size_t which = 0; which < 2; ++which)
@@ -98,7 +99,7 @@ class Clipper {
       const Point& in = piece[inside[i]];
       return j == 0 ? in : crossing(in, piece[outside[j - 1]], cutting, facet);
     };
-    // Bit k of `steps` says whether step k goes to the next corner inside.
+    // Bit k of `steps`: does step k go to the next corner inside?
     for (unsigned steps = 0; steps < 1U << Dim; ++steps) {
       Piece part;
       std::size_t i = 0, j = 0;
@@ -122,7 +123,7 @@ class Clipper {
     return result;
   }
 
-  /// Volume of a piece as a share of the element in which its coordinates are taken.
+  /// Volume of a piece relative to the element of its coordinates.
   static double share_of(const Piece& piece, std::size_t which) {
     std::array<Vector<Dim>, Dim + 1> corner;
     for (std::size_t i = 0; i <= Dim; ++i)

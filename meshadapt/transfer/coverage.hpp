@@ -10,15 +10,15 @@
 
 namespace ductile::meshadapt {
 
-/// Less of an element than this is outside by rounding only.
+/// A smaller share of an element outside is rounding error.
 inline constexpr double least_share = 1e-9;
 
 struct Coverage {
-  double volume_outside = 0;   // of the new mesh that is not in the old one
-  double volume_left_out = 0;  // of the old mesh that is not in the new one
+  double volume_outside = 0;   // of the new mesh outside the old one
+  double volume_left_out = 0;  // of the old mesh outside the new one
 };
 
-/// `covered`: of each new element the share of its volume that old ones cover.
+/// `covered`: the share of each new element's volume that old ones cover.
 template <int Dim>
 Coverage coverage(const runtime::Executor& executor, const FixedMesh<Dim>& old_mesh,
                   const FixedMesh<Dim>& new_mesh, const std::vector<double>& covered) {

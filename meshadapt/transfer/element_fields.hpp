@@ -1,5 +1,5 @@
 /// @file
-/// ElementFields<Dim>: carries fields that are constant in each element to another mesh.
+/// ElementFields<Dim>: transfers fields that are constant in each element to another mesh.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,12 @@ namespace ductile::meshadapt {
 template <int Dim>
 class ElementFields {
  public:
-  /// Refers to all. `field` has values [old element * stride + component].
+  /// Refers to all arguments. `field` has values [old element * stride + component].
   ElementFields(const runtime::Executor& executor, const Locator<Dim>& from,
                 const Components& field, const FixedMesh<Dim>& to)
       : executor_(executor), from_(from), field_(field), to_(to) {}
 
-  /// [new element * stride + component], the values where the centroids of new elements are.
+  /// Values at the centroids of the new elements: [new element * stride + component].
   std::vector<double> at_centroids() const {
     std::vector<double> result(to_.element_count() * field_.stride);
     each_element([&](std::size_t e, const Place<Dim>& centre) {
@@ -30,7 +30,7 @@ class ElementFields {
     return result;
   }
 
-  /// The same, means over new elements. Fills in how well the meshes cover each other.
+  /// The same with means over new elements. Fills in how well the meshes cover each other.
   std::vector<double> means(Coverage& coverage) const {
     std::vector<double> result(to_.element_count() * field_.stride);
     std::vector<double> covered(to_.element_count());
@@ -43,7 +43,7 @@ class ElementFields {
   }
 
  private:
-  /// What a thread needs to sum up one element after another.
+  /// Scratch data of a thread.
   struct Summing {
     OverlapFinder<Dim> finder;
     std::vector<double> low, high;  // [component]
@@ -61,7 +61,7 @@ class ElementFields {
     return &field_.values[element * field_.stride];
   }
 
-  /// Sets result[component] to the mean over an element and returns how much of it is covered.
+  /// Sets result[component] to the mean over an element and returns the covered share.
   double mean(std::size_t element, const Place<Dim>& centre, Summing& summing,
               double* result) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -81,7 +81,7 @@ class ElementFields {
         from_, cell, centre,
         [&](ElementId other, const Overlap<Dim>& overlap) { add(other, overlap.volume); });
     if (covered < 1 - least_share) add(centre.element, (1 - covered) * volume);
-    for (std::size_t k = 0; k < field_.stride; ++k)  // rounding
+    for (std::size_t k = 0; k < field_.stride; ++k)  // removes rounding errors
       result[k] = std::clamp(result[k], summing.low[k], summing.high[k]);
     return covered;
   }

@@ -1,5 +1,5 @@
 /// @file
-/// evaluate: the values that a field, linear in each element, has at points of its mesh.
+/// evaluate: values of a field, linear in each element, at points of its mesh.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,7 @@ struct Components {
   std::size_t stride;
 };
 
-/// Sets result[component] to what the field has at a place. That lies between the values at the
-/// corners, rounding or not.
+/// Sets result[component] to the field's value at a place, clamped to the values at the corners.
 template <int Dim>
 void evaluate(const FixedMesh<Dim>& mesh, const Components& field, const Place<Dim>& place,
               double* result) {
@@ -39,10 +38,10 @@ void evaluate(const FixedMesh<Dim>& mesh, const Components& field, const Place<D
 
 struct Evaluated {
   std::vector<double> values;  // [point * stride + component]
-  std::size_t outside = 0;     // points that are not in the mesh
+  std::size_t outside = 0;     // points outside the mesh
 };
 
-/// At so many points, of which find(i, near) gives the places.
+/// Evaluates at so many points; find(i, near) gives the place of each.
 template <int Dim>
 Evaluated evaluate_each(const runtime::Executor& executor, const Locator<Dim>& locator,
                         const Components& field, std::size_t point_count, auto&& find) {
@@ -60,7 +59,7 @@ Evaluated evaluate_each(const runtime::Executor& executor, const Locator<Dim>& l
   return result;
 }
 
-/// At coordinates[point * Dim + axis]; outside, at the closest point of the mesh.
+/// Evaluates at coordinates[point * Dim + axis]; outside, at the closest point of the mesh.
 template <int Dim>
 Evaluated evaluate_at(const runtime::Executor& executor, const Locator<Dim>& locator,
                       const Components& field, std::span<const double> coordinates) {

@@ -1,6 +1,6 @@
 /// @file
-/// Locator<Dim>: where a point lies in a mesh. Walks from an element nearby, and where that does
-/// not arrive looks for the closest point of the mesh.
+/// Locator<Dim>: finds the place of a point in a mesh. Walks from a nearby element and, if that
+/// fails, searches for the closest point of the mesh.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace ductile::meshadapt {
 template <int Dim>
 struct Place {
   ElementId element;
-  Weights<Dim> weight;  // none below 0, they add up to 1
-  bool inside;          // false: the closest point of the mesh is meant
+  Weights<Dim> weight;  // none below 0, sum 1
+  bool inside;          // false: the place is the closest point of the mesh
 };
 
 template <int Dim>
@@ -27,7 +27,7 @@ class Locator {
   Locator(const runtime::Executor& executor, const FixedMesh<Dim>& mesh)
       : mesh_(mesh), tree_(executor, {mesh.corners_of, mesh.position_of}) {}
 
-  /// Thread safety: any thread.
+  /// Finds a point, starting from element `near` (or none). Thread safety: any thread.
   Place<Dim> find(const Vector<Dim>& point, ElementId near) const {
     if (near == none) near = tree_.closest(point).element;
     const Walkable<Dim> view{{mesh_.corners_of, mesh_.position_of}, mesh_.neighbour_of};
@@ -42,7 +42,7 @@ class Locator {
   const FixedMesh<Dim>& mesh() const { return mesh_; }
 
  private:
-  /// Outside by no more than rounding, seen from the size of the element, is inside.
+  /// A point outside by no more than rounding, relative to the element's size, counts as inside.
   Place<Dim> closest(const Vector<Dim>& point) const {
     constexpr double tolerance = 1e-9;
     const ClosestPoint<Dim> found = tree_.closest(point);
@@ -63,7 +63,7 @@ Vector<Dim> centroid_of(const FixedMesh<Dim>& mesh, ElementId element) {
 }
 
 /// Finds points one after another in fixed blocks, so that walks are short and do not depend on
-/// threads: find_next(i, near) returns the element of point i, given the last one's, or none.
+/// threads: find_next(i, near) returns the element of point i, given the previous one's, or none.
 template <class FindNext>
 void walk_in_blocks(const runtime::Executor& executor, std::size_t count, FindNext&& find_next) {
   constexpr std::size_t block_size = 256;

@@ -1,5 +1,5 @@
 /// @file
-/// Mass<Dim>: the mass matrix of linear elements, never stored: products with it, its inverse, and
+/// Mass<Dim>: the mass matrix of linear elements, without storing it: products, its inverse, and
 /// its lumped form. Values are [vertex * stride + component].
 #pragma once
 
@@ -14,8 +14,8 @@ namespace ductile::meshadapt {
 template <int Dim>
 class Mass {
  public:
-  /// Refers to all. A mesh that is a part of a larger one comes with `join`, and vertices with the
-  /// shares that they have in all of it.
+  /// Refers to all arguments. For a mesh that is part of a larger one, `join` is given and vertices
+  /// have their shares in the whole.
   Mass(const runtime::Executor& executor, const FixedMesh<Dim>& mesh, std::size_t stride,
        const JoinParts& join)
       : executor_(executor), mesh_(mesh), stride_(stride), join_(join) {}
@@ -25,9 +25,9 @@ class Mass {
     return mesh_.volume_of[element] / ((Dim + 1) * (Dim + 2));
   }
 
-  /// M x.
+  /// Returns M x.
   std::vector<double> product(const std::vector<double>& x) const {
-    std::vector<double> sum(mesh_.element_count() * stride_);  // over corners, times between()
+    std::vector<double> sum(mesh_.element_count() * stride_);  // sums over corners, times between()
     runtime::parallel_for(executor_, mesh_.element_count(), [&](std::size_t e) {
       for (const VertexId v : mesh_.corners_of[e])
         for (std::size_t k = 0; k < stride_; ++k)
@@ -49,9 +49,10 @@ class Mass {
     return result;
   }
 
-  /// The x with M x = b, close to rounding, from a first guess. By Chebyshev's iteration: with the
-  /// diagonal as preconditioner all eigenvalues lie between 1/2 and (d + 2)/2 on any mesh (Wathen,
-  /// IMA J. Numer. Anal. 7, 1987), so it needs no products of vectors and a fixed number of steps.
+  /// Returns the x with M x = b, up to rounding, from a first guess. Uses Chebyshev iteration: with
+  /// the diagonal as preconditioner all eigenvalues lie between 1/2 and (d + 2)/2 on any mesh
+  /// (Wathen, IMA J. Numer. Anal. 7, 1987), so it needs no scalar products and a fixed number of
+  /// steps.
   std::vector<double> solve(const std::vector<double>& b, std::vector<double> x) const {
     constexpr int steps = Dim == 2 ? 32 : 38;  // each divides the error by 3 or 2.6
     constexpr double middle = (Dim + 3) / 4.0, radius = (Dim + 1) / 4.0;
@@ -75,8 +76,8 @@ class Mass {
     return x;
   }
 
-  /// What each corner of an element, and each component, has in M_lumped x - M x:
-  /// visit(corner, component, amount). The amounts of an element add up to 0.
+  /// Contributions of an element to M_lumped x - M x: visit(corner, component, amount). They sum to
+  /// 0.
   template <class Visit>
   void excess(std::size_t element, const std::vector<double>& x, Visit&& visit) const {
     for (std::size_t k = 0; k < stride_; ++k) {

@@ -1,6 +1,6 @@
 /// @file
-/// OverlapFinder<Dim>: visits the elements of one mesh that an element of another overlaps, from
-/// one that it is known to touch outwards over facets.
+/// OverlapFinder<Dim>: visits the elements of one mesh that overlap an element of another, starting
+/// from one that touches it and spreading across facets.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace ductile::meshadapt {
 
-/// Which ids have been seen; forgets all at once.
+/// A set of ids that can be cleared at once.
 class SeenSet {
  public:
   void clear() {
@@ -19,7 +19,7 @@ class SeenSet {
     if (++round_ == 0) slots_.assign(slots_.size(), {}), round_ = 1;
   }
 
-  /// False if it was there.
+  /// Inserts an id; false if it was there.
   bool insert(ElementId id) {
     if (2 * ++count_ > slots_.size()) grow();
     return put(id);
@@ -52,20 +52,20 @@ class SeenSet {
   std::uint32_t round_ = 1;
 };
 
-/// A buffer to use for one element after another.
+/// Serves one element after another; reuses its buffer.
 template <int Dim>
 class OverlapFinder {
  public:
   /// Calls visit(element, overlap) for every element of the old mesh that shares volume with
   /// `cell`, and returns the share of its volume that they cover. `centre` is the place of its
-  /// centroid; `locator` that of the old mesh.
+  /// centroid; `locator` is that of the old mesh.
   template <class Visit>
   double visit(const Locator<Dim>& locator, const Cell<Dim>& cell, const Place<Dim>& centre,
                Visit&& visit) {
     constexpr double all = 1 - 1e-9;
     seen_.clear();
     double covered = flood(locator.mesh(), cell, centre.element, visit);
-    // Parts may be apart where the domains differ: look from the corners, too.
+    // If the domains differ, parts may be disconnected, so it also starts at the corners.
     for (std::size_t i = 0; i <= Dim && covered < all * cell.volume; ++i)
       covered +=
           flood(locator.mesh(), cell, locator.find(cell.corner[i], centre.element).element, visit);

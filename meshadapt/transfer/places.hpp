@@ -1,6 +1,5 @@
 /// @file
-/// Whether points can be located: whether coordinates are so small that squares of distances are
-/// numbers.
+/// Checks that points can be located: coordinates are small enough for squared distances.
 #pragma once
 
 #include <cmath>
@@ -12,7 +11,7 @@
 
 namespace ductile::meshadapt {
 
-/// Throws InputError, naming the first point, unless they can; `what` one of them is.
+/// Throws InputError, naming the first invalid point; `what` is the name of one.
 inline void expect_places(const runtime::Executor& executor, std::span<const double> coordinates,
                           int dimension, const char* what) {
   const std::size_t bad = first_bad(executor, coordinates.size(), [&](std::size_t i) {

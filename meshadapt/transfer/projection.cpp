@@ -71,7 +71,7 @@ void Projection<Dim>::integrate(std::size_t element, const Place<Dim>& centre,
   if (covered_[element] < 1 - least_share) fill(element, centre, finder);
 }
 
-/// Lets the interpolated field count where no old element covers the new one.
+/// Uses the interpolated field where no old element covers the new one.
 template <int Dim>
 void Projection<Dim>::fill(std::size_t element, const Place<Dim>& centre,
                            OverlapFinder<Dim>& finder) {
@@ -87,8 +87,8 @@ void Projection<Dim>::fill(std::size_t element, const Place<Dim>& centre,
   }
 }
 
-/// The mass matrix of the part of a new element that no old one covers: all of it less the rest,
-/// where the new hat functions are linear in each old element.
+/// The mass matrix of the uncovered part of a new element: the whole minus the covered part, where
+/// the new hat functions are linear in each old element.
 template <int Dim>
 auto Projection<Dim>::mass_outside(std::size_t element, const Place<Dim>& centre,
                                    OverlapFinder<Dim>& finder) const -> Square {
@@ -106,7 +106,7 @@ auto Projection<Dim>::mass_outside(std::size_t element, const Place<Dim>& centre
   };
   finder.visit(from_, {corner, to_.volume_of[element]}, centre, subtract);
   for (auto& row : mass)
-    for (double& product : row) product = std::max(product, 0.0);  // rounding
+    for (double& product : row) product = std::max(product, 0.0);  // removes rounding errors
   return mass;
 }
 
@@ -133,9 +133,9 @@ std::vector<double> Projection<Dim>::gather() const {
   return result;
 }
 
-// ---- From the lumped projection towards the closest ----
+// ---- From the lumped to the closest projection ----
 
-/// What old values each new vertex may lie between.
+/// The range of old values that each new vertex may take.
 template <int Dim>
 auto Projection<Dim>::ranges() const -> std::vector<Range> {
   std::vector<Range> range_of(to_.vertex_count() * stride(), {infinity, -infinity});
@@ -151,7 +151,7 @@ auto Projection<Dim>::ranges() const -> std::vector<Range> {
   return range_of;
 }
 
-/// Of all parts: the lowest and the highest, or sums of both.
+/// Combines ranges over all parts: lowest and highest, or sums of both.
 template <int Dim>
 void Projection<Dim>::join_ranges(std::vector<Range>& range_of, Joining how) const {
   const double sign = how == Joining::least ? -1 : 1;
@@ -166,8 +166,8 @@ void Projection<Dim>::join_ranges(std::vector<Range>& range_of, Joining how) con
   });
 }
 
-/// How much of what would flow to a vertex, and of what would flow from it, leaves it in its range:
-/// Zalesak's ratios, as {of the outflow, of the inflow}.
+/// The shares of the flow out of and into a vertex that keep it in its range: Zalesak's ratios, as
+/// {outflow, inflow}.
 template <int Dim>
 auto Projection<Dim>::permitted_shares(const std::vector<double>& lumped,
                                        const std::vector<double>& closest,
@@ -226,7 +226,7 @@ std::vector<double> Projection<Dim>::blend(const std::vector<double>& lumped,
   }
   parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
     if (!keep_bounds || !(to_.share_of[v] > 0)) return;
-    for (std::size_t i = v * stride(); i < (v + 1) * stride(); ++i)  // rounding
+    for (std::size_t i = v * stride(); i < (v + 1) * stride(); ++i)  // removes rounding errors
       result[i] = std::clamp(result[i], range_of[i].low, range_of[i].high);
   });
   return result;

@@ -1,8 +1,8 @@
 /// @file
-/// Projection<Dim>: carries a field to another mesh by integrals over the elements of both meshes
-/// cut by each other. In order: integrals of the old field times the new hat functions, the lumped
-/// projection, which keeps bounds, the consistent one, which is closer, and a blend of both that
-/// keeps bounds and moves nothing but between neighbours, so that the integral stays.
+/// Projection<Dim>: transfers a field by exact integrals over the intersections of elements of both
+/// meshes. Steps: integrals of the old field times the new hat functions; the lumped projection,
+/// which keeps bounds; the consistent one, which is closer; and a blend of both that keeps bounds
+/// and only exchanges between neighbours, which keeps the integral.
 #pragma once
 
 #include <vector>
@@ -18,13 +18,13 @@ namespace ductile::meshadapt {
 template <int Dim>
 class Projection {
  public:
-  /// Refers to all; `join` is there where the new mesh is a part of a larger one.
+  /// Refers to all arguments; `join` is given if the new mesh is part of a larger one.
   Projection(const runtime::Executor& executor, const Locator<Dim>& from, const Components& field,
              const FixedMesh<Dim>& to, const JoinParts& join);
 
   std::vector<double> run(const ProjectionOptions& options);
 
-  /// After run().
+  /// Call after run().
   const Coverage& coverage() const { return coverage_; }
 
  private:
@@ -57,8 +57,8 @@ class Projection {
   const JoinParts& join_;
   Mass<Dim> mass_;
   std::vector<double> moments_;  // [(element * corners + corner) * stride + component]
-  std::vector<Range> seen_;      // [element * stride + component], of old values around
-  std::vector<double> covered_;  // [element], share of its volume
+  std::vector<Range> seen_;      // [element * stride + component], range of nearby old values
+  std::vector<double> covered_;  // [element], covered share of its volume
   Coverage coverage_;
 };
 

@@ -1,6 +1,6 @@
 /// @file
-/// Fields by name. Those that live on the same entities and are carried in the same way are carried
-/// together, side by side, because to find where things are takes longer than to look at values.
+/// Transfer of named fields. Fields on the same entities with the same method are transferred
+/// together, because locating entities takes longer than copying values.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -35,7 +35,7 @@ std::size_t entity_count(const AnyMesh& mesh, Where place) {
   return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
-/// How messages call a field.
+/// The name of a field in messages.
 Wording called(const NamedField& field, std::size_t index) {
   const std::string name = field.name.empty() ? "" : " \"" + field.name + "\"";
   return {"fields[" + std::to_string(index) + "]" + name,
@@ -82,7 +82,7 @@ class FieldCarrier {
     result_.fields.resize(fields_.size());
   }
 
-  /// Carries the fields with these indices, all on entities of one kind.
+  /// Transfers the fields with these indices, all on entities of one kind.
   void carry(const std::vector<std::size_t>& which, Where place, Carrying carrying) {
     if (which.empty()) return;
     std::size_t stride = 0;
@@ -118,7 +118,7 @@ class FieldCarrier {
     return values;
   }
 
-  /// All components of an entity together.
+  /// Interleaves all components of each entity.
   std::vector<double> side_by_side(const std::vector<std::size_t>& which,
                                    std::size_t stride) const {
     const std::size_t count = fields_[which[0]].values.size() / components(fields_[which[0]], Dim);

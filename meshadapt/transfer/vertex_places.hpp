@@ -1,8 +1,8 @@
 /// @file
-/// VertexPlaces<Dim>: where the vertices of another mesh lie in one, on their own side of a closed
-/// crack. A vertex at the place of an old one is that; of several at one place, the one whose
-/// elements look into the direction of its own. Others are found by walking from inside of an
-/// element of their own to them.
+/// VertexPlaces<Dim>: the places of the vertices of a new mesh in the old one, each on its own side
+/// of a closed crack. A vertex at the position of an old one is that vertex; among several, the one
+/// whose elements point in the direction of its own. Others are found by walking to them from
+/// inside one of their own elements.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace ductile::meshadapt {
 template <int Dim>
 class VertexPlaces {
  public:
-  /// Refers to the locator, that of the old mesh, and to the new mesh.
+  /// Refers to the locator of the old mesh, and to the new mesh.
   VertexPlaces(const runtime::Executor& executor, const Locator<Dim>& locator, const AnyMesh& mesh)
       : executor_(executor),
         locator_(locator),
@@ -36,7 +36,7 @@ class VertexPlaces {
     find_origins();
   }
 
-  /// Thread safety: any thread.
+  /// Finds the place of vertex v, starting from old element `near`. Thread safety: any thread.
   Place<Dim> find(VertexId v, ElementId near) const {
     const VertexId origin = origin_of_[v];
     if (origin == none)
@@ -47,12 +47,12 @@ class VertexPlaces {
     return place;
   }
 
-  /// [vertex of the new mesh] That of the old mesh at the same place, or none; the end of this
-  /// object's work.
+  /// [vertex of the new mesh] The old vertex at the same position, or none. Ends the use of this
+  /// object.
   std::vector<VertexId> take_origins() { return std::move(origin_of_); }
 
  private:
-  /// A vertex of the old mesh by its place.
+  /// A vertex of the old mesh, ordered by position.
   struct Spot {
     Vector<Dim> position;
     VertexId vertex = none;
@@ -62,7 +62,7 @@ class VertexPlaces {
     }
   };
 
-  /// One of the elements around each vertex of the new mesh.
+  /// Finds an element for each vertex of the new mesh.
   void find_elements() {
     const auto& elements = elements_in<Dim>(mesh_).vertices;
     runtime::parallel_for(executor_, elements.size(), [&](std::size_t e) {
@@ -71,7 +71,7 @@ class VertexPlaces {
     });
   }
 
-  /// Where a vertex of the new mesh is seen from inside of it.
+  /// A point inside the new mesh near the vertex.
   Vector<Dim> inside_near(VertexId v) const {
     if (element_at_[v] == none) return position_in<Dim>(mesh_, v);
     Vector<Dim> centre;
@@ -80,7 +80,7 @@ class VertexPlaces {
     return centre;
   }
 
-  // ---- Vertices, by their places ----
+  // ---- Vertices, by their positions ----
 
   void find_origins() {
     std::vector<Spot> spots(old_mesh_.vertex_count());
@@ -98,7 +98,7 @@ class VertexPlaces {
     });
   }
 
-  /// Of vertices at one place the one whose elements look into the direction of those of v.
+  /// Among vertices at one position, the one whose elements point in the direction of v's.
   VertexId same_side(std::span<const Spot> spots, VertexId v) const {
     if (spots.empty()) return none;
     if (spots.size() == 1) return spots[0].vertex;
@@ -115,8 +115,8 @@ class VertexPlaces {
     return best;
   }
 
-  /// How far a point is inside of an element that would go on without end from one corner: above 0
-  /// inside, whatever the distance from that corner.
+  /// How far a point is inside the infinite cone of an element at one corner: above 0 inside, at
+  /// any distance from that corner.
   double depth_in_cone(ElementId element, VertexId apex, const Vector<Dim>& point) const {
     const Weights<Dim> weight = barycentric<Dim>(old_mesh_.points(element), point);
     double lowest = 1, sum = 0;
@@ -132,11 +132,11 @@ class VertexPlaces {
   const Locator<Dim>& locator_;
   const FixedMesh<Dim>& old_mesh_;
   const AnyMesh& mesh_;
-  runtime::UnsetVector<ElementId> element_at_;  // [vertex], one of those around it, or none
+  runtime::UnsetVector<ElementId> element_at_;  // [vertex], an element around it, or none
   std::vector<VertexId> origin_of_;             // [vertex]
 };
 
-/// The values that a field has at the vertices of another mesh.
+/// Evaluates a field at the vertices of another mesh.
 template <int Dim>
 Evaluated evaluate_at_vertices(const runtime::Executor& executor, const Locator<Dim>& locator,
                                const Components& field, const AnyMesh& mesh) {

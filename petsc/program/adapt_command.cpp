@@ -55,7 +55,7 @@ std::vector<Option> options_here() {
   return options;
 }
 
-/// Of all ranks together.
+/// Prints costs over all ranks.
 void print_costs(const std::array<Costs, phase_count>& costs) {
   constexpr std::array<const char*, phase_count> names{"balance", "migration", "gradation",
                                                        "adaptation"};
@@ -65,7 +65,7 @@ void print_costs(const std::array<Costs, phase_count>& costs) {
   std::printf("\n");
 }
 
-/// What -geometry says, on all ranks; null without it. Collective.
+/// The geometry of -geometry, on all ranks; null without it. Collective.
 std::shared_ptr<const meshadapt::Geometry> geometry_of(const Communicator& comm,
                                                        const Executor& executor,
                                                        const Input& input) {
@@ -87,7 +87,7 @@ AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
     options.required_elements.push_back(kept.label);
   options.adapt = job.adapt;
   options.adapt.make.geometry = std::move(geometry);
-  options.adapt.make.complete_boundary = false;  // parts list theirs
+  options.adapt.make.complete_boundary = false;  // parts list their own
   if (options.adapt.required_gradation <= 0 && comm.size() > 1)
     options.adapt.required_gradation = gradation_at_interfaces;
   options.passes = 6;
@@ -107,7 +107,7 @@ AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
   return options;
 }
 
-/// The metric, if it is to be written, and the fields that were carried.
+/// The fields of the output: the metric, if wanted, and the transferred fields.
 std::vector<NamedField> fields_of(const Communicator& comm, const Executor& executor,
                                   const Input& input, const AdaptedParts& parts,
                                   Carrying carrying) {
@@ -122,7 +122,8 @@ std::vector<NamedField> fields_of(const Communicator& comm, const Executor& exec
   return fields;
 }
 
-/// On the first rank: as ductile adapt does, in a file each what the mesh's format does not hold.
+/// Writes on the first rank: like ductile adapt, with separate files for data that the mesh's
+/// format cannot hold.
 void write_gathered(Input& input, meshadapt::MeshWithFields file) {
   const AdaptJob& job = input.job;
   meshadapt::AtomicOutputs outputs;

@@ -22,8 +22,8 @@ AdaptedParts adapt(const Communicator& comm, const Executor& executor, const Par
                                   : adapt_parts<3>(comm, executor, part, options);
 }
 
-/// The adapted mesh on the first rank, with the sizes that places ask for there; nothing, on all
-/// ranks, if it was adapted to about these.
+/// The adapted mesh on the first rank, with the sizes of its places; none, on all ranks, if it
+/// already was adapted to about these.
 std::optional<Part> lacking(const Communicator& comm, const Executor& executor, const Input& input,
                             const Part& part) {
   Part all = gather_on_first(comm, executor, part);

@@ -1,6 +1,5 @@
 /// @file
-/// adapt_to_sizes: adapts what files say, on all ranks, and again while sizes by places are
-/// lacking.
+/// adapt_to_sizes: adapts the input on all ranks, repeatedly while sizes by places are not reached.
 #pragma once
 
 #include "adapt_parts.hpp"
@@ -10,10 +9,9 @@
 
 namespace ductile::petsc {
 
-/// Adapts the mesh to its metric. Sizes by places are evaluated again on the adapted mesh, as
-/// meshadapt::adapt_to_sizes() does, by the first rank, where all of it is gathered. What the
-/// first rank finds wrong with them is told there, and Ended is thrown; otherwise as adapt_parts().
-/// Collective.
+/// Adapts the mesh to its metric. The first rank, which gathers the adapted mesh, evaluates sizes
+/// by places again, as meshadapt::adapt_to_sizes() does. It prints errors in them and Ended is
+/// thrown; otherwise as adapt_parts(). Collective.
 AdaptedParts adapt_to_sizes(const Communicator& comm, const runtime::Executor& executor,
                             const Input& input, AdaptPartsOptions options);
 

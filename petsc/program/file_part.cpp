@@ -14,7 +14,7 @@ namespace ductile::petsc {
 
 namespace {
 
-/// Gives what is required labels of its own, one for each reference.
+/// Gives required entities their own labels, one for each reference.
 std::vector<KeptReference> mark_required(std::vector<std::int32_t>& reference_of,
                                          std::vector<std::uint32_t>& required,
                                          const std::string& name) {
@@ -36,7 +36,7 @@ std::vector<KeptReference> mark_required(std::vector<std::int32_t>& reference_of
   return kept;
 }
 
-/// Marks vertices that stay by their index in what is returned.
+/// Marks vertices to be kept by their index in the result.
 std::vector<KeptVertex> mark_kept(AnyMesh& mesh, meshadapt::Warnings& warnings) {
   std::vector<KeptVertex> kept;
   const auto before = std::exchange(mesh.vertex_reference, {});

@@ -1,6 +1,6 @@
 /// @file
-/// What a file says, as a part that holds all of a mesh, and back: references of facets and
-/// elements stand in for labels.
+/// Conversion between a file's mesh and a part that holds all of it: references of facets and
+/// elements serve as labels.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,13 @@ struct KeptVertex {
   std::uint8_t is_required, is_corner;
 };
 
-/// What stands in for a reference in a part, of facets or elements that are required.
+/// The label of required facets or elements with one reference.
 struct KeptReference {
   std::int32_t label, reference;
 };
 
-/// What stays of a mesh, and what its labels mean. That of a vertex is its index here.
+/// The required entities of a mesh, and the meaning of its labels. A vertex's label is its index
+/// here.
 struct Kept {
   std::vector<KeptVertex> vertices;
   std::vector<KeptReference> facets, elements;  ///< in the order of labels
@@ -35,15 +36,15 @@ struct FilePart {
   Kept kept;
 };
 
-/// Of a mesh and its metric. Says in `warnings` what is not carried on several ranks: references of
-/// vertices that may go. Throws InputError if no label is left for what is required.
+/// Makes a part of a mesh and its metric. Warns of data that several ranks do not keep: references
+/// of vertices that may be removed. Throws InputError if no label is left for required entities.
 FilePart part_of_file(meshadapt::AnyMesh mesh, meshadapt::AnyField metric,
                       meshadapt::Warnings& warnings);
 
-/// The part as a mesh for a file: references in place of labels, no facets without one.
+/// Converts the part to a mesh for a file: restores references, and drops facets without one.
 meshadapt::AnyMesh mesh_for_file(const Part& part, const Kept& kept);
 
-/// Puts references in the place of labels, of facets and elements. Returns which are required.
+/// Replaces labels of facets or elements by references. Returns the required ones.
 std::vector<std::uint32_t> restore_references(std::vector<std::int32_t>& reference_of,
                                               const std::vector<KeptReference>& kept);
 

@@ -1,6 +1,6 @@
 /// @file
-/// What only the first rank does, and how the others hear of it: files and the command line are
-/// its alone.
+/// Work of the first rank alone, and how the others learn its result: only it uses files and the
+/// command line.
 #pragma once
 
 #include <cstdio>
@@ -14,12 +14,12 @@
 
 namespace ductile::petsc {
 
-/// Something was wrong, and the first rank has said what; all ranks end with this status.
+/// An error that the first rank has printed; all ranks end with this status.
 struct Ended {
   int status;
 };
 
-/// Calls work() on the first rank, which may not communicate. What it throws is printed there;
+/// Calls work() on the first rank; work() may not communicate. Its exceptions are printed there;
 /// then Ended is thrown on all ranks. Collective.
 template <class Work>
 void on_first_rank(const Communicator& comm, Work&& work) {
@@ -43,7 +43,7 @@ void on_first_rank(const Communicator& comm, Work&& work) {
   if (status != cli::done) throw Ended{status};
 }
 
-/// Gives all ranks what the first one has. Collective.
+/// Sends the first rank's values to all ranks. Collective.
 template <class T>
 void from_first_rank(const Communicator& comm, std::vector<T>& values) {
   PerRank<T> to(static_cast<std::size_t>(comm.size()));
@@ -54,14 +54,14 @@ void from_first_rank(const Communicator& comm, std::vector<T>& values) {
   values = comm.exchange(to).items;
 }
 
-/// The same of a text.
+/// The same for a text.
 inline void from_first_rank(const Communicator& comm, std::string& text) {
   std::vector<char> characters(text.begin(), text.end());
   from_first_rank(comm, characters);
   text.assign(characters.begin(), characters.end());
 }
 
-/// The same of one value.
+/// The same for one value.
 template <class T>
 requires std::is_trivially_copyable_v<T>
 void from_first_rank(const Communicator& comm, T& value) {

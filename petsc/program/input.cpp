@@ -32,7 +32,7 @@ void refuse_what_is_not_here(const Arguments& arguments) {
                             std::string(instead));
 }
 
-/// Those in the file of the mesh, where the output holds fields, and those of --field.
+/// Reads the fields in the file of the mesh, if the output holds fields, and those of --field.
 void read_fields(Input& input, meshadapt::MeshWithFields& file) {
   const AdaptJob& job = input.job;
   std::string left;
@@ -55,7 +55,7 @@ void read_fields(Input& input, meshadapt::MeshWithFields& file) {
     input.fields.push_back(std::move(field));
 }
 
-/// Leaves out listed edges that belong to no tetrahedron, as adapt() does: no part would have them.
+/// Removes listed edges that belong to no tetrahedron, as adapt() does: no part would have them.
 void drop_loose_edges(const Executor& executor, AnyMesh& mesh, meshadapt::Warnings& warnings) {
   if (mesh.dimension != 3 || mesh.edges.size() == 0) return;
   const auto around = elements_around<3>(executor, mesh);
@@ -63,7 +63,7 @@ void drop_loose_edges(const Executor& executor, AnyMesh& mesh, meshadapt::Warnin
   const auto all = std::exchange(mesh.edges, {});
   mesh.ridges.clear();
   mesh.required_edges.clear();
-  std::size_t first = all.size();  // that is loose
+  std::size_t first = all.size();  // the first loose one
   for (std::size_t i = 0; i < all.size(); ++i) {
     bool is_loose = true;
     visit_beside<3>(mesh, around, all.vertices[i], [&](std::uint32_t) { is_loose = false; });
@@ -79,7 +79,7 @@ void drop_loose_edges(const Executor& executor, AnyMesh& mesh, meshadapt::Warnin
         std::to_string(first + 1));
 }
 
-/// A mesh that only says what boundaries are like.
+/// Reads a mesh that only describes boundaries.
 Part read_geometry(Input& input, const Executor& executor) {
   AnyMesh mesh = meshadapt::read_mesh(*input.job.geometry, &input.warnings);
   const int dimension = input.file.part.mesh.dimension;
@@ -88,13 +88,13 @@ Part read_geometry(Input& input, const Executor& executor) {
                                 std::to_string(dimension) + ", found " +
                                 std::to_string(mesh.dimension));
   if (input.job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, mesh);
-  if (dimension == 2) mesh.required_edges.clear();  // facets, which are of no matter here
+  if (dimension == 2) mesh.required_edges.clear();  // edges are facets in 2D and irrelevant here
   mesh.required_triangles.clear();
   mesh.required_tetrahedra.clear();
   return part_of_file(std::move(mesh), {}, input.warnings).part;
 }
 
-/// What is sent to other ranks about a field or about the name of a reference.
+/// Data of a field, or of the name of a reference, sent to other ranks.
 struct Told {
   std::array<char, 240> name{};
   int number = 0, other = 0;
@@ -107,7 +107,7 @@ struct Told {
 
 }  // namespace
 
-/// A .pvtu and a .h5 hold fields, as a .vtu does, whose name stands in for theirs.
+/// A .pvtu and a .h5 hold fields like a .vtu, whose name is used in place of theirs.
 void read_words(Input& input, const Arguments& arguments) {
   refuse_what_is_not_here(arguments);
   std::optional<fs::path> stand_in;

@@ -1,6 +1,6 @@
 /// @file
-/// What the command line and the files of `ductile-mpi adapt` say: the first rank reads them, and
-/// the others hear what they have to know.
+/// Input of `ductile-mpi adapt` from command line and files: the first rank reads it and sends the
+/// others what they need.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace ductile::petsc {
 
-/// An option of `ductile adapt` that there is not on several ranks, and what does the same.
+/// An option of `ductile adapt` that is not available on several ranks, and its alternative.
 struct NotHere {
   std::string_view option, instead;
 };
@@ -30,15 +30,15 @@ inline constexpr std::array<NotHere, 3> not_here{
 
 enum class Form { gathered, pieces, hdf5 };
 
-/// What files say, in the order in which it is made. Only the form is known on every rank, the
-/// rest on the first one.
+/// The input, in the order in which it is read. Other ranks only know the types of fields, the
+/// first one all.
 struct Input {
   cli::AdaptJob job;
   std::filesystem::path output;
   Form form = Form::gathered;
   FilePart file;
-  std::optional<meshadapt::Sizes> sizes;  // by places, for the meshes that come of the file's
-  std::optional<Part> geometry;           // of the mesh that -geometry names
+  std::optional<meshadapt::Sizes> sizes;  // by places, to be evaluated on adapted meshes
+  std::optional<Part> geometry;           // the mesh of -geometry
   std::vector<meshadapt::NamedField> fields;
   std::vector<std::size_t> field_count_of;  // [file given by --field]
   std::vector<meshadapt::ReferenceName> names;
@@ -46,14 +46,14 @@ struct Input {
   meshadapt::Warnings warnings;
 };
 
-/// What the command line says. On the first rank. Throws UsageError, and InputError where outputs
-/// cannot be written.
+/// Reads the command line. On the first rank. Throws UsageError, and InputError if outputs cannot
+/// be written.
 void read_words(Input& input, const cli::Arguments& arguments);
 
-/// Reads the files that the job names. On the first rank. Throws InputError.
+/// Reads the job's files. On the first rank. Throws InputError.
 void read_files(Input& input, const runtime::Executor& executor);
 
-/// Tells the other ranks what they have to know of it. Throws Error, on all ranks. Collective.
+/// Sends the other ranks what they need. Throws Error, on all ranks. Collective.
 void tell_others(const Communicator& comm, Input& input);
 
 }  // namespace ductile::petsc

@@ -1,6 +1,6 @@
 /// @file
 /// ductile-mpi: adapts meshes on several ranks of MPI. The first rank reads the command line and
-/// files, and speaks.
+/// files and prints messages.
 #include <petscsys.h>
 
 #include <cstdio>
@@ -56,7 +56,7 @@ int run(const Communicator& comm, const std::vector<std::string>& words) {
   return cli::done;
 }
 
-/// What only one rank knows of ends all: the others may wait for it.
+/// A failure known to one rank only aborts all, because the others may wait for it.
 int run_or_abort(int argument_count, char** argument) {
   try {
     const Communicator comm(MPI_COMM_WORLD);

@@ -21,7 +21,7 @@ std::size_t components(const NamedField& field, int dimension) {
   return static_cast<std::size_t>(component_count(field.type, dimension));
 }
 
-/// Of vertices that this rank has numbered, in the order of their numbers, or of its elements.
+/// Values at the vertices that this rank has numbered, in the order of numbers, or in its elements.
 std::vector<double> own_values(const NamedField& field, const AdaptedParts& parts,
                                std::int64_t first) {
   if (field.place == NamedField::Place::elements) return field.values;
@@ -56,7 +56,7 @@ std::string in_xml(const std::string& text) {
   return result;
 }
 
-/// The arrays that pieces have, as their writer names them.
+/// The arrays of the pieces, as their writer names them.
 class ArrayList {
  public:
   void add(const char* type, const std::string& name, std::size_t count) {
@@ -68,7 +68,7 @@ class ArrayList {
   }
   void add(const std::vector<NamedField>& fields, NamedField::Place place) {
     using Type = meshadapt::AnyField::Type;
-    for (const NamedField& field : fields)  // in space
+    for (const NamedField& field : fields)  // pieces are three-dimensional
       if (field.place == place)
         add("Float64", field.name,
             field.type == Type::scalar   ? 1

@@ -9,11 +9,11 @@
 
 namespace ductile::petsc {
 
-/// Adapts a mesh on all ranks, by the words after `adapt`. Throws Ended, or AgreedError; anything
-/// else is thrown on one rank only. Collective.
+/// Adapts a mesh on all ranks, with the arguments after `adapt`. Throws Ended or AgreedError; other
+/// exceptions are thrown on one rank only. Collective.
 void adapt_files(const Communicator& comm, std::span<const std::string> words);
 
-/// Prints what `adapt` takes.
+/// Prints the help of `adapt`.
 void print_help_of_adapt();
 
 }  // namespace ductile::petsc

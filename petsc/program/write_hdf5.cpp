@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using meshadapt::NamedField;
 
-/// Gives a PETSc object back.
+/// Owns a PETSc object.
 template <class Object, PetscErrorCode (*destroy)(Object*)>
 class Held {
  public:
@@ -36,7 +36,7 @@ using HeldVec = Held<Vec, VecDestroy>;
 using HeldSection = Held<PetscSection, PetscSectionDestroy>;
 using HeldViewer = Held<PetscViewer, PetscViewerDestroy>;
 
-/// [vertex of the DMPlex] That of the part: PETSc sorts them by their numbers.
+/// [vertex of the DMPlex] The vertex of the part: PETSc sorts them by number.
 std::vector<VertexId> by_number(const Part& part) {
   std::vector<VertexId> order(part.number_of.size());
   for (VertexId v = 0; v < order.size(); ++v) order[v] = v;
@@ -45,7 +45,7 @@ std::vector<VertexId> by_number(const Part& part) {
   return order;
 }
 
-/// order is [vertex or cell of the DMPlex], the number of that of the part.
+/// order is [vertex or cell of the DMPlex], its index in the part.
 void write_field(DM plex, PetscViewer viewer, const NamedField& field,
                  const std::vector<std::uint32_t>& order, int dimension) {
   const PetscInt each = component_count(field.type, dimension);
@@ -80,7 +80,7 @@ void write_field(DM plex, PetscViewer viewer, const NamedField& field,
   check(VecView(global, viewer));
 }
 
-/// A part whose labels are references.
+/// A copy of the parts with references as labels.
 AdaptedParts with_references(const DistributedResult& result) {
   AdaptedParts parts = result.parts;
   for (std::int32_t& reference : parts.part.mesh.vertex_reference)
@@ -104,7 +104,7 @@ void write_hdf5(const Communicator& comm, const fs::path& path, const Distribute
   if (result.parts.part.mesh.dimension == 3) labels.edges.name = "Edge Sets";
   const AdaptedParts parts = comm.on_all([&] { return with_references(result); });
   const auto vertices = comm.on_all([&] { return by_number(parts.part); });
-  std::vector<std::uint32_t> cells(parts.part.element_count());  // as they are in the part
+  std::vector<std::uint32_t> cells(parts.part.element_count());  // in the order of the part
   std::iota(cells.begin(), cells.end(), 0U);
   const std::string temporary = path.string() + ".ductile-tmp";
   {

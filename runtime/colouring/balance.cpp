@@ -38,7 +38,8 @@ std::size_t ClassSizes::move(const Executor& executor, std::span<const std::uint
   const std::uint32_t from = colour_of[vertices.front()];
   const std::size_t block = std::max<std::size_t>({2048, 4 * colours, n / 256});
   const std::size_t blocks = (n + block - 1) / block;
-  // [block][colour], with one more column for all: before the block, who wants to go there.
+  // [block][colour], last column: all. First counts, then how many earlier vertices want the
+  // colour.
   std::vector<std::size_t> before(blocks * (colours + 1));
   parallel_for_blocks(executor, n, block, [&](std::size_t b, std::size_t begin, std::size_t end) {
     std::size_t* const row = &before[b * (colours + 1)];

@@ -9,7 +9,7 @@ namespace detail {
 
 namespace {
 
-/// The greatest of what greatest_in(begin, end) says of the blocks of [0, n); 0 if there are none.
+/// The maximum of greatest_in(begin, end) over blocks of [0, n); 0 if there are none.
 template <class GreatestIn>
 std::uint32_t greatest(const Executor& executor, std::size_t n, GreatestIn greatest_in) {
   constexpr std::size_t block = 16384;
@@ -24,7 +24,7 @@ std::uint32_t greatest(const Executor& executor, std::size_t n, GreatestIn great
 }  // namespace
 
 ColouringMethod choose(const Executor& executor, ColouringMethod method, std::size_t vertex_count) {
-  // A team of one has nobody to share with, and no clashes to look for.
+  // One thread shares with nobody and has no clashes to look for.
   const bool alone = executor.threads() == 1 && (method == ColouringMethod::automatic ||
                                                  method == ColouringMethod::detect_again ||
                                                  method == ColouringMethod::two_phase);
@@ -69,7 +69,7 @@ std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32
 ColourClasses colour_classes(const Executor& executor, const Colouring& colouring) {
   const std::vector<std::uint32_t>& colour_of = colouring.colour_of;
   const std::size_t n = colour_of.size(), colours = colouring.count;
-  // Blocks long enough that their counters do not outweigh the vertices.
+  // Blocks long enough that there are fewer counters than vertices.
   const std::size_t block = std::max<std::size_t>({1024, 16 * colours, n / 256});
   const std::size_t blocks = (n + block - 1) / block;
   std::vector<std::size_t> place(blocks * colours);  // [block][colour]

@@ -1,6 +1,6 @@
 /// @file
-/// DUCTILE_COMPILE_COLOURINGS: all that the library brings along of the colourings of one type of
-/// graph, see detail/compiled_graphs.hpp. Each has a file of its own, because it takes seconds.
+/// DUCTILE_COMPILE_COLOURINGS: instantiates the colourings of one type of graph for the library,
+/// see detail/compiled_graphs.hpp. Each has its own source, because it takes seconds to compile.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ bool colour_slowly_in_bytes(const Executor& executor, const G& graph, ColouringM
   return with_class_of(chosen, [&]<class Method>(Method) {
     if constexpr (requires { Method::bound_by_memory; })
       return colour_in_bytes<Method>(executor, graph, bytes, {n});
-    return false;  // not called for others
+    return false;  // never called for others
   });
 }
 

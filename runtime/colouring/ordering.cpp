@@ -29,8 +29,8 @@ std::uint32_t DegreeBuckets::remove(std::size_t i) {
 void DegreeBuckets::lower(std::uint32_t u) {
   const std::uint32_t degree = degree_of_[u];
   if (place_of_[u] < removed_ || degree == 0) return;
-  // A bucket that begins before removed_ has lost its first vertices to remove(). The first of the
-  // bucket takes u's place, u goes to where the bucket below ends.
+  // A bucket that begins before removed_ has lost its first vertices to remove(). Exchanges u and
+  // the first vertex of its bucket, which becomes the last of the bucket below.
   const std::uint32_t first = std::max(begin_of_[degree], static_cast<std::uint32_t>(removed_));
   const std::uint32_t other = vertices_[first];
   std::swap(vertices_[place_of_[u]], vertices_[first]);

@@ -27,7 +27,7 @@ class DelaunayRefinement {
       insert(triangle);
       for (const TriangleId t : cavity_.triangles)
         if (is_bad(t)) wake(t);
-      // Where an edge in its way was halved, the triangle may still be there.
+      // If an edge in its way was halved, the triangle may still be there.
       if (mesh_.corners_of[triangle][2] == last) waiting_.push_back({triangle, last});
     }
   }

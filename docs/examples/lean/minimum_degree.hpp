@@ -26,7 +26,7 @@ class MinimumDegree {
  public:
   using Vertex = example::Vertex;
 
-  /// Of a graph without loops and repeated edges.
+  /// The graph has no loops or repeated edges.
   explicit MinimumDegree(ductile::runtime::CsrGraph<> graph)
       : nodes_(graph.vertex_count()),
         first_(graph.vertex_count(), none),
@@ -199,8 +199,8 @@ class MinimumDegree {
     }
   }
 
-  /// Of a vertex of the new element, which is the first in its list. A second element and
-  /// neighbours have nothing in common; of more elements, each vertex counts once.
+  /// The degree of a vertex of the new element, which is the first in its list. A second element
+  /// and neighbours are disjoint; with more elements, each vertex counts once.
   std::uint32_t degree(Vertex v) {
     const Node& node = nodes_[v];
     const Vertex *const begin = list(v), *const middle = begin + node.elements;

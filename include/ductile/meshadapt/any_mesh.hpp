@@ -1,8 +1,8 @@
 /// @file
-/// AnyMesh and AnyField: a mesh and a field on its vertices as they stand in a file, of a dimension
-/// known only at run time. Readers fill them, writers and pictures take them, and
-/// Mesh<Dim> is made from one and turned back into one. Indices start at 0. Nothing is checked
-/// here beyond what the file format itself demands; make_mesh checks that it is a mesh.
+/// AnyMesh and AnyField: a mesh, and a field on its vertices, as in a file, with the dimension
+/// known only at run time. Readers fill them, writers and pictures take them, and Mesh<Dim> is made
+/// from one and turned back into one. Indices start at 0. Only the demands of the file format are
+/// checked here; make_mesh checks that it is a mesh.
 #pragma once
 
 #include <algorithm>
@@ -31,10 +31,11 @@ struct Cells {
   friend bool operator==(const Cells&, const Cells&) = default;
 };
 
-/// What the entities of one dimension that carry a reference are called: "wall", "steel".
+/// A name for the entities of one dimension with one reference: "wall", "steel".
 struct ReferenceName {
-  int dimension = 0;           ///< of the entities: 0, vertices; 1, edges; 2, triangles; 3
-  std::int32_t reference = 0;  ///< that they carry
+  int dimension = 0;           ///< of the entities: 0, vertices; 1, edges; 2, triangles; 3,
+                               ///< tetrahedra
+  std::int32_t reference = 0;  ///< of the entities
   std::string name;
   friend bool operator==(const ReferenceName&, const ReferenceName&) = default;
 };
@@ -54,8 +55,8 @@ struct AnyMesh {
   std::vector<std::uint32_t> required_triangles;   ///< indices into triangles
   std::vector<std::uint32_t> required_tetrahedra;  ///< indices into tetrahedra
   std::vector<ReferenceName> names;                ///< of references; adaptation keeps them
-  std::string name;                                ///< where it came from, for messages
-  int dropped_axis = 2;  ///< of a flat mesh: the axis of space that flatten() left out
+  std::string name;                                ///< origin, for messages
+  int dropped_axis = 2;  ///< for a flat mesh: the axis of space that flatten() dropped
 
   std::size_t vertex_count() const { return vertex_reference.size(); }
   friend bool operator==(const AnyMesh&, const AnyMesh&) = default;
@@ -69,13 +70,13 @@ const Cells<Dim + 1>& elements_in(const AnyMesh& mesh) {
   else
     return mesh.tetrahedra;
 }
-/// The same, to be changed.
+/// The same, mutable.
 template <int Dim>
 Cells<Dim + 1>& elements_in(AnyMesh& mesh) {
   return const_cast<Cells<Dim + 1>&>(elements_in<Dim>(std::as_const(mesh)));
 }
 
-/// The facets of a mesh of dimension Dim that are listed: its edges or its triangles.
+/// The listed facets of a mesh of dimension Dim: its edges or its triangles.
 template <int Dim>
 const Cells<Dim>& facets_in(const AnyMesh& mesh) {
   if constexpr (Dim == 2)
@@ -83,13 +84,13 @@ const Cells<Dim>& facets_in(const AnyMesh& mesh) {
   else
     return mesh.triangles;
 }
-/// The same, to be changed.
+/// The same, mutable.
 template <int Dim>
 Cells<Dim>& facets_in(AnyMesh& mesh) {
   return const_cast<Cells<Dim>&>(facets_in<Dim>(std::as_const(mesh)));
 }
 
-/// Where a vertex of a mesh of dimension Dim lies.
+/// Position of a vertex of a mesh of dimension Dim.
 template <int Dim>
 Vector<Dim> position_in(const AnyMesh& mesh, std::size_t vertex) {
   Vector<Dim> position;
@@ -105,7 +106,7 @@ struct AnyField {
   std::vector<Type> types;     ///< one per field
   std::vector<double> values;  ///< [vertex * stride + component]; symmetric tensors as in GMF:
                                ///< 2D m11 m12 m22, 3D m11 m12 m22 m13 m23 m33
-  std::string name;            ///< where it came from, for messages
+  std::string name;            ///< origin, for messages
 };
 
 /// Components of one field at one vertex: 1, dimension, dimension (dimension + 1) / 2 or
@@ -117,7 +118,7 @@ constexpr int component_count(AnyField::Type type, int dimension) {
                                              : dimension * dimension;
 }
 
-/// Components of all fields at one vertex: how far apart the values of two vertices lie.
+/// Components of all fields at one vertex: the stride between the values of two vertices.
 constexpr std::size_t stride_of(const AnyField& field) {
   std::size_t stride = 0;
   for (const AnyField::Type type : field.types)
@@ -125,7 +126,7 @@ constexpr std::size_t stride_of(const AnyField& field) {
   return stride;
 }
 
-/// One field under its name, of a mesh whose dimension says how many components it has.
+/// A field with a name. The dimension of its mesh determines the number of components.
 struct NamedField {
   enum class Place { vertices, elements };
   std::string name;
@@ -136,17 +137,17 @@ struct NamedField {
 
 // ---- A mesh to start from ----
 
-/// References of boundary edges in 2D, of boundary triangles in 3D. Left is x = 0, bottom y = 0,
-/// front z = 0; right, top and back are opposite.
+/// References of the sides of a box: boundary edges in 2D, boundary triangles in 3D. Left is x = 0,
+/// bottom y = 0, front z = 0; right, top and back are opposite.
 struct Side {
   static constexpr int left = 1, right = 2, bottom = 3, top = 4, front = 5, back = 6;
 };
 
-/// A box, in 2D a rectangle, from the origin on, cut into equal cells and those into elements. Its
-/// boundary is listed; references tell the sides apart. In 2D two triangles a cell, with diagonals
-/// that alternate; in 3D six tetrahedra a cell (Kuhn). `extent` and `cells` are along each axis.
+/// A box (2D: rectangle) from the origin, cut into equal cells and those into elements: two
+/// triangles per cell with alternating diagonals, or six tetrahedra (Kuhn). Its boundary is listed,
+/// with a reference for each side; elements have reference 1. `extent` and `cells` are per axis.
 /// Throws InputError unless extents are positive, there is a cell along each axis, and 32 bits can
-/// count the vertices. Elements have reference 1. Thread safety: any thread.
+/// count the vertices. Thread safety: any thread.
 template <int Dim = 3>
 AnyMesh box_mesh(const std::array<double, Dim>& extent, const std::array<int, Dim>& cells);
 

@@ -1,9 +1,9 @@
 /// @file
-/// Meshes and fields in files. One table, mesh_formats(), says which formats there are: those of
-/// Medit and Mmg (GMF: .mesh, .meshb, .sol, .solb, versions 1 to 4, either byte order), Gmsh, VTK,
-/// and others to write. Reading goes by content, writing by the name's ending. Reading throws
+/// Meshes and fields in files. One table, mesh_formats(), lists the formats: those of Medit and Mmg
+/// (GMF: .mesh, .meshb, .sol, .solb, versions 1 to 4, either byte order), Gmsh, VTK, and others for
+/// writing only. Reading goes by content, writing by the ending of the name. Reading throws
 /// InputError, never crashes, on any sequence of bytes, and takes memory in proportion to the file.
-/// All functions: any thread.
+/// Thread safety of all functions: any thread.
 #pragma once
 
 #include <bit>
@@ -19,9 +19,9 @@
 
 namespace ductile::meshadapt {
 
-// ---- Which formats there are ----
+// ---- Formats ----
 
-/// A format of files, and what Ductile does with it.
+/// A file format and its support.
 struct MeshFormat {
   std::string_view ending;  ///< ".msh"
   std::string_view what;    ///< "Gmsh, versions 2.2 and 4.1"
@@ -30,77 +30,76 @@ struct MeshFormat {
   bool holds_fields = false;  ///< at vertices and in elements, beside the mesh
 };
 
-/// All of them, in the order of help.
+/// All formats, in the order of the help text.
 std::vector<MeshFormat> mesh_formats();
 
-/// The format that a file of this name is written in, by its ending; nullptr: none.
+/// The format for a file of this name, by its ending; nullptr: none.
 const MeshFormat* format_of(const std::filesystem::path& path);
 
-/// The endings of those that can be written, ".mesh, .meshb or .vtu", for messages.
+/// The endings that can be written, ".mesh, .meshb or .vtu", for messages.
 std::string written_endings();
 
 // ---- Reading ----
 
-/// What a file holds: a mesh, and fields on it.
+/// Contents of a file: a mesh, and fields on it.
 struct MeshWithFields {
   AnyMesh mesh;
   std::vector<NamedField> fields;
 };
 
-/// Reads a mesh. Every index in it is in range, every coordinate finite; nothing else is checked.
-/// A mesh of dimension 3 that lies in a coordinate plane and has no tetrahedra becomes one of
-/// dimension 2, see flatten(). What the format has beyond AnyMesh (normals, solutions, what only
-/// bamg or ParMmg knows, any other word) is left out, all with one line in `warnings` if that is
-/// given. Throws InputError ("FILE:LINE: expected, found; what to do"; in binary files the byte)
-/// for a file that cannot be read, breaks the format, has cells other than points, edges, triangles
-/// and tetrahedra, or a section whose name is one letter away from one that is read.
+/// Reads a mesh. Indices are checked to be in range and coordinates to be finite, nothing else. A
+/// mesh of dimension 3 that lies in a coordinate plane and has no tetrahedra becomes one of
+/// dimension 2, see flatten(). Data that AnyMesh cannot hold (normals, solutions, keywords of bamg
+/// or ParMmg, unknown keywords) are ignored, with one line in `warnings` if given. Throws
+/// InputError ("FILE:LINE: expected, found; what to do"; in binary files the byte) for a file that
+/// cannot be read, breaks the format, has cells other than points, edges, triangles and tetrahedra,
+/// or a section whose name is one letter away from a known one.
 AnyMesh read_mesh(const std::filesystem::path& path, Warnings* warnings = nullptr);
 
-/// The same with the fields that the file has beside the mesh, whose values are numbers, which may
-/// be infinite. Those that the mesh has no place for (of other numbers of components, on other
-/// cells) are left out with a warning.
+/// The same with the fields in the file, whose values are numbers and may be infinite. Fields with
+/// unsupported numbers of components, or on other cells, are left out with a warning.
 MeshWithFields read_mesh_with_fields(const std::filesystem::path& path,
                                      Warnings* warnings = nullptr);
 
-/// How fields are read.
+/// Options of read_field().
 struct ReadFieldOptions {
-  /// Take infinite values, too, as of sizes that metric_of is to bound.
+  /// Accept infinite values, for example sizes that metric_of is to bound.
   bool infinite = false;
 };
 
 /// Reads the fields at the vertices (section SolAtVertices) of a .sol or .solb, all values finite.
-/// Otherwise as read_mesh. That it belongs to a mesh is for the caller to check, see metric_of.
+/// Otherwise as read_mesh. Whether it fits a mesh is for the caller to check, see metric_of.
 AnyField read_field(const std::filesystem::path& path, Warnings* warnings = nullptr,
                     const ReadFieldOptions& options = {});
 
 // ---- Writing ----
 
-/// What goes into a file beside the mesh, and how.
+/// Options of write_mesh() and write_field().
 struct WriteOptions {
-  /// Fields to go into the file, where the format holds some.
+  /// Fields to write, if the format can hold some.
   std::span<const NamedField> fields{};
-  /// Of a mesh: its format, by the ending; empty: that of the file's name.
+  /// Format of a mesh, by its ending; empty: that of the file's name.
   std::string_view format{};
-  /// GMF: 1, floats of 4 bytes in binary; 2, doubles; 3, files past 2 GiB; 4, 64-bit numbers.
-  /// 0, the smallest from 2 on that holds the data. Gmsh: 2 for 2.2, 4 or 0 for 4.1.
+  /// GMF: 1, floats of 4 bytes in binary; 2, doubles; 3, files beyond 2 GiB; 4, 64-bit numbers; 0,
+  /// the smallest from 2 on that holds the data. Gmsh: 2 for 2.2, 4 or 0 for 4.1.
   int version = 0;
-  /// By name: binary for .meshb and .solb, text for .mesh, .sol and .msh, and what suits others.
-  /// Whoever says which may give a mesh any name: GMF if its ending is that of no format.
+  /// By name: binary for .meshb and .solb, text for .mesh, .sol and .msh, each other format's
+  /// default. With ascii or binary a mesh may have any name: GMF if the ending is unknown.
   enum class Form { by_name, ascii, binary } form = Form::by_name;
   std::endian byte_order = std::endian::native;  ///< of a binary GMF file
-  /// Gets a line about what the mesh has and the format has no place for.
+  /// Receives a line about data of the mesh that the format cannot hold.
   Warnings* warnings = nullptr;
 };
 
 /// Writes a mesh; reading a GMF, Gmsh or VTK file back gives the same numbers bit for bit (GMF
 /// version 1: to the precision of float). The file appears whole or not at all. Throws InputError
 /// for a place that cannot be written, a name with an unknown ending, fields that the format does
-/// not hold, or data that is not fit for a file (index out of range, not finite, arrays of lengths
-/// that do not belong together); Error if the disk fills up.
+/// not hold, or invalid data (index out of range, not finite, inconsistent array lengths); Error if
+/// the disk is full.
 void write_mesh(const std::filesystem::path& path, const AnyMesh& mesh,
                 const WriteOptions& options = {});
 
-/// Writes the fields at the vertices as .sol or .solb, likewise.
+/// Writes the fields at the vertices as .sol or .solb, in the same way.
 void write_field(const std::filesystem::path& path, const AnyField& field,
                  const WriteOptions& options = {});
 
@@ -108,45 +107,45 @@ void write_field(const std::filesystem::path& path, const AnyField& field,
 
 class OutputFile;
 
-/// Several output files that belong together and appear whole or not at all. Each one has no name
-/// while it is written, or, where the file system has no such files, a temporary one beside its
-/// place, `NAME.ductile-tmp-PID-N`; commit() gives all of them their names when every byte of every
-/// one is on disk. Until then, and after an error or an interrupt, the files that were there before
-/// are untouched. Signals that end the process remove temporary files, and wait while names are
-/// given (runtime/process.hpp). What is no regular file (/dev/null, a pipe) is written directly,
-/// and so is what a name such as /dev/stdout or /dev/fd/3 stands for. Thread safety: one thread.
+/// Several output files that belong together and appear whole or not at all. While written, each
+/// has no name or, if the file system cannot do that, a temporary one beside its place,
+/// `NAME.ductile-tmp-PID-N`; commit() names all of them once every byte is on disk. Until then, and
+/// after an error or an interrupt, the previous files are untouched. Signals that end the process
+/// remove temporary files, and are delayed during renaming (runtime/process.hpp). Files that are
+/// not regular (/dev/null, a pipe), and those behind names such as /dev/stdout or /dev/fd/3, are
+/// written directly. Thread safety: one thread.
 class AtomicOutputs {
  public:
   AtomicOutputs();
-  /// Removes the temporaries of what was not committed.
+  /// Removes the temporary files of outputs that were not committed.
   ~AtomicOutputs();
   AtomicOutputs(const AtomicOutputs&) = delete;
   AtomicOutputs& operator=(const AtomicOutputs&) = delete;
 
-  /// Opens an output for `path`, valid until commit(). A symbolic link is followed: the file that
-  /// it names is replaced. Throws InputError where check_writable would, or when `path` is staged.
+  /// Opens an output for `path`, valid until commit(). Follows symbolic links and replaces their
+  /// target. Throws InputError if check_writable would, or if `path` is already staged.
   OutputFile& stage(const std::filesystem::path& path);
 
-  /// Brings every file to disk, then moves each to its place. The old files of all but the first
-  /// that was staged are set aside before: a process that is killed meanwhile may leave the first
-  /// one, old or new, without the others, but never old ones beside new ones. Throws Error: if a
-  /// file could not be written to its end, or a rename fails, the old files are in place, except
-  /// where the text names what new ones are.
+  /// Brings every file to disk, then moves each to its place. The old files of all outputs except
+  /// the first are set aside before: a process killed meanwhile may leave the first one, old or
+  /// new, without the others, but never old ones beside new ones. Throws Error: if a file could not
+  /// be written completely or renamed, the old files are in place, except for new ones that the
+  /// text names.
   void commit();
 
  private:
   std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
-/// The files beside `path` that hold what it held or was to hold, because a process that wrote it
+/// The files beside `path` that hold its old or intended content, because a process that wrote it
 /// was killed.
 std::vector<std::filesystem::path> left_of(const std::filesystem::path& path);
 
-/// Whether a file could be written at `path`, to be asked before long work: throws InputError if
-/// the path is empty or a folder, or if its folder is missing or refuses a new file.
+/// Checks before long work that a file could be written at `path`: throws InputError if the path is
+/// empty or a folder, or if its folder is missing or refuses a new file.
 void check_writable(const std::filesystem::path& path);
 
-/// The same of outputs that belong together, of which no two may be one file.
+/// The same for outputs that belong together; no two of them may be the same file.
 void check_writable(const std::vector<std::filesystem::path>& paths);
 
 /// Writes a mesh as one of several outputs.

@@ -1,7 +1,7 @@
 /// @file
-/// FixedMesh<Dim>: a mesh that fields live on. It does not change, so elements know their volumes
-/// and neighbours and vertices their elements; boundary facets need not be listed. What recovers
-/// derivatives, measures and transfers fields works on it, and so may a finite element program.
+/// FixedMesh<Dim>: a mesh with fields. It does not change, so it stores the volumes and neighbours
+/// of elements and the elements of vertices; boundary facets need not be listed. It serves recovery
+/// of derivatives, statistics and transfer of fields, and finite element programs.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace ductile::meshadapt {
 
-/// A mesh that is looked at and not changed; see the top of this file.
+/// An immutable mesh; see the top of this file.
 template <int Dim>
 struct FixedMesh {
   // ---- Elements ----
@@ -23,7 +23,7 @@ struct FixedMesh {
   std::vector<double> volume_of;                             // [element], area in 2D
   std::vector<std::array<ElementId, Dim + 1>> neighbour_of;  // [element][facet], none outside
 
-  // ---- Vertices; one may have no elements ----
+  // ---- Vertices; some may have no elements ----
   std::vector<Vector<Dim>> position_of;   // [vertex]
   std::vector<double> share_of;           // [vertex], integral of its hat function
   std::vector<std::uint8_t> on_boundary;  // [vertex], 1 if it belongs to a facet without neighbour
@@ -43,13 +43,13 @@ struct FixedMesh {
   }
 
   // ---- For elements_of ----
-  std::vector<std::uint32_t> first_around;  // [vertex], and the end
+  std::vector<std::uint32_t> first_around;  // [vertex], and one past the last
   std::vector<ElementId> around;            // one more than is used, so that its end has an address
 };
 
-/// Takes the triangles of a mesh of dimension 2, the tetrahedra of one of dimension 3; inverted
-/// ones are turned over. Throws InputError if there are none, one has no volume or an index is out
-/// of range. Thread safety: one caller; runs on the executor.
+/// Takes the triangles of a mesh of dimension 2, the tetrahedra of one of dimension 3, and
+/// reorients inverted ones. Throws InputError if there are none, one has no volume or an index is
+/// out of range. Thread safety: one caller; runs on the executor.
 template <int Dim>
 FixedMesh<Dim> make_fixed_mesh(const runtime::Executor& executor, const AnyMesh& mesh);
 
@@ -57,7 +57,7 @@ FixedMesh<Dim> make_fixed_mesh(const runtime::Executor& executor, const AnyMesh&
 template <int Dim>
 std::array<Vector<Dim>, Dim + 1> hat_gradients(const std::array<Vector<Dim>, Dim + 1>& points);
 
-/// Integral over the mesh of what is linear in each element and has these values at the vertices.
+/// Integral over the mesh of the piecewise linear function with these values at the vertices.
 /// Throws InputError unless there is one for each.
 template <int Dim>
 double integral(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,

@@ -1,7 +1,7 @@
 /// @file
-/// Between the arrays of a simulation and AnyMesh and AnyField: meshes made from coordinates and
-/// cells, whose boundary need not be given, and fields made, put side by side and taken apart.
-/// For tensors see metric_field.hpp. An AnyMesh consists of arrays already.
+/// Conversion between the arrays of a simulation and AnyMesh and AnyField: makes meshes from
+/// coordinates and cells, whose boundary may be omitted, and makes, joins and splits fields. For
+/// tensors see metric_field.hpp.
 #pragma once
 
 #include <concepts>
@@ -17,13 +17,13 @@
 
 namespace ductile::meshadapt {
 
-/// Arrays of numbers, entity after entity; vertices are numbered from 0. They are only looked at.
+/// Arrays of numbers, entity after entity; vertices are numbered from 0. Not modified.
 template <std::signed_integral Index>
 struct MeshArrays {
   int dimension = 2;                    ///< 2: elements are triangles; 3: tetrahedra
   std::span<const double> coordinates;  ///< [vertex * dimension + axis]
   std::span<const Index> elements;      ///< [element * (dimension + 1) + corner]
-  // ---- The rest may be left empty. References that are not given are 0. ----
+  // ---- Optional; missing references are 0 ----
   std::span<const std::int32_t> element_reference = {};  ///< [element]
   std::span<const Index> facets = {};                    ///< [facet * dimension + corner]
   std::span<const std::int32_t> facet_reference = {};    ///< [facet]
@@ -31,21 +31,19 @@ struct MeshArrays {
   std::string name = {};                                 ///< for messages
 };
 
-/// The mesh of these arrays. Facets that are given keep their order and come first, so an index
-/// into them is one into AnyMesh::required_edges (or required_triangles in 3D), too. After them
-/// come those that list_boundary() finds. Throws InputError, naming the array of the AnyMesh and
-/// the index, for arrays whose lengths do not fit together, vertices that there are not, and
-/// coordinates that are not finite; whether it is a valid mesh is for adapt() to find, or for
-/// check_mesh(). Index is int, long or long long.
-/// Thread safety: one caller; runs on the executor.
+/// Makes a mesh from these arrays. Given facets keep their order and come first, so their indices
+/// are also valid for AnyMesh::required_edges (3D: required_triangles); facets found by
+/// list_boundary() follow. Throws InputError, naming the array of the AnyMesh and the index, for
+/// array lengths that do not fit, vertices that do not exist, and coordinates that are not finite;
+/// adapt() or check_mesh() finds whether the mesh is valid. Index is int, long or long long. Thread
+/// safety: one caller; runs on the executor.
 template <std::signed_integral Index>
 AnyMesh mesh_from_arrays(const runtime::Executor& executor, const MeshArrays<Index>& arrays);
 
 /// Lists the facets of one element only, and those between elements of different references, that
-/// the mesh does not list yet. Their reference is 0, because nobody gave them one; their corners
-/// turn as seen from outside of their element, of two elements that of the lower number. They are
-/// in the order of their elements. Returns how many there were. Throws as above.
-/// Thread safety: one caller; runs on the executor.
+/// the mesh does not list yet. Their reference is 0; their corners are oriented outwards from their
+/// element, of two elements the one of the lower number. They are in the order of their elements.
+/// Returns their number. Throws as above. Thread safety: one caller; runs on the executor.
 std::size_t list_boundary(const runtime::Executor& executor, AnyMesh& mesh);
 
 extern template AnyMesh mesh_from_arrays(const runtime::Executor&, const MeshArrays<int>&);
@@ -61,19 +59,19 @@ AnyField scalar_field(int dimension, std::vector<double> value_of, const std::st
 template <int Dim>
 AnyField vector_field(const std::vector<Vector<Dim>>& vector_of, const std::string& name = "");
 
-/// All fields of both, those of `first` before those of `second`. Throws InputError unless they
-/// have the same dimension and as many vertices.
+/// All fields of both, those of `first` first. Throws InputError unless they have the same
+/// dimension and number of vertices.
 AnyField joined(const AnyField& first, const AnyField& second);
 
-/// The fields of an AnyField apart: "NAME", or "NAME_1", "NAME_2", ... if there are several.
+/// Splits the fields of an AnyField: "NAME", or "NAME_1", "NAME_2", ... if there are several.
 /// Throws InputError unless there are values for all vertices.
 std::vector<NamedField> named_fields(const AnyField& field, const std::string& name);
 
-/// The values [vertex] of one scalar among the fields, of which the first has index 0. Throws
-/// InputError unless there is one.
+/// The values [vertex] of the scalar field with this index, from 0. Throws InputError if it is not
+/// one.
 std::vector<double> scalars_of(const AnyField& field, std::size_t index = 0);
 
-/// The same of a field of vectors.
+/// The same for a field of vectors.
 template <int Dim>
 std::vector<Vector<Dim>> vectors_of(const AnyField& field, std::size_t index = 0);
 

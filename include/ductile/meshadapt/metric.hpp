@@ -1,7 +1,7 @@
 /// @file
-/// Metric<Dim>: a symmetric positive definite tensor that says which lengths count as one. A
-/// displacement d has the metric length sqrt(d' M d); an edge is of the right size when that is 1.
-/// Components are kept as in GMF files: m11 m12 m22 in 2D, m11 m12 m22 m13 m23 m33 in 3D.
+/// Metric<Dim>: a symmetric positive definite tensor that defines the length of displacements: d
+/// has the metric length sqrt(d' M d), and an edge is of the right size when that is 1. Components
+/// are stored as in GMF files: m11 m12 m22 in 2D, m11 m12 m22 m13 m23 m33 in 3D.
 #pragma once
 
 #include <array>
@@ -36,8 +36,8 @@ struct Metric {
   friend Metric operator*(double s, Metric a) { return a *= s; }
 };
 
-/// d' M d. Inlined everywhere: loops over it run side by side only then, and a compiler that counts
-/// all code of a source file may otherwise decide differently for reasons that lie far away.
+/// d' M d. Always inlined: only then are loops over it vectorised, and compilers that count all
+/// code of a source may otherwise decide differently because of unrelated code.
 [[gnu::always_inline]] inline double squared_length(const Metric<2>& a, const Vector<2>& d) {
   return a.m[0] * d[0] * d[0] + 2 * a.m[1] * d[0] * d[1] + a.m[2] * d[1] * d[1];
 }
@@ -58,8 +58,8 @@ Vector<Dim> product(const Metric<Dim>& a, const Vector<Dim>& d) {
 
 /// Determinant of a metric in 2D.
 inline double determinant(const Metric<2>& a) { return a.m[0] * a.m[2] - a.m[1] * a.m[1]; }
-/// By the pivots of LDL' elimination: the sum of products of cofactors would cancel all digits of a
-/// metric that is turned and stretched by 1e4 or more.
+/// Uses the pivots of LDL' elimination: the sum of products of cofactors would lose all digits for
+/// a rotated metric with a stretch of 1e4 or more.
 inline double determinant(const Metric<3>& a) {
   const auto& [xx, xy, yy, xz, yz, zz] = a.m;
   const double second = yy - xy / xx * xy;
@@ -79,9 +79,9 @@ inline Metric<3> inverse(const Metric<3>& a) {
                     xy * xz - xx * yz, xx * yy - xy * xy}};
 }
 
-/// Length of an edge whose end metrics measure it as `at_one_end` and `at_other`: the size is taken
-/// to vary geometrically along it, which gives their logarithmic mean (Alauzet, Finite Elem. Anal.
-/// Des. 46, 2010).
+/// Length of an edge that the metrics at its ends measure as `at_one_end` and `at_other`. The size
+/// is assumed to vary geometrically along the edge, which gives their logarithmic mean (Alauzet,
+/// Finite Elem. Anal. Des. 46, 2010).
 inline double mean_length(double at_one_end, double at_other) {
   const double difference = at_one_end - at_other;
   const double sum = at_one_end + at_other;
@@ -90,20 +90,20 @@ inline double mean_length(double at_one_end, double at_other) {
   return difference / std::log(at_one_end / at_other);
 }
 
-/// A symmetric tensor taken apart: its eigenvalues, in no order, and unit eigenvectors; vector[i]
-/// belongs to value[i]. Of a metric, 1/sqrt(value[i]) is the size along vector[i].
+/// The eigenvalues of a symmetric tensor, in no order, and unit eigenvectors; vector[i] belongs to
+/// value[i]. For a metric, 1/sqrt(value[i]) is the size along vector[i].
 template <int Dim>
 struct PrincipalAxes {
   std::array<double, Dim> value;
   std::array<Vector<Dim>, Dim> vector;
 };
 
-/// By cyclic Jacobi rotations, which keep small eigenvalues accurate beside large ones (Demmel &
+/// Uses cyclic Jacobi rotations, which keep small eigenvalues accurate beside large ones (Demmel &
 /// Veselic, 1992). Thread safety: any thread.
 template <int Dim>
 PrincipalAxes<Dim> principal_axes(const Metric<Dim>& a);
 
-/// Puts a tensor together: the sum of value[i] vector[i] vector[i]'.
+/// Composes a tensor: the sum of value[i] vector[i] vector[i]'.
 template <int Dim>
 Metric<Dim> compose(const PrincipalAxes<Dim>& axes);
 

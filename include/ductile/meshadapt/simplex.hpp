@@ -1,6 +1,6 @@
 /// @file
-/// Vector<Dim>, a point or a displacement; and what differs between triangles and tetrahedra:
-/// counts and tables. Facet i of an element is the one opposite its corner i.
+/// Vector<Dim>, a point or a displacement; counts and tables of triangles and tetrahedra. Facet i
+/// of an element is the one opposite its corner i.
 #pragma once
 
 #include <array>
@@ -67,7 +67,7 @@ inline constexpr std::uint32_t none = 0xffffffffU;
 template <int Dim>
 struct Simplex;
 
-/// Of a triangle.
+/// Counts and tables of a triangle.
 template <>
 struct Simplex<2> {
   static constexpr int corners = 3, edges = 3;
@@ -76,7 +76,7 @@ struct Simplex<2> {
   static constexpr std::array<std::array<int, 2>, 3> facet{{{1, 2}, {2, 0}, {0, 1}}};
 };
 
-/// Of a tetrahedron.
+/// Counts and tables of a tetrahedron.
 template <>
 struct Simplex<3> {
   static constexpr int corners = 4, edges = 6;
@@ -96,7 +96,7 @@ using Facet = std::array<VertexId, Dim>;
 inline Vector<2> facet_normal(const std::array<Vector<2>, 2>& p) {
   return {{p[1][1] - p[0][1], p[0][0] - p[1][0]}};
 }
-/// The same of a triangle.
+/// The same for a triangle in 3D.
 inline Vector<3> facet_normal(const std::array<Vector<3>, 3>& p) {
   return cross(p[1] - p[0], p[2] - p[0]);
 }
@@ -109,13 +109,13 @@ int corner_of(const std::array<VertexId, N>& corners, VertexId vertex) {
   return -1;
 }
 
-/// Whether `vertex` is one of the corners.
+/// Is `vertex` one of the corners?
 template <std::size_t N>
 bool contains(const std::array<VertexId, N>& corners, VertexId vertex) {
   return corner_of(corners, vertex) >= 0;
 }
 
-/// The corners that edge k joins.
+/// The ends of edge k.
 template <int Dim>
 std::array<VertexId, 2> ends_of_edge(const Corners<Dim>& corners, std::size_t k) {
   const auto& [i, j] = Simplex<Dim>::edge[k];

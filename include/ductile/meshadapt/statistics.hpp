@@ -1,6 +1,6 @@
 /// @file
-/// Statistics of a mesh: how long its edges and how good its elements are, in a metric or without
-/// one. Lengths are those of the unstructured grid adaptation working group (Ibanez et al.,
+/// Statistics of a mesh: lengths of its edges and quality of its elements, in a metric or
+/// Euclidean. Lengths are those of the unstructured grid adaptation working group (Ibanez et al.,
 /// Procedia Eng. 203, 2017), quality is its mean ratio in the mean metric of an element
 /// (mean_metric() in quality.hpp). The figures do not depend on threads or timing.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace ductile::meshadapt {
 
-/// A set of numbers in short. All zero for an empty set.
+/// Summary of a set of numbers. All zero for an empty set.
 struct Distribution {
   std::size_t count = 0;
   double min = 0;
@@ -30,7 +30,7 @@ struct Distribution {
 
 /// Lengths of edges and quality of elements of a mesh, see measure().
 struct MeshStatistics {
-  bool in_metric = false;  ///< else in plain Euclidean lengths
+  bool in_metric = false;  ///< false: Euclidean lengths
   Distribution edge_length;
   Distribution quality;            ///< mean ratio: 1 ideal, 0 flat, negative inverted
   std::size_t edges_in_range = 0;  ///< metric length in [1/sqrt 2, sqrt 2]; 0 without a metric
@@ -47,8 +47,7 @@ struct MeshStatistics {
 /// Measures the triangles of a mesh of dimension 2, the tetrahedra of one of dimension 3. `metric`
 /// is one symmetric tensor per vertex (see metric_of), or null for Euclidean figures. Throws
 /// InputError unless vertices have coordinates and references, the metric has a tensor for each,
-/// and elements name no others.
-/// Thread safety: one thread; runs on the executor.
+/// and elements name only existing vertices. Thread safety: one thread; runs on the executor.
 MeshStatistics measure(const runtime::Executor& executor, const AnyMesh& mesh,
                        const AnyField* metric);
 
@@ -58,9 +57,8 @@ MeshStatistics measure(const runtime::Executor& executor, const AnyMesh& mesh,
 std::vector<double> element_qualities(const runtime::Executor& executor, const AnyMesh& mesh,
                                       const AnyField* metric);
 
-/// Summary of `values`, with a histogram over [from, to]. If some are not numbers, nothing but the
-/// count is to be relied on.
-/// Thread safety: one caller; runs on the executor.
+/// Summary of `values`, with a histogram over [from, to]. If some are NaN, only the count is
+/// reliable. Thread safety: one caller; runs on the executor.
 Distribution distribution(const runtime::Executor& executor, std::span<const double> values,
                           double from, double to);
 

@@ -58,7 +58,7 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
   }
   const T* at(std::uint32_t index) const { return const_cast<Arena*>(this)->at(index); }
 
-  /// Elements handed out, those given up at segment ends included.
+  /// Elements handed out, including those wasted at segment ends.
   std::uint64_t used() const { return cursor_.load(std::memory_order_relaxed); }
 
   /// Memory held, in bytes.
@@ -73,17 +73,18 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
     cursor_.store(0, std::memory_order_relaxed);
   }
 
-  /// Forgets every array and gives all memory back but the table. Thread safety: one thread.
+  /// Forgets every array and gives back all memory except the table. Thread safety: one thread.
   void release() {
     clear();
     for (std::uint64_t slot = 0; slot < slot_count; ++slot) free_segment(slot);
   }
 
-  /// The same by all threads of an executor: the system takes memory page by page, which on one
+  /// The same on all threads of an executor, because the system frees pages one by one and a single
   /// thread would hold up the others. Thread safety: one caller.
   void release(const Executor& executor) {
     clear();
-    std::size_t end = slot_count;  // of those in use: else one thread would take them all as a part
+    std::size_t end = slot_count;  // end of the used slots; otherwise they would all fall into one
+                                   // thread's range
     while (end > 0 && table_[end - 1].load(std::memory_order_relaxed) == nullptr) --end;
     parallel_for(executor, end, [&](std::size_t slot) { free_segment(slot); }, {.grain = 1});
   }
@@ -118,7 +119,7 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
     if (table_[slot].load(std::memory_order_acquire) != nullptr) return;
     T* const fresh = new_elements(segment_size);
     T* expected = nullptr;
-    // Release pairs with the acquire in at(): whoever sees the segment sees it whole.
+    // Release pairs with the acquire in at(): a thread that sees the segment sees its contents.
     if (table_[slot].compare_exchange_strong(expected, fresh, std::memory_order_acq_rel)) {
       held_.fetch_add(segment_size, std::memory_order_relaxed);
     } else {
@@ -133,11 +134,12 @@ requires std::is_trivially_copyable_v<T> &&(SegmentBits >= 12) && (SegmentBits <
     const std::uint64_t first_slot = (start + mask) >> SegmentBits;
     if (first_slot + slots > slot_count) refuse();
     const std::lock_guard lock(blocks_mutex_);
-    blocks_.push_back({nullptr, first_slot, 0});  // before what it will own: it may throw
+    blocks_.push_back({nullptr, first_slot, 0});  // recorded before the allocation, because
+                                                  // push_back may throw
     T* const block = new_elements(slots << SegmentBits);
     blocks_.back() = {block, first_slot, slots};
     for (std::uint64_t s = 0; s < slots; ++s) {
-      free_segment(first_slot + s);  // kept by clear(); nobody else has an index in here
+      free_segment(first_slot + s);  // a segment that clear() kept; nobody has an index into it
       table_[first_slot + s].store(block + (s << SegmentBits), std::memory_order_release);
     }
     held_.fetch_add(slots << SegmentBits, std::memory_order_relaxed);

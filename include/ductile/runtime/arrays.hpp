@@ -1,9 +1,9 @@
 /// @file
-/// Arrays whose memory an executor's threads touch first. The system gives fresh memory, and clears
-/// it, page by page as it is first written, with an interrupt of the program for each: 1.4 us on
-/// one virtual machine, 11 on another, where a page among many takes 0.65. That takes longer than
-/// everything that is done to it once: one thread alone would hold up the others, and have all
-/// pages near itself. So pages are asked for many at a time, by all threads.
+/// Arrays whose memory an executor's threads touch first. The system provides and clears fresh
+/// memory page by page on first write, with a page fault for each: 1.4 us on one virtual machine,
+/// 11 on another; a page requested in bulk takes 0.65. This takes longer than anything done once to
+/// the array, and a single thread would also place all pages near itself. So all threads request
+/// many pages at a time.
 #pragma once
 
 #include <algorithm>
@@ -22,16 +22,16 @@ namespace ductile::runtime {
 
 // ---- Pages ----
 
-/// Memory of which the pages are to be asked for.
+/// Memory whose pages are to be requested in advance.
 class FreshMemory {
  public:
-  /// All of this memory, which is valid until touch(), is about to be written. As many pages as it
-  /// could fill are asked for, from the one on that it begins in. What they hold stays. Throws
+  /// Announces that this memory, which stays valid until touch(), is about to be written. Requests
+  /// as many pages as it could fill, starting with the one it begins in. Contents are kept. Throws
   /// std::bad_alloc.
   void add(void* memory, std::size_t bytes);
 
-  /// Gets the pages of all that was added. Where the system cannot do that, which is not Linux or
-  /// before 5.14, they come as they are written. Thread safety: one caller; runs on the executor.
+  /// Gets the pages of all added memory. Where the system cannot do that (not Linux, or Linux
+  /// before 5.14), pages come as they are written. Thread safety: one caller; runs on the executor.
   void touch(const Executor& executor);
 
  private:
@@ -44,8 +44,8 @@ class FreshMemory {
 
 namespace detail {
 
-/// Whether memory that malloc or new gave, which often has had it before, is worth touching: there
-/// is some of it, and its last page is not there. Thread safety: any thread.
+/// Is this memory from malloc or new, which may have been used before, worth touching? True if it
+/// is not empty and its last page is not resident. Thread safety: any thread.
 bool is_fresh(void* memory, std::size_t bytes);
 
 /// Gets pages as FreshMemory does, for the thread that is about to write them.
@@ -57,8 +57,8 @@ void touch_pages(const Executor& executor, void* memory, std::size_t bytes);
 
 }  // namespace detail
 
-/// Calls write(begin, end) with parts of the n elements at `first`, each on the thread that gets
-/// its pages before, if the elements are fresh. Thread safety: as FreshMemory::touch().
+/// Calls write(begin, end) on parts of the n elements at `first`; if they are fresh, each thread
+/// first gets the pages of its part. Thread safety: as FreshMemory::touch().
 template <class T, class Write>
 void write_first(const Executor& executor, T* first, std::size_t n, Write&& write,
                  const LoopOptions& options) {
@@ -74,8 +74,8 @@ void write_first(const Executor& executor, T* first, std::size_t n, Write&& writ
 
 // ---- Vectors ----
 
-/// std::allocator, but that an element made of nothing may hold anything, if its type is trivially
-/// copyable.
+/// std::allocator, except that value-initialised elements of trivially copyable types are left
+/// uninitialised.
 template <class T>
 struct UnsetAllocator : std::allocator<T> {
   UnsetAllocator() = default;
@@ -92,12 +92,12 @@ struct UnsetAllocator : std::allocator<T> {
   }
 };
 
-/// A vector whose resize() leaves numbers, and everything that can be copied byte by byte, unset. A
-/// std::vector sets them on one thread, while the others wait to fill them.
+/// A vector whose resize() leaves trivially copyable elements uninitialised. A std::vector would
+/// set them on one thread while the others wait to fill them.
 template <class T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 
-/// n unset elements, all of which are about to be set. Throws std::bad_alloc.
+/// n uninitialised elements, all of which are about to be set. Throws std::bad_alloc.
 /// Thread safety: one caller; runs on the executor.
 template <class T>
 UnsetVector<T> make_unset_vector(const Executor& executor, std::size_t n) {
@@ -108,7 +108,7 @@ UnsetVector<T> make_unset_vector(const Executor& executor, std::size_t n) {
   return made;
 }
 
-/// A vector that holds nothing, and the size that it is to have.
+/// An empty vector and the size it is to get.
 template <class T>
 struct EmptyVector {
   std::vector<T>& vector;
@@ -117,7 +117,7 @@ struct EmptyVector {
 template <class T>
 EmptyVector(std::vector<T>&, std::size_t) -> EmptyVector<T>;
 
-/// Resizes vectors; what is large, side by side. Throws std::bad_alloc.
+/// Resizes vectors, large ones in parallel. Throws std::bad_alloc.
 /// Thread safety: one caller; runs on the executor.
 template <class... T>
 void resize_empty(const Executor& executor, const EmptyVector<T>&... empty) {
@@ -142,8 +142,8 @@ std::vector<T> make_vector(const Executor& executor, std::size_t n) {
   return made;
 }
 
-/// Grows an array to n elements, if it has fewer: what is new holds `value`, and what there was is
-/// moved and what is new written by all threads. Throws std::bad_alloc.
+/// Grows an array to n elements if it has fewer and sets the new ones to `value`; all threads move
+/// the old elements and write the new ones. Throws std::bad_alloc.
 /// Thread safety: one caller; runs on the executor.
 template <class T>
 requires std::is_trivially_copyable_v<T>

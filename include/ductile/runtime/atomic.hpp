@@ -1,7 +1,7 @@
 /// @file
-/// What many threads do to one word or value of ordinary data: count into it, flip bits of it, mark
-/// it, lower it, hold a lock that lies in it, make it once. In one phase of a loop a word is
-/// accessed through these functions only.
+/// Atomic operations on ordinary data shared by threads: count, flip bits, mark, lower to a
+/// minimum, lock a word, make a value once. Within one phase of a loop, a word is accessed through
+/// these functions only.
 #pragma once
 
 #include <atomic>
@@ -14,9 +14,9 @@
 
 namespace ductile::runtime {
 
-// The orders of counts, marks and minima are relaxed: between two barriers only the words
-// themselves carry information. What a thread wrote before is ordered by the barrier at the end of
-// the loop, which every reader of the outcome has passed.
+// Counts, marks and minima use relaxed order: between two barriers only the words themselves carry
+// information. The barrier at the end of the loop, which every reader of the result has passed,
+// orders all other writes.
 
 /// Adds n and returns the value before. Thread safety: any thread.
 inline std::uint32_t atomic_count(std::uint32_t& where, std::uint32_t n = 1) {
@@ -35,20 +35,20 @@ inline void atomic_mark(std::uint8_t& flag) {
   if (word.load(std::memory_order_relaxed) == 0) word.store(1, std::memory_order_relaxed);
 }
 
-/// Is the flag set, as far as this thread knows? Thread safety: any thread.
+/// Is the flag set, as far as this thread can see? Thread safety: any thread.
 inline bool atomic_is_marked(std::uint8_t& flag) {
   return std::atomic_ref(flag).load(std::memory_order_relaxed) != 0;
 }
 
-/// Sets a flag where few threads set flags that lie near each other: one of a random pattern is set
-/// faster than looked at. Thread safety: any thread.
+/// Sets a flag without reading it first; faster if few threads set flags in a random pattern near
+/// each other. Thread safety: any thread.
 inline void atomic_set(std::uint8_t& flag) {
   std::atomic_ref(flag).store(1, std::memory_order_relaxed);
 }
 
-/// Lowers the word to `value` if that is less; true if it did. Once true, a later call by another
-/// thread may lower it further. With a priority in the word this is how operations reserve what
-/// they need: the lowest priority is what remains, whatever the timing. Thread safety: any thread.
+/// Lowers the word to `value` if that is less; true if it did. Another thread may lower it further
+/// afterwards. With a priority in the word, operations reserve resources this way: the lowest
+/// priority remains, whatever the timing. Thread safety: any thread.
 template <std::unsigned_integral Word>
 bool atomic_min(Word& where, std::type_identity_t<Word> value) {
   const std::atomic_ref word(where);
@@ -59,18 +59,18 @@ bool atomic_min(Word& where, std::type_identity_t<Word> value) {
   return false;
 }
 
-/// A number below 2^31 and a lock in its free bit, for many small things, such as the neighbours of
-/// a vertex. A thread that waits for the lock spins, so hold it for no longer than some hundred
-/// instructions. Thread safety: hold() any thread; get() and set() whoever holds it, or one thread
-/// if no other does anything with it.
+/// A number below 2^31 with a lock in its free bit, for many small objects such as the neighbour
+/// lists of vertices. A waiting thread spins, so hold the lock for at most some hundred
+/// instructions. Thread safety: hold() any thread; get() and set() the holder, or one thread if no
+/// other accesses the word.
 class NumberWithLock {
  public:
-  /// Keeps others that hold the same from going on, as long as it lives.
+  /// Holds the lock for its lifetime.
   class Held {
    public:
     explicit Held(std::uint32_t& word) : word_(word) {
-      constexpr int spins = 1000;  // then whoever holds it may have lost its core
-      // Acquire pairs with the release of whoever held it before.
+      constexpr int spins = 1000;  // after these the holder has probably lost its core
+      // Acquire pairs with the release by the previous holder.
       for (int tries = 0; (word_.fetch_or(held, std::memory_order_acquire) & held) != 0;
            tries += tries < spins)
         if (tries == spins) std::this_thread::yield();
@@ -85,8 +85,8 @@ class NumberWithLock {
 
   [[nodiscard]] Held hold() { return Held(word_); }
 
-  // Relaxed, and not plain, because others may try to hold it meanwhile, and so write what they
-  // find.
+  // Relaxed rather than plain, because other threads may try to lock meanwhile and so write the
+  // word.
 
   std::uint32_t get() { return std::atomic_ref(word_).load(std::memory_order_relaxed) & ~held; }
   void set(std::uint32_t number) {

@@ -1,15 +1,15 @@
 /// @file
-/// run_rounds_checked: run_rounds for authors of operators: slow, on one thread, and throws
-/// ContractBroken as soon as the operator does something that would be wrong, or would depend on
-/// timing, on many. It sees where items that have reached for nothing in common, or in `tiles` and
-/// `colours` have no conflict, change each other's plans, and whether plan() gives up where it
-/// should; not single reads and writes. The more an operator tells, the more it sees:
+/// run_rounds_checked: run_rounds for authors of operators. It is slow, runs on one thread, and
+/// throws ContractBroken as soon as the operator does something that would be wrong, or would
+/// depend on timing, on many threads. It detects items that change each other's plans although they
+/// reached for nothing in common (in `tiles` and `colours`: have no conflict), and a plan() that
+/// does not give up where it should, but not single reads and writes. It checks more if the
+/// operator provides more:
 ///   Plan has ==            compares plans, not only whether there is one
 ///   to_string(Item)        messages name the item, not only its place (numbers name themselves)
-/// Where items lower what others have not reached for, as LevelledOperator allows, the operator has
-/// a member `lowers_minima`: then another item may lose its plan.
-/// An operator that on purpose does not wake all items that could plan again has a member
-/// `forgoes_wakes`.
+/// An operator with a member `lowers_minima` lowers data that others have not reached for, as
+/// LevelledOperator allows; then another item may lose its plan.
+/// An operator with a member `forgoes_wakes` does not wake all items that could plan again.
 #pragma once
 
 #include <utility>
@@ -23,9 +23,8 @@
 
 namespace ductile::runtime {
 
-/// As run_rounds(), for items that can be copied; most_rounds is not heeded. Throws ContractBroken,
-/// and what the operator throws; the operator's data are then not to be used. Thread safety: one
-/// caller.
+/// As run_rounds(), for copyable items; ignores most_rounds. Throws ContractBroken and whatever the
+/// operator throws; do not use the operator's data then. Thread safety: one caller.
 template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds_checked(const Executor& executor, Op& op, Work work,
                                 const RoundsOptions& options = {}) {

@@ -1,7 +1,7 @@
 /// @file
-/// DisjointSets: numbers that many threads put together into sets, such as the parts of a graph
-/// that hang together. Each set is a tree whose root is its lowest number, so that the
-/// result does not depend on the order in which threads come.
+/// DisjointSets: a union-find structure that many threads change at once, for example to find the
+/// connected components of a graph. Each set is a tree whose root is its lowest number, so the
+/// result does not depend on the order of unions.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class DisjointSets {
 
   std::size_t size() const { return parent_.size(); }
 
-  /// Makes one set of the two that have a and b. Nearly constant time. Thread safety: any thread.
+  /// Unites the sets of a and b, in nearly constant time. Thread safety: any thread.
   void unite(std::uint32_t a, std::uint32_t b) {
     while (true) {
       a = root(a);
@@ -41,9 +41,9 @@ class DisjointSets {
     }
   }
 
-  /// Whether two numbers are in one set. Thread safety: any thread; what others unite meanwhile it
-  /// may see or not. Goes up from the higher parent until both are the same, or it is a root (Rem;
-  /// Patwary, Blair & Manne, SEA 2010).
+  /// Are two numbers in the same set? Concurrent unions may or may not be seen. Follows the higher
+  /// parent until both agree or it is a root (Rem; Patwary, Blair & Manne, SEA 2010). Thread
+  /// safety: any thread.
   bool are_together(std::uint32_t a, std::uint32_t b) {
     while (true) {
       std::uint32_t above_a = parent_of(a), above_b = parent_of(b);
@@ -53,43 +53,43 @@ class DisjointSets {
         std::swap(above_a, above_b);
       }
       if (above_a == a) return false;
-      // As in root().
+      // Path halving, as in root().
       const std::uint32_t next = parent_of(above_a);
       if (next != above_a) word(a).store(next, std::memory_order_relaxed);
       a = next;
     }
   }
 
-  /// Makes one set of the two whose lowest numbers are these. Thread safety: any thread, while no
-  /// other unites either.
+  /// Unites the two sets that have these roots. Thread safety: any thread, while no other unites
+  /// either.
   void unite_roots(std::uint32_t a, std::uint32_t b) {
     word(std::max(a, b)).store(std::min(a, b), std::memory_order_relaxed);
   }
 
-  /// The lowest number of the set that has this one. Thread safety: any thread, after the loop that
-  /// called unite().
+  /// The lowest number in the set of a. Thread safety: any thread, after the loop that called
+  /// unite().
   std::uint32_t lowest(std::uint32_t a) { return root(a); }
 
  private:
-  // Relaxed: a parent is the only datum, it only ever becomes a lower number of the same set, and
-  // the barrier at the end of the loop comes before whoever asks for what came out.
+  // Relaxed: a parent is the only datum and is only ever replaced by a lower number of the same
+  // set; the barrier at the end of the loop precedes any reader of the result.
   std::atomic_ref<std::uint32_t> word(std::uint32_t i) { return std::atomic_ref(parent_[i]); }
 
   std::uint32_t parent_of(std::uint32_t i) { return word(i).load(std::memory_order_relaxed); }
 
-  /// Halves the way there for those that come next.
+  /// The root of i; halves the path for later calls.
   std::uint32_t root(std::uint32_t i) {
     while (true) {
       const std::uint32_t parent = parent_of(i);
       if (parent == i) return i;
       const std::uint32_t next = parent_of(parent);
-      // Whatever others store meanwhile is a lower number of the same set as well.
+      // A concurrent store also writes a lower number of the same set.
       if (next != parent) word(i).store(next, std::memory_order_relaxed);
       i = next;
     }
   }
 
-  UnsetVector<std::uint32_t> parent_;  // [number], a lower one of its set, or itself at a root
+  UnsetVector<std::uint32_t> parent_;  // [number], a lower number of its set, or itself at a root
 };
 
 }  // namespace ductile::runtime

@@ -1,8 +1,8 @@
 /// @file
-/// Executor: how parallel work is run: how many threads, where they sit, how loops are shared out,
-/// and whether results may depend on timing. A program makes one and passes it down; the library
-/// has no global state besides it. Threads are OpenMP's, which by default spin where they wait: a
-/// program runs its loops in with_team(), or sets OMP_WAIT_POLICY=passive.
+/// Executor: how parallel work runs: how many threads, where they are placed, how loops are
+/// divided, and whether results may depend on timing. A program makes one and passes it down; the
+/// library has no other global state. Threads are OpenMP's, which spin by default while they wait:
+/// run loops in with_team(), or set OMP_WAIT_POLICY=passive.
 #pragma once
 
 #include <cstddef>
@@ -19,27 +19,27 @@ class Places;
 
 /// How the iterations of a loop are shared among threads.
 enum class Schedule {
-  automatic,         ///< stealing by atomics, which measured best in every shape of loop
+  automatic,         ///< stealing by atomics, the fastest for every kind of loop measured
   omp_static,        ///< OpenMP's static: equal contiguous parts
   omp_dynamic,       ///< OpenMP's dynamic with the loop's grain
   omp_guided,        ///< OpenMP's guided with the loop's grain
   steal_by_signal,   ///< an idle thread interrupts the one with most work left, which gives half
-                     ///< away; nanosleep() and the like in a body may end early, with EINTR. By
-                     ///< atomics where the caller blocks all real-time signals
+                     ///< away; nanosleep() and the like in a body may end early with EINTR. Uses
+                     ///< atomics if the caller blocks all real-time signals
   steal_by_atomics,  ///< an idle thread takes half of a victim's range by compare-and-swap
 };
 
 /// Where threads are placed on the machine. Each thread is bound to a processing unit while it
-/// works on a loop, and has the affinity it had before when the loop is over: nothing is left
-/// behind on the caller's thread or on OpenMP's, whatever becomes of the Executor. Units are those
-/// the process may use; with more threads than units they are used again.
+/// works on a loop and gets its previous affinity back afterwards, so neither the caller's thread
+/// nor OpenMP's stay bound. Only units the process may use count; they are reused if there are more
+/// threads than units.
 enum class Placement {
-  none,     ///< wherever the operating system likes; affinities are not touched
-  compact,  ///< near each other, physical cores before their second hyperthreads
-  scatter,  ///< packages in turn, for memory bandwidth; physical cores first as well
+  none,     ///< the operating system decides; affinities are not touched
+  compact,  ///< close together; physical cores before their second hyperthreads
+  scatter,  ///< alternating packages, for memory bandwidth; physical cores first
 };
 
-/// How many threads an Executor has, where they run and how they share out loops.
+/// Number of threads of an Executor, their placement, and the schedule of loops.
 struct ExecutorOptions {
   int threads = 0;  ///< 0: as many as the cores this process may use
   Placement placement = Placement::none;
@@ -50,9 +50,9 @@ struct ExecutorOptions {
 /// Cheap to copy. Thread safety: any thread; several threads may run loops on one Executor at once.
 class Executor {
  public:
-  /// With a placement, reads the machine's topology, which takes some milliseconds; where that is
-  /// hidden or binding is refused, threads are not bound. Throws std::invalid_argument if
-  /// options.threads is negative or above 4096.
+  /// With a placement, reads the machine's topology, which takes some milliseconds; threads stay
+  /// unbound if it is hidden or binding is refused. Throws std::invalid_argument if options.threads
+  /// is negative or above 4096.
   explicit Executor(const ExecutorOptions& options = {});
 
   int threads() const { return options_.threads; }
@@ -68,33 +68,32 @@ class Executor {
   std::shared_ptr<const detail::Places> places_;
 };
 
-/// The cores this process may use, at least 1: the affinity mask's, or fewer if the time that
-/// cgroups allow is less than that many cores'.
+/// Number of cores this process may use, at least 1: those in the affinity mask, or fewer if
+/// cgroups limit its processor time to less.
 int available_cores();
 
 // ---- Threads that stay together from one loop to the next ----
 //
-// Without a team, each loop starts and joins OpenMP's threads, which takes microseconds; in one a
-// thread that has done its part waits for the next loop, and a loop takes a message to each thread
-// and one back. Programs that run short loops by the thousand, such as adapt(), gain most; so does
-// every program on a machine that others use too, see loops in parallel_for.hpp. Algorithms of the
-// runtime that run many loops, such as colour() and run_rounds(), form a team by themselves.
+// Without a team, each loop starts and joins OpenMP's threads, which takes microseconds. In a team,
+// a thread that has done its part waits for the next loop, and a loop costs one message to each
+// thread and one back. Programs with thousands of short loops, such as adapt(), gain most, and so
+// does any program on a shared machine (see parallel_for.hpp). Runtime algorithms with many loops,
+// such as colour() and run_rounds(), form a team themselves.
 
-/// What with_team() calls, without its type.
+/// Type-erased body of with_team().
 using TeamBody = void (*)(void* context);
 
-/// with_team() without types.
+/// Type-erased with_team().
 void run_with_team(const Executor& executor, TeamBody body, void* context);
 
-/// Calls body() on the calling thread; all loops that it starts there with this executor, or a copy
-/// of it, run on threads that stay together until body() is done. What loops do is the same as
-/// without a team. Threads that wait for the next loop spin for 50 microseconds, in large teams for
-/// up to 200, or not at all where there are more of them than cores, and then sleep. With a
-/// placement they are bound, the calling one too, until body() is done. Meanwhile the thread is
-/// within a parallel region of OpenMP's: loops of other executors, and parallel regions that body()
-/// begins itself, run on it alone. What body() returns is returned, and what it throws reaches the
-/// caller. Inside a loop or another team, or for one thread, body() is called and that is all.
-/// Thread safety: any thread; each that calls it has a team of its own.
+/// Calls body() on the calling thread; all loops it starts there with this executor, or a copy, run
+/// on threads that stay together until body() ends. Loops give the same results as without a team.
+/// Threads waiting for the next loop spin for 50 microseconds (up to 200 in large teams; not at all
+/// if they outnumber the cores) and then sleep. With a placement, all of them including the caller
+/// are bound until body() ends. The calling thread is then in an OpenMP parallel region: loops of
+/// other executors and parallel regions that body() begins run on it alone. Returns what body()
+/// returns; its exceptions reach the caller. Inside a loop or another team, or for one thread, only
+/// calls body(). Thread safety: any thread; each caller has its own team.
 template <class Body>
 auto with_team(const Executor& executor, Body&& body) {
   using Plain = std::remove_reference_t<Body>;
@@ -112,7 +111,7 @@ auto with_team(const Executor& executor, Body&& body) {
 
 namespace detail {
 
-/// with_team() for loops over so many items: few are done before a team has come together.
+/// with_team() for loops over so many items; a few are done before a team has formed.
 template <class Body>
 auto with_team_for(std::size_t items, const Executor& executor, Body&& body) {
   constexpr std::size_t few = 256;

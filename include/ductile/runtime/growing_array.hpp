@@ -1,9 +1,8 @@
 /// @file
-/// GrowingArray: an array for graphs that grow while they are worked on. Unless it is small its
-/// memory comes in pages straight from the system: where that can do so (Linux) growing takes
-/// addresses that were held free behind it, or moves page table entries, and copies nothing, and
-/// what is new is first touched, and so placed near, by whoever writes it, unless a FreshMemory has
-/// asked for it before.
+/// GrowingArray: an array for graphs that grow while they are worked on. Unless it is small, its
+/// memory comes in pages directly from the system. On Linux, growing then uses reserved addresses
+/// behind it or moves page table entries, and copies nothing. New pages are placed near the thread
+/// that first writes them, unless a FreshMemory has requested them before.
 #pragma once
 
 #include <algorithm>
@@ -37,13 +36,13 @@ class GrowingMemory {
   std::byte* data() const { return data_; }
   std::size_t bytes() const { return bytes_; }
 
-  /// Makes room for at least so many bytes. Contents stay, but may move.
+  /// Makes room for at least this many bytes. Contents are kept but may move.
   void reserve(std::size_t bytes);
 
-  /// Adds the pages of the first so many bytes, save those added before, and a few more.
+  /// Adds the pages of the first `bytes` bytes, except those added before, and a few more.
   void add_pages(std::size_t bytes, FreshMemory& fresh);
 
-  /// Whether pages come straight from the system.
+  /// Do its pages come directly from the system?
   bool is_mapped() const { return space_ != 0; }
 
  private:
@@ -58,9 +57,9 @@ class GrowingMemory {
   void move_to_larger_space(std::size_t wanted);
 
   std::byte* data_ = nullptr;
-  std::size_t bytes_ = 0;  // that may be written
-  std::size_t space_ = 0;  // of addresses held, at least as many; none where malloc gave it
-  std::size_t added_ = 0;  // of which pages have been asked for
+  std::size_t bytes_ = 0;  // usable
+  std::size_t space_ = 0;  // of reserved addresses, at least bytes_; 0 if the memory is malloc's
+  std::size_t added_ = 0;  // whose pages have been requested
 };
 
 }  // namespace detail
@@ -69,12 +68,12 @@ template <class T>
 requires(std::is_trivially_copyable_v<T> &&
          alignof(T) <= alignof(std::max_align_t)) class GrowingArray;
 
-/// Memory that arrays no longer want. The system takes it page by page: by all threads of an
-/// executor and in one loop for all arrays, where one thread alone would hold up the others.
+/// Memory that arrays no longer need. The system frees it page by page, so all threads free it in
+/// one loop for all arrays; one thread alone would hold up the others.
 class SpentMemory {
  public:
-  /// Gives all of it back, which the destructor does on its own thread. Thread safety: one caller;
-  /// runs on the executor.
+  /// Gives all of it back; otherwise the destructor does so on its own thread. Thread safety: one
+  /// caller; runs on the executor.
   void give_back(const Executor& executor);
 
  private:
@@ -84,12 +83,12 @@ class SpentMemory {
 
   struct Part {
     detail::GrowingMemory memory;
-    std::size_t used;  // bytes, the first ones
+    std::size_t used;  // in use, from the beginning
   };
   std::vector<Part> parts_;
 };
 
-/// Thread safety: elements as those of an array; what changes the size, one thread.
+/// Thread safety: elements as those of an array; changes of size, one thread.
 template <class T>
 requires(std::is_trivially_copyable_v<T> &&
          alignof(T) <= alignof(std::max_align_t)) class GrowingArray {
@@ -116,27 +115,26 @@ requires(std::is_trivially_copyable_v<T> &&
   T& operator[](std::size_t i) { return data()[i]; }
   const T& operator[](std::size_t i) const { return data()[i]; }
 
-  /// Shrinks, which gives no memory back, or grows: what is new is as if made of zero bytes.
-  /// Pointers into the array are valid until it grows. Throws std::bad_alloc, and is as before
-  /// then.
+  /// Shrinks, without giving back memory, or grows; new elements consist of zero bytes. Pointers
+  /// into the array are valid until it grows. If it throws std::bad_alloc, the array is unchanged.
   void resize(std::size_t n) {
     const std::size_t before = size_;
     resize_for_overwrite(n);
-    if (n > before)  // what was there before it shrank
+    if (n > before)  // clear leftovers from before it shrank
       std::fill(reinterpret_cast<std::byte*>(data() + before),
                 reinterpret_cast<std::byte*>(data() + std::max(before, std::min(n, touched_))),
                 std::byte{0});
   }
 
-  /// The same, but that there may be n elements if it throws; pages for what is new are added to
-  /// `fresh`: for elements that are read before most are written. A page that is first read is
-  /// there twice, and every thread is interrupted where one then writes it.
+  /// The same, except that the array may have n elements if it throws; adds the pages of new
+  /// elements to `fresh`. Use it for elements that are read before most are written: a page that is
+  /// read first is mapped twice, and writing it later interrupts every thread.
   void resize(std::size_t n, FreshMemory& fresh) {
     resize(n);
     memory_.add_pages(n * sizeof(T), fresh);
   }
 
-  /// As resize(n), but what is new may hold anything.
+  /// As resize(n), but new elements are uninitialised.
   void resize_for_overwrite(std::size_t n) {
     if (n > std::numeric_limits<std::size_t>::max() / 2 / sizeof(T)) throw std::bad_alloc();
     if (n * sizeof(T) > memory_.bytes()) memory_.reserve((n + n / 4) * sizeof(T));
@@ -144,27 +142,28 @@ requires(std::is_trivially_copyable_v<T> &&
     size_ = n;
   }
 
-  /// The same; pages for what is new, all of which is about to be written, are added to `fresh`.
+  /// The same; adds the pages of the new elements, all of which are about to be written, to
+  /// `fresh`.
   void resize_for_overwrite(std::size_t n, FreshMemory& fresh) {
     resize_for_overwrite(n);
     memory_.add_pages(n * sizeof(T), fresh);
   }
 
-  /// Empties the array and leaves its memory to others to give back. Throws std::bad_alloc.
+  /// Empties the array and moves its memory to `spent`, to be freed later. Throws std::bad_alloc.
   void release(SpentMemory& spent) {
     const std::size_t used = std::max(size_, touched_) * sizeof(T);
     spent.parts_.push_back({std::move(memory_), used});
     size_ = touched_ = 0;
   }
 
-  /// Empties the array and gives its memory back by all threads of an executor.
+  /// Empties the array and frees its memory on all threads of an executor.
   void release(const Executor& executor) {
     SpentMemory spent;
     release(spent);
     spent.give_back(executor);
   }
 
-  /// Bytes there is room for; those never written take no memory, unless the array is small.
+  /// Capacity in bytes; parts never written take no memory, unless the array is small.
   std::size_t bytes() const { return memory_.bytes(); }
 
   friend bool operator==(const GrowingArray& a, const GrowingArray& b) {
@@ -174,7 +173,7 @@ requires(std::is_trivially_copyable_v<T> &&
  private:
   detail::GrowingMemory memory_;
   std::size_t size_ = 0;
-  std::size_t touched_ = 0;  // the largest size there was before the last change
+  std::size_t touched_ = 0;  // the largest size before the last change
 };
 
 }  // namespace ductile::runtime

@@ -1,7 +1,7 @@
 /// @file
-/// Integers for ids and places. Mixers are bijections that scatter neighbouring integers over the
-/// whole range: they turn an id into a priority that is the same in every run, without ties. A
-/// Hilbert key does the opposite: it keeps together what lies together.
+/// Integer mixers and a space-filling curve. Mixers are bijections that scatter neighbouring
+/// integers over the whole range: they turn an id into a priority without ties, the same in every
+/// run. A Hilbert key does the opposite: nearby cells get nearby keys.
 /// Thread safety: pure functions.
 #pragma once
 
@@ -21,7 +21,7 @@ constexpr std::uint32_t mix32(std::uint32_t x) {
   return x;
 }
 
-/// A bijection of the integers below 2^bits; higher bits of x do not count. bits is at most 32.
+/// A bijection of the integers below 2^bits; ignores higher bits of x. bits is at most 32.
 constexpr std::uint32_t mix_bits(std::uint32_t x, unsigned bits) {
   const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
   const unsigned half = (bits + 1) / 2;
@@ -44,8 +44,8 @@ constexpr std::uint64_t mix64(std::uint64_t x) {
   return x;
 }
 
-/// Where a cell of a grid, given by `bits` bits an axis, lies along a Hilbert curve: what is near
-/// along the curve is near in space (Skilling, AIP Conf. Proc. 707, 2004). Coordinates are
+/// Position along a Hilbert curve of a grid cell, given with `bits` bits per axis: cells close
+/// along the curve are close in space (Skilling, AIP Conf. Proc. 707, 2004). Coordinates are
 /// transposed in place, then interleaved.
 template <std::size_t Dim>
 constexpr std::uint64_t hilbert_key(std::array<std::uint32_t, Dim> x, int bits) {

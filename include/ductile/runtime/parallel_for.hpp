@@ -1,14 +1,14 @@
 /// @file
-/// parallel_for: a for-loop over [0, n) shared among an Executor's threads, and what is built on
-/// it: loops over fixed blocks, deterministic reductions, prefix sums, and per-thread storage.
+/// parallel_for: a for-loop over [0, n) shared among an Executor's threads, and what builds on it:
+/// loops over fixed blocks, deterministic reductions, prefix sums, and per-thread storage.
 /// The first exception thrown in a body reaches the caller after all threads have joined. A loop
 /// started inside another loop runs on the calling thread alone.
-/// A loop outside of a team (with_team) starts and joins OpenMP's threads, which by default spin
-/// while they wait: where others use the cores too, it may take as long as the system's time slice,
-/// milliseconds. Whoever runs loops after loops does so in with_team(), or with
-/// OMP_WAIT_POLICY=passive in the environment.
-/// After fork() the child of a process that has run a loop runs loops on one thread only: with
-/// GCC's OpenMP, others wait for ever for threads that the child does not have.
+/// A loop outside of a team (with_team) starts and joins OpenMP's threads, which spin by default
+/// while they wait: on a shared machine it may take as long as the system's time slice,
+/// milliseconds. Run repeated loops in with_team(), or with OMP_WAIT_POLICY=passive in the
+/// environment.
+/// After fork(), the child of a process that has run a loop runs loops on one thread only: with
+/// GCC's OpenMP, others would wait for ever for threads that the child does not have.
 #pragma once
 
 #include <algorithm>
@@ -26,43 +26,44 @@
 
 namespace ductile::runtime {
 
-/// How a loop is cut into what threads take at once.
+/// How a loop is divided among threads.
 struct LoopOptions {
   std::size_t grain = 0;  ///< iterations handed out at once; 0: chosen. Stealing by atomics hands
-                          ///< out more while many are left.
+                          ///< out more while many are left
   Schedule schedule = Schedule::automatic;  ///< automatic: the executor's
   std::size_t serial_below = 0;             ///< fewer iterations than this run on the caller alone
 };
 
 /// For bodies of a few nanoseconds, such as copying a number: some hundred of them take as long as
-/// it takes for the threads of a team (with_team) to begin.
+/// starting the threads of a team (with_team).
 constexpr LoopOptions few_nanoseconds{.grain = 128, .serial_below = 512};
 
 namespace detail {
 
-/// Which iterations of which loop the calling thread runs. In a loop inside another one loop and
-/// range are the outer loop's, whose order decides what comes first.
+/// The loop and iterations that the calling thread runs. In a nested loop, loop and range are those
+/// of the outer loop, whose order decides.
 struct LoopPlace {
   int thread = 0;                                    // see this_thread()
   int threads = 0;                                   // of the loop's executor; 0 outside of loops
-  std::uint64_t loop = 0;                            // how many its starter had started, with it
-  std::size_t begin = ~std::size_t{0}, end = begin;  // outside of loops: after the last one's
+  std::uint64_t loop = 0;                            // index of the loop among those its starter
+                                                     // has started
+  std::size_t begin = ~std::size_t{0}, end = begin;  // outside of loops: past the end
 };
 extern constinit thread_local LoopPlace loop_place;
 
 /// Throws std::invalid_argument if the calling thread is in a loop of an executor with another
-/// number of threads: what is there for each thread would not be there for this one.
+/// number of threads, because per-thread data would lack a slot for it.
 void expect_loop_of(const Executor& executor, const char* what);
 
 }  // namespace detail
 
-/// Index of the calling thread in the running loop, in [0, executor.threads()); 0 outside of one.
-/// In a loop inside another one it is that of the outer loop, also if the inner loop has another
-/// executor, or 0 if that has no such thread: several threads may then be 0 of that executor at
-/// once, and may not share what is PerThread by it.
+/// Index of the calling thread in the running loop, in [0, executor.threads()); 0 outside of loops.
+/// In a nested loop it is the index in the outer loop, even for another executor, or 0 if that has
+/// no such thread: several threads may then be 0 at once and must not share PerThread data of that
+/// executor.
 inline int this_thread() noexcept { return detail::loop_place.thread; }
 
-/// A loop body without its type: called with disjoint ranges that together cover [0, n).
+/// Type-erased loop body, called with disjoint ranges that together cover [0, n).
 using RangeBody = void (*)(void* context, std::size_t begin, std::size_t end);
 
 /// Runs `body(context, begin, end)` over [0, n). Thread safety: any thread.
@@ -82,11 +83,11 @@ void parallel_for_ranges(const Executor& executor, std::size_t n, Body&& body,
       const_cast<std::remove_const_t<Plain>*>(&body), options);
 }
 
-/// What a loop lends its bodies, see parallel_for(): objects with mine(), which is the calling
-/// thread's.
+/// Objects lent to loop bodies (see parallel_for()): mine() of each returns the calling thread's
+/// access.
 template <class... Lender>
 using Lent = std::tuple<Lender&...>;
-/// Hands to a loop body, beside its index, a way into each of these lists or updates; see
+/// Gives a loop body, besides its index, access to each of these lists or updates; see
 /// parallel_for().
 template <class... Lender>
 Lent<Lender...> with(Lender&... lender) {
@@ -94,11 +95,11 @@ Lent<Lender...> with(Lender&... lender) {
 }
 
 namespace detail {
-/// What a loop calls for each iteration: of a small body that is a temporary, a copy. Compilers
-/// keep what that refers to in registers, because nothing that an iteration writes can change it.
+/// The body that a loop calls: a copy if it is a small temporary. Compilers keep the references in
+/// a copy in registers, because no iteration can change them.
 template <class Body, class... Mine>
 decltype(auto) own_copy(std::remove_reference_t<Body>& body) {
-  // False of references, that is, of bodies that are not temporaries.
+  // False for references, that is, for bodies that are not temporaries.
   constexpr bool is_small = std::is_trivially_copyable_v<Body> &&
                             std::is_copy_constructible_v<Body> && sizeof(Body) <= 64;
   if constexpr (is_small && std::is_invocable_v<const Body&, std::size_t, Mine&...>) {
@@ -109,8 +110,8 @@ decltype(auto) own_copy(std::remove_reference_t<Body>& body) {
 }
 }  // namespace detail
 
-/// Calls body(i, mine...) once for every i in [0, n), where `mine` are what the lenders' mine()
-/// return. They are asked once for each range of iterations that a thread gets:
+/// Calls body(i, mine...) once for every i in [0, n), where `mine` are the results of the lenders'
+/// mine(), called once per range of iterations:
 /// parallel_for(executor, n, with(found), [&](std::size_t i, auto& mine) { mine.append(i); })
 template <class... Lender, class Body>
 void parallel_for(const Executor& executor, std::size_t n, Lent<Lender...> lent, Body&& body,
@@ -149,9 +150,9 @@ void parallel_for_blocks(const Executor& executor, std::size_t n, std::size_t bl
       options);
 }
 
-/// Combines map(i) for i in [0, n), in an order that does not depend on threads or timing:
-/// sums of doubles are the same bit for bit at any thread count. `combine` is associative in
-/// exact arithmetic and `identity` its neutral element.
+/// Combines map(i) for i in [0, n) in an order that does not depend on threads or timing: sums of
+/// doubles are bit-identical at any thread count. `combine` is associative in exact arithmetic and
+/// `identity` its neutral element.
 template <class T, class Map, class Combine>
 T parallel_reduce(const Executor& executor, std::size_t n, T identity, Map&& map,
                   Combine&& combine) {
@@ -174,8 +175,8 @@ T parallel_reduce(const Executor& executor, std::size_t n, T identity, Map&& map
 
 namespace detail {
 
-/// Replaces each value by the sum of `before` and the values before it; returns what would come
-/// next.
+/// Replaces each value by `before` plus the sum of the values before it; returns `before` plus the
+/// total.
 template <class T>
 T scan_from(T before, std::span<T> values) {
   for (T& value : values) before += std::exchange(value, before);
@@ -205,8 +206,8 @@ T exclusive_scan(const Executor& executor, std::span<T> values) {
   return offset[blocks];
 }
 
-/// One T per thread, each on its own cache lines. `mine()` is the calling thread's, found by loads
-/// alone: where a loop asks for it in each iteration, arithmetic would have to wait its turn.
+/// One T per thread, each on its own cache lines. `mine()` is the calling thread's; it uses loads
+/// only, because a loop may call it in each iteration, where arithmetic would add latency.
 template <class T>
 class PerThread {
  public:

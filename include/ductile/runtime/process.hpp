@@ -1,27 +1,26 @@
 /// @file
-/// What the runtime knows of its process: how much memory it holds and may hold, its own, whatever
-/// its parent held before; and what happens when a signal would end it.
+/// Facts about this process: how much memory it holds and may hold (not counting its parent's), and
+/// what happens when a signal would end it.
 #pragma once
 
 #include <cstddef>
 
 namespace ductile::runtime {
 
-/// Bytes that this process holds now; 0 where that is not told. Thread safety: any thread.
+/// Bytes that this process holds now; 0 if unknown. Thread safety: any thread.
 std::size_t held_memory();
-/// The most bytes that this process has held so far; 0 where that is not told. Thread safety: any
-/// thread.
+/// The most bytes that this process has held so far; 0 if unknown. Thread safety: any thread.
 std::size_t peak_memory();
 
-/// Bytes that this process may hold: the machine's memory, what it swaps out included, or less
-/// where cgroups or RLIMIT_DATA allow less; 0 where that is not told. Thread safety: any thread.
+/// Bytes that this process may hold: the machine's memory plus swap, or less if cgroups or
+/// RLIMIT_DATA allow less; 0 if unknown. Thread safety: any thread.
 std::size_t most_memory();
 
-// Of the signals that end a process (SIGINT, SIGTERM, SIGHUP and the like) those count whose action
-// is the default one. Signals that a program handles or ignores itself are left to it. As long as
-// there is one of these objects, the others have a handler of the runtime's.
+// These classes handle signals that end a process (SIGINT, SIGTERM, SIGHUP and the like) if their
+// action is the default. Signals that a program handles or ignores itself are left alone. The
+// runtime's handler is installed while any of these objects exists.
 
-/// While there is one, no such signal ends the process; those that came do when the last is gone.
+/// Delays such signals during its lifetime; they take effect when the last object is gone.
 /// Thread safety: any thread.
 class HeldSignals {
  public:
@@ -31,10 +30,10 @@ class HeldSignals {
   HeldSignals& operator=(const HeldSignals&) = delete;
 };
 
-/// A file that such a signal removes before it ends the process. Thread safety: any thread.
+/// A file that is removed if such a signal ends the process. Thread safety: any thread.
 class VanishingFile {
  public:
-  /// Which need not exist. Of more than 64 at a time, or without memory, some may stay.
+  /// The file need not exist. Beyond 64 files at a time, or without memory, some may stay.
   explicit VanishingFile(const char* name) noexcept;
   ~VanishingFile();
   VanishingFile(const VanishingFile&) = delete;

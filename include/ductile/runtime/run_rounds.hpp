@@ -1,7 +1,7 @@
 /// @file
-/// run_rounds: applies an operator to a set of items, and to those that it wakes, until none is
-/// left. An Operator reaches for what it reads and writes, and is run by one of several
-/// strategies (operator.hpp).
+/// run_rounds: applies an operator to a set of items, and to those it wakes, until none is left.
+/// The operator reaches for what it reads and writes; one of several strategies runs it
+/// (operator.hpp).
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@
 
 namespace ductile::runtime {
 
-/// Applies `op`, an Operator, to `work`, and to whatever it wakes, until nothing is left, or
-/// for most_rounds. The work is a vector of items, or whatever has size() and items by [i], see
-/// AllNumbers; where there are conflicts() it has each item once. With a deterministic executor the
-/// result does not depend on threads or timing, provided that the operator keeps its contract.
-/// Throws what the operator throws, and std::invalid_argument if the operator lacks what
-/// options.strategy needs; the operator's data are then not to be used. Thread safety: one caller;
-/// runs on the executor, in a team.
+/// Applies `op`, an Operator, to `work` and to whatever it wakes, until nothing is left, or for
+/// most_rounds. The work is a vector of items, or any type with size() and operator[], see
+/// AllNumbers; with conflicts(), each item occurs once. With a deterministic executor the result
+/// does not depend on threads or timing, provided that the operator keeps its contract. Throws what
+/// the operator throws, and std::invalid_argument if the operator lacks what options.strategy
+/// needs; do not use the operator's data then. Thread safety: one caller; runs on the executor, in
+/// a team.
 template <class Op, class Work = std::vector<typename Op::Item>>
 RoundsReport run_rounds(const Executor& executor, Op& op, Work work,
                         const RoundsOptions& options = {}) {
@@ -29,8 +29,7 @@ RoundsReport run_rounds(const Executor& executor, Op& op, Work work,
   return detail::run_by_options(executor, op, std::move(work), options);
 }
 
-/// The same by a strategy that the compiler knows, which compiles no other. options.strategy does
-/// not count.
+/// The same with a strategy known at compile time; no other is compiled. Ignores options.strategy.
 template <Strategy S, class Op, class Work = std::vector<typename Op::Item>>
 requires(S != Strategy::automatic) RoundsReport
     run_rounds_by(const Executor& executor, Op& op, Work work, const RoundsOptions& options = {}) {
@@ -41,9 +40,8 @@ requires(S != Strategy::automatic) RoundsReport
                    [&] { return detail::run_by<S>(executor, op, std::move(work), most_rounds); });
 }
 
-/// Runs an operator by Strategy::in_order and returns the items that were applied, in the
-/// order of the work, see run_rounds(). Fills in a report if there is one. Throws and
-/// thread safety as of run_rounds().
+/// Runs an operator by Strategy::in_order and returns the applied items, in the order of the work,
+/// see run_rounds(). Fills in a report if given. Throws and thread safety as run_rounds().
 template <Operator Op, class Work>
 std::vector<typename Op::Item> applied_in_order(const Executor& executor, Op& op, const Work& work,
                                                 RoundsReport* report = nullptr) {

@@ -1,10 +1,10 @@
 /// @file
-/// parallel_sort, parallel_unique: sort by operator<, and drop repetitions, on all threads of an
-/// executor. The result does not depend on threads or timing as long as items of which neither is
-/// less are identical.
-/// Integers of 32 and 64 bits without a sign are sorted by radix or, by many threads, by samples;
-/// other types by sorted blocks merged pairwise, each merge cut into pieces of equal length ("merge
-/// path"). What is large, or can only be moved, stays where it is until its order is known.
+/// parallel_sort, parallel_unique: sort by operator< and drop repetitions, on all threads of an
+/// executor. The result does not depend on threads or timing if equivalent items (neither is less)
+/// are identical.
+/// Unsigned integers of 32 and 64 bits are sorted by radix or, on many threads, by samples; other
+/// types by sorted blocks merged pairwise, each merge cut into pieces of equal length ("merge
+/// path"). Large or move-only items stay in place until their order is known.
 #pragma once
 
 #include <algorithm>
@@ -26,11 +26,11 @@ namespace ductile::runtime {
 
 namespace sort_detail {
 
-/// Integers that are sorted by their digits.
+/// Integers that are sorted by radix.
 template <class T>
 concept SortedByDigits = std::same_as<T, std::uint32_t> || std::same_as<T, std::uint64_t>;
 
-/// Stable: sorts by value >> low. Throws std::bad_alloc; no value is lost then.
+/// Stable; sorts by value >> low. If it throws std::bad_alloc, no value is lost.
 void sort_integers(const Executor& executor, std::span<std::uint32_t> values, unsigned low);
 void sort_integers(const Executor& executor, std::span<std::uint64_t> values, unsigned low);
 
@@ -44,7 +44,7 @@ void copy(const Executor& executor, std::span<const T> from, std::span<T> to) {
                       {.grain = 8192});
 }
 
-/// Of blocks that are sorted, merged or copied at once: enough of them for many threads.
+/// Length of the blocks that are sorted, merged or copied at once: enough blocks for many threads.
 inline std::size_t block_size_of(std::size_t n) {
   return std::clamp<std::size_t>(std::bit_ceil(n / 256), 2048, 32768);
 }
@@ -100,12 +100,12 @@ void merge_sort(const Executor& executor, std::span<T> values) {
   if (from.data() != values.data()) copy<T>(executor, from, values);
 }
 
-/// Whether no item is less than the one before it.
+/// Is no item less than the one before it?
 template <class T>
 bool is_sorted(const Executor& executor, std::span<const T> values) {
   std::atomic<bool> sorted = true;
   const auto look = [&](std::size_t, std::size_t begin, std::size_t end) {
-    // Relaxed: read again after the loop's barrier; before, it only saves looking on.
+    // Relaxed: it is read again after the loop's barrier; before, it only saves work.
     if (!sorted.load(std::memory_order_relaxed)) return;
     const std::span part = values.subspan(begin, std::min(end + 1, values.size()) - begin);
     if (!std::is_sorted(part.begin(), part.end())) sorted.store(false, std::memory_order_relaxed);
@@ -114,7 +114,7 @@ bool is_sorted(const Executor& executor, std::span<const T> values) {
   return sorted.load(std::memory_order_relaxed);
 }
 
-/// Stands for a value while its order is being found.
+/// Stands for a value while its order is computed.
 template <class T>
 struct Reference {
   T* value;
@@ -133,7 +133,7 @@ void sort_in_place(const Executor& executor, std::span<T> values) {
   std::sort(values.begin(), values.end());
 }
 
-/// Moves every value twice.
+/// Sorts references, then moves every value twice.
 template <class T>
 void sort_by_reference(const Executor& executor, std::span<T> values) {
   auto references = make_unset_vector<Reference<T>>(executor, values.size());
@@ -151,8 +151,8 @@ void sort_by_reference(const Executor& executor, std::span<T> values) {
 
 }  // namespace sort_detail
 
-/// Sorts by operator<, a strict weak order. T is movable. Throws std::bad_alloc; no value is
-/// lost then. Thread safety: one thread.
+/// Sorts by operator<, a strict weak order. T is movable. If it throws std::bad_alloc, no value is
+/// lost. Thread safety: one thread.
 template <std::movable T>
 void parallel_sort(const Executor& executor, std::span<T> values) {
   if (sort_detail::is_sorted<T>(executor, values)) return;
@@ -166,8 +166,8 @@ void parallel_sort(const Executor& executor, std::span<T> values) {
   }
 }
 
-/// Sorts integers by value >> low; where that is the same they stay in order. Throws
-/// std::bad_alloc; no value is lost then. Thread safety: one thread.
+/// Sorts integers by value >> low, stably. If it throws std::bad_alloc, no value is lost. Thread
+/// safety: one thread.
 template <sort_detail::SortedByDigits T>
 void parallel_sort_above(const Executor& executor, std::span<T> values, unsigned low) {
   if (!sort_detail::is_sorted<T>(executor, values))
@@ -175,14 +175,14 @@ void parallel_sort_above(const Executor& executor, std::span<T> values, unsigned
 }
 
 /// Moves the first of each run of equal items (neither is less) of a sorted range to the front, in
-/// order, and returns how many there are. T is movable; what is behind them may have been moved
-/// from. Throws std::bad_alloc. Thread safety: one thread.
+/// order, and returns their number. T is movable; items behind them may be moved from. Throws
+/// std::bad_alloc. Thread safety: one thread.
 template <std::movable T>
 std::size_t parallel_unique(const Executor& executor, std::span<T> sorted) {
   const std::size_t block_size = 8192;
   const auto same = [](const T& a, const T& b) { return !(a < b) && !(b < a); };
   std::vector<std::span<T>> kept((sorted.size() + block_size - 1) / block_size);
-  // Whether a block begins with what the one before it ends with, asked before anything is moved.
+  // Does a block begin with the last item of the previous one? Checked before anything is moved.
   std::vector<std::uint8_t> repeats(kept.size());
   for (std::size_t b = 1; b < kept.size(); ++b)
     repeats[b] = same(sorted[b * block_size - 1], sorted[b * block_size]);

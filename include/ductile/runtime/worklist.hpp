@@ -1,8 +1,7 @@
 /// @file
-/// Worklist: a bag of items that the threads of loops fill and one thread reads back afterwards, in
-/// the order in which one thread alone would have found them, or sorted and each once. collect()
-/// sorts the stretches of items that threads have appended, each in an array of its own, and copies
-/// each to its place.
+/// Worklist: a bag of items that threads fill in loops and one thread reads afterwards, in the
+/// order of a serial loop, or sorted and without repetition. Each thread appends to its own array;
+/// collect() sorts the stretches of items by their iterations and copies each to its place.
 #pragma once
 
 #include <algorithm>
@@ -29,11 +28,11 @@ class Worklist {
  public:
   explicit Worklist(const Executor& executor) : executor_(executor), lanes_(executor) {}
 
-  /// The calling thread's way in. parallel_for() asks for it by with(); otherwise ask once for a
-  /// range of iterations, or for an item, which takes longer. Throws std::bad_alloc,
+  /// The calling thread's access. parallel_for() gets it by with(); otherwise call this once per
+  /// range of iterations, or once per item, which is slower. Throws std::bad_alloc,
   /// std::invalid_argument in a loop of an executor with another number of threads, and
-  /// std::logic_error while the thread has one already.
-  /// Thread safety: any thread of a loop of the executor, or the caller outside of loops.
+  /// std::logic_error if the thread already has one. Thread safety: any thread of a loop of the
+  /// executor, or the caller outside of loops.
   Appender<T> mine() {
     detail::expect_loop_of(executor_, "a worklist");
     detail::WorkLane<T>& lane = lanes_.mine();
@@ -42,13 +41,12 @@ class Worklist {
     return Appender<T>(lane);
   }
 
-  /// Puts what was appended behind what was collected, in the order of iterations, those of one
-  /// loop before those of the next that the same thread starts. In a loop inside another one that
-  /// is the order of the outer loop. Throws std::bad_alloc and changes nothing then.
-  /// Thread safety: one thread, after the loop.
+  /// Moves appended items behind the collected ones, in the order of iterations, and of loops
+  /// started by the same thread. In a nested loop the outer loop's order counts. If it throws
+  /// std::bad_alloc, nothing changes. Thread safety: one thread, after the loop.
   void collect();
 
-  /// collect(), and sorts all of it by operator< and keeps each item once.
+  /// collect(), then sorts all items by operator< and keeps each once.
   void collect_unique() requires requires(const T& a) {
     { a < a } -> std::convertible_to<bool>;
   };
@@ -61,14 +59,14 @@ class Worklist {
   /// Moves the collected items out and leaves the list empty. Thread safety: one thread.
   UnsetVector<T> take() { return std::exchange(collected_, {}); }
 
-  /// Forgets all items and keeps the memory. Thread safety: one thread.
+  /// Removes all items and keeps the memory. Thread safety: one thread.
   void clear() {
     clear_lanes();
     collected_.clear();
   }
 
  private:
-  /// A stretch's items, and where they go.
+  /// The items of one stretch and their destination.
   struct Run {
     detail::Stretch stretch;
     T* from;
@@ -113,7 +111,7 @@ auto Worklist<T>::runs_in_order() -> std::vector<Run> {
   return runs;
 }
 
-/// All threads copy an equal part each, wherever runs begin and end.
+/// Each thread copies an equal part, regardless of where runs begin and end.
 template <WorkItem T>
 void Worklist<T>::copy(const std::vector<Run>& runs, T* to) {
   const auto copy_range = [&](std::size_t begin, std::size_t end) {
@@ -162,9 +160,9 @@ void Worklist<T>::collect_unique() requires requires(const T& a) {
   collected_.erase(collected_.begin() + static_cast<std::ptrdiff_t>(kept), collected_.end());
 }
 
-/// What a loop finds: calls find(i, append) for i in [0, n); append(item) adds an item to the
-/// result, in which items of a lower i come first. Fewer than `serial_below` indices are looked at
-/// by the caller alone. Thread safety: one caller; runs on the executor.
+/// Collects in a loop: calls find(i, append) for i in [0, n); append(item) adds an item to the
+/// result, where items of a lower i come first. Below `serial_below` indices, the caller works
+/// alone. Thread safety: one caller; runs on the executor.
 template <WorkItem Item, class Find>
 UnsetVector<Item> parallel_collect(const Executor& executor, std::size_t n, Find&& find,
                                    std::size_t serial_below = 0) {

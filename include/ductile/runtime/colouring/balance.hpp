@@ -1,8 +1,8 @@
 /// @file
 /// balance: evens out the classes of a colouring. Classes that run one after the other keep all
 /// threads busy only if none is tiny, and first-fit gives the first colours to most vertices.
-/// Each class that is too large offers its vertices to classes that are too small. Its vertices are
-/// not neighbours, so they all choose at once; prefix sums over fixed blocks decide which may go.
+/// Each oversized class offers its vertices to undersized ones. Vertices of a class are not
+/// neighbours, so all choose at once; prefix sums over fixed blocks decide which ones move.
 #pragma once
 
 #include <algorithm>
@@ -19,15 +19,14 @@
 
 namespace ductile::runtime {
 
-/// How long balance() goes on.
+/// Options of balance().
 struct BalanceOptions {
-  int most_passes = 8;  ///< over all classes; it stops earlier where a pass changes nothing
+  int most_passes = 8;  ///< over all classes; stops earlier if a pass changes nothing
 };
 
 namespace detail {
 
-/// What the classes of a colouring lack or have too much of, and which vertices move from one to
-/// another.
+/// Surplus and room of each class of a colouring; decides which vertices move.
 class ClassSizes {
  public:
   explicit ClassSizes(const ColourClasses& classes);
@@ -35,19 +34,20 @@ class ClassSizes {
   std::size_t surplus(std::uint32_t colour) const;
   std::size_t room(std::uint32_t colour) const;
   std::size_t room() const { return room_before_.back(); }
-  /// A colour with room, chosen in proportion to it; `number` is any.
+  /// A colour with room, chosen with probability proportional to it; `number` is any hash.
   std::uint32_t colour_with_room(std::uint32_t number) const;
-  /// Lets vertices of one class go where they want to, Colouring::none is nowhere, as long as
-  /// there is room and surplus, and returns how many went.
+  /// Moves vertices of one class to the colours they want (Colouring::none: nowhere) while there is
+  /// room and surplus; returns how many moved.
   std::size_t move(const Executor& executor, std::span<const std::uint32_t> vertices,
                    std::span<const std::uint32_t> wanted, std::vector<std::uint32_t>& colour_of);
 
  private:
   void find_room();
 
-  std::size_t fair_;                      // the size of an even class, rounded up
+  std::size_t fair_;                      // the size of a class if all were equal, rounded up
   std::vector<std::size_t> size_of_;      // [colour]
-  std::vector<std::size_t> room_before_;  // [colour], room of all before it; and of all
+  std::vector<std::size_t> room_before_;  // [colour], total room of all colours before it; last, of
+                                          // all
 };
 
 /// The colours of v's neighbours, as bits.
@@ -61,7 +61,7 @@ void find_taken(const G& graph, std::uint32_t v, const std::vector<std::uint32_t
   });
 }
 
-/// A colour with room that v may have, or Colouring::none.
+/// A colour with room that v may take, or Colouring::none.
 inline std::uint32_t choose(const ClassSizes& sizes, std::uint32_t v, std::uint32_t colours,
                             const std::vector<std::uint64_t>& taken) {
   const std::uint32_t first = sizes.colour_with_room(mix32(v));
@@ -72,7 +72,7 @@ inline std::uint32_t choose(const ClassSizes& sizes, std::uint32_t v, std::uint3
   return Colouring::none;
 }
 
-/// balance(), in whatever team there is.
+/// balance(), run in the current team.
 template <Graph G>
 void balance_in_team(const Executor& executor, const G& graph, Colouring& colouring,
                      const BalanceOptions& options) {
@@ -101,8 +101,9 @@ void balance_in_team(const Executor& executor, const G& graph, Colouring& colour
 }  // namespace detail
 
 /// Moves vertices between classes of a proper colouring until all have about the same size, as far
-/// as neighbours allow. It stays proper and gets no new colour; no class grows beyond the even size
-/// or shrinks below it. Deterministic. Throws std::bad_alloc and what the graph throws.
+/// as neighbours allow. The colouring stays proper and gets no new colour; no class grows beyond
+/// the even size or shrinks below it. Deterministic. Throws std::bad_alloc and what the graph
+/// throws.
 /// Thread safety: any thread.
 template <Graph G>
 void balance(const Executor& executor, const G& graph, Colouring& colouring,

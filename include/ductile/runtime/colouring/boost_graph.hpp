@@ -1,7 +1,6 @@
 /// @file
-/// BoostGraph: a Boost.Graph graph as the runtime's. It needs a VertexListGraph that is also an
-/// AdjacencyGraph or an IncidenceGraph, with a vertex_index property. Only users of this header
-/// need Boost.
+/// BoostGraph: adapts a Boost.Graph graph. It must be a VertexListGraph and an AdjacencyGraph or
+/// IncidenceGraph, with a vertex_index property. Only users of this header need Boost.
 #pragma once
 
 #include <cstddef>

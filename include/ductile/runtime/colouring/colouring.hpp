@@ -1,17 +1,16 @@
 /// @file
 /// Colouring: gives the vertices of a graph colours so that neighbours differ. Vertices of one
-/// colour are independent, so whatever concerns a vertex and its neighbours may be done for all of
-/// them at once. All methods are first-fit: a vertex takes the least colour no neighbour has.
+/// colour are independent, so operations on a vertex and its neighbours may run for all of them at
+/// once. All methods are first-fit: a vertex takes the lowest colour that no neighbour has.
 #pragma once
 
-// The methods in detail/ share first_fit and, except for by_priority, take vertices in the order of
-// their numbers:
+// The methods in detail/ share first_fit. All except by_priority take vertices in numerical order:
 //
 //   Serial (in_order)        one thread, few vertices, and orders that are chains
-//   together                 else: the same colours, in windows_in_order or in parts_in_order
-//   priority_colouring       scattered vertices that are coloured anew, and to compare with
-//   speculative_colouring    on request, and for the parts' borders: published schemes, which
-//                            depend on timing; threads share vertices out by fronts
+//   together                 otherwise: the same colours, in windows_in_order or parts_in_order
+//   priority_colouring       recolouring scattered vertices, and comparison
+//   speculative_colouring    on request, and for borders of parts: published schemes, whose result
+//                            depends on timing; threads share the vertices by fronts
 
 #include <algorithm>
 #include <cstddef>
@@ -45,9 +44,9 @@ enum class ColouringMethod {
                   ///< (Catalyurek et al., Parallel Computing 38, 2012)
 };
 
-/// A colour for each vertex: neighbours have different ones.
+/// One colour per vertex, different for neighbours.
 struct Colouring {
-  static constexpr std::uint32_t none = ~std::uint32_t{0};  ///< instead of a colour
+  static constexpr std::uint32_t none = ~std::uint32_t{0};  ///< means no colour
 
   std::vector<std::uint32_t> colour_of;  ///< [vertex]
   std::uint32_t count = 0;               ///< colours are less than this
@@ -56,9 +55,9 @@ struct Colouring {
 namespace detail {
 
 constexpr std::size_t few_vertices = 256;     // coloured on the caller, in order
-constexpr std::size_t many_vertices = 32768;  // worth a team where it has little to do for each
+constexpr std::size_t many_vertices = 32768;  // below this, short rows are not worth a team
 
-/// What a method comes down to for so many vertices on these threads.
+/// The method actually used for so many vertices on these threads.
 ColouringMethod choose(const Executor& executor, ColouringMethod method, std::size_t vertex_count);
 
 /// The same for a graph.
@@ -70,7 +69,7 @@ ColouringMethod choose(const Executor& executor, ColouringMethod method, const G
   return is_shared ? method : ColouringMethod::serial;
 }
 
-/// Calls use(Method()), with the class that choose() stands for, and returns what it returns.
+/// Calls use(Method()) with the class of the chosen method; returns its result.
 template <class Use>
 bool with_class_of(ColouringMethod chosen, Use&& use) {
   switch (chosen) {
@@ -89,8 +88,8 @@ bool with_class_of(ColouringMethod chosen, Use&& use) {
   }
 }
 
-/// Colours vertices by a method, in words of one byte, which say `none`. Returns false if there are
-/// too many colours for them.
+/// Colours vertices using words of one byte, which must hold `none`. Returns false if they cannot
+/// hold all colours.
 template <class Method, class Width, Graph G>
 bool colour_in(const Executor& executor, const G& graph, std::vector<std::uint8_t>& bytes,
                VertexSet vertices) {
@@ -102,8 +101,8 @@ bool colour_in(const Executor& executor, const G& graph, std::vector<std::uint8_
   }
 }
 
-/// The same, with the kind of words that is read fastest and holds the colours. Hubs, which take
-/// many, often come first, so that it shows soon what does not.
+/// The same, in the fastest kind of word that holds the colours. Hubs, which need many colours,
+/// often come first, so that overflow shows early.
 template <class Method, Graph G>
 bool colour_in_bytes(const Executor& executor, const G& graph, std::vector<std::uint8_t>& bytes,
                      VertexSet vertices) {
@@ -121,7 +120,8 @@ bool colour_in_bytes(const Executor& executor, const G& graph, std::vector<std::
   }
 }
 
-/// The same for all vertices by a method that is bound by memory: AnyGraph costs it little.
+/// The same for all vertices with a memory-bound method, for which the overhead of AnyGraph is
+/// small.
 template <CompiledGraph G>
 bool colour_slowly_in_bytes(const Executor& executor, const G& graph, ColouringMethod chosen,
                             std::vector<std::uint8_t>& bytes);
@@ -131,17 +131,17 @@ template <CompiledGraph G>
 std::uint32_t colour_in_words(const Executor& executor, const G& graph, ColouringMethod chosen,
                               std::vector<std::uint32_t>& colour_of);
 
-/// Copies colours of one byte to words of four. Returns one more than the greatest.
+/// Copies one-byte colours to four-byte words. Returns one more than the greatest.
 std::uint32_t widen(const Executor& executor, std::span<const std::uint8_t> bytes,
                     std::span<std::uint32_t> colour_of);
 
-/// One more than the greatest of colours, which all vertices have.
+/// One more than the greatest colour; every vertex has one.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint8_t> bytes);
 
 /// One more than the greatest colour.
 std::uint32_t colour_count(const Executor& executor, std::span<const std::uint32_t> colour_of);
 
-/// colour() by a method that choose() has chosen.
+/// colour() by the method that choose() returned.
 template <Graph G>
 Colouring colour_by(const Executor& executor, const G& graph, ColouringMethod method) {
   const std::size_t n = graph.vertex_count();
@@ -159,7 +159,7 @@ Colouring colour_by(const Executor& executor, const G& graph, ColouringMethod me
   return colouring;
 }
 
-/// recolour(), in whatever team there is.
+/// recolour(), run in the current team.
 template <Graph G>
 void recolour_in_team(const Executor& executor, const G& graph,
                       std::span<const std::uint32_t> vertices, Colouring& colouring) {
@@ -170,7 +170,7 @@ void recolour_in_team(const Executor& executor, const G& graph,
       loop);
   const VertexSet set{vertices.size(), vertices.data()};
   const Colours<FourBytes<>> colours(colour_of);
-  // Scattered vertices hardly wait for each other.
+  // Scattered vertices rarely wait for each other.
   const bool are_scattered = vertices.size() < colour_of.size() / 16;
   if (vertices.size() >= few_vertices && are_scattered) {
     colour_by_priority<AwaitedByPlace>(executor, graph, vertices, colours, outranks);
@@ -197,10 +197,10 @@ Colouring colour(const Executor& executor, const G& graph,
   return with_team(executor, colour_all);
 }
 
-/// Colours `vertices` (ascending, each once) anew and leaves the others as they are: those with a
-/// colour are avoided, those with Colouring::none ignored. Serves recolouring after a change, and
-/// colouring of a part. colour_of has the graph's vertex count. The result is deterministic.
-/// Throws std::bad_alloc and what the graph throws. Thread safety: any thread.
+/// Recolours `vertices` (ascending, each once) and keeps the others: their colours are avoided,
+/// Colouring::none is ignored. Use it after a change, or to colour a part. colour_of has the
+/// graph's vertex count. Deterministic. Throws std::bad_alloc and what the graph throws. Thread
+/// safety: any thread.
 template <Graph G>
 void recolour(const Executor& executor, const G& graph, std::span<const std::uint32_t> vertices,
               Colouring& colouring) {
@@ -211,7 +211,7 @@ void recolour(const Executor& executor, const G& graph, std::span<const std::uin
 /// Vertices grouped by colour.
 struct ColourClasses {
   std::vector<std::uint32_t> vertices;  ///< by (colour, vertex)
-  std::vector<std::size_t> begin;       ///< [colour], and the end
+  std::vector<std::size_t> begin;       ///< [colour], and one past the last
 
   std::size_t count() const { return begin.size() - 1; }
   std::span<const std::uint32_t> members(std::size_t colour) const {
@@ -223,7 +223,7 @@ struct ColourClasses {
 /// Throws std::bad_alloc. Thread safety: any thread.
 ColourClasses colour_classes(const Executor& executor, const Colouring& colouring);
 
-/// Every vertex has a colour below count, and no two neighbours have the same.
+/// Does every vertex have a colour below count, different from its neighbours'?
 template <Graph G>
 bool is_proper(const Executor& executor, const G& graph, const Colouring& colouring) {
   if (colouring.colour_of.size() != graph.vertex_count()) return false;
@@ -238,7 +238,7 @@ bool is_proper(const Executor& executor, const G& graph, const Colouring& colour
   return parallel_reduce(executor, graph.vertex_count(), 0, bad, std::plus<>()) == 0;
 }
 
-// Of the common graphs: compiled once.
+// Common graphs are instantiated once, in the library.
 extern template Colouring colour(const Executor&, const CsrGraph<std::uint32_t>&, ColouringMethod);
 extern template Colouring colour(const Executor&, const CsrGraph<std::uint64_t>&, ColouringMethod);
 extern template Colouring colour(const Executor&, const AnyGraph&, ColouringMethod);

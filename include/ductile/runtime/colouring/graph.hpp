@@ -1,10 +1,9 @@
 /// @file
-/// Graphs as colourings see them: anything that can name its vertex count and visit the neighbours
-/// of a vertex. Here are the concept, rows in memory, views of callbacks, of squares and of graphs
-/// whose type is forgotten; boost_graph.hpp adapts Boost.Graph.
-/// Edges are symmetric: where u is a neighbour of v, v is one of u. Repeated neighbours and
-/// loops are allowed. Views do not own what they show; visiting is thread-safe, because it only
-/// reads.
+/// Graphs for colouring: any type that gives its vertex count and visits the neighbours of a
+/// vertex. Here are the concept, compressed rows, and views of callbacks, of squares and of type-
+/// erased graphs; boost_graph.hpp adapts Boost.Graph.
+/// Edges are symmetric: if u is a neighbour of v, v is one of u. Repeated neighbours and loops are
+/// allowed. Views do not own their data; visiting only reads, so it is thread-safe.
 #pragma once
 
 #include <array>
@@ -27,11 +26,11 @@ concept Graph = requires(const G& graph, std::uint32_t v) {
   graph.for_each_neighbour(v, [](std::uint32_t) {});
 };
 
-/// A graph that can fetch a vertex's neighbours into the cache ahead of their use: prefetch(v). It
-/// costs no more than a few instructions and changes nothing. Worth having where the rows of many
-/// vertices are read one after the other; the processor alone does not see that coming where
-/// everything else hits the cache. It is asked for the vertex 32 places ahead, or so many as the
-/// graph says by a constant prefetch_distance. Thread safety: as visiting.
+/// A graph that can fetch a vertex's neighbours into the cache ahead of use: prefetch(v). It takes
+/// a few instructions and changes nothing. It helps where the rows of many vertices are read in
+/// sequence and everything else hits the cache, which the hardware does not anticipate. It is
+/// called for the vertex 32 places ahead, or the graph's constant prefetch_distance. Thread safety:
+/// as visiting.
 template <class G>
 concept PrefetchingGraph = Graph<G> && requires(const G& graph, std::uint32_t v) {
   graph.prefetch(v);
@@ -44,9 +43,9 @@ concept RowGraph = Graph<G> && requires(const G& graph, std::uint32_t v) {
   { graph.row(v) } -> std::convertible_to<std::span<const std::uint32_t>>;
 };
 
-/// Rows that follow each other without a gap: row(v) is from row_begin(v) to row_begin(v + 1). If
-/// the graph can, prefetch_row_begins(begin, end) asks for what row_begin() reads of vertices
-/// [begin, end). Thread safety: as visiting.
+/// Rows stored without gaps: row(v) runs from row_begin(v) to row_begin(v + 1). Optionally,
+/// prefetch_row_begins(begin, end) fetches what row_begin() reads for vertices [begin, end). Thread
+/// safety: as visiting.
 template <class G>
 concept PackedRowGraph = RowGraph<G> && requires(const G& graph, std::uint32_t v) {
   { graph.row_begin(v) } -> std::same_as<const std::uint32_t*>;
@@ -67,9 +66,9 @@ struct CsrGraph {
   std::span<const std::uint32_t> row(std::uint32_t v) const {
     return {row_begin(v), neighbour.data() + offset[std::size_t{v} + 1]};
   }
-  /// Of the vertex count, where the last one ends.
+  /// For v = vertex_count(), the end of the last row.
   const std::uint32_t* row_begin(std::size_t v) const { return neighbour.data() + offset[v]; }
-  // Inlined always: GCC leaves out calls of functions that do nothing but prefetch.
+  // Always inlined: GCC drops calls of functions that do nothing except prefetch.
   [[gnu::always_inline]] void prefetch(std::uint32_t v) const {
     __builtin_prefetch(neighbour.data() + offset[v]);
   }
@@ -87,9 +86,9 @@ struct CsrRows {
   CsrGraph<> view() const { return {offset, neighbour}; }
 };
 
-/// Both directions of every edge, of which there are less than 2^31; a vertex's neighbours are in
-/// the order of the edges. Loops and repeated edges stay. Throws std::out_of_range for a vertex
-/// that is not there, std::bad_alloc. Thread safety: any thread; runs on the caller.
+/// Rows with both directions of every edge (fewer than 2^31); neighbours keep the order of the
+/// edges. Loops and repeated edges stay. Throws std::out_of_range for an invalid vertex,
+/// std::bad_alloc. Thread safety: any thread; runs on the caller.
 inline CsrRows csr_rows(std::uint32_t vertex_count,
                         std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
   CsrRows rows{std::vector<std::uint32_t>(std::size_t{vertex_count} + 1), {}};
@@ -107,7 +106,7 @@ inline CsrRows csr_rows(std::uint32_t vertex_count,
   return rows;
 }
 
-/// A graph known through a function neighbours_of(v, visit).
+/// A graph given by a function neighbours_of(v, visit).
 template <class Neighbours>
 class CallbackGraph {
  public:
@@ -125,7 +124,7 @@ class CallbackGraph {
   Neighbours neighbours_of_;
 };
 
-/// The square of a graph: vertices two edges apart are neighbours too, so that its colourings are
+/// The square of a graph: vertices two edges apart are neighbours too, so its colourings are
 /// distance-2 colourings of the graph.
 template <Graph G>
 class SquareGraph {
@@ -147,10 +146,9 @@ class SquareGraph {
   const G* graph_;
 };
 
-/// A view of a graph whose type is forgotten, so that what works on it is compiled once, in the
-/// library, and not in every program. It hands on neighbours some at a time, which costs two calls
-/// for a row of a few dozen, and a nanosecond or so for an edge. Keeps a reference to the graph it
-/// shows, which must outlive it. Thread safety: as the graph.
+/// A type-erased view of a graph, so that code for it is compiled once, in the library, and not in
+/// every program. It passes neighbours in groups, which costs two calls for a row of a few dozen,
+/// about a nanosecond per edge. The graph must outlive it. Thread safety: as the graph.
 class AnyGraph {
  public:
   template <Graph G>

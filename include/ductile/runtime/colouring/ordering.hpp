@@ -1,6 +1,6 @@
 /// @file
-/// Orderings: in which order first-fit takes the vertices of a graph. A good order saves colours;
-/// smallest last never needs more than the degeneracy of the graph plus one.
+/// Orderings: the order in which first-fit takes the vertices of a graph. A good order saves
+/// colours; smallest last needs at most the degeneracy of the graph plus one.
 #pragma once
 
 #include <algorithm>
@@ -28,23 +28,23 @@ enum class VertexOrder {
 
 namespace detail {
 
-/// Vertices by key, each key's in ascending order; keys are less than `keys`.
+/// Vertices sorted by key, ascending within a key; keys are less than `keys`.
 std::vector<std::uint32_t> counting_sort(std::span<const std::uint32_t> key_of, std::size_t keys);
 
-/// The vertices not yet removed, in buckets by degree; a vertex moves between neighbouring buckets
-/// by one exchange, because the buckets lie one after the other.
+/// The remaining vertices, in buckets by degree; the buckets are adjacent, so one exchange moves a
+/// vertex to the next bucket.
 class DegreeBuckets {
  public:
   explicit DegreeBuckets(std::vector<std::uint32_t> degree_of);
 
   std::size_t size() const { return vertices_.size(); }
-  /// The i-th vertex to be removed: one of the least degree among those not removed.
+  /// Removes a remaining vertex of least degree, the i-th to be removed, and returns it.
   std::uint32_t remove(std::size_t i);
-  /// A neighbour of u is removed.
+  /// Lowers the degree of u, because a neighbour was removed.
   void lower(std::uint32_t u);
 
  private:
-  std::vector<std::uint32_t> degree_of_;  // [vertex], among those not removed
+  std::vector<std::uint32_t> degree_of_;  // [vertex], among the remaining ones
   std::vector<std::uint32_t> vertices_;   // ascending degree; the removed ones first
   std::vector<std::uint32_t> place_of_;   // [vertex], in vertices_
   std::vector<std::uint32_t> begin_of_;   // [degree], where its bucket begins
@@ -84,7 +84,7 @@ struct InOrder {
   }
 };
 
-/// colour_in_order(), in whatever team there is, for an order that names every vertex once.
+/// colour_in_order(), run in the current team, for an order known to be a permutation.
 template <Graph G>
 Colouring first_fit_in(const Executor& executor, const G& graph,
                        std::span<const std::uint32_t> order) {
@@ -103,9 +103,9 @@ Colouring first_fit_in(const Executor& executor, const G& graph,
 
 }  // namespace detail
 
-/// All vertices in this order; ties in ascending order, those of smallest_last in an order that is
-/// the same in every run. Repeated edges count as often as they occur, loops do not. smallest_last
-/// is serial. Throws std::bad_alloc and what the graph throws.
+/// All vertices in this order. Ties are in ascending order; for smallest_last, in an order that is
+/// the same in every run. Repeated edges count repeatedly, loops do not. smallest_last is serial.
+/// Throws std::bad_alloc and what the graph throws.
 /// Thread safety: any thread.
 template <Graph G>
 std::vector<std::uint32_t> vertex_order(const Executor& executor, const G& graph,
@@ -129,10 +129,11 @@ std::vector<std::uint32_t> vertex_order(const Executor& executor, const G& graph
   return all;
 }
 
-/// First-fit in the given order, which names every vertex once; the colours are those of the serial
-/// algorithm at any thread count. On more than one thread by Jones and Plassmann's scheme, which is
-/// slow where the order runs along the graph, like the natural order of a mesh does.
-/// Throws std::invalid_argument if the order is another, std::bad_alloc and what the graph throws.
+/// First-fit in the given order, a permutation of the vertices; the colours are those of the serial
+/// algorithm at any thread count. Several threads use Jones and Plassmann's scheme, which is slow
+/// where the order follows the graph, like the natural order of a mesh. Throws
+/// std::invalid_argument if the order is not a permutation, std::bad_alloc and what the graph
+/// throws.
 /// Thread safety: any thread.
 template <Graph G>
 Colouring colour_in_order(const Executor& executor, const G& graph,

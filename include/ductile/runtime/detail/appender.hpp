@@ -1,7 +1,6 @@
 /// @file
-/// Appender: one thread's way into a Worklist, in as few steps as can be, because loops take them
-/// for every item. A thread appends to an array of its own and notes from which item on it went
-/// through which range of iterations.
+/// Appender: one thread's access to a Worklist, with minimal cost per item. A thread appends to its
+/// own array and notes which items came from which range of iterations.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +17,7 @@
 
 namespace ductile::runtime {
 
-/// Moved where nothing may fail. Items need not be copyable.
+/// Items are moved where exceptions are not allowed. They need not be copyable.
 template <class T>
 concept WorkItem = std::movable<T> && std::is_nothrow_move_constructible_v<T>;
 
@@ -31,8 +30,8 @@ struct Stretch {
   std::size_t first;       // item
 };
 
-/// One thread's items, the first `used` of the array. The rest of it is unset: an array of what is
-/// not trivially copyable has no rest.
+/// One thread's items, the first `used` of the array. The rest is uninitialised; arrays of types
+/// that are not trivially copyable have no rest.
 template <class T>
 struct WorkLane {
   static constexpr bool has_rest = std::is_trivially_copyable_v<T>;
@@ -42,14 +41,14 @@ struct WorkLane {
   std::vector<Stretch> stretches;
   bool lent = false;
 
-  /// What is appended from now on comes from where the calling thread is. Throws std::bad_alloc.
+  /// Notes the calling thread's position, where the next items come from. Throws std::bad_alloc.
   void note_place() {
     const LoopPlace& place = loop_place;
     if (!stretches.empty()) {
       Stretch& last = stretches.back();
       const bool same_loop = last.loop == place.loop;
       if (same_loop && last.begin <= place.begin && place.end <= last.end) return;
-      if (same_loop && last.end == place.begin) {  // where the last range ended
+      if (same_loop && last.end == place.begin) {  // continues the last range
         last.end = place.end;
         return;
       }
@@ -73,7 +72,7 @@ struct WorkLane {
 
 }  // namespace detail
 
-/// One thread's way into a Worklist, from Worklist::mine(). Thread safety: that thread, while it
+/// One thread's access to a Worklist, from Worklist::mine(). Thread safety: that thread, while it
 /// runs the range of iterations for which it asked.
 template <WorkItem T>
 class Appender {
@@ -90,7 +89,7 @@ class Appender {
   Appender(const Appender&) = delete;
   Appender& operator=(const Appender&) = delete;
 
-  /// Throws std::bad_alloc, or what copying the item throws; it is not appended then.
+  /// If it throws std::bad_alloc, or what copying the item throws, the item is not appended.
   template <class U = T>
   requires std::constructible_from<T, U>
   void append(U&& item) {
@@ -118,7 +117,7 @@ class Appender {
   }
 
   detail::WorkLane<T>& lane_;
-  T* next_;  // here, not in the lane, so that a loop has them in registers
+  T* next_;  // here, not in the lane, so that loops keep them in registers
   T* end_;
 };
 

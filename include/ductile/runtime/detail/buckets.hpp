@@ -1,10 +1,10 @@
 /// @file
-/// Buckets: many append-only lists that one thread fills, each in chunks that double in length, so
-/// that elements never move and memory is kept from one filling to the next. All chunks lie in a
-/// few blocks, which take little time to give back.
-/// An append looks up two pointers only: where the list's next element goes, and where its chunk
-/// ends. Those of all lists lie side by side, apart from what else there is to know of a list.
-/// Thread safety: one thread at a time; where it says so, one thread at a time for each list.
+/// Buckets: many append-only lists filled by one thread, each in chunks that double in length, so
+/// that elements never move and memory is reused. All chunks lie in a few blocks, which are quick
+/// to free.
+/// An append reads only two pointers: the list's next element and the end of its chunk. These are
+/// stored for all lists together, apart from other data.
+/// Thread safety: one thread at a time; where noted, one thread at a time for each list.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,9 @@
 
 namespace ductile::runtime::detail {
 
-/// Which bits of a number to take, known when a program runs: of an owner its bucket's number. One
-/// instruction takes them where the program is compiled for processors that have it (BMI), two
-/// elsewhere. Looks the same however it is compiled. Thread safety: pure functions.
+/// A bit field chosen at run time: maps an owner to its bucket's number. It is extracted by one
+/// instruction on processors with BMI, by two elsewhere; its layout is the same for both. Thread
+/// safety: pure functions.
 class BitField {
  public:
   BitField() = default;  ///< none
@@ -36,12 +36,12 @@ class BitField {
   }
 
  private:
-  std::uint32_t control_ = 0;  // the first bit's place, and from bit 8 on how many
+  std::uint32_t control_ = 0;  // the first bit's position; from bit 8 on, the number of bits
   std::uint32_t mask_ = 0;
 };
 
-/// Where the next element of each list goes and where its chunk ends; equal if it wants a chunk
-/// first. Two arrays, not one of pairs, so that a list's number is all there is to compute.
+/// The next element of each list and the end of its chunk; equal if it needs a chunk. Two arrays,
+/// not one of pairs, so that a list's number is the only index to compute.
 struct Rooms {
   void** next;        // [list]
   void* const* ends;  // [list]
@@ -55,17 +55,17 @@ class Buckets {
   Buckets(const Buckets&) = delete;
   Buckets& operator=(const Buckets&) = delete;
 
-  /// Makes `count` empty lists. Precondition: there are none. Throws std::bad_alloc; there may be
-  /// none then, or all.
+  /// Makes `count` empty lists. Precondition: there are none. If it throws std::bad_alloc, there
+  /// may be none or all.
   void provide(std::size_t count) {
     rooms_.resize(2 * count);
-    lists_.resize(count);  // last: where there are lists, there are their rooms
+    lists_.resize(count);  // last: lists exist only together with their rooms
   }
 
-  /// Those of the lists. Whoever puts an element at a `next` moves that on.
+  /// The rooms of the lists. Whoever stores an element at a `next` advances it.
   Rooms rooms() { return {rooms_.data(), rooms_.data() + lists_.size()}; }
 
-  /// Starts a list's next chunk. Throws std::bad_alloc and changes nothing then.
+  /// Starts a list's next chunk. If it throws std::bad_alloc, nothing changes.
   void grow(std::uint32_t number) {
     List& list = lists_[number];
     Chunk*& next = list.last == nullptr ? list.first : list.last->next;
@@ -85,7 +85,7 @@ class Buckets {
     visit(list.last->begin, static_cast<T*>(rooms_[number]));
   }
 
-  /// How many elements a list has. Thread safety: one thread at a time for each list.
+  /// Number of elements of a list. Thread safety: one thread at a time for each list.
   std::size_t size(std::uint32_t number) const {
     std::size_t sum = 0;
     for_each_chunk(number, [&](const T* begin, const T* end) { sum += end - begin; });
@@ -118,7 +118,7 @@ class Buckets {
   };
   struct List {
     Chunk* first = nullptr;
-    Chunk* last = nullptr;  // with elements, or about to get some; chunks after it are kept
+    Chunk* last = nullptr;  // has elements or is about to get some; chunks after it are kept
   };
 
   static constexpr std::size_t first_capacity = std::max<std::size_t>(1, 512 / sizeof(T));
@@ -139,9 +139,9 @@ class Buckets {
     return allocator.new_object<Chunk>(Chunk{begin, begin + capacity, nullptr});
   }
 
-  std::vector<void*> rooms_;  // of Rooms, `next` of all lists, then their ends
+  std::vector<void*> rooms_;  // see Rooms: `next` of all lists, then their ends
   std::vector<List> lists_;
-  std::pmr::monotonic_buffer_resource memory_;  // of the chunks
+  std::pmr::monotonic_buffer_resource memory_;  // for chunks
 };
 
 }  // namespace ductile::runtime::detail

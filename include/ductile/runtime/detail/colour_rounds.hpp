@@ -1,7 +1,7 @@
 /// @file
-/// ColourRounds: the strategy `colours`. Each round colours the conflict graph of its work, and
-/// runs the items of one colour at once, class after class; what they defer is committed after
-/// the class. Items that were woken after their turn or postponed are the next round's work.
+/// ColourRounds: the strategy `colours`. Each round colours the conflict graph of its work and runs
+/// the items of one colour at once, class after class; deferred updates are committed after each
+/// class. Items woken after their turn and postponed items are the next round's work.
 #pragma once
 
 #include <algorithm>
@@ -25,12 +25,12 @@ namespace ductile::runtime::detail {
 /// Places grouped by colour.
 struct ConflictClasses {
   std::vector<std::uint32_t> places;
-  std::vector<std::size_t> begin;  // [class], and the end
+  std::vector<std::size_t> begin;  // [class], and one past the last
 };
 
 /// Colours a graph in compressed rows, [place + 1] and [begin[place]]: by blocks if the executor is
-/// deterministic, else by speculation (detect_again). Throws std::bad_alloc.
-/// Thread safety: one caller; runs on the executor.
+/// deterministic, otherwise by speculation (detect_again). Throws std::bad_alloc. Thread safety:
+/// one caller; runs on the executor.
 ConflictClasses classes_of_conflicts(const Executor& executor, std::span<const std::uint64_t> begin,
                                      std::span<const std::uint32_t> neighbours);
 
@@ -46,7 +46,7 @@ class ColourRounds {
         woken_(executor, op.resource_count()),
         turn_of_(woken_.turns()) {}
 
-  /// Work has size() and items by [i].
+  /// Work has size() and operator[].
   RoundsReport run(const auto& work, std::size_t most_rounds) {
     UnsetVector<Item> next = known_items(executor_, work, turn_of_.size());
     while (!next.empty() && report_.rounds < most_rounds) next = run_round(next);
@@ -63,7 +63,7 @@ class ColourRounds {
   static constexpr LoopOptions grain{.grain = 16};
   using New = typename MadeThings<Op>::New;
 
-  /// What a thread needs for a class.
+  /// Data of a thread for a class.
   struct Lane {
     typename Op::Plan plan{};
     New nothing;
@@ -76,7 +76,7 @@ class ColourRounds {
     bool is_planned = false, acts = false;
   };
 
-  /// What apply() is handed.
+  /// The argument of apply().
   struct Commit : WokenItems::Commit {
     New& numbers;
     std::uint32_t fresh(std::size_t kind = 0) const requires(makes_things) {
@@ -109,7 +109,7 @@ class ColourRounds {
         few_nanoseconds);
   }
 
-  /// Uses turn_of_ for the places of the items.
+  /// Colours the items; uses turn_of_ for their places.
   ConflictClasses classes_of(std::span<const Item> work) {
     const PhaseTimer timer(report_.conflict_seconds);
     parallel_for(executor_, work.size(), [&](std::size_t i) {
@@ -130,7 +130,7 @@ class ColourRounds {
     return classes_of_conflicts(executor_, begin, neighbours);
   }
 
-  /// Of the conflicts that are in the work.
+  /// Visits the conflicts that are in the work.
   void visit_places(Item item, auto&& visit) const {
     op_.conflicts(item, [&](Item other) {
       if (turn_of_[other] != absent) visit(turn_of_[other]);
@@ -176,7 +176,7 @@ class ColourRounds {
     }
   }
 
-  /// All of them are planned, get the numbers that they demand, and are applied.
+  /// Plans all items, gives each the numbers it demands, and applies them.
   void run_makers(std::span<const Item> work, std::span<const std::uint32_t> places,
                   std::uint32_t turn) {
     if (slots_.size() < places.size()) slots_.resize(places.size());
@@ -213,7 +213,7 @@ class ColourRounds {
   const Executor& executor_;
   Op& op_;
   MadeThings<Op> made_;
-  std::vector<Slot> slots_;  // [place in what is planned together], if things are made
+  std::vector<Slot> slots_;  // [place among the items planned together], if things are made
   WokenItems woken_;
   UnsetVector<std::uint32_t>& turn_of_;  // [item], its class
   RoundsReport report_;

@@ -1,7 +1,6 @@
 /// @file
-/// ContractBroken: what run_rounds_checked throws when it catches an operator that does not keep
-/// its contract with run_rounds. Says which item, in which round, broke which rule, and how it
-/// showed.
+/// ContractBroken: the exception of run_rounds_checked for an operator that breaks its contract
+/// with run_rounds. Tells which item broke which rule in which round, and how it showed.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +10,17 @@
 namespace ductile::runtime {
 
 enum class ContractRule : std::uint8_t {
-  plan_only_reads,      ///< plan() twice gives the same
-  numbers_in_range,     ///< what is reached, conflicts() and items with conflicts() are below
+  plan_only_reads,      ///< plan() called twice gives the same
+  numbers_in_range,     ///< resources reached, conflicts(), and items with conflicts() are below
                         ///< resource_count()
-  conflicts_symmetric,  ///< whom an item conflicts with conflicts with it
-  touches_announced,    ///< what an item reads and writes it has reached for
+  conflicts_symmetric,  ///< conflicts are symmetric
+  touches_announced,    ///< an item has reached for everything it reads and writes
   fresh_demanded,       ///< apply() takes no more fresh numbers than demand() asked for
-  new_conflict_told,    ///< of two that wait and get a new conflict one is postponed
-  woken_if_plannable,   ///< who had its turn and can plan again is woken
+  new_conflict_told,    ///< of two waiting items with a new conflict one is postponed
+  woken_if_plannable,   ///< an item that ran and can plan again is woken
   gives_up_if_denied,   ///< plan() returns false once reach() has
-  nobody_woken,         ///< in strategy in_order
-  order_kept,           ///< in order, or in a level, what others do gives an item nothing new
+  nobody_woken,         ///< no item is woken in strategy in_order
+  order_kept,           ///< in order, or within a level, others never give an item a new plan
 };
 
 class ContractBroken : public std::logic_error {
@@ -29,7 +28,7 @@ class ContractBroken : public std::logic_error {
   ContractBroken(ContractRule rule, std::string item, std::uint32_t round, const std::string& how);
 
   ContractRule rule() const { return rule_; }
-  const std::string& item() const { return item_; }  ///< as to_string() shows it, or its place
+  const std::string& item() const { return item_; }  ///< by to_string(), or its place
   std::uint32_t round() const { return round_; }     ///< the first is 1
 
  private:

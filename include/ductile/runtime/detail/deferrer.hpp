@@ -1,7 +1,6 @@
 /// @file
-/// Deferrer: one thread's way into a DeferredUpdate, in as few steps as can be, because loops take
-/// them for every update. A thread has a buffer for each group of owners ("bucket"); a deferrer
-/// knows where to look up where the next update of each goes.
+/// Deferrer: one thread's access to a DeferredUpdate, with minimal cost per update. A thread has a
+/// buffer for each group of owners ("bucket"); a deferrer knows where the next update of each goes.
 #pragma once
 
 #include <bit>
@@ -18,17 +17,17 @@
 
 namespace ductile::runtime {
 
-/// In which order an owner's updates are committed.
+/// The order in which an owner's updates are committed.
 enum class CommitOrder {
   any,      ///< whatever is fastest
-  by_loop,  ///< the order in which one thread alone would have deferred them
+  by_loop,  ///< the order in which a single thread would have deferred them
 };
 
 namespace detail {
 template <class T, CommitOrder Order>
 class DeferLane;
 
-// What is kept of an update, as the order of commits needs it.
+// An update as stored, with the data that its commit order needs.
 template <class T, CommitOrder Order>
 struct KeptUpdate {
   std::uint32_t owner;
@@ -36,19 +35,19 @@ struct KeptUpdate {
 };
 template <class T>
 struct KeptUpdate<T, CommitOrder::by_loop> {
-  std::uint64_t source;  // where in a loop it comes from
+  std::uint64_t source;  // position in the loop
   std::uint32_t owner;
   T update;
 };
 }  // namespace detail
 
-/// From DeferredUpdate::mine(). Copies are as good. Thread safety: the thread that asked for it,
+/// Access from DeferredUpdate::mine(); may be copied. Thread safety: the thread that asked for it,
 /// while it runs the range of iterations for which it asked.
 template <class T, CommitOrder Order>
 class Deferrer {
  public:
-  /// Keeps `update` for `owner`. Throws std::bad_alloc, or what copying or moving an update throws;
-  /// it is not kept then.
+  /// Stores `update` for `owner`. If it throws std::bad_alloc, or what copying or moving an update
+  /// throws, the update is not stored.
   template <class U = T>
   requires std::constructible_from<T, U>
   void defer(std::uint32_t owner, U&& update) const {
@@ -56,7 +55,7 @@ class Deferrer {
     void* next = rooms_.next[another(bucket)];
     if (next == rooms_.ends[another(bucket)]) [[unlikely]]
       next = lane_->make_room(static_cast<std::uint32_t>(bucket));
-    // Where many lists grow in turn, the processor does not see by itself what comes next in each.
+    // The hardware prefetcher does not follow many alternating lists.
     const auto ahead = reinterpret_cast<std::uintptr_t>(next) + write_ahead;
     __builtin_prefetch(reinterpret_cast<const void*>(ahead), 1);
     using Kept = detail::KeptUpdate<T, Order>;
@@ -75,9 +74,8 @@ class Deferrer {
 
   Deferrer() = default;
 
-  /// The same number, which compilers do not see. Otherwise they compute an address from it once,
-  /// by an instruction, for all accesses; each of them can do that by itself, as part of what it
-  /// does.
+  /// The same number, hidden from the compiler, which would otherwise spend an instruction to
+  /// compute an address once for all accesses; addressing modes do it for free.
   static std::size_t another(std::size_t bucket) {
     asm("" : "+r"(bucket));
     return bucket;
@@ -85,21 +83,21 @@ class Deferrer {
 
   detail::Rooms rooms_{};  // of the buckets
   detail::DeferLane<T, Order>* lane_ = nullptr;
-  detail::BitField bucket_bits_;  // of an owner, its bucket's number
+  detail::BitField bucket_bits_;  // maps an owner to its bucket
   std::uint64_t source_ = 0;
 };
 
 namespace detail {
 
-/// What one thread deferred. The lists are made by the thread when it asks for them first, near
-/// itself: most threads never do where loops are short.
+/// The updates of one thread. A thread makes its lists when it first needs them, in nearby memory:
+/// with short loops most threads never do.
 template <class T, CommitOrder Order>
 class DeferLane {
  public:
   using Lists = Buckets<KeptUpdate<T, Order>>;
 
-  /// `is_touched` has a flag for each bucket, as many as a power of two, which is set where the
-  /// lane may have updates; 2^neighbour_bits owners in a row, at least two, share a bucket.
+  /// `is_touched` has a flag for each bucket, a power of two of them, set if the lane may have
+  /// updates; 2^neighbour_bits consecutive owners, at least two, share a bucket.
   void set_up(std::span<std::uint8_t> is_touched, unsigned neighbour_bits) {
     is_touched_ = is_touched;
     deferrer_.bucket_bits_ = {neighbour_bits,
@@ -107,7 +105,7 @@ class DeferLane {
     deferrer_.lane_ = this;
   }
 
-  /// For updates from one place. Throws std::bad_alloc.
+  /// A deferrer for updates from one source. Throws std::bad_alloc.
   Deferrer<T, Order> deferrer(std::uint64_t source) {
     if (lists_ == nullptr) provide();
     Deferrer<T, Order> made = deferrer_;
@@ -115,7 +113,7 @@ class DeferLane {
     return made;
   }
 
-  /// For one more update in a full bucket; returns where. Not inlined, so as to keep the caller's
+  /// Makes room for an update in a full bucket; returns where. Not inlined, to keep the caller's
   /// loop tight. Throws std::bad_alloc.
   [[gnu::noinline]] void* make_room(std::uint32_t number) {
     lists_->grow(number);
@@ -123,7 +121,7 @@ class DeferLane {
     return deferrer_.rooms_.next[number];
   }
 
-  /// Null if the thread has not asked for any yet.
+  /// Null if the thread has not needed any yet.
   Lists* lists() const { return lists_.get(); }
 
  private:

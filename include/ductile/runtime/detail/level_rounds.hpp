@@ -1,8 +1,7 @@
 /// @file
-/// LevelRounds: the strategy `reservations` for operators with levels. All items of the lowest
-/// level that are there are a round; whom they wake comes later. Parts of a round are run by a
-/// plain loop, or by several threads at once, whichever has been faster so far: the result is the
-/// same.
+/// LevelRounds: the strategy `reservations` for operators with levels. A round consists of all
+/// present items of the lowest level; items they wake come later. Parts of a round are run by a
+/// plain loop or by several threads, whichever has been faster so far; the result is the same.
 #pragma once
 
 #include <algorithm>
@@ -23,10 +22,10 @@
 
 namespace ductile::runtime::detail {
 
-/// Items that wait, by level, in a radix heap (Ahuja, Mehlhorn, Orlin & Tarjan, J. ACM 37, 1990):
-/// levels never fall below the lowest that was taken, so items wait in 33 bags, by the highest bit
-/// in which their level differs from that one. Those of one level stay in the order in which they
-/// came. Thread safety: one thread.
+/// Waiting items by level, in a radix heap (Ahuja, Mehlhorn, Orlin & Tarjan, J. ACM 37, 1990):
+/// levels never fall below the lowest taken, so items wait in 33 bags, by the highest bit in which
+/// their level differs from that one. Items of one level keep their order of arrival. Thread
+/// safety: one thread.
 template <LevelledOperator Op>
 class ItemsByLevel {
  public:
@@ -34,10 +33,10 @@ class ItemsByLevel {
 
   explicit ItemsByLevel(const Op& op) : op_(op) {}
 
-  /// Of a level below the lowest, it waits among the lowest.
+  /// Adds an item; one below the lowest level joins the lowest.
   void add(const Item& item) { bags_[std::bit_width(level_of(item) ^ lowest_)].push_back(item); }
 
-  /// Fills in all items of the lowest level. False if there is none.
+  /// Moves all items of the lowest level to `items`. False if there is none.
   bool take_lowest(std::vector<Item>& items) {
     items.clear();
     if (bags_[0].empty()) deal_out();
@@ -54,7 +53,7 @@ class ItemsByLevel {
  private:
   std::uint32_t level_of(const Item& item) const { return std::max(op_.level(item), lowest_); }
 
-  /// The first bag that is not empty among those before it.
+  /// Distributes the first non-empty bag among those before it.
   void deal_out() {
     const auto bag = std::find_if(bags_.begin() + 1, bags_.end(),
                                   [](const std::vector<Item>& items) { return !items.empty(); });
@@ -71,7 +70,7 @@ class ItemsByLevel {
   std::uint32_t lowest_ = 0;
 };
 
-/// For tests.
+/// Tests use `always`.
 enum class Sharing : std::uint8_t { where_faster, always };
 
 template <LevelledOperator Op>
@@ -113,7 +112,7 @@ class LevelRounds {
     void wake(const Item& item) { woken.push_back(item); }
   };
 
-  /// Tries both ways now and then, ever less often while the same one wins.
+  /// Tries both ways from time to time, ever less often while the same one wins.
   void run_shared() {
     for (std::size_t begin = 0; begin < round_.size(); begin += part) {
       const std::size_t end = std::min<std::size_t>(begin + part, round_.size());
@@ -136,7 +135,7 @@ class LevelRounds {
   }
 
   void begin_trial() {
-    trial_ = 6;  // the least of three parts each, because others may need the cores meanwhile
+    trial_ = 6;  // the best of three parts each, because other programs may use the cores meanwhile
     best_plain_ = best_at_once_ = std::numeric_limits<double>::max();
   }
   void end_trial() {
@@ -146,7 +145,7 @@ class LevelRounds {
     at_once_wins_ = wins;
   }
 
-  /// Nanoseconds.
+  /// Runs it; returns nanoseconds.
   static double timed(auto&& run) {
     const auto start = std::chrono::steady_clock::now();
     run();
@@ -185,10 +184,10 @@ class LevelRounds {
   std::vector<Item> round_;
   std::optional<Windows> at_once_windows_;
   Plan plan_{};
-  double plain_ = 0;                          // nanoseconds an item, when it was done last
+  double plain_ = 0;                          // nanoseconds per item, the last time it was used
   double best_plain_ = 0, best_at_once_ = 0;  // in a trial
   bool at_once_wins_ = false;
-  std::size_t trial_ = 0;  // parts left of the trial that is on
+  std::size_t trial_ = 0;  // parts left in the current trial
   std::size_t until_trial_ = 1, tried_every_ = tried_often;
   RoundsReport report_;
 };

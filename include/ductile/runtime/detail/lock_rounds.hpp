@@ -1,7 +1,7 @@
 /// @file
 /// LockRounds: the strategy `locks`. Threads take parts of the work and run each, the last woken
-/// first; whatever an item reaches it locks until it has been applied; whoever reaches for what
-/// another thread holds lets go of all and waits for the next round. The result depends on timing.
+/// first. An item locks what it reaches until it has been applied; one that reaches for a locked
+/// resource releases all of its own and waits for the next round. The result depends on timing.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +52,7 @@ class LockRounds {
     std::size_t planned = 0, applied = 0;
   };
 
-  /// Locks what is reached.
+  /// Locks whatever is reached.
   class ReachToLock {
    public:
     ReachToLock(std::vector<Owner>& owner_of, Owner own) : owner_of_(owner_of), own_(own) {}
@@ -89,7 +89,7 @@ class LockRounds {
     }
   };
 
-  /// Of the work as it lies; fewer where little is left, or all would meet again.
+  /// Cuts the work, in its order, into parts; fewer near the end, to avoid conflicts.
   std::vector<Item> run_round(const std::vector<Item>& work) {
     constexpr std::size_t least_items = 256, parts_a_thread = 8;
     const auto threads = static_cast<std::size_t>(executor_.threads());
@@ -143,7 +143,7 @@ class LockRounds {
   Op& op_;
   MadeThings<Op> made_;
   std::vector<Owner> owner_of_;  // [resource]: the thread that holds it, counted from 1
-  std::size_t spare_ = 4096;     // numbers for each part, besides some for each item
+  std::size_t spare_ = 4096;     // numbers dealt to each part, in addition to some per item
   RoundsReport report_;
 };
 

@@ -1,6 +1,6 @@
 /// @file
-/// MadeThings: the numbers of all things that an operator makes, dealt out to the parts of a run
-/// and joined again after it. For operators that make nothing it is empty.
+/// MadeThings: the numbers of all things that an operator makes, dealt to the parts of a run and
+/// made contiguous again afterwards. Empty for operators that make nothing.
 #pragma once
 
 #include <algorithm>
@@ -55,7 +55,7 @@ class MadeThings {
     }
   }
 
-  /// Adds to each part's pools so many numbers of each kind, and makes room for them.
+  /// Adds numbers of each kind to each part's pools, and makes room for them.
   void deal(std::size_t parts, auto&& pools_of, auto&& wanted_by) {
     if constexpr (kinds > 0) {
       std::vector<NumberPool> pools(parts);
@@ -68,7 +68,7 @@ class MadeThings {
     }
   }
 
-  /// Gives each slot that acts(slot) new numbers, as many as its plan demands, in their order.
+  /// Gives each slot for which acts(slot) holds the new numbers that its plan demands, in order.
   template <class Slot>
   void number(std::span<Slot> slots, auto&& acts) requires(kinds > 0) {
     std::array<std::size_t, kinds> more{}, first{};
@@ -90,7 +90,7 @@ class MadeThings {
       }
   }
 
-  /// What one of those has not taken.
+  /// Returns numbers that were reserved but not used.
   void take_back(const New& numbers) {
     for (std::size_t k = 0; k < kinds; ++k) not_taken_[k].add({numbers.next[k], numbers.end[k]});
   }
@@ -105,7 +105,7 @@ class MadeThings {
     }
   }
 
-  /// Numbers without holes, for the operator's owner.
+  /// Renumbers so that no number is unused, and tells the operator.
   void close_holes() {
     if constexpr (kinds > 0)
       for (std::size_t k = 0; k < kinds; ++k) {
@@ -129,10 +129,10 @@ class MadeThings {
   std::array<Numbers, kinds> numbers_;
   std::array<std::size_t, kinds> room_{};
   Pools not_taken_;
-  Numbers resources_;  // if none are made
+  Numbers resources_;  // used if nothing is made
 };
 
-/// Whether there are enough numbers in the pools for a plan.
+/// Do the pools have enough numbers for a plan?
 template <class Op>
 bool has_room(const Op& op, const auto& pools, const typename Op::Plan& plan) {
   if constexpr (kinds_made<Op> != 0) {

@@ -1,6 +1,6 @@
 /// @file
-/// Numbers of the things of one kind that an operator makes. Those in use lie below `top`, except
-/// for unused ranges, which were dealt out to parts of a run and not needed there.
+/// Numbers of the things of one kind that an operator makes. Numbers in use lie below `top`, except
+/// for unused ranges: dealt to parts of a run, but not needed there.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct NumberRange {
 class NumberPool {
  public:
   std::size_t left() const { return left_; }
-  /// The lowest. Throws std::logic_error if there is none.
+  /// Takes the lowest number. Throws std::logic_error if there is none.
   std::uint32_t take() {
     if (left_ == 0) [[unlikely]]
       throw std::logic_error("apply() takes more fresh numbers than demand() asked for");
@@ -33,7 +33,7 @@ class NumberPool {
     --left_;
     return number;
   }
-  /// Ranges are added in falling order, if numbers are to be taken.
+  /// Add ranges in falling order if numbers will be taken.
   void add(NumberRange range) {
     if (range.begin == range.end) return;
     ranges_.push_back(range);
@@ -64,7 +64,7 @@ class Numbers {
     if (at < top_) visit(at, static_cast<std::uint32_t>(top_));
   }
 
-  /// So many numbers for each pool: unused ones first, in rising order, and then new ones. Throws
+  /// Deals numbers to each pool: first unused ones, ascending, then new ones. Throws
   /// std::length_error if there are no more below 2^32 - 1.
   void deal(std::span<NumberPool> pools, auto&& wanted_by) {
     std::size_t next = 0;
@@ -92,13 +92,13 @@ class Numbers {
     unused_.erase(unused_.begin(), unused_.begin() + static_cast<std::ptrdiff_t>(next));
   }
 
-  /// The first of so many new numbers, which are used from now on. Throws std::length_error.
+  /// Takes `more` new numbers and returns the first. Throws std::length_error.
   std::size_t extend(std::size_t more) {
     expect_numbers(top_ + more);
     return std::exchange(top_, top_ + more);
   }
 
-  /// What is left of them is unused again.
+  /// Marks what is left in the pools as unused.
   void take_back(std::span<const NumberPool> pools) {
     for (const NumberPool& pool : pools) {
       unused_.insert(unused_.end(), pool.ranges().begin(), pool.ranges().end());
@@ -107,7 +107,7 @@ class Numbers {
     join_unused();
   }
 
-  /// The last ones take the numbers that are unused, until none is below another that is used.
+  /// Moves the last things to unused numbers until the numbers in use are contiguous.
   std::vector<Renumbered> close_holes() {
     std::vector<Renumbered> moved;
     const std::size_t count = used();

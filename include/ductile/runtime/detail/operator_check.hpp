@@ -1,6 +1,6 @@
 /// @file
-/// OperatorCheck: runs an Operator on one thread, one item at a time, and throws
-/// ContractBroken where it does something that would be wrong, or would depend on timing, on many.
+/// OperatorCheck: runs an Operator on one thread, item by item, and throws ContractBroken if it
+/// does something that would be wrong, or would depend on timing, on many threads.
 #pragma once
 
 #include <algorithm>
@@ -40,8 +40,8 @@ class OperatorCheck {
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
 
-  /// Nobody may be woken in order. By conflicts those that have none run at once, whatever they
-  /// reach for.
+  /// In strategy in_order no item may be woken. In tiles and colours, items without conflicts run
+  /// together, whatever they reach for.
   OperatorCheck(Op& op, Strategy strategy)
       : op_(op),
         in_order_(strategy == Strategy::in_order),
@@ -70,7 +70,7 @@ class OperatorCheck {
       ++report.planned;
       const bool is_applied = run_item(item);
       report.applied += is_applied;
-      // Nobody is woken in order, or need be of a level, once it was applied.
+      // In order, and for an applied item of a level, no wake is required
       if (!is_applied || !(in_order_ || has_levels)) considered_.push_back(item);
     }
     expect_nothing_left();
@@ -83,21 +83,21 @@ class OperatorCheck {
   static constexpr bool has_levels = LevelledOperator<Op>;
   static constexpr bool lowers_minima = requires { Op::lowers_minima; };
 
-  /// With its place among all that were in the work or were woken.
+  /// An item with its position among all that were in the work or were woken.
   struct Numbered {
     Item item{};
     std::size_t number = 0;
     std::uint32_t level = 0;
   };
 
-  /// What plan() made of an item.
+  /// The result of plan() for an item.
   struct Decision {
     Plan plan{};
     std::vector<std::uint32_t> reached;
     bool found = false;
   };
 
-  /// Says no once, after a number of calls, and where there is no such resource.
+  /// Denies once, after a number of calls, and for invalid resources.
   struct ReachUpTo {
     std::vector<std::uint32_t>& reached;
     std::size_t calls, resource_count;
@@ -152,12 +152,12 @@ class OperatorCheck {
                                std::to_string(waits_of_.size()) + " resources");
   }
 
-  /// Those that are in a round together do not know of those that were woken in it.
+  /// Items of one round of a level do not see those woken in it.
   void begin_item_of_level(const Numbered& item) {
     if (item.level != level_ || item.number >= round_end_) round_end_ = added_;
     level_ = item.level;
   }
-  /// Whether an item may be in one window with the one before it.
+  /// May an item share a window with the previous one?
   bool is_in_order_after(const Numbered& other) const {
     if constexpr (has_levels) return other.level == level_ && other.number < round_end_;
     return in_order_ && !ConflictingOperator<Op>;
@@ -184,7 +184,7 @@ class OperatorCheck {
 
   bool run_item(const Numbered& item) {
     Decision decision = decide(item.item);
-    // A plan is filled in again and again: what another item left in it must not show.
+    // Leftovers of another item in a reused plan must not show.
     Decision again = decide(item.item, std::exchange(used_plan_, {}));
     if (!is_same(decision, again))
       refuse(ContractRule::plan_only_reads, item,
@@ -271,7 +271,7 @@ class OperatorCheck {
              "it wakes an item, but in strategy in_order only the work itself has an order");
   }
 
-  /// An item that waits.
+  /// A waiting item that is observed.
   struct Watched {
     Numbered item;
     Decision before;
@@ -286,7 +286,7 @@ class OperatorCheck {
     return conflicts;
   }
 
-  /// Some that wait: the next and random ones.
+  /// Some waiting items: the next ones and random ones.
   std::vector<Watched> watch_others() const {
     std::vector<Watched> others;
     for (std::size_t i = 0; i < std::min(watched, waiting_.size()); ++i) {
@@ -300,7 +300,7 @@ class OperatorCheck {
     return others;
   }
 
-  /// Had they no conflict before one was applied? An item may also wait twice.
+  /// Did they have no conflict before one was applied? An item may also wait twice.
   static bool may_run_beside([[maybe_unused]] const Watched& other,
                              [[maybe_unused]] const Numbered& applied) {
     if constexpr (ConflictingOperator<Op>)
@@ -309,7 +309,7 @@ class OperatorCheck {
     return false;
   }
 
-  /// Of two that wait and have got a new conflict by what was applied, has one been postponed?
+  /// If the applied item gave two waiting ones a new conflict, was one of them postponed?
   void expect_postponed(const Watched& other, const Numbered& applied,
                         const std::vector<Item>& postponed) const {
     const auto is_postponed = [&](std::uint32_t item) {
@@ -329,7 +329,7 @@ class OperatorCheck {
                    name_of(applied) + " was applied, which has postponed neither");
   }
 
-  /// `reached` is ascending: what the item that was applied had reached.
+  /// `reached`, ascending, is what the applied item had reached.
   void expect_unchanged(const Watched& other, const Numbered& applied,
                         const std::vector<std::uint32_t>& reached) const {
     const auto had_reached = [&](std::uint32_t r) {
@@ -362,7 +362,7 @@ class OperatorCheck {
     }
   }
 
-  /// One more of each kind than is wanted, so that there are holes to be closed in the end.
+  /// Takes one more of each kind than demanded, so that there are gaps to close in the end.
   void take_numbers(const auto& wanted, CheckedCommit& commit) {
     bool has_room = true;
     for (std::size_t k = 0; k < kinds; ++k) {
@@ -396,11 +396,11 @@ class OperatorCheck {
   Op& op_;
   bool in_order_, by_conflicts_;
   std::vector<Numbered> waiting_;        // the next last
-  std::vector<std::uint32_t> waits_of_;  // [item], how often it waits, if there are conflicts
-  std::vector<Numbered> considered_;     // had their turn
+  std::vector<std::uint32_t> waits_of_;  // [item], how many times it waits, if there are conflicts
+  std::vector<Numbered> considered_;     // have had their turn
   std::size_t added_ = 0;
-  std::uint32_t level_ = 0;    // that runs
-  std::size_t round_end_ = 0;  // items with lower numbers were there when the round began
+  std::uint32_t level_ = 0;    // that is running
+  std::size_t round_end_ = 0;  // items with lower numbers existed when the round began
   Plan used_plan_{};
   std::array<std::size_t, kinds> top_{}, room_{};  // [kind]
   std::array<NumberPool, kinds> holes_;            // [kind]

@@ -1,6 +1,6 @@
 /// @file
-/// run_in_order: the strategy `in_order`. Parts of the work are run by a plain loop, or by several
-/// threads at once, whichever has been faster so far: the result is the same.
+/// run_in_order: the strategy `in_order`. Parts of the work are run by a plain loop or by several
+/// threads, whichever has been faster so far; the result is the same.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace ductile::runtime::detail {
 
-/// For the strategy in_order: nobody may be woken.
+/// apply()'s argument in the strategy in_order, where no item may be woken.
 template <class Item>
 struct OrderedCommit {
   void wake(const Item&) const {
@@ -27,7 +27,7 @@ struct OrderedCommit {
   void postpone(const Item& item) const { wake(item); }
 };
 
-/// What runs a part of the work on several threads.
+/// The engine that runs a part of the work on several threads.
 template <class Op, class Work>
 struct AtOnceOf {
   using Type = OrderedWindows<Op, Work>;
@@ -37,7 +37,7 @@ struct AtOnceOf<Op, Work> {
   using Type = OrderedStream<Op, Work>;
 };
 
-/// One run. Work has size() and items by [i].
+/// One run. Work has size() and operator[].
 template <Operator Op, class Work>
 class OrderedRun {
  public:
@@ -47,17 +47,17 @@ class OrderedRun {
   OrderedRun(const Executor& executor, Op& op, const Work& work)
       : executor_(executor), op_(op), work_(work) {}
 
-  /// applied(item) is told of each that was applied, in the order of the work.
+  /// Calls applied(item) for each applied item, in the order of the work.
   RoundsReport run(auto&& applied) {
     if (executor_.threads() == 1) {
       run_plainly(0, work_.size(), applied);
       return report_;
     }
-    double plain = 0, at_once = 0;  // nanoseconds an item
+    double plain = 0, at_once = 0;  // nanoseconds per item
     for (std::size_t begin = 0, number = 0; begin < work_.size(); begin += part, ++number) {
       const std::size_t end = std::min<std::size_t>(begin + part, work_.size());
       const std::size_t turn = number % tried_every;
-      // Twice plainly, because the first part may have memory to fetch.
+      // The plain loop runs twice, because its first part may have to fetch memory.
       const bool is_plain_turn = turn != 1 && (turn <= 2 || plain < at_once);
       const bool is_plain = is_plain_turn || plain < too_fast_to_share;
       const auto start = std::chrono::steady_clock::now();
@@ -76,7 +76,7 @@ class OrderedRun {
  private:
   using AtOnce = typename AtOnceOf<Op, Work>::Type;
   static constexpr std::size_t part = 65536, tried_every = 16;
-  static constexpr double too_fast_to_share = 8;  // what it takes two cores to share an item
+  static constexpr double too_fast_to_share = 8;  // nanoseconds two cores need to share an item
 
   void run_plainly(std::size_t begin, std::size_t end, auto&& applied) {
     Plan plan{};
@@ -105,8 +105,8 @@ class OrderedRun {
   RoundsReport report_{.rounds = 1};
 };
 
-/// Work has size() and items by [i]. applied(item) is told of each that was applied, in the order
-/// of the work.
+/// Runs all of the work, which has size() and operator[]. Calls applied(item) for each applied
+/// item, in the order of the work.
 template <Operator Op, class Work>
 RoundsReport run_in_order(const Executor& executor, Op& op, const Work& work, auto&& applied) {
   return OrderedRun<Op, Work>(executor, op, work).run(applied);

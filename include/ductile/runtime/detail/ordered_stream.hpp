@@ -1,7 +1,7 @@
 /// @file
-/// OrderedStream: the strategy `in_order` where items tell their conflicts. Threads take blocks of
-/// the work in its order. An item that reaches for one that comes before it and is not done is put
-/// aside, and the thread goes on, up to some blocks ahead of the first that is not done.
+/// OrderedStream: the strategy `in_order` for operators with conflicts(). Threads take blocks of
+/// the work in order. An item that reaches for an earlier unfinished one is put aside, and the
+/// thread goes on, up to some blocks ahead of the first unfinished one.
 #pragma once
 
 #include <algorithm>
@@ -25,8 +25,8 @@
 
 namespace ductile::runtime::detail {
 
-/// One run. Work has size() and items by [i]. The first item that is not done waits for none,
-/// so whichever thread has it can go on.
+/// One run. Work has size() and operator[]. The first unfinished item waits for none, so the thread
+/// that has it can proceed.
 template <ConflictingOperator Op, class Work>
 class OrderedStream {
  public:
@@ -39,8 +39,8 @@ class OrderedStream {
     number_places();
   }
 
-  /// Runs a part of the work, all before which is done. apply(item, plan) carries a plan out;
-  /// applied(item) is told of it, in the order of the work.
+  /// Runs a part of the work, after all earlier parts. apply(item, plan) carries a plan out;
+  /// applied(item) is called for each, in the order of the work.
   void run(std::size_t begin, std::size_t end, auto&& apply, auto&& applied, RoundsReport& report) {
     start(begin, end);
     const auto threads = static_cast<std::size_t>(executor_.threads());
@@ -105,11 +105,11 @@ class OrderedStream {
             " is in the work twice, which strategy in_order does not allow");
     });
   }
-  /// In the part that runs. Whoever is not in the work, and whoever is before this part, is past
-  /// its end.
+  /// Place in the current part. Items that are not in the work, or come before this part, get a
+  /// place past its end.
   Place place_of(Item item) const { return (place_of_.empty() ? item : place_of_[item]) - begin_; }
 
-  /// Bytes differ from one turn of the ring to the next.
+  /// Marks differ from one pass over the ring to the next.
   static std::uint8_t mark_of(Place place) {
     return static_cast<std::uint8_t>((place >> ring_bits) + 1);
   }
@@ -159,7 +159,7 @@ class OrderedStream {
       while (first_open_ < all_.block_done_.size() &&
              std::atomic_ref(all_.block_done_[first_open_]).load(std::memory_order_acquire) != 0)
         ++first_open_;
-      // A thread that lags behind may set it back: that costs a look, no more.
+      // A slow thread may set it back, which costs only another look.
       if (first_open_ != before) all_.first_open_.store(first_open_, std::memory_order_release);
     }
 
@@ -232,7 +232,7 @@ class OrderedStream {
         if (open.block == block && --open.left == 0) end_block(block);
     }
 
-    /// For a short while at first: whoever is waited for mostly needs no longer.
+    /// Spins shortly first, because most waits are short.
     void wait_for_progress(std::uint32_t seen) {
       constexpr int looks = 200;
       for (int i = 0; i < looks; ++i)
@@ -244,15 +244,15 @@ class OrderedStream {
     Plan plan_{};
     std::vector<Place> aside_;
     std::vector<Open> open_;  // blocks with items aside
-    Place first_open_ = 0;    // all blocks before are done
+    Place first_open_ = 0;    // all blocks before it are done
     std::size_t planned_ = 0, applied_ = 0;
   };
 
   const Executor& executor_;
   Op& op_;
   const Work& work_;
-  Place begin_ = 0, count_ = 0;  // of the part that runs
-  UnsetVector<Place> place_of_;  // [item], empty if each is at its own number
+  Place begin_ = 0, count_ = 0;  // the current part
+  UnsetVector<Place> place_of_;  // [item], empty if each item is its own place
   std::vector<std::uint8_t> block_done_;
   std::vector<std::array<std::uint64_t, block_size / 64>> applied_in_;  // [block], bits
   std::vector<std::uint8_t> done_;                                      // [place % ring_size]

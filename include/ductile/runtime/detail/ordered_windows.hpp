@@ -1,7 +1,7 @@
 /// @file
-/// OrderedWindows: the strategy `in_order` where items tell no conflicts, and what runs items of
-/// one level. A window of the work is planned at once; an item with a plan reserves what it has
-/// reached by its place, the first wins, and those that hold all they have reached are applied. All
+/// OrderedWindows: the strategy `in_order` for operators without conflicts(), also used within a
+/// level. A window of the work is planned in parallel; an item with a plan reserves what it has
+/// reached, the earliest place wins, and items that hold all they have reached are applied. The
 /// others of the window are then planned and applied one by one.
 #pragma once
 
@@ -19,8 +19,8 @@
 
 namespace ductile::runtime::detail {
 
-/// What is done in windows. apply(item, plan, woken) carries a plan out and adds whom it wakes to a
-/// vector; in the order of the work, applied(item) is told of it, and wake(woken) of these.
+/// The steps of a window. apply(item, plan, woken) carries a plan out and adds the items it wakes
+/// to a vector; then applied(item) and wake(woken) are called in the order of the work.
 template <class Apply, class Applied, class Wake>
 struct WindowSteps {
   Apply apply;
@@ -30,8 +30,8 @@ struct WindowSteps {
 template <class Apply, class Applied, class Wake>
 WindowSteps(Apply, Applied, Wake) -> WindowSteps<Apply, Applied, Wake>;
 
-/// One run. Work has size() and items by [i]. An item that has no plan leaves at once: those
-/// before it in its window give it none.
+/// One run. Work has size() and operator[]. An item without a plan is done, because earlier items
+/// of its window cannot give it one.
 template <Operator Op, class Work>
 class OrderedWindows {
  public:
@@ -41,14 +41,14 @@ class OrderedWindows {
   OrderedWindows(const Executor& executor, Op& op, const Work& work)
       : executor_(executor), op_(op), work_(work), blocks_(window / block_size) {}
 
-  /// Runs a part of the work, all before which is done. apply(item, plan) carries a plan out;
-  /// applied(item) is told of it, in the order of the work.
+  /// Runs a part of the work, after all earlier parts. apply(item, plan) carries a plan out;
+  /// applied(item) is called for each, in the order of the work.
   void run(std::size_t begin, std::size_t end, auto&& apply, auto&& applied, RoundsReport& report) {
     const auto apply_alone = [&](const Item& item, Plan& plan, auto&) { apply(item, plan); };
     run_waking(begin, end, WindowSteps{apply_alone, applied, TellNobody()}, report);
   }
 
-  /// The same where items may wake others.
+  /// The same for items that may wake others.
   void run_waking(std::size_t begin, std::size_t end, const auto& steps, RoundsReport& report) {
     holder_of_.resize(op_.resource_count(), nobody);
     for (; begin < end; begin += window)
@@ -62,11 +62,11 @@ class OrderedWindows {
   struct Candidate {
     Plan plan{};
     std::uint32_t place = 0;        // in the work
-    std::uint32_t reached_end = 0;  // in the block's list, where the one before ends as well
+    std::uint32_t reached_end = 0;  // in the block's list; the previous one's end is the beginning
     std::uint32_t woken_end = 0;    // likewise
     bool won = false;
   };
-  /// Of a window. The first `count` candidates have plans; the others keep their memory.
+  /// A part of a window. The first `count` candidates have plans; the others keep their memory.
   struct alignas(128) Block {
     std::vector<Candidate> candidates;
     std::vector<std::uint32_t> reached;
@@ -99,7 +99,7 @@ class OrderedWindows {
     for (std::size_t block = 0; block < count; ++block) end_block(blocks_[block], steps, report);
   }
 
-  /// Runs the losers, and tells of all that were applied.
+  /// Runs the losers, and reports all applied items.
   void end_block(const Block& block, const auto& steps, RoundsReport& report) {
     const std::span<const Item> woken(block.woken);
     std::size_t first = 0, told = 0;
@@ -120,7 +120,7 @@ class OrderedWindows {
     steps.wake(woken.subspan(told));
   }
 
-  /// Keys fall from window to window, so that what was reserved in earlier ones counts no more.
+  /// Keys fall from window to window, so that reservations of earlier windows do not count.
   void begin_window() {
     if (first_key_ < window) {
       std::fill(holder_of_.begin(), holder_of_.end(), nobody);
@@ -170,9 +170,10 @@ class OrderedWindows {
   Op& op_;
   const Work& work_;
   std::vector<Block> blocks_;             // [block of the window]
-  std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first that has reached it
+  std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first item that has reached
+                                          // it
   std::uint32_t first_key_ = nobody;
-  Plan plan_{};  // of those that run one by one, and whom they have woken
+  Plan plan_{};  // for items that run one by one, with those they wake
   std::vector<Item> woken_;
 };
 

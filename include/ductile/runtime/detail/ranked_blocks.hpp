@@ -1,10 +1,10 @@
 /// @file
-/// RankedBlocks: blocks of work, each with a rank, of which those that meet run in the order of
-/// their ranks, without a barrier between one rank and the next. Threads take blocks as they lie
-/// side by side. One that meets a block of lower rank that is not done does that first, or, if
-/// another thread has begun it, other blocks meanwhile: of no higher rank than the one that waits.
-/// No deadlock: ranks never increase along a thread's stack, and a block waits only for a lower
-/// rank, so a started block of lowest rank can always proceed.
+/// RankedBlocks: runs blocks of work, each with a rank; blocks that touch run in the order of their
+/// ranks, without barriers between ranks. Threads take blocks in order of position. A thread whose
+/// block touches an unfinished one of lower rank runs that first; if another thread has begun it,
+/// it runs other blocks meanwhile, of no higher rank than the waiting one. No deadlock: ranks never
+/// increase along a thread's stack, and a block waits only for a lower rank, so a started block of
+/// lowest rank can always proceed.
 #pragma once
 
 #include <algorithm>
@@ -21,22 +21,22 @@
 
 namespace ductile::runtime::detail {
 
-/// How a sequence is cut into blocks of 2^block_bits, with ranks below 2^rank_bits.
+/// Cuts a sequence into blocks of 2^block_bits, with ranks below 2^rank_bits.
 struct BlockLayout {
   unsigned block_bits, rank_bits;
 
   std::size_t block_size() const { return std::size_t{1} << block_bits; }
-  /// Of 2^rank_bits blocks in a row each has another rank, in an order that changes from row to
-  /// row: where the bits of numbers have a meaning, equal low bits would gather related blocks in
-  /// one rank. Blocks next to each other mostly meet. If their ranks followed each other, all
-  /// blocks of a row would wait in a chain, so their ranks are far apart.
+  /// Any 2^rank_bits consecutive blocks have different ranks, in an order that changes from group
+  /// to group: if the bits of numbers have a meaning, equal low bits would give related blocks the
+  /// same rank. Adjacent blocks mostly touch, so their ranks are far apart; otherwise all blocks of
+  /// a group would wait in a chain.
   std::uint8_t rank_of(std::size_t block) const {
     const std::size_t last = (std::size_t{1} << rank_bits) - 1;
     return static_cast<std::uint8_t>(7 * (block ^ block >> rank_bits) & last);
   }
 };
 
-/// One run. Begun is what a thread knows of a block that it has begun.
+/// One run. Begun is a thread's state of a block it has begun.
 template <class Begun>
 class RankedBlocks {
  public:
@@ -53,15 +53,15 @@ class RankedBlocks {
                  {.serial_below = 4096});
   }
 
-  /// Runs all blocks. begin(block) makes a Begun; advance(begun) goes on until the block is done,
-  /// and returns none then, or until another has to come before, and returns that.
+  /// Runs all blocks. begin(block) makes a Begun; advance(begun) works until the block is done and
+  /// returns none, or until another block must come first and returns that.
   void run(auto&& begin, auto&& advance) {
     parallel_for(executor_, rank_of_.size(),
                  [&](std::size_t block) { run_from(block, begin, advance); }, {.grain = 1});
   }
 
-  /// Whether a block has to be done before one of this rank and is not. Who gets false for one of
-  /// lower rank sees what that one did. Thread safety: any thread.
+  /// Is a block of lower rank than this one and unfinished? If false for a block of lower rank, the
+  /// thread sees that block's writes. Thread safety: any thread.
   bool comes_before(std::size_t block, std::uint8_t rank) {
     return std::atomic_ref(rank_of_[block]).load(std::memory_order_acquire) < rank;
   }
@@ -71,9 +71,9 @@ class RankedBlocks {
     std::size_t block;
     Begun begun;
   };
-  static constexpr std::uint8_t done = 0xff;  // no block's rank
+  static constexpr std::uint8_t done = 0xff;  // greater than any rank
 
-  /// If a block ends by an exception, nobody is to wait for what will never be done.
+  /// If a block ends by an exception, no thread waits for it.
   struct FailsIfThrown {
     std::atomic<bool>& failed;
     int exceptions = std::uncaught_exceptions();
@@ -82,8 +82,8 @@ class RankedBlocks {
     }
   };
 
-  /// Runs a block unless somebody has begun it, and whichever have to come before, of which it
-  /// keeps a stack: their ranks fall.
+  /// Runs a block unless a thread has begun it, and those that must come first, on a stack of
+  /// falling ranks.
   void run_from(std::size_t first, auto&& begin, auto&& advance) {
     if (!claim(first)) return;
     const FailsIfThrown guard{failed_};
@@ -103,18 +103,18 @@ class RankedBlocks {
         if (other != none) {
           push(other);
         } else {
-          std::this_thread::yield();  // whoever has begun it may have lost its core
+          std::this_thread::yield();  // the thread that has begun it may have lost its core
         }
       }
     }
   }
 
   bool claim(std::size_t block) {
-    // Relaxed: what a block reads is ordered by the ranks of those before it.
+    // Relaxed: the ranks of earlier blocks order what a block reads.
     return std::atomic_ref(claimed_[block]).exchange(1, std::memory_order_relaxed) == 0;
   }
 
-  /// Waits for a short while.
+  /// Spins shortly.
   bool is_done_soon(std::size_t block) {
     constexpr int looks = 200;
     for (int i = 0; i < looks; ++i)
@@ -122,8 +122,7 @@ class RankedBlocks {
     return false;
   }
 
-  /// Claims one of the blocks after `first` that may run while one waits; none if there is none
-  /// near by.
+  /// Claims a nearby block after `first` that may run while one waits; none if there is none.
   std::size_t claim_instead(std::size_t waiting, std::size_t first) {
     constexpr std::size_t near = 512;
     const std::size_t count = rank_of_.size();
@@ -138,9 +137,9 @@ class RankedBlocks {
   }
 
   const Executor& executor_;
-  UnsetVector<std::uint8_t> rank_of_;    // [block], or done
-  UnsetVector<std::uint8_t> claimed_;    // [block], by a thread that has begun it
-  PerThread<std::vector<Entry>> begun_;  // the thread's
+  UnsetVector<std::uint8_t> rank_of_;    // [block], or `done`
+  UnsetVector<std::uint8_t> claimed_;    // [block], has a thread begun it?
+  PerThread<std::vector<Entry>> begun_;  // each thread's stack
   std::atomic<bool> failed_{false};
 };
 

@@ -1,6 +1,6 @@
 /// @file
-/// What strategies share: what plan() is handed where nobody is denied, how nobody is told, and how
-/// optional members are asked.
+/// Shared by strategies: a reach() that denies nothing, a callback that does nothing, and calls of
+/// optional members.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@
 
 namespace ductile::runtime::detail {
 
-/// Nobody else is there.
+/// Grants everything, because no other item runs.
 struct ReachAll {
   static constexpr bool denied = false;
   bool operator()(std::uint32_t) const { return true; }
 };
 
-/// Notes what is reached, all of it, so that it does not depend on timing.
+/// Records what is reached and grants all of it, so that the result does not depend on timing.
 struct ReachToNote {
   std::vector<std::uint32_t>& reached;
   bool operator()(std::uint32_t resource) {
@@ -28,19 +28,19 @@ struct ReachToNote {
   }
 };
 
-/// Where nobody wants to know which items were applied.
+/// Ignores which items were applied.
 struct TellNobody {
   void operator()(const auto&) const {}
 };
 
-/// If the operator can.
+/// Prefetches if the operator can.
 template <class Op>
 [[gnu::always_inline]] inline void prefetch_item(const Op& op, const typename Op::Item& item,
                                                  int stage) {
   if constexpr (PrefetchingOperator<Op>) op.prefetch(item, stage);
 }
 
-/// The item, if it is the number of a resource. Throws std::out_of_range.
+/// Returns the item if it is the number of a resource. Throws std::out_of_range.
 inline std::uint32_t known(std::uint32_t item, std::size_t resource_count) {
   if (item >= resource_count) [[unlikely]]
     throw std::out_of_range("item " + std::to_string(item) +

@@ -1,8 +1,7 @@
 /// @file
-/// RegionMap: which region each resource belongs to. A grid of cells lies over all resources, each
-/// in the cell of its own place; a Hilbert curve through the cells is cut into regions of equal
-/// numbers of resources. The grid is shifted against the curve before each cut, so that the borders
-/// of regions lie elsewhere.
+/// RegionMap: the region of each resource. A grid of cells covers all resources; a Hilbert curve
+/// through the cells is cut into regions with equal numbers of resources. The grid is shifted along
+/// the curve before each cut, so that the borders of regions move.
 #pragma once
 
 #include <algorithm>
@@ -24,21 +23,21 @@
 namespace ductile::runtime::detail {
 
 struct RegionCut {
-  std::size_t count;   ///< of regions
-  std::uint64_t turn;  ///< says how the grid is shifted
+  std::size_t count;   ///< number of regions
+  std::uint64_t turn;  ///< determines how the grid is shifted
   std::size_t
       changed;        ///< items applied since the last cut: resources lie elsewhere, or are others
-  bool anew = false;  ///< all resources get their cells anew
+  bool anew = false;  ///< recompute the cells of all resources
 };
 
-/// Dim is that of the places.
+/// Dim is the dimension of the places.
 template <std::size_t Dim>
 class RegionMap {
  public:
   using Region = std::uint16_t;
   using Place = std::array<double, Dim>;
 
-  /// Cuts all resources into regions. Between two cuts owners may be set by set_owner().
+  /// Cuts all resources into regions. set_owner() may change owners until the next cut.
   void cut(const Executor& executor, const Numbers& resources, auto&& place_of,
            const RegionCut& cut) {
     make_room(resources.top());
@@ -49,7 +48,7 @@ class RegionMap {
     for_each_in_use(executor, [&](std::size_t r) { owner_of_[r] = region_of_cell_[cell_of_[r]]; });
   }
 
-  /// New resources may be dealt out since the cut: they have numbers below `end`.
+  /// Makes room for resources added since the cut, with numbers below `end`.
   void make_room(std::size_t end) {
     const std::size_t begin = cell_of_.size();
     if (begin >= end) return;
@@ -64,7 +63,7 @@ class RegionMap {
  private:
   using Cell = std::uint16_t;
   static constexpr Cell unlabelled = 0xffff;
-  static constexpr int most_bits = Dim == 2 ? 7 : 5;  // of a cell an axis
+  static constexpr int most_bits = Dim == 2 ? 7 : 5;  // bits of a cell per axis
   static constexpr std::size_t resources_a_cell = 32, block_size = 4096;
 
   void find_blocks(const Numbers& resources) {
@@ -83,8 +82,8 @@ class RegionMap {
                  {.grain = 1});
   }
 
-  /// A new thing takes its cell from its own place: cells that are handed down to what takes the
-  /// place of a thing become ragged. All get theirs anew where many have changed.
+  /// A new thing takes the cell of its own place, because inherited cells would become ragged. All
+  /// cells are recomputed after many changes.
   void label(const Executor& executor, std::size_t used, auto&& place_of, bool anew) {
     const bool first = labelled_ == 0 || used > 4 * labelled_;
     const bool all = first || anew || changed_ > used / 16;
@@ -135,8 +134,8 @@ class RegionMap {
     scale_ = static_cast<double>(1U << bits_) / width;
   }
 
-  /// The first coordinate in the lowest bits. What lies outside of the extent is in a cell at its
-  /// side.
+  /// The first coordinate is in the lowest bits. Places outside the extent belong to the nearest
+  /// cell.
   Cell cell_at(const Place& place) const {
     const double last = static_cast<double>((1U << bits_) - 1);
     std::uint32_t cell = 0;
@@ -146,7 +145,7 @@ class RegionMap {
     return static_cast<Cell>(cell);
   }
 
-  /// How many resources a cell holds, from every eighth.
+  /// Number of resources per cell, estimated from every eighth.
   std::vector<std::uint32_t> count_held() const {
     constexpr std::size_t step = 8;
     std::vector<std::uint32_t> held(std::size_t{1} << (static_cast<int>(Dim) * bits_));
@@ -184,11 +183,11 @@ class RegionMap {
   }
 
   std::vector<NumberRange> blocks_;  // of resources in use
-  std::size_t labelled_ = 0;         // so many resources when the grid was laid
-  std::size_t changed_ = 0;          // so many items applied since all were labelled
+  std::size_t labelled_ = 0;         // number of resources when the grid was made
+  std::size_t changed_ = 0;          // number of items applied since all were labelled
   int bits_ = 2;
   Place low_{};
-  double scale_ = 1;                    // cells a unit of length
+  double scale_ = 1;                    // cells per unit of length
   UnsetVector<Cell> cell_of_;           // [resource]
   UnsetVector<Region> owner_of_;        // [resource]
   UnsetVector<Region> region_of_cell_;  // [cell]

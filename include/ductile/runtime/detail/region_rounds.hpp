@@ -1,9 +1,9 @@
 /// @file
-/// RegionRounds: the strategy `regions`. In each phase resources are cut into regions; a region
-/// runs its items on one thread, the last woken first, and writes directly, because what its items
-/// reach is its own; whoever reaches for what is another region's waits for the next phase, whose
-/// cuts lie elsewhere. How many regions there are depends on how much there is, never on threads,
-/// so the result does not depend on those.
+/// RegionRounds: the strategy `regions`. In each phase resources are cut into regions; one thread
+/// runs the items of a region, the last woken first, and writes directly, because all that its
+/// items reach belongs to it. An item that reaches into another region waits for the next phase,
+/// whose cuts lie elsewhere. The number of regions depends on the amount of work, never on threads,
+/// and so does the result.
 #pragma once
 
 #include <algorithm>
@@ -55,7 +55,7 @@ class RegionRounds {
   using RegionNumber = typename Map::Region;
   using Pools = typename MadeThings<Op>::Pools;
 
-  // Few regions late, because of what is left most lies at borders.
+  // Few regions in late phases, because most remaining items lie at borders.
   static constexpr std::size_t least_resources = 8192, least_items = 64, most_regions = 256,
                                late_regions = 32, few_items = 1024;
 
@@ -65,7 +65,7 @@ class RegionRounds {
     std::size_t planned = 0, applied = 0;
   };
 
-  /// Says no to what belongs to other regions.
+  /// Denies resources of other regions.
   struct ReachOwn {
     const Map& map;
     RegionNumber region;
@@ -77,7 +77,7 @@ class RegionRounds {
       return false;
     }
   };
-  /// Finds out what an item reaches for first.
+  /// Finds the first resource that an item reaches for.
   struct ReachFirst {
     static constexpr std::uint32_t nothing = 0xffffffffU;
     std::uint32_t first = nothing;
@@ -109,7 +109,7 @@ class RegionRounds {
   };
 
   std::size_t region_count(std::size_t items) const {
-    // To cut all resources takes longer than to run few items one by one.
+    // Cutting all resources takes longer than running a few items one by one.
     if (items < std::max(few_items, made_.resources().used() / 512)) return 1;
     if (is_stuck_ && (is_hopeless_ || items < 16 * few_items)) return 1;
     const std::size_t most = report_.rounds > 2 ? late_regions : most_regions;
@@ -118,7 +118,7 @@ class RegionRounds {
     return count < 4 ? 1 : count;
   }
 
-  /// Until there is enough for many regions, or nothing left.
+  /// Runs serially until the work list is long enough to cut into regions, or empty.
   std::vector<Item> run_one_by_one(std::vector<Item> work) {
     const PhaseTimer timer(report_.apply_seconds);
     const std::size_t used = made_.resources().used();
@@ -163,7 +163,7 @@ class RegionRounds {
                {count, report_.rounds, report_.applied - applied_before_cut_, is_stuck_});
       applied_before_cut_ = report_.applied;
       share_out(work, regions);
-      // Whoever gets too few goes on in the next phase.
+      // A region that gets too few continues in the next phase.
       const std::size_t an_item = report_.rounds == 1 ? 3 : 8;
       deal(regions, [&](std::size_t r) { return an_item * regions[r].stack.size() + few_items; });
     }
@@ -200,8 +200,8 @@ class RegionRounds {
     region.later.insert(region.later.end(), region.stack.begin(), region.stack.end());
   }
 
-  /// Each item to the region of what it reaches for first, in the order of the work. Whoever
-  /// reaches for nothing has nothing to do.
+  /// Gives each item to the region of the resource it reaches for first, in the order of the work.
+  /// An item that reaches for nothing has nothing to do.
   void share_out(const std::vector<Item>& work, std::span<Region> regions) {
     constexpr std::size_t parts = 64;
     constexpr RegionNumber nowhere = 0xffff;
@@ -264,7 +264,7 @@ class RegionRounds {
   Map map_;
   std::size_t applied_before_cut_ = 0;
   bool is_stuck_ = false;     // most items of the last phase are left
-  bool is_hopeless_ = false;  // and few were applied: plans want more numbers than they get
+  bool is_hopeless_ = false;  // and few were applied, because plans want more numbers than they get
   RoundsReport report_;
 };
 

@@ -1,8 +1,8 @@
 /// @file
 /// ReservationWindows: the strategy `reservations`. A window of the work is planned at once; an
-/// item with a plan reserves what it has reached by its place in the window, the first wins, and
-/// those that hold all they have reached are applied. How many items a window has follows from how
-/// many of those before have lost. Where items have priorities, the place is that in their order.
+/// item with a plan reserves what it has reached, the lowest place in the window wins, and items
+/// that hold all they have reached are applied. The share of losers determines the size of the next
+/// window. If items have priorities, places follow their order.
 #pragma once
 
 #include <algorithm>
@@ -28,14 +28,15 @@ class ReservationWindows {
   using Item = typename Op::Item;
   using Plan = typename Op::Plan;
 
-  /// Keys fall from this one, and begin there again when they are used up. There must be as many as
-  /// the largest window has items.
+  /// Keys fall from this one and restart there when used up. It is at least the size of the largest
+  /// window.
   ReservationWindows(const Executor& executor, Op& op, std::uint32_t highest_key = nobody)
       : executor_(executor), op_(op), made_(op), highest_key_(highest_key) {}
-  static constexpr std::uint32_t nobody = 0xffffffffU;  ///< holds what no item has reached
+  static constexpr std::uint32_t nobody = 0xffffffffU;  ///< holds a resource that no item has
+                                                        ///< reached
   static constexpr std::size_t most_window = 8192;      ///< items in a window
 
-  /// Those that have lost and those that were woken are the next pass's work.
+  /// The losers and the woken items are the next pass's work.
   RoundsReport run(std::vector<Item> work, std::size_t most_passes) {
     while (!work.empty() && report_.rounds < most_passes) {
       ++report_.rounds;
@@ -61,8 +62,8 @@ class ReservationWindows {
     }
   }
 
-  /// The order 0, k, 2 k, ..., 1, 1 + k, ... of n places, for k of about n over the window. Items
-  /// that are far apart in the work seldom meet.
+  /// The order 0, k, 2 k, ..., 1, 1 + k, ... of n places, for k of about n / window: items that are
+  /// far apart in the work seldom touch.
   class Strides {
    public:
     Strides(std::size_t n, std::size_t window)
@@ -129,7 +130,7 @@ class ReservationWindows {
     end_window(count);
   }
 
-  /// Keys fall from window to window, so that what earlier ones have reserved counts no more.
+  /// Keys fall from window to window, so that reservations of earlier windows do not count.
   void begin_window(std::size_t count, auto&& item_at) {
     if constexpr (RankedOperator<Op>) rank(count, item_at);
     if (slots_.size() < count) slots_.resize(count);
@@ -141,7 +142,7 @@ class ReservationWindows {
     holder_of_.resize(std::max(holder_of_.size(), op_.resource_count()), nobody);
   }
 
-  /// The places of the window in the order of priority; of equal ones the first in the work.
+  /// Ranks the window's places by priority; of equal ones, the first in the work comes first.
   void rank(std::size_t count, auto&& item_at) {
     by_priority_.resize(count);
     rank_of_.resize(count);
@@ -168,7 +169,7 @@ class ReservationWindows {
     }
   }
 
-  /// What memory takes to answer is about as long as planning two items.
+  /// Latency of memory is about the time of planning two items.
   void prefetch_after(std::size_t i, std::size_t count, auto&& item_at) const {
     if constexpr (PrefetchingOperator<Op>)
       for (const int stage : {2, 1, 0}) {
@@ -240,7 +241,8 @@ class ReservationWindows {
   Op& op_;
   MadeThings<Op> made_;
   std::vector<Slot> slots_;               // [place in the window]
-  std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first that has reached it
+  std::vector<std::uint32_t> holder_of_;  // [resource], the key of the first item that has reached
+                                          // it
   std::uint32_t highest_key_, first_key_ = highest_key_;
   std::vector<std::uint64_t> by_priority_;  // of the window, priority and place
   std::vector<std::uint32_t> rank_of_;      // [place in the window], if there are priorities

@@ -1,8 +1,8 @@
 /// @file
-/// SourceOrder: visits entries in the order of their sources. They are added as arrays, which
-/// mostly ascend for long: a thread goes through its part of a loop in order and takes a part of
-/// another's now and then. So it notes ascending pieces and merges them, long stretches of one at a
-/// time. Thread safety: one thread at a time.
+/// SourceOrder: visits entries in the order of their sources. They are added as arrays with long
+/// ascending runs, because a thread goes through its part of a loop in order and rarely steals a
+/// part of another's. So it notes ascending pieces and merges them, long stretches at a time.
+/// Thread safety: one thread at a time.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,23 @@
 
 namespace ductile::runtime::detail {
 
-/// Entries with ascending sources, in a row.
+/// Consecutive entries with ascending sources.
 struct SourcePiece {
   std::uint64_t first;  // source
   std::size_t number;   // in order of adding
   void *begin, *end;
 };
 
-/// Pieces to merge, a heap. Of entries with equal sources those of the lower number come first.
+/// Makes a heap of the pieces to merge. Entries with equal sources are ordered by number.
 void make_heap_of(std::vector<SourcePiece>& pieces);
-/// Takes the piece that begins first out of the heap.
+/// Removes the piece with the lowest first source from the heap.
 SourcePiece take_first(std::vector<SourcePiece>& heap);
-/// Puts what is left of that back. Does not throw.
+/// Puts back the rest of that piece. Does not throw.
 void put_back(std::vector<SourcePiece>& heap, const SourcePiece& piece);
 /// The greatest source up to which entries of this piece come before all those in the heap.
 std::uint64_t ahead_up_to(const std::vector<SourcePiece>& heap, const SourcePiece& piece);
 
-/// An Entry has a member `source`, a number.
+/// An Entry has an integer member `source`.
 template <class Entry>
 class SourceOrder {
  public:
@@ -43,8 +43,8 @@ class SourceOrder {
     add_piece(piece, end);
   }
 
-  /// Calls visit(entry) for all, those of one source as they were added; to be cleared then.
-  /// Throws std::bad_alloc.
+  /// Calls visit(entry) for all entries, those of one source in the order of adding; call clear()
+  /// afterwards. Throws std::bad_alloc.
   template <class Visit>
   void for_each(Visit&& visit) {
     make_heap_of(pieces_);

@@ -1,19 +1,19 @@
 /// @file
-/// run_by_options: which strategy runs an Operator.
+/// run_by_options: chooses the strategy for an Operator and runs it.
 #pragma once
 
-// The headers of the strategies:
+// Headers of the strategies:
 //
-//   region_rounds          regions; region_map says whose a resource is
+//   region_rounds          regions; region_map gives the region of a resource
 //   ordered_run            in_order: a plain loop, or
-//     ordered_stream       operators that tell conflicts
+//     ordered_stream       operators with conflicts()
 //     ordered_windows      all others
 //   reservation_windows    reservations, or
 //     level_rounds         operators with levels
 //   lock_rounds            locks
 //   tile_rounds            tiles; ranked_blocks runs them in order
 //   colour_rounds          colours
-// made_things has the numbers of what operators make.
+// made_things holds the numbers of things that operators make.
 
 #include <cstddef>
 #include <stdexcept>
@@ -32,8 +32,7 @@
 
 namespace ductile::runtime::detail {
 
-/// Says at compile time what an operator lacks, and which optional member is there but cannot be
-/// used.
+/// Reports at compile time what an operator lacks, and optional members that cannot be used.
 template <class Op>
 constexpr void expect_whole_operator() {
   static_assert(Operator<Op>,
@@ -95,7 +94,7 @@ void expect_possible(const Executor& executor, Strategy strategy) {
   }
 }
 
-/// The strategy that options and operator ask for. Throws as expect_possible().
+/// The strategy for these options and this operator. Throws as expect_possible().
 template <Operator Op>
 Strategy strategy_of(const Executor& executor, const RoundsOptions& options) {
   if constexpr (LevelledOperator<Op>) {
@@ -123,7 +122,7 @@ std::vector<Item> to_vector(const auto& work) {
   return items;
 }
 
-/// Runs by a strategy that is possible. Work has size() and items by [i].
+/// Runs a possible strategy. Work has size() and operator[].
 template <Strategy S, Operator Op, class Work>
 RoundsReport run_by(const Executor& executor, Op& op, Work work, std::size_t most_rounds) {
   using Item = typename Op::Item;

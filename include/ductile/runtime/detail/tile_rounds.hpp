@@ -1,12 +1,12 @@
 /// @file
-/// TileRounds: the strategy `tiles`. Each round runs its work in tiles: stretches of it, in each of
-/// which one thread plans and applies one item after the other while what they touch is in its
-/// cache; no plan is kept. Each tile has one of 32 ranks, and of items that conflict the one whose
-/// tile has the lower rank comes first, see ranked_blocks.hpp. Few items have an earlier neighbour
-/// in another tile of the same rank; they are late, lest tiles wait for each other in long chains.
-/// Late items, and those that were woken after their turn or postponed, are the next round's work.
-/// All conflicts are looked at before any item runs, so they may change while items run; a tile's
-/// own, if they stay, not before it begins. Work should list next to each other what lies together.
+/// TileRounds: the strategy `tiles`. Each round cuts its work into tiles; one thread plans and
+/// applies the items of a tile one by one while their data are in its cache, and keeps no plan.
+/// Each tile has one of 32 ranks; of two conflicting items, the one whose tile has the lower rank
+/// comes first, see ranked_blocks.hpp. The few items with an earlier neighbour in another tile of
+/// the same rank are late, which avoids long chains of waiting tiles. Late, postponed, and late-
+/// woken items are the next round's work. All conflicts are read before any item runs, so they may
+/// change meanwhile; with `keeps_conflicts`, a tile's only when it begins. Neighbouring items
+/// should be close in the work.
 #pragma once
 
 #include <algorithm>
@@ -31,8 +31,8 @@
 
 namespace ductile::runtime::detail {
 
-/// When items of the work have their turn, as a number: the rank of the tile comes first, then the
-/// place in the work. So who comes before whom, in which tile, is told by comparing numbers.
+/// The turns of items as numbers: the rank of the tile in the high bits, then the place in the
+/// work. Comparing numbers tells which item comes first, and in which tile.
 struct Turns {
   static constexpr unsigned rank_bits = 5, place_bits = 32 - rank_bits;
   static constexpr std::uint32_t most_items = (1U << place_bits) - 1;
@@ -48,8 +48,8 @@ class Tiles {
  public:
   using Item = std::uint32_t;
 
-  /// Looks at the conflicts of at most Turns::most_items items, and sets their turns. All of these
-  /// outlive this. Throws std::invalid_argument if an item is in the work twice.
+  /// Reads the conflicts of at most Turns::most_items items and sets their turns. The arguments
+  /// outlive this object. Throws std::invalid_argument if an item is in the work twice.
   Tiles(const Executor& executor, Op& op, std::span<const Item> work, WokenItems& woken)
       : op_(op),
         work_(work),
@@ -72,7 +72,7 @@ class Tiles {
                    {.grain = 1, .serial_below = few_to_survey >> layout_.block_bits});
   }
 
-  /// Plans and applies the items, those that are late or postponed excepted; late ones come back.
+  /// Plans and applies the items except late and postponed ones; brings back the late ones.
   void run() {
     const auto advance = [&](Begun& begun) {
       const std::size_t before = first_before(begun);
@@ -99,29 +99,29 @@ class Tiles {
  private:
   static constexpr bool conflicts_stay = requires { Op::keeps_conflicts; };
 
-  /// A tile that a thread has begun, and how many of those it waits for were seen to be done.
+  /// A tile that a thread has begun, and how many of those it waits for are known to be done.
   struct Begun {
     std::size_t tile;
     std::size_t seen = 0;
   };
   using Ranked = RankedBlocks<Begun>;
   static constexpr std::size_t none = Ranked::none;
-  /// Items between asking for something that an item needs and the next stage of it.
+  /// Items between two stages of prefetching.
   static constexpr std::size_t ahead = 3;
-  /// Items whose conflicts are looked at before other threads would have begun.
+  /// Number of items surveyed faster than other threads would start.
   static constexpr std::size_t few_to_survey = 16;
 
-  /// What a thread's tiles wait for, one tile after the other.
+  /// The tiles that a thread's tiles wait for, one list after the other.
   struct Met {
     std::vector<std::uint32_t> tiles;
-    std::vector<std::uint32_t> last_of;  // [tile], the last one that it was noted for
+    std::vector<std::uint32_t> last_of;  // [tile], the last one it was recorded for
   };
   struct Range {
-    std::uint32_t thread, begin, end;  // of the thread's tiles
+    std::uint32_t thread, begin, end;  // in the thread's list
   };
 
-  /// Half a thousand tiles or more, if there are as many pairs of items: few items in long tiles
-  /// would wait for each other in a chain. Longer ones than 64 would, too.
+  /// At least 512 tiles if there are as many pairs of items: few items in long tiles would wait for
+  /// each other in a chain, and so would tiles longer than 64.
   static BlockLayout layout_of(std::size_t items) {
     const int bits = std::clamp(static_cast<int>(std::bit_width(items)) - 11, 1, 6);
     return {static_cast<unsigned>(bits), Turns::rank_bits};
@@ -139,7 +139,7 @@ class Tiles {
     return work_.subspan(begin, std::min(layout_.block_size(), work_.size() - begin));
   }
 
-  /// Finds which of a tile's items are late, and which tiles of lower rank it meets.
+  /// Finds a tile's late items and the tiles of lower rank that it touches.
   void survey(std::size_t tile) {
     const std::span<const Item> items = items_of(tile);
     Met& met = met_.mine();
@@ -155,8 +155,8 @@ class Tiles {
                        static_cast<std::uint32_t>(met.tiles.size())};
   }
 
-  /// Finds out whether the item at this place is late; notes the tiles of lower rank that it meets.
-  /// Without branches for each neighbour, as the answers cannot be foreseen.
+  /// Finds whether the item at this place is late, and the tiles of lower rank that it touches.
+  /// Branch-free for each neighbour, because branches would be unpredictable.
   void look(std::size_t place, std::size_t tile, Met& met) const {
     const Item item = work_[place];
     if (turn_of_[item] != turn_at(place)) throw_twice(item);
@@ -190,7 +190,7 @@ class Tiles {
     return std::span(met_[range.thread].tiles).subspan(range.begin, range.end - range.begin);
   }
 
-  /// One of the tiles that this one waits for; none if they are done.
+  /// A tile that this one must wait for; none if all are done.
   std::size_t first_before(Begun& begun) {
     const std::span<const std::uint32_t> waits = waits_of(begun.tile);
     for (; begun.seen < waits.size(); ++begun.seen)
@@ -198,8 +198,8 @@ class Tiles {
     return none;
   }
 
-  /// Asks ahead only for items that run: others may change at the same time what belongs to one
-  /// that has left the round.
+  /// Prefetches only for items that run: data of an item that has left the round may change
+  /// concurrently.
   void run_items(std::size_t tile) {
     const std::span<const Item> items = items_of(tile);
     const bool* const late = is_late_.get() + first_place(tile);
@@ -234,7 +234,7 @@ class Tiles {
   BlockLayout layout_;
   Ranked tiles_;
   std::unique_ptr<bool[]> is_late_;  // [place]
-  UnsetVector<Range> range_of_;      // [tile], what it waits for
+  UnsetVector<Range> range_of_;      // [tile], the tiles it waits for
   UnsetVector<Counts> counts_of_;    // [tile]
   PerThread<Met> met_;
 };
@@ -247,7 +247,7 @@ class TileRounds {
   TileRounds(const Executor& executor, Op& op)
       : executor_(executor), op_(op), woken_(executor, op.resource_count()) {}
 
-  /// Work has size() and items by [i].
+  /// Work has size() and operator[].
   RoundsReport run(const auto& work, std::size_t most_rounds) {
     UnsetVector<Item> next = known_items(executor_, work, woken_.turns().size());
     while (!next.empty() && report_.rounds < most_rounds) next = run_round(next);

@@ -1,6 +1,6 @@
 /// @file
-/// WokenItems: which items were woken or postponed in a round, for the strategies of items with
-/// conflicts, in which each has its turn at a time that is known when the round begins.
+/// WokenItems: the items woken or postponed in a round, for strategies with conflicts, in which
+/// each item has a turn known when the round begins.
 #pragma once
 
 #include <atomic>
@@ -17,24 +17,24 @@
 
 namespace ductile::runtime::detail {
 
-/// Thread safety: the caller between loops; where it is said, any thread of a loop.
+/// Thread safety: the caller between loops; where noted, any thread of a loop.
 class WokenItems {
  public:
   using Item = std::uint32_t;
 
-  static constexpr std::uint32_t absent = 0xffffffffU;  ///< the turn of what is not in the work
+  static constexpr std::uint32_t absent = 0xffffffffU;  ///< turn of items that are not in the work
 
-  /// What apply() is handed.
+  /// The argument of apply().
   struct Commit {
     WokenItems& woken;
-    std::uint32_t turn = 0;  ///< of the item that is applied
+    std::uint32_t turn = 0;  ///< of the applied item
 
     void wake(Item item) const {
       const std::uint32_t own = woken.turn_of_[known(item, woken.turn_of_.size())];
       if (own == absent || own <= turn) woken.items_.mine().append(item);
     }
     void postpone(Item item) const {
-      // Relaxed: whoever reads it waits for this one, or does not conflict with the item.
+      // Relaxed: a reader waits for this item, or does not conflict with the postponed one.
       std::uint32_t& round = woken.postponed_in_[known(item, woken.turn_of_.size())];
       std::atomic_ref(round).store(woken.round_, std::memory_order_relaxed);
       woken.bring_back(item);
@@ -48,18 +48,18 @@ class WokenItems {
 
   void begin_round() { ++round_; }
 
-  /// There are more resources now.
+  /// Adjusts to a larger number of resources.
   void grow(std::size_t resource_count) {
     postponed_in_.resize(resource_count, 0);
     turn_of_.resize(resource_count, absent);
   }
 
-  /// [item], when each has its turn: a lower number before a higher one where two conflict. Set for
-  /// a round's work and reset to `absent` afterwards by whoever runs it.
+  /// [item], its turn: of two conflicting items the lower number runs first. The strategy sets it
+  /// for a round's work and resets it to `absent` afterwards.
   UnsetVector<std::uint32_t>& turns() { return turn_of_; }
 
-  /// Thread safety: any thread. Also asked ahead of an item that another thread plans meanwhile:
-  /// what it reads is either of two that say the same.
+  /// Thread safety: any thread. May also be asked about an item that another thread plans
+  /// concurrently; old and new value then mean the same.
   bool is_postponed(Item item) {
     return std::atomic_ref(postponed_in_[item]).load(std::memory_order_relaxed) == round_;
   }
@@ -67,10 +67,10 @@ class WokenItems {
   /// Thread safety: any thread.
   Commit commit() { return {*this}; }
 
-  /// For the next round. Thread safety: any thread.
+  /// Adds an item to the next round. Thread safety: any thread.
   void bring_back(Item item) { items_.mine().append(item); }
 
-  /// All of them, each once, in order: the next round's work.
+  /// All items, each once, in order: the next round's work.
   UnsetVector<Item> take() {
     items_.collect_unique();
     return items_.take();
@@ -89,7 +89,7 @@ class WokenItems {
                               "allow");
 }
 
-/// Copies work, which has size() and items by [i]. Throws std::out_of_range if an item is not the
+/// Copies work, which has size() and operator[]. Throws std::out_of_range if an item is not the
 /// number of a resource.
 inline UnsetVector<std::uint32_t> known_items(const Executor& executor, const auto& work,
                                               std::size_t resource_count) {

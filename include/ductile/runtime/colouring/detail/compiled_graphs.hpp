@@ -1,6 +1,6 @@
 /// @file
-/// Which graphs' colourings the library brings along, so that no program has to compile them; and
-/// how other graphs get at those, for what is too rare or too slow anyway to be compiled for them.
+/// Graphs whose colourings the library contains, so that no program has to compile them, and type
+/// erasure by which other graphs use those for rare or slow methods.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ inline constexpr bool is_compiled<AnyGraph> = true;
 template <class G>
 concept CompiledGraph = is_compiled<G>;
 
-/// The graph, or a view of it that is compiled.
+/// The graph, or a compiled view of it.
 template <Graph G>
 decltype(auto) as_compiled(const G& graph) {
   if constexpr (CompiledGraph<G>) {

@@ -1,9 +1,9 @@
 /// @file
-/// What all colouring methods share: the words that hold colours while a method runs, the set of
+/// Shared by all colouring methods: the words that hold colours while a method runs, the set of
 /// vertices it colours, and first-fit for one vertex.
-/// While a method runs a colour takes one byte, or four if there are many or they are already in a
-/// caller's array. Colours are read and written as relaxed atomics: a colour carries
-/// no other data, and what must not be missed is ordered by the barrier that ends a loop.
+/// While a method runs, a colour takes one byte, or four if there are many or they are already in a
+/// caller's array. Colours are read and written as relaxed atomics: a colour carries no other data,
+/// and the barrier that ends a loop orders whatever must not be missed.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 
 namespace ductile::runtime::detail {
 
-/// Vertices: all below `count`, or those listed; in ascending order unless a method takes any.
+/// All vertices below `count`, or those listed, in ascending order unless the method takes any.
 struct VertexSet {
   std::size_t count;
   const std::uint32_t* list = nullptr;
@@ -33,14 +33,14 @@ struct VertexSet {
   }
 };
 
-/// There is no such colour in these words; the colouring goes on, or starts again, with longer
+/// Thrown if these words cannot hold a colour; the colouring continues, or restarts, with longer
 /// ones.
 struct TooManyColours {};
 
-/// Words that hold colours; the greatest are two that say that a vertex has no colour, and Marks
-/// marks below them. A vertex that is being coloured shows, in place of a colour, by whom: who
-/// looks at its neighbours' colours then sees at no cost whether others are coloured at the same
-/// time, as a mark is one more bit of TakenColours. Methods say how many they need.
+/// Words that hold colours. The two greatest mean that a vertex has no colour; below them are Marks
+/// marks. A vertex being coloured shows a mark, instead of a colour, that says by whom: so reading
+/// the neighbours' colours also reveals at no cost whether others are being coloured, because a
+/// mark is one more bit of TakenColours. Each method says how many marks it needs.
 template <std::unsigned_integral W, std::uint32_t Marks>
 struct Words {
   using Word = W;
@@ -49,7 +49,7 @@ struct Words {
 };
 template <std::uint32_t Marks = 0>
 using OneByte = Words<std::uint8_t, Marks>;
-/// So few colours that TakenColours has room for them all: no look at how great a colour is.
+/// So few colours that TakenColours has room for all, which saves a range check.
 template <std::uint32_t Marks = 0>
 struct Narrow : OneByte<Marks> {
   static constexpr std::uint8_t most = 61 - Marks;
@@ -62,10 +62,11 @@ class Colours {
  public:
   using Word = typename Width::Word;
   static constexpr Word none = static_cast<Word>(~Word{0});  ///< not yet coloured
-  static constexpr Word waiting = none - 1;                  ///< lost its colour, will get another
+  static constexpr Word waiting = none - 1;                  ///< lost its colour and will get
+                                                             ///< another
   static constexpr Word most = Width::most;
   static constexpr std::uint32_t marks = Width::marks;
-  /// Stands for a colour while whoever has this number colours the vertex.
+  /// Stands for a colour while the thread with this number colours the vertex.
   static constexpr Word mark(std::uint32_t number) {
     return static_cast<Word>(waiting - 1 - number);
   }
@@ -73,7 +74,7 @@ class Colours {
   explicit Colours(std::span<Word> words) : words_(words) {}
 
   std::span<Word> words() const { return words_; }
-  /// The same words, of which there may be more or fewer colours.
+  /// The same words, with another limit on colours.
   template <class Other>
   Colours<Other> as() const {
     return Colours<Other>(words_);
@@ -86,8 +87,9 @@ class Colours {
   void set(std::size_t v, Word colour) const {
     std::atomic_ref(words_[v]).store(colour, std::memory_order_relaxed);
   }
-  /// Sets those of [begin, end): eight bytes by one store, as compilers do not join atomic ones.
-  /// Others may read single words meanwhile: GCC's and Clang's atomics allow it, not the language.
+  /// Sets words [begin, end), eight bytes per store, because compilers do not merge atomic stores.
+  /// Concurrent reads of single words are allowed by GCC's and Clang's atomics, not by the
+  /// language.
   void fill(std::size_t begin, std::size_t end, Word colour) const {
     using Many [[gnu::may_alias]] = std::uint64_t;
     constexpr std::size_t step = sizeof(Many) / sizeof(Word);
@@ -107,8 +109,8 @@ class Colours {
   std::span<Word> words_;
 };
 
-/// What a word adds to TakenColours of `count` colours. To look it up takes less time than to tell
-/// colours from marks and from those beyond the count.
+/// The bit of TakenColours for a word, given `count` colours. A table lookup is faster than telling
+/// colours from marks and from colours beyond the count.
 template <std::uint32_t count>
 struct BitOfByte {
   static constexpr std::array<std::uint64_t, 256> table = [] {
@@ -119,24 +121,24 @@ struct BitOfByte {
   }();
 };
 
-/// The least colours that a look at a vertex's neighbours shows to be taken, as bits. A View is
-/// Colours, or shows some of them.
+/// The lowest colours that a vertex's neighbours have, as bits. A View is Colours, or a part of
+/// them.
 template <class View>
 struct TakenColours {
   static constexpr std::uint32_t count = 62 - View::marks;
 
-  std::uint64_t bits = 0;  ///< marks, `waiting` and `none` fall on those beyond the count
+  std::uint64_t bits = 0;  ///< marks, `waiting` and `none` are bits beyond the count
 
   void add(std::uint32_t word) {  // not a byte, which GCC 12 may put into mask registers
     if constexpr (View::most < count) {
       bits |= std::uint64_t{1} << (word & 63U);
     } else if constexpr (sizeof(typename View::Word) == 1) {
       bits |= BitOfByte<count>::table[word];
-    } else {  // what is not a colour follows the last word, and so precedes the first
+    } else {  // words that are not colours wrap around, from the last to before the first
       bits |= std::uint64_t{word + (64 - count) < 64} << (word & 63U);
     }
   }
-  /// The bit of the least colour that is not taken; 0 if there is none.
+  /// The bit of the lowest free colour; 0 if there is none.
   std::uint64_t least_free() const {
     constexpr std::uint64_t colours = (std::uint64_t{1} << count) - 1;
     return ~bits & (bits + 1) & colours;
@@ -144,17 +146,17 @@ struct TakenColours {
   static std::uint64_t bit_of_mark(std::uint32_t number) {
     return std::uint64_t{1} << (61 - number);
   }
-  /// The bits of `waiting`, and of all marks but these. A number that no mark has is that of
-  /// nobody.
+  /// The bits of `waiting` and of all marks except these. A number without a mark is nobody's.
   static std::uint64_t others(std::same_as<std::uint32_t> auto... numbers) {
-    constexpr std::uint64_t all = ~std::uint64_t{0} << count << 1U >> 1U;  // but that of `none`
+    // except that of `none`
+    constexpr std::uint64_t all = ~std::uint64_t{0} << count << 1U >> 1U;
     return all & ~(bit_of_mark(numbers) | ...);
   }
   bool shows_others(std::uint32_t number) const { return (bits & others(number)) != 0; }
 };
 
-/// What a loop over many vertices reads the graph through: a copy of a small view, which the
-/// compiler keeps in registers, as no store of a colour can be one to it; or the graph itself.
+/// A graph for loops over many vertices: a copy if it is a small view, which the compiler can keep
+/// in registers because no store of a colour can alias it; otherwise the graph itself.
 template <Graph G>
 decltype(auto) in_registers(const G& graph) {
   if constexpr (std::is_trivially_copyable_v<G> && sizeof(G) <= 32) {
@@ -164,10 +166,10 @@ decltype(auto) in_registers(const G& graph) {
   }
 }
 
-/// Covers the time that memory takes, at some nanoseconds a vertex.
+/// Vertices ahead: covers the latency of memory at some nanoseconds per vertex.
 constexpr std::size_t prefetch_distance = 32;
 
-/// Fewer where a graph says that each takes longer.
+/// The graph's own distance if it has one, because its vertices take longer.
 template <Graph G>
 constexpr std::size_t prefetch_distance_of() {
   if constexpr (requires { G::prefetch_distance; }) {
@@ -177,8 +179,7 @@ constexpr std::size_t prefetch_distance_of() {
   }
 }
 
-/// Asks for the neighbours of the vertex that has its turn some steps after number i.
-/// Inlined always, see CsrGraph.
+/// Prefetches the neighbours of the vertex some steps after number i. Inlined always, see CsrGraph.
 template <Graph G>
 [[gnu::always_inline]] inline void prefetch_after(const G& graph, const VertexSet& vertices,
                                                   std::size_t i) {
@@ -187,7 +188,7 @@ template <Graph G>
       graph.prefetch(vertices[i + prefetch_distance_of<G>()]);
 }
 
-/// The same where vertices have their turn in descending order.
+/// The same for vertices in descending order.
 template <Graph G>
 [[gnu::always_inline]] inline void prefetch_before(const G& graph, std::uint32_t v) {
   if constexpr (PrefetchingGraph<G>)
@@ -195,10 +196,10 @@ template <Graph G>
       graph.prefetch(v - std::uint32_t{prefetch_distance_of<G>()});
 }
 
-/// Calls visit(u) for all of a row, two in each step of the loop. A loop of one a step, of half a
-/// dozen instructions, takes one cycle or two a step by where in memory the compiler happens to
-/// place it. The statement of no instruction hides from GCC how far the loop goes: it would work
-/// out by four more what `u` is after it.
+/// Calls visit(u) for all of a row, two per iteration. A loop of one per iteration, with half a
+/// dozen instructions, takes one or two cycles each depending on its alignment. The empty statement
+/// hides the trip count from GCC, which would otherwise compute the final `u` with four more
+/// instructions.
 template <class Visit>
 [[gnu::always_inline]] inline void visit_in_pairs(const std::uint32_t* u, const std::uint32_t* end,
                                                   Visit visit) {
@@ -223,9 +224,9 @@ template <Graph G, class Visit>
   }
 }
 
-/// The least free colour of however many. Looks at each neighbour anew for all colours together:
-/// others may change theirs meanwhile, and who counts a neighbour's old colour and its new one may
-/// take a colour beyond the degree.
+/// The lowest free colour, however many there are. It reads each neighbour once for all colours:
+/// others may change theirs meanwhile, and counting both the old and the new colour of a neighbour
+/// could give a colour beyond the degree.
 template <Graph G, class View>
 [[gnu::noinline]] typename View::Word least_free_of_many(const G& graph, std::uint32_t v,
                                                          View colours) {
@@ -255,8 +256,8 @@ template <Graph G, class View>
   return static_cast<typename View::Word>(free);
 }
 
-/// The least colour not taken, of those a look at v's neighbours has shown, or beyond them.
-/// Throws TooManyColours.
+/// The lowest free colour, among those shown by the neighbours already read, or beyond them. Throws
+/// TooManyColours.
 template <Graph G, class View>
 typename View::Word least_free(const G& graph, std::uint32_t v, View colours,
                                TakenColours<View> seen) {
@@ -266,23 +267,24 @@ typename View::Word least_free(const G& graph, std::uint32_t v, View colours,
   return least_free_of_many(graph, v, colours);
 }
 
-/// What a look at a vertex's neighbours says. So large that compilers keep each in a register.
+/// The result of reading a vertex's neighbours. Members are wide so that compilers keep each in a
+/// register.
 template <class Word>
 struct Fit {
-  Word colour;                ///< the least that none of them has
+  Word colour;                ///< the lowest that no neighbour has
   std::uint64_t sees_others;  ///< 1 if one is `waiting`, or has another's mark
 };
 
-/// Neighbours for which ShownBytes pay.
+/// Number of neighbours from which ShownBytes pays.
 constexpr std::size_t many_neighbours = 128;
 
-/// There are bytes for more colours than TakenColours has room for.
+/// Can bytes hold more colours than TakenColours?
 template <class View>
 constexpr bool has_many_colours =
     sizeof(typename View::Word) == 1 && View::most >= TakenColours<View>::count;
 
-/// Which bytes the neighbours of a vertex show: room for all colours, so that one look is enough,
-/// but more to clear and to search than the bits of TakenColours.
+/// The set of bytes that the neighbours of a vertex show: it has room for all colours, so one pass
+/// is enough, but takes longer to clear and search than TakenColours.
 template <class Width>
 class ShownBytes {
  public:
@@ -305,7 +307,7 @@ class ShownBytes {
   alignas(64) std::array<std::uint8_t, 256> shown_{};
 };
 
-/// The same as first_fit, for a vertex of many neighbours.
+/// first_fit() for a vertex with many neighbours.
 template <RowGraph G, class Width>
 [[gnu::noinline]] Fit<std::uint8_t> first_fit_of_many(const G& graph, std::uint32_t v,
                                                       Colours<Width> colours,
@@ -315,9 +317,9 @@ template <RowGraph G, class Width>
   return {seen.least_free(), seen.shows_others(number)};
 }
 
-/// The colour that v gets, coloured by who has this number. Throws TooManyColours.
-/// Inlined always: the loop over neighbours is what colouring spends its time on, and keeps what it
-/// needs in registers only where the compiler sees all of it.
+/// The colour for v, coloured by the thread with this number. Throws TooManyColours. Always
+/// inlined: colouring spends its time in the loop over neighbours, which keeps its data in
+/// registers only if the compiler sees all of it.
 template <Graph G, class View>
 [[gnu::always_inline]] inline Fit<typename View::Word> first_fit(const G& graph, std::uint32_t v,
                                                                  View colours,
@@ -332,7 +334,7 @@ template <Graph G, class View>
   return {least_free(graph, v, colours, seen), seen.shows_others(number)};
 }
 
-/// The least colour that none of v's neighbours has. Throws TooManyColours.
+/// The lowest colour that no neighbour of v has. Throws TooManyColours.
 template <Graph G, class View>
 [[gnu::always_inline]] inline typename View::Word least_free(const G& graph, std::uint32_t v,
                                                              View colours) {

@@ -1,10 +1,10 @@
 /// @file
-/// Fronts: how threads share out the vertices of a graph that they colour side by side. Each has a
-/// part of its own, of which it takes windows one after the other.
-/// First-fit makes a pattern that grows from where it began, and two that began apart need more
-/// colours where they meet. Where neighbours have ids near each other, two threads therefore begin
-/// next to the same vertices, the seed, which are coloured first, and go away from it, one up and
-/// one down. Who has done all of its own helps another from the far end, where no pattern is yet.
+/// Fronts: how threads share the vertices of a graph in speculative colouring. Each has its own
+/// part and takes windows of it one after the other.
+/// First-fit makes a pattern that grows from its start; two patterns that started apart need more
+/// colours where they meet. If neighbours have nearby ids, two threads therefore start beside the
+/// same vertices, the seed, which is coloured first, and move away from it, one up and one down. A
+/// thread that has finished its part helps another from the far end, where no pattern is yet.
 #pragma once
 
 #include <algorithm>
@@ -25,23 +25,23 @@ struct Window {
   bool ascending = true;
 
   std::uint32_t size() const { return end - begin; }
-  /// The vertex that has its turn after i others.
+  /// The vertex after i others.
   std::uint32_t operator[](std::uint32_t i) const { return ascending ? begin + i : end - 1 - i; }
 };
 
-/// A part of the vertices, in windows. Thread safety: any thread; the counters carry numbers of
-/// windows only, so their orders are relaxed.
+/// A part of the vertices, cut into windows. Thread safety: any thread; the counters only carry
+/// window numbers, so their orders are relaxed.
 class Front {
  public:
-  /// Help begins only while at least `least_help` windows are left.
+  /// Others may help only while at least `least_help` windows are left.
   Front(const Window& part, std::uint32_t window_size, std::uint32_t least_help)
       : part_(part),
         window_size_(window_size),
         least_help_(least_help),
         left_(word(0, (part.size() + window_size - 1) / window_size)) {}
 
-  /// How many windows are left to help with. None if its own thread has not begun: where one thread
-  /// runs all parts in turn, each of them is begun where it should be.
+  /// Number of windows left to help with. 0 if its own thread has not begun: if one thread runs all
+  /// parts one by one, each starts at its proper end.
   std::uint32_t worth_help() const {
     const std::uint64_t left = left_.load(std::memory_order_relaxed);
     return begin(left) == 0 || size(left) < least_help_ ? 0 : size(left);
@@ -51,7 +51,8 @@ class Front {
     return take([](std::uint64_t left) { return left + word(1, 0); },
                 [this](std::uint64_t left) { return window(begin(left)); });
   }
-  /// That of who helps. In the opposite order, as the next window taken so is the one before.
+  /// The helper's next window, in the opposite order because its following window is the one
+  /// before.
   std::optional<Window> take_last() {
     return take([](std::uint64_t left) { return left - 1; },
                 [this](std::uint64_t left) {
@@ -62,7 +63,7 @@ class Front {
   }
 
  private:
-  // Numbers of windows [begin, end), in one word.
+  // Window numbers [begin, end), in one word.
   static constexpr std::uint64_t word(std::uint64_t begin, std::uint64_t end) {
     return begin << 32U | end;
   }
@@ -98,7 +99,7 @@ class Fronts {
   Fronts(const G& graph, std::uint32_t count)
       : window_size_(static_cast<std::uint32_t>(
             std::clamp<std::size_t>(graph.vertex_count() / (32 * std::size_t{count}), 64, 1024))) {
-    const std::uint64_t n = graph.vertex_count();  // which may be of a shorter type
+    const std::uint64_t n = graph.vertex_count();  // may be of a shorter type
     const auto border = [&](std::uint32_t front) {
       return static_cast<std::uint32_t>(n * std::min(front, count) / count);
     };
@@ -117,12 +118,12 @@ class Fronts {
     }
   }
 
-  /// To be coloured before any front.
+  /// Seeds are coloured before any front.
   const std::vector<Window>& seeds() const { return seeds_; }
   std::size_t count() const { return fronts_.size(); }
   Front& operator[](std::size_t front) { return fronts_[front]; }
 
-  /// The front with most left to do; null if none is worth help. Thread safety: any thread.
+  /// The front with most left; null if none is worth help. Thread safety: any thread.
   Front* slowest() {
     Front* slowest = nullptr;
     std::uint32_t most = 0;
@@ -132,7 +133,7 @@ class Fronts {
   }
 
  private:
-  /// Help that leaves a border between patterns is only for who has one in this many windows left.
+  /// Help that creates a border between patterns is allowed only with this many windows left.
   static constexpr std::uint32_t near_help = 2;
 
   void add(const Window& part, std::uint32_t help_share) {
@@ -153,7 +154,7 @@ class Fronts {
 
   std::uint32_t window_size_;
   std::vector<Window> seeds_;
-  std::deque<Front> fronts_;  // which do not move
+  std::deque<Front> fronts_;  // a deque, because they must not move
 };
 
 }  // namespace ductile::runtime::detail

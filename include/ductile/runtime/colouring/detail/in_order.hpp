@@ -1,9 +1,8 @@
 /// @file
-/// First-fit of vertices one after the other. In most orders each is a neighbour of the one before,
-/// whose colour, just stored, takes long to be read back: on Zen 5 some 15 cycles, more than all
-/// else that a vertex of six neighbours costs. So the newest vertex shows, until the next one's
-/// neighbours have been looked at, a mark where its colour will be, and who sees that mark takes
-/// the colour from a register.
+/// Sequential first-fit. In most orders each vertex is a neighbour of the previous one, whose
+/// colour, just stored, takes long to load back: some 15 cycles on Zen 5, more than the rest of the
+/// work for six neighbours. So the newest vertex shows a mark until the neighbours of the next one
+/// have been read; a vertex that sees the mark takes the colour from a register.
 #pragma once
 
 #include <bit>
@@ -20,31 +19,31 @@
 
 namespace ductile::runtime::detail {
 
-/// Who colours: the number of the mark that its vertices show at first, and of the one that the
-/// newest shows. If `number` is that of no mark, all marks count as those of others. After the
-/// window come the vertices that follow it.
+/// The colouring thread: the number of the mark that its vertices show at first, and of the one
+/// that the newest shows. If `number` is no mark's, all marks count as others'. The vertices after
+/// the window are next.
 struct Painter {
   std::uint32_t number, newest;
 };
 
-/// One that goes up, and is likely to go on elsewhere, at `next`.
+/// A painter that goes up and probably continues elsewhere, at `next`.
 struct LeavingPainter : Painter {
   std::uint32_t next;
 };
 
-/// One that calls what shows these bits others, and nothing else.
+/// A painter that treats exactly these bits as others.
 struct HeedingPainter : LeavingPainter {
   std::uint64_t heeded;
 };
 
-/// The rows of a window's vertices, up or down, and asks for those to come.
+/// The rows of a window's vertices, up or down; prefetches the next ones.
 template <Graph G, bool ascending, bool leaves>
 class RowsInOrder {
  public:
   RowsInOrder(const G& graph, Window window, std::uint32_t next)
       : graph_(in_registers(graph)), end_(window.end), jump_(next - window.end) {}
 
-  /// Whether v, which has its turn, has at least so many neighbours.
+  /// Does v, the current vertex, have at least this many neighbours?
   bool is_long(std::uint32_t v, std::size_t least) const {
     if constexpr (RowGraph<G>) return graph_.row(v).size() >= least;
     return false;
@@ -66,9 +65,9 @@ class RowsInOrder {
   std::uint32_t end_, jump_;
 };
 
-/// Where a row begins the one before ends: one address to find for each, not two; and what comes
-/// next in memory are rows to come. Who leaves asks in each step for a place as far from `next` as
-/// it is from the window's first vertex.
+/// A row ends where the next one begins: one address to load per vertex, not two; and the next data
+/// in memory are the next rows. A leaving painter prefetches, in each step, as far from `next` as
+/// the step is from the window's first vertex.
 template <PackedRowGraph G, bool ascending, bool leaves>
 class RowsInOrder<G, ascending, leaves> {
  public:
@@ -94,12 +93,12 @@ class RowsInOrder<G, ascending, leaves> {
   const std::uint32_t* other_edge(std::size_t v) const {
     return graph_.row_begin(ascending ? v + 1 : v);
   }
-  /// Of what may lie outside of the array, where it does nothing; a pointer may not go there, so
-  /// the address is computed as an integer. 1024 to 4096 bytes ahead take the same time.
+  /// May be called outside the array, where it does nothing; pointers may not go there, so the
+  /// address is computed as an integer. 1024 to 4096 bytes ahead perform the same.
   [[gnu::always_inline]] void prefetch(const std::uint32_t* edge) const {
     constexpr std::uintptr_t near = 1536;
     const std::uintptr_t ahead = leaves ? jump_ : ascending ? near : -near;
-    // Nothing is optimised away by this cast, as the check fears: it is only prefetched.
+    // The check warns of lost optimisations; here the pointer is only prefetched.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
     __builtin_prefetch(reinterpret_cast<const void*>(address_of(edge) + ahead));
   }
@@ -121,11 +120,11 @@ auto rows_in_order(const G& graph, Window window, P painter) {
   }
 }
 
-/// What is called for who sees others colours it, and returns what it shows from then on.
+/// True if the callback for a vertex that sees others colours it and returns what it then shows.
 template <class SawOthers>
 constexpr bool colours_itself = !std::is_void_v<std::invoke_result_t<SawOthers, std::uint32_t>>;
 
-/// The same as first_fit_in_order for a vertex of many neighbours; returns what it shows.
+/// first_fit_in_order() for a vertex with many neighbours; returns what it shows.
 template <RowGraph G, class Width, class SawOthers>
 std::uint8_t colour_of_many(const G& graph, std::uint32_t v, Colours<Width> colours,
                             std::uint32_t number, SawOthers saw_others) {
@@ -139,7 +138,7 @@ std::uint8_t colour_of_many(const G& graph, std::uint32_t v, Colours<Width> colo
   }
 }
 
-/// What the neighbours of v show, as bits of TakenColours.
+/// Bits of TakenColours that the neighbours of v show.
 template <class Rows, class Width>
 [[gnu::always_inline]] inline std::uint64_t shown_to(std::size_t v, Rows& rows,
                                                      Colours<Width> colours) {
@@ -148,17 +147,17 @@ template <class Rows, class Width>
     TakenColours<Colours<Width>> seen{bits};
     seen.add(colours[u]);
     bits = seen.bits;
-    asm("" : "+r"(bits));  // one after the other takes a register less
+    asm("" : "+r"(bits));  // sequential updates need one register less
   });
   return bits;
 }
 
-/// First-fit of the vertices of a window, in its order. Calls saw_others(v) if v sees one that is
-/// `waiting`, or has a mark of others; where that colours v itself, it is called for who has many
-/// neighbours, too, before they are looked at. Throws TooManyColours: the vertices before then show
-/// their colours, and those to come what they showed. Not inlined, so that the loop has the
-/// registers it needs; aligned, as on Zen 4 first-fit takes up to a third more time where the end
-/// of the loop happens to lie across two lines of the cache.
+/// First-fit of the vertices of a window, in its order. Calls saw_others(v) if v sees a neighbour
+/// that is `waiting` or has another's mark; if that colours v itself, it is also called for
+/// vertices with many neighbours, before reading them. Throws TooManyColours: vertices before then
+/// show their colours, later ones what they showed before. Not inlined, so that the loop gets its
+/// registers; aligned, because on Zen 4 first-fit takes up to a third longer if the loop's end
+/// crosses a cache line.
 template <bool ascending, class Width, Graph G, std::derived_from<Painter> P, class SawOthers>
 [[gnu::noinline, gnu::aligned(64)]] void first_fit_in_order(const G& graph, Colours<Width> colours,
                                                             Window window, P painter,
@@ -168,14 +167,14 @@ template <bool ascending, class Width, Graph G, std::derived_from<Painter> P, cl
   auto rows = rows_in_order<ascending>(graph, window, painter);
   const Word mark = Colours<Width>::mark(painter.newest);
   std::uint64_t mark_bit = std::uint64_t{1} << (mark & 63U);
-  asm("" : "+r"(mark_bit));  // as long as GCC knows it, it makes a branch of a look at it
+  asm("" : "+r"(mark_bit));  // hides the value from GCC, which would otherwise branch on it
   const std::uint32_t own = painter.number < Width::marks ? painter.newest : painter.number;
   std::uint64_t others = Seen::others(painter.number, own);
   if constexpr (std::same_as<P, HeedingPainter>) others = painter.heeded;
-  asm("" : "+r"(others));  // else GCC puts it together anew for each vertex
+  asm("" : "+r"(others));  // otherwise GCC recomputes it for each vertex
 
   Word newest = Colours<Width>::none;  // the colour of the newest vertex
-  std::uint64_t newest_bit = 0;        // what that is in TakenColours
+  std::uint64_t newest_bit = 0;        // the bit of `newest` in TakenColours
   const auto show_newest = [&](std::size_t v, bool is_first) {
     if (!is_first) colours.set(ascending ? v - 1 : v + 1, newest);
   };
@@ -215,10 +214,10 @@ template <bool ascending, class Width, Graph G, std::derived_from<Painter> P, cl
   colours.set(window[window.size() - 1], newest);
 }
 
-/// First-fit in order, on the caller.
+/// First-fit in order, on the calling thread.
 struct Serial {
   static constexpr std::uint32_t marks = 1;
-  static constexpr bool resumes = true;  ///< goes on after TooManyColours, given longer words
+  static constexpr bool resumes = true;  ///< continues after TooManyColours, given longer words
 
   template <class Width, Graph G>
   static void run(const Executor&, const G& graph, VertexSet vertices, Colours<Width> colours) {

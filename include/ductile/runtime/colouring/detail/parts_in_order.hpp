@@ -1,12 +1,12 @@
 /// @file
-/// First-fit in order where neighbours have ids near each other, on many threads: each has a part
-/// of the vertices, of which it colours those of later parts as if the earlier were not there. That
-/// is a guess, which errs near the border and less and less away from it, unless the graph is a
-/// grid. Then each vertex with an earlier neighbour that lies in another part, or has changed, is
-/// coloured again in order, until all have the colours that one thread gives.
-/// Where results may depend on timing, only those whose colours clash get others, by the scheme
-/// with one barrier a round (speculative_colouring.hpp), if that takes no more than one colour more
-/// than the first part, whose colours are those of one thread.
+/// First-fit in order on many threads, for graphs whose neighbours have nearby ids: each thread
+/// colours a part of the vertices as if earlier parts did not exist. This guess is wrong near the
+/// border, and less and less so away from it, unless the graph is a grid. Then each vertex with an
+/// earlier neighbour that is in another part or has changed is recoloured in order, until all have
+/// the serial colours.
+/// If results may depend on timing, only clashing vertices get new colours, by the scheme with one
+/// barrier per round (speculative_colouring.hpp), provided that this needs at most one colour more
+/// than the first part, whose colours are serial.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 
 namespace ductile::runtime::detail {
 
-/// The colours of vertices before v; none of others.
+/// The colours of vertices before v; `none` for others.
 template <class Width>
 class BeforeVertex {
  public:
@@ -35,7 +35,7 @@ class BeforeVertex {
   static constexpr std::uint32_t marks = Width::marks;
 
   BeforeVertex(Colours<Width> colours, std::uint32_t v) : colours_(colours), v_(v) {}
-  /// Without a branch, which would be hard to predict.
+  /// Branch-free, because a branch would be hard to predict.
   Word operator[](std::uint32_t u) const {
     const auto is_later = static_cast<Word>(u >= v_);
     return static_cast<Word>(colours_[u] | (is_later * Colours<Width>::none));
@@ -73,7 +73,7 @@ class PartsRun {
     UnsetVector<std::uint32_t> unsure;
     for (const Part& part : parts_)
       unsure.insert(unsure.end(), part.unsure.begin(), part.unsure.end());
-    std::vector<std::uint64_t> stale(n_ / 64 + 1);  // bits of vertices to be looked at again
+    std::vector<std::uint64_t> stale(n_ / 64 + 1);  // bits of vertices to be checked again
     for (const std::uint32_t v : unsure) mark(stale, v);
     if (executor_.deterministic() || !takes_few_colours(std::move(unsure), stale)) repair(stale);
   }
@@ -81,7 +81,8 @@ class PartsRun {
  private:
   static constexpr std::uint32_t newest_mark = 0, elsewhere_mark = 1;
   struct alignas(128) Part {
-    std::vector<Word> words;            // [vertex], as its thread sees them; of the first, none
+    std::vector<Word> words;            // [vertex], as its thread sees them; empty for the first
+                                        // part
     std::vector<std::uint32_t> unsure;  // have neighbours in earlier parts
     Word greatest = 0;
   };
@@ -115,7 +116,7 @@ class PartsRun {
     bits[v / 64] |= std::uint64_t{is_marked} << (v % 64);
   }
 
-  /// Colours anew what clashes. If that takes too many colours, notes what is stale then.
+  /// Recolours clashing vertices. If that takes too many colours, marks those that are stale.
   bool takes_few_colours(UnsetVector<std::uint32_t> unsure, std::vector<std::uint64_t>& stale) {
     recolour_clashing<Recolouring::at_once>(executor_, graph_, unsure, colours_);
     const Word few = parts_[0].greatest + 1;
@@ -132,7 +133,7 @@ class PartsRun {
     graph_.for_each_neighbour(v, [&](std::uint32_t u) { mark(stale, u, u > v); });
   }
 
-  /// Looks at one after the other, until so many are stale that to colour the rest is faster.
+  /// Checks stale vertices one by one, until so many are stale that colouring the rest is faster.
   void repair(std::vector<std::uint64_t>& stale) {
     const std::uint32_t begin = window(0).end;
     std::size_t looks = 0;

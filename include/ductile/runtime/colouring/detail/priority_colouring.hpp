@@ -1,9 +1,9 @@
 /// @file
 /// First-fit in order of priority, on many threads (Jones and Plassmann, SIAM J. Sci. Comput. 14,
-/// 1993): a vertex waits for its uncoloured neighbours of higher priority and ignores those of
-/// lower, which wait for it. It is counted whom it waits for; the last of them hands it on, so that
-/// a neighbour is looked at twice, however long the wait is. A thread goes on with the vertices it
-/// has set free itself, but for more than it can take, which all share in the next round.
+/// 1993): a vertex waits for its uncoloured neighbours of higher priority and ignores lower ones,
+/// which wait for it. It counts the neighbours it waits for; the last of them releases it, so each
+/// neighbour is read twice, however long the wait. A thread goes on with the vertices it has
+/// released, except for those beyond its capacity, which all threads share in the next round.
 /// The result is that of serial first-fit in descending order of priority.
 #pragma once
 
@@ -26,13 +26,13 @@
 
 namespace ductile::runtime::detail {
 
-/// An object and not a function, so that it is inlined where it is handed on.
+/// An object rather than a function, so that it is inlined when passed on.
 struct Outranks {
   bool operator()(std::uint32_t u, std::uint32_t v) const { return mix32(u) < mix32(v); }
 };
 inline constexpr Outranks outranks;
 
-/// For how many neighbours each vertex waits, by vertex.
+/// Number of neighbours that each vertex waits for, by vertex.
 class AwaitedByVertex {
  public:
   AwaitedByVertex(std::size_t vertex_count, std::span<const std::uint32_t>)
@@ -44,8 +44,8 @@ class AwaitedByVertex {
   std::unique_ptr<std::uint32_t[]> count_;
 };
 
-/// The same where few of the vertices are given, in ascending order, and hardly any is a neighbour
-/// of another: as little memory as they need, and a search for those that wait.
+/// The same for a few of the vertices, in ascending order and hardly ever neighbours: minimal
+/// memory, with a search for those that wait.
 class AwaitedByPlace {
  public:
   AwaitedByPlace(std::size_t, std::span<const std::uint32_t> vertices)
@@ -61,7 +61,7 @@ class AwaitedByPlace {
   std::vector<std::uint32_t> count_;
 };
 
-/// Takes the colours of vertices away and gives them new ones. `before(u, v)` is a strict order.
+/// Removes the colours of vertices and gives them new ones. `before(u, v)` is a strict order.
 template <class Awaited, class Width, Graph G, class Before>
 class PriorityRun {
  public:
@@ -91,7 +91,7 @@ class PriorityRun {
   }
 
  private:
-  /// Of few vertices few are handed out at once, so that each of many threads gets some.
+  /// Small grains for few vertices, so that each thread gets some.
   template <class Body>
   void for_each(std::span<const std::uint32_t> vertices, Body body) const {
     const std::size_t grain = std::clamp<std::size_t>(vertices.size() / 512, 8, 64);
@@ -103,8 +103,8 @@ class PriorityRun {
                  {.grain = grain, .serial_below = 64});
   }
 
-  /// Tells who waits for v as often as v will hand on to them: its row may repeat a neighbour more
-  /// often than that one's repeats v. If no neighbour waits at all, v is coloured at once.
+  /// Counts v at those that wait for it as often as v will release them: its row may repeat a
+  /// neighbour more often than that neighbour's repeats v. If none waits, colours v at once.
   void colour_or_announce(std::uint32_t v) {
     bool missed = false;
     TakenColours<Colours<Width>> seen;
@@ -118,7 +118,7 @@ class PriorityRun {
     if (!missed) colours_.set(v, least_free(graph_, v, colours_, seen));
   }
 
-  /// Colours v, and whom it sets free.
+  /// Colours v and the vertices it releases.
   void colour_from(std::uint32_t v) {
     std::array<std::uint32_t, 64> stack;
     std::size_t size = 0;
@@ -136,8 +136,8 @@ class PriorityRun {
     }
   }
 
-  /// A neighbour of u has its colour; true if it was the last that u waited for. Each sees what
-  /// those before it released, so that the last one knows the colours of all.
+  /// Notes that a neighbour of u has its colour; true if u waited for no other. Each call sees
+  /// earlier releases, so the last one knows the colours of all.
   bool hand_on(std::uint32_t u) {
     return std::atomic_ref(awaited_[u]).fetch_sub(1, std::memory_order_acq_rel) == 1;
   }
@@ -147,8 +147,8 @@ class PriorityRun {
   std::span<const std::uint32_t> vertices_;
   Colours<Width> colours_;
   const Before& before_;
-  Awaited awaited_;               // [vertex], neighbours it waits for; of those given
-  Worklist<std::uint32_t> free_;  // wait for nobody
+  Awaited awaited_;               // counts of neighbours that the given vertices wait for
+  Worklist<std::uint32_t> free_;  // vertices that wait for nobody
 };
 
 template <class Awaited = AwaitedByVertex, class Width, Graph G, class Before>
@@ -166,7 +166,7 @@ inline std::vector<std::uint32_t> listed(const VertexSet& vertices) {
 
 struct ByPriority {
   static constexpr std::uint32_t marks = 0;
-  static constexpr bool bound_by_memory = true;  ///< has no use for words that are read faster
+  static constexpr bool bound_by_memory = true;  ///< faster words would not help
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet vertices,

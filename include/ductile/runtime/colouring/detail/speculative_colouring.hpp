@@ -1,10 +1,10 @@
 /// @file
-/// Parallel colourings that speculate: every vertex takes the least colour it sees free, without
-/// waiting for anybody; neighbours that did so at the same moment may clash, and one of them is
-/// coloured again. Rounds go on until there is no clash. The colours depend on timing.
-/// Threads take windows of vertices, each from a part of its own while that lasts, and mark them
-/// before they start. Of two that clash one at least saw the other's mark, as each thread marks
-/// before it reads: only who saw a mark is looked at again.
+/// Speculative parallel colouring: every vertex takes the lowest colour it sees free, without
+/// waiting; neighbours coloured at the same moment may clash, and then one of them is recoloured.
+/// Rounds continue until there is no clash. The colours depend on timing.
+/// Threads take windows of vertices, from their own part as long as it lasts, and mark them first.
+/// Of two vertices that clash, at least one saw the other's mark, because threads mark before they
+/// read: so only vertices that saw a mark are checked again.
 #pragma once
 
 #include <algorithm>
@@ -26,19 +26,19 @@ namespace ductile::runtime::detail {
 
 constexpr LoopOptions speculative_loop{.grain = 256, .serial_below = 1024};
 
-/// As many threads have two marks of their own, for their windows and for the newest vertex; more
-/// look again at all that were coloured before a neighbour. The more marks, the sooner a colour is
-/// beyond TakenColours.
+/// Up to this many threads have two marks of their own, for their windows and for the newest
+/// vertex; beyond it, threads recheck all vertices coloured before a neighbour. More marks leave
+/// fewer colours to TakenColours.
 constexpr std::uint32_t speculative_marks = 16;
 
-/// What words of a byte become when short ones do not have enough colours.
+/// Words of a byte that replace short ones when those do not have enough colours.
 template <class Width>
 using LongOf = std::conditional_t<sizeof(typename Width::Word) == 1, OneByte<Width::marks>, Width>;
 
-/// The first round, which colours all vertices of the graph. Where short words do not have enough
-/// colours, it goes on with long ones. Who still reads those as short ones takes them for lower
-/// colours, or for marks: it may pass over colours that are free, or find too soon that short words
-/// do not do, but takes none that a neighbour has.
+/// The first round, which colours all vertices. If short words do not have enough colours, it
+/// continues with long ones. Threads that still read those as short words take them for lower
+/// colours or for marks: they may skip free colours, or find too early that short words overflow,
+/// but never take a neighbour's colour.
 template <class Width, Graph G>
 class FirstRound {
  public:
@@ -47,7 +47,7 @@ class FirstRound {
   FirstRound(const Executor& executor, const G& graph, Colours<Width> colours)
       : executor_(executor), graph_(graph), colours_(colours), suspects_(executor) {}
 
-  /// Returns vertices in any order; of any two that clash, one at least is among them.
+  /// Returns vertices in any order; of any two that clash, at least one is included.
   UnsetVector<std::uint32_t> run() {
     Fronts fronts(graph_, static_cast<std::uint32_t>(executor_.threads()));
     parallel_for(executor_, fronts.seeds().size(),
@@ -67,11 +67,11 @@ class FirstRound {
   void colour(Window window) {
     const auto mark = Colours<Width>::mark(number());
     colours_.fill(window.begin, window.end, mark);
-    // Pairs with that of any other window: one of the two sees the other's marks, or its colours.
+    // Pairs with the fence of any other window: one of the two sees the other's marks or colours.
     std::atomic_thread_fence(std::memory_order_seq_cst);
     std::uint32_t done = 0;
     if constexpr (!std::is_same_v<Width, Long>) {
-      // Relaxed: whoever has not heard of it finds out for itself.
+      // Relaxed: a thread that does not see it yet finds out for itself.
       if (!long_.load(std::memory_order_relaxed)) {
         try {
           return colour_in_order<Width>(window, 0);
@@ -84,11 +84,11 @@ class FirstRound {
     colour_in_order<Long>(window, done);
   }
 
-  /// The vertices of a window but those that are done.
+  /// Colours the vertices of a window except the first `done`.
   template <class As>
   void colour_in_order(Window window, std::uint32_t done) {
     (window.ascending ? window.begin : window.end) += window.ascending ? done : -done;
-    // Threads that share a mark cannot tell theirs from the other's.
+    // Threads that share a mark cannot tell their vertices from the other's.
     const bool alone = executor_.threads() <= static_cast<int>(speculative_marks);
     const Painter painter{alone ? number() : Width::marks, number() + speculative_marks};
     const auto suspect = [this](std::uint32_t v) { this->suspect(v); };
@@ -109,12 +109,12 @@ class FirstRound {
   const Executor& executor_;
   const G& graph_;
   Colours<Width> colours_;
-  std::atomic<bool> long_{false};  // there are more colours than short words have
+  std::atomic<bool> long_{false};  // there are more colours than short words can hold
   Worklist<std::uint32_t> suspects_;
 };
 
-/// Whom a vertex must differ from to be left as it is. Any may clash with a suspect of the first
-/// round, which knows of it alone; later both are listed, and the one of lower id stays.
+/// The neighbours that a vertex must differ from to keep its colour. In the first round any,
+/// because only one of two that clash may be suspect; later both are listed and the lower id stays.
 enum class Rivals { all, lower };
 
 template <class Width, Graph G>
@@ -128,18 +128,17 @@ bool clashes(const G& graph, std::uint32_t v, const Colours<Width>& colours, Riv
   return clash != 0;
 }
 
-/// Colours v anew, which has no colour meanwhile: it may be its own neighbour.
+/// Recolours v, which is uncoloured meanwhile because it may be its own neighbour.
 template <class Width, Graph G>
 void colour_again(const G& graph, std::uint32_t v, const Colours<Width>& colours) {
   colours.set(v, Colours<Width>::waiting);
   colours.set(v, least_free(graph, v, colours));
 }
 
-/// When those that clash get other colours.
+/// When clashing vertices get other colours.
 enum class Recolouring { at_once, when_all_are_found };
 
-/// Gives other colours to vertices of a list until none clashes. Of any two that clash, one at
-/// least is on it.
+/// Recolours vertices of a list until none clashes. Of any two that clash, at least one is listed.
 template <Recolouring when, class Width, Graph G>
 void recolour_clashing(const Executor& executor, const G& graph, UnsetVector<std::uint32_t> list,
                        const Colours<Width>& colours) {
@@ -164,7 +163,7 @@ void recolour_clashing(const Executor& executor, const G& graph, UnsetVector<std
 template <Recolouring when>
 struct Speculation {
   static constexpr std::uint32_t marks = 2 * speculative_marks;
-  static constexpr bool lengthens = true;  ///< given short words, goes on with long ones
+  static constexpr bool lengthens = true;  ///< continues with long words after short ones
 
   template <class Width, Graph G>
   static void run(const Executor& executor, const G& graph, VertexSet, Colours<Width> words) {
@@ -176,8 +175,8 @@ struct Speculation {
 /// The scheme of Catalyurek et al.: colour, barrier, find the clashes, barrier.
 using TwoPhase = Speculation<Recolouring::when_all_are_found>;
 
-/// The scheme of Rokos et al.: who finds a clash recolours at once and is looked at again in the
-/// next round; a barrier separates rounds, none is within.
+/// The scheme of Rokos et al.: a vertex that finds a clash recolours at once and is checked again
+/// in the next round; there is one barrier, between rounds.
 using DetectAgain = Speculation<Recolouring::at_once>;
 
 }  // namespace ductile::runtime::detail

@@ -1,9 +1,8 @@
 /// @file
-/// Together: the colours of first-fit in order, on many threads. How the order lies in the graph
-/// decides by what means, from a sample of vertices: in short windows where neighbours are far
-/// apart, in planes where it is a 3D grid in natural order, in parts where they are near each
-/// other. In any other order vertices would wait for each other in a chain, and one thread does it
-/// alone.
+/// Together: the colours of serial first-fit, on many threads. A sample of vertices shows how the
+/// order lies in the graph: short windows are used if neighbours are far apart, planes if it is a
+/// 3D grid in natural order, parts if neighbours are close. In any other order vertices would wait
+/// for each other in a chain, so one thread does all.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +18,13 @@
 
 namespace ductile::runtime::detail {
 
-/// What a colouring in order is shared out as.
+/// How a colouring in order is divided.
 struct Shares {
   enum Kind { none, windows, parts } kind = none;
   std::uint32_t window = 0;  ///< vertices in each
 };
 
-/// A look at the order of a graph that is not small.
+/// Examines the order of a graph that is not small.
 template <Graph G>
 class OrderOfGraph {
  public:
@@ -38,12 +37,12 @@ class OrderOfGraph {
     if (entries_of_hubs_ > entries_ / 8) return {};
     if (chained_ <= sampled / 8) return {Shares::windows, short_window};
     if (const std::size_t row = row_of_grid(); row > 0) {
-      // A look at few neighbours takes less than the colours of the row before take to come from
-      // another core, so planes are shared out, and rows are not.
+      // Reading few neighbours takes less time than fetching the colours of the previous row from
+      // another core, so planes are shared, and rows are not.
       const bool pays = row >= least_row && row * 4 * threads_ <= n_ && entries_ >= 10 * sampled;
       return pays ? Shares{Shares::windows, static_cast<std::uint32_t>(row)} : Shares{};
     }
-    // Repair in order takes longer than clashes do.
+    // Repair in order takes longer than resolving clashes.
     const std::size_t share = executor_.deterministic() ? 64 : 16;
     return crossing_ <= sampled / share ? Shares{Shares::parts} : Shares{};
   }
@@ -72,7 +71,7 @@ class OrderOfGraph {
                               [&](std::uint32_t u) { visit(std::size_t{u}); });
   }
 
-  /// How far before v the nearest earlier neighbour is; more than all if there is none.
+  /// Distance from v back to its nearest earlier neighbour; more than n if there is none.
   std::size_t gap_before(std::size_t v) const {
     std::size_t gap = n_ + 1;
     each(v, [&](std::size_t u) {
@@ -81,16 +80,16 @@ class OrderOfGraph {
     return gap;
   }
 
-  /// How far before v the farthest earlier neighbour is.
+  /// Distance from v back to its farthest earlier neighbour.
   std::size_t reach_before(std::size_t v) const {
     std::size_t reach = 0;
     each(v, [&](std::size_t u) { reach = std::max(reach, u < v ? v - u : 0); });
     return reach;
   }
 
-  /// The vertices in a row of a grid, or in a plane, whichever is more; 0 if it is no grid. Where
-  /// one begins, the vertex before is no neighbour; nor are, where a plane does, those since the
-  /// row before. Neighbours reach as far everywhere, and farther than a row.
+  /// Length of a grid's rows, or of its planes if larger; 0 if it is no grid. Where a row begins,
+  /// the previous vertex is no neighbour; where a plane begins, nor is any vertex of the previous
+  /// row. All neighbours reach equally far back, farther than a row.
   std::size_t row_of_grid() const {
     std::array<std::size_t, sampled> reach_of;
     std::transform(sample_.begin(), sample_.end(), reach_of.begin(),
@@ -106,7 +105,7 @@ class OrderOfGraph {
     return row > 1 && is_grid ? row : 0;
   }
 
-  /// Whether v's earlier neighbours are in its own row or nearly all of a row before it.
+  /// Are v's earlier neighbours in its own row, or nearly a whole row before it?
   bool follows_row_before(std::size_t v, std::size_t row) const {
     bool follows = true;
     each(v, [&](std::size_t u) {
@@ -119,8 +118,8 @@ class OrderOfGraph {
   const G& graph_;
   std::size_t n_, threads_ = static_cast<std::size_t>(executor_.threads());
   std::array<std::size_t, sampled> sample_{};      // vertices
-  std::size_t entries_ = 0, entries_of_hubs_ = 0;  // of the sample's rows
-  std::size_t chained_ = 0;                        // wait for one just before
+  std::size_t entries_ = 0, entries_of_hubs_ = 0;  // in the sample's rows
+  std::size_t chained_ = 0;                        // wait for one just before them
   std::size_t crossing_ = 0;                       // have neighbours in another thread's part
 };
 

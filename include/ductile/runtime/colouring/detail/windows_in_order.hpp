@@ -1,10 +1,10 @@
 /// @file
-/// First-fit in order on many threads, with the colours that one thread gives: threads take windows
-/// of vertices one after the other, and a vertex waits for neighbours before it that are still to
-/// be coloured, in windows of other threads. A window is marked before the next one can be taken,
-/// so that a look at a vertex's neighbours shows whether it has to wait; see Words.
-/// In a random order hardly any vertex waits for one in a short window. In the rows of a grid a
-/// window is a row: its thread stays some vertices behind the one that has the row before.
+/// First-fit in order on many threads, with the serial colours: threads take windows of vertices
+/// one after the other, and a vertex waits for earlier neighbours that are still uncoloured in
+/// other threads' windows. A window is marked before the next one can be taken, so reading a
+/// vertex's neighbours shows whether it has to wait; see Words.
+/// In a random order hardly any vertex waits for one in a short window. In a grid a window is a
+/// row: its thread stays some vertices behind the thread of the previous row.
 #pragma once
 
 #include <algorithm>
@@ -22,13 +22,13 @@
 
 namespace ductile::runtime::detail {
 
-/// A window is taken when the one so many before it is done. There are twice as many marks, so that
-/// those of earlier windows are not those of later ones.
+/// A window is taken when the one this many before it is done. There are twice as many marks, so
+/// that marks of earlier and later windows differ.
 constexpr std::uint32_t open_windows = 8;
 constexpr std::uint32_t window_marks = 2 * open_windows;
 constexpr std::uint32_t short_window = 256;
 
-/// Colours all vertices of the graph in windows of this many.
+/// Colours all vertices of the graph in windows of this size.
 template <class Width, Graph G>
 class WindowsRun {
  public:
@@ -54,7 +54,7 @@ class WindowsRun {
   }
 
  private:
-  /// For what will never be coloured, as its thread has failed.
+  /// Thrown by a wait for vertices whose thread has failed.
   struct WaitsInVain {};
 
   Window window(std::uint32_t number) const {
@@ -62,11 +62,11 @@ class WindowsRun {
     return {begin, begin + std::min(size_, n_ - begin)};
   }
 
-  /// The number of the next window, which is marked then; `count_` if there is none.
+  /// The number of the next window, which it marks; `count_` if there is none.
   std::uint32_t take() {
     constexpr std::uint64_t being_marked = 1;
     std::uint64_t next = next_.load(std::memory_order_relaxed);
-    // Pairs with the store below: whoever takes a window sees the marks of all before it.
+    // Pairs with the store below: a thread that takes a window sees the marks of all before it.
     while ((next & being_marked) != 0 ||
            !next_.compare_exchange_weak(next, next | being_marked, std::memory_order_acquire)) {
       if (failed_.load(std::memory_order_relaxed)) return count_;
@@ -82,7 +82,7 @@ class WindowsRun {
     return number;
   }
 
-  /// In pieces, before each of which it asks for the colours of the row before, which another core
+  /// Works in pieces and prefetches before each the colours of the previous row, which another core
   /// has just written.
   void colour(std::uint32_t number) {
     using Seen = TakenColours<Colours<Width>>;
@@ -102,7 +102,7 @@ class WindowsRun {
     }
   }
 
-  /// Where the thread is likely to be when it is done with a piece.
+  /// The probable next vertex of the thread after a piece.
   std::uint32_t after(const Window& piece) const {
     constexpr std::uint32_t near = 64;
     const auto threads = static_cast<std::uint32_t>(executor_.threads());
@@ -117,7 +117,7 @@ class WindowsRun {
       __builtin_prefetch(words + v);
   }
 
-  /// Colours v when all neighbours before it have colours, and returns its own.
+  /// Colours v when all earlier neighbours have colours; returns its colour.
   [[gnu::noinline]] Word colour_late(std::uint32_t v) {
     wait_for_earlier(v);
     const Word colour = least_free(graph_, v, colours_);
@@ -125,8 +125,8 @@ class WindowsRun {
     return colour;
   }
 
-  /// A thread that waits in a row lets the one before go far ahead, so as not to wait for each of
-  /// its vertices. It looks at the first word of a line, as looks slow down whoever writes to one.
+  /// A thread that waits within a row lets the previous one get far ahead, so as not to wait for
+  /// every vertex. It polls the first word of a cache line, because polling slows down its writer.
   void wait_for_earlier(std::uint32_t v) const {
     graph_.for_each_neighbour(v, [&](std::uint32_t u) {
       if (u >= v || has_colour(u)) return;
