@@ -153,7 +153,7 @@ def quoted(text):
 
 def terminal(width, height):
     return (f"set terminal svg size {width},{height} noenhanced font 'sans,12' background rgb 'white'\n"
-            "set grid lc rgb '#dddddd'\n")
+            "set grid lt 1 lc rgb '#dddddd'\n")
 
 
 def styles(names):

@@ -236,14 +236,14 @@ def details(contest):
 def warn_of_doubts(page, sections):
     contests = [contest for section in sections.values() for contest in section]
     few = [c for c in contests if not all(f.sound() for f in c.figures + ([c.floor] if c.floor else []))]
-    below = [f"{c.subject}/{c.case}/{f.candidate} on {c.threads} ({time_words(f.median)}, floor "
-             f"{time_words(c.floor.median)})" for c in contests for f in c.figures if f.below_floor]
+    below = [[f"{c.subject}/{c.case}/{f.candidate}", c.threads, time_words(f.median), time_words(c.floor.median)]
+             for c in contests for f in c.figures if f.below_floor]
     if few:
         page.warn(f"In {len(few)} of {len(contests)} comparisons a candidate has fewer than {ENOUGH} samples that "
                   "count, or samples at mixed distances.")
     if below:
-        page.warn("Below the floor by more than the spread, so the floor or the measurement is wrong: " +
-                  "; ".join(below) + ".")
+        page.warn("These are below their floor by more than the spread: either the floor or the measurement is wrong.")
+        page.table(Table(["below the floor", "threads", "median", "floor"], below))
 
 
 def show_section(page, subject, threads, contests, style_of):

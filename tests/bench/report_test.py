@@ -269,7 +269,7 @@ class Contests(unittest.TestCase):
             sections, _ = runtime.hold_contests(five([near("a.x", ns), near("b.y", 105), near("floor", 100)], apart))
             shown = page.Page("x")
             runtime.warn_of_doubts(shown, sections)
-            self.assertEqual("subject/case/a.x on 2" in shown.body, wrong, (ns, apart))
+            self.assertEqual("<td>subject/case/a.x</td><td>2</td>" in shown.body, wrong, (ns, apart))
             (contests,) = sections.values()
             self.assertEqual(" below!" in runtime.overview(contests).html(), wrong and ns < 105, (ns, apart))
 

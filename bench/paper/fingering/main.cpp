@@ -173,7 +173,7 @@ class Show {
 
  private:
   double reach(std::size_t row) const {
-    return history_.row(row)[3].number - history_.row(row)[2].number;
+    return history_.row(row)[3] - history_.row(row)[2];
   }
 
   void record(Simulation& run) {

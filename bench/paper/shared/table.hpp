@@ -18,6 +18,7 @@ class Table {
   void add(std::vector<double> row);
 
   std::size_t size() const { return rows_.size(); }
+  const std::vector<double>& row(std::size_t index) const { return rows_[index]; }
 
   /// Values with six digits, columns as wide as needed.
   std::string text() const;
