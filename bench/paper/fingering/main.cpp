@@ -172,9 +172,7 @@ class Show {
   }
 
  private:
-  double reach(std::size_t row) const {
-    return history_.row(row)[3] - history_.row(row)[2];
-  }
+  double reach(std::size_t row) const { return history_.row(row)[3] - history_.row(row)[2]; }
 
   void record(Simulation& run) {
     const Fingers now = fingers(run);
