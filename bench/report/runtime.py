@@ -188,8 +188,9 @@ def overview(contests):
             row[figure.candidate] = ratio_words(figure.over_best) + contest.mark(figure)
             ratios[figure.candidate].append(figure.over_best)
         table.rows.append([contest.case, *row.values(), floor_words(contest.figures[0])])
-    means = [f"{ratio_words(statistics.geometric_mean(ratios[name]))}" +
-             (f" ({len(ratios[name])} of {len(contests)} cases)" if len(ratios[name]) < len(contests) else "") for name in names]
+    means = [ratio_words(statistics.geometric_mean(ratios[name])) +
+             (f" ({len(ratios[name])} of {len(contests)} cases)" if len(ratios[name]) < len(contests) else "")
+             for name in names]
     table.rows.append(["geometric mean", *means, ""])
     return table
 

@@ -55,7 +55,8 @@ class InFolder(unittest.TestCase):
 
 class Words(unittest.TestCase):
     def test_times_and_ratios_have_three_digits(self):
-        for ns, words in (0.5, "0.50 ns"), (12.34, "12.3 ns"), (999.9, "1.00 us"), (1234567, "1.23 ms"), (2e9, "2.00 s"):
+        for ns, words in (0.5, "0.50 ns"), (12.34, "12.3 ns"), (999.9, "1.00 us"), \
+                (1234567, "1.23 ms"), (2e9, "2.00 s"):
             self.assertEqual(page.time_words(ns), words)
         for ratio, words in ((12345, "12345"), (2.5e6, "2.50 million"), (3e12, "3000 billion"), (0.87, "0.87"),
                              (0.000123, "0.00012")):
@@ -126,8 +127,8 @@ def benchmark(name="loops/rising/gomp.static/threads:2/real_time", **more):
 
 def google(*benchmarks):
     """What Google Benchmark 1.7 writes, shortened."""
-    return {"context": {"date": "2026-11-21", "host_name": "secret", "num_cpus": 2, "load_avg": [1.5], "extent": "quick",
-                        "caches": [{"type": "Data", "level": 1, "size": 32768, "num_sharing": 1}]},
+    return {"context": {"date": "2026-11-21", "host_name": "secret", "num_cpus": 2, "load_avg": [1.5],
+                        "extent": "quick", "caches": [{"type": "Data", "level": 1, "size": 32768, "num_sharing": 1}]},
             "benchmarks": list(benchmarks)}
 
 
@@ -175,8 +176,8 @@ class GoogleBenchmark(InFolder):
         """Files that break off at every fifth byte, and others that may be in a folder."""
         whole = json.dumps(google(benchmark(), benchmark("BM_other")))
         wrong = [whole[:size] for size in range(0, len(whole), 5)]
-        wrong += ["[1, 2", "[]", "{}", "7", "null", '{"benchmarks": [], "contexts": 1}', '{"benchmarks": 3, "context": {}}',
-                  '{"benchmarks": [7], "context": {}}', '{"benchmarks": [{}], "context": {}}',
+        wrong += ["[1, 2", "[]", "{}", "7", "null", '{"benchmarks": [], "contexts": 1}',
+                  '{"benchmarks": 3, "context": {}}', '{"benchmarks": [7], "context": {}}', '{"benchmarks": [{}], "context": {}}',
                   whole.replace('"us"', '"years"'), whole.replace("150.0", '"x"')]
         for text in wrong:
             with self.assertRaises(page.BadFile, msg=text) as caught:
@@ -215,8 +216,8 @@ class Contests(unittest.TestCase):
         self.assertEqual([f.on_par for f in contest.figures], [True, True, False])
 
     def test_serial_candidates_take_part_at_every_number_of_threads(self):
-        sections, _ = runtime.hold_contests(five([near("a.serial", 100, 1), near("b.team", 150, 1), near("b.team", 110, 2),
-                                                  near("floor", 40, 1), near("floor", 60, 2)]))
+        sections, _ = runtime.hold_contests(five([near("a.serial", 100, 1), near("b.team", 150, 1),
+                                                  near("b.team", 110, 2), near("floor", 40, 1), near("floor", 60, 2)]))
         self.assertEqual(list(sections), [("subject", 1), ("subject", 2)])
         (two,) = sections["subject", 2]
         self.assertEqual([(f.candidate, f.threads) for f in two.figures], [("a.serial", 1), ("b.team", 2)])
@@ -264,8 +265,8 @@ class Contests(unittest.TestCase):
         self.assertGreater(decided, 10)
 
     def test_what_is_below_its_floor_is_told(self):
-        for ns, apart, wrong in ((80, 0.01, True), (80, 0.3, False), (97, 0.01, True), (99, 0.01, False), (100, 0, False),
-                                 (99.9, 0, True), (120, 0.01, False), (0.001, 0.01, True)):
+        for ns, apart, wrong in ((80, 0.01, True), (80, 0.3, False), (97, 0.01, True), (99, 0.01, False),
+                                 (100, 0, False), (99.9, 0, True), (120, 0.01, False), (0.001, 0.01, True)):
             sections, _ = runtime.hold_contests(five([near("a.x", ns), near("b.y", 105), near("floor", 100)], apart))
             shown = page.Page("x")
             runtime.warn_of_doubts(shown, sections)
@@ -281,7 +282,8 @@ class Contests(unittest.TestCase):
 
     def test_overview_has_means_and_libraries_their_best(self):
         samples = five([near("a.x", 300), near("a.z", 100), near("b.y", 200), near("floor", 50),
-                        near("a.x", 800, case="other"), near("b.y", 200, case="other"), near("floor", 50, case="other")])
+                        near("a.x", 800, case="other"), near("b.y", 200, case="other"),
+                        near("floor", 50, case="other")])
         (contests,) = runtime.hold_contests(samples)[0].values()
         self.assertEqual(runtime.overview(contests).rows,
                          [["case", "3.00", "1.00 ★", "2.00", "2.00"], ["other", "4.00", "", "1.00 ★", "4.00"],
@@ -460,9 +462,12 @@ class ManyCores(InFolder):
         status, said, errors = run("many_cores", self.folder, "1,2,4")
         self.assertEqual((status, errors), (0, ""))
         lines = said.splitlines()
-        self.assertEqual(lines[:2], ["| what | input | serial, s | 1 thread, s | 2 | 4 | efficiency |", "|---" * 7 + "|"])
-        for line in ("| adaptation | x | - | 5 | 2.00 | 2.00 | 0.50 |", "| adaptation by colours | x | - | 8 | - | - | - |",
-                     "| adaptation, NOT VALID | y | - | 5 | - | - | - |", "| adaptation, swap | x | - | 1 | 2.00 | 2.00 | 0.50 |",
+        self.assertEqual(lines[:2], ["| what | input | serial, s | 1 thread, s | 2 | 4 | efficiency |",
+                                     "|---" * 7 + "|"])
+        for line in ("| adaptation | x | - | 5 | 2.00 | 2.00 | 0.50 |",
+                     "| adaptation by colours | x | - | 8 | - | - | - |",
+                     "| adaptation, NOT VALID | y | - | 5 | - | - | - |",
+                     "| adaptation, swap | x | - | 1 | 2.00 | 2.00 | 0.50 |",
                      "| matching | grid-10 | 0.25 | 0.5 | - | 2.00 | 0.50 |",
                      "| colouring, automatic | g | 0.003 | 0.004 | 4.00 | - | - |"):
             self.assertIn(line, lines)
@@ -475,6 +480,48 @@ class ManyCores(InFolder):
     def test_nothing_measured_is_an_empty_table(self):
         status, said, _ = run("many_cores", self.folder, "1,2")
         self.assertEqual((status, len(said.splitlines())), (0, 2))
+
+
+# ---- The scripts that run suites and their reports ----
+
+class Scripts(InFolder):
+    def suite(self, name, program, lines, *words):
+        """Runs a suite whose program is played by a shell script; status."""
+        fake = self.write(f"programs/{program}", "#!/bin/sh\n" + lines)
+        fake.chmod(0o755)
+        return subprocess.run([REPORT.parent / name / "run", fake.parent, self.folder / "results", *words],
+                              capture_output=True, check=False).returncode
+
+    def has_report(self):
+        return (self.folder / "results" / "report.html").exists()
+
+    def test_adaptation_makes_a_page_of_what_was_measured_and_keeps_the_status(self):
+        made = self.write("made.json", results(sample()))
+        self.assertEqual(self.suite("meshadapt", "adapt_bench", "exit 2"), 2)
+        self.assertEqual(self.suite("meshadapt", "adapt_bench", "exit 1"), 1)
+        self.assertFalse(self.has_report())
+        for status in 0, 1:
+            copy = f'[ "$1" = -o ] && mkdir -p "$2" && cp {made} "$2/results.json"; exit {status}'
+            self.assertEqual(self.suite("meshadapt", "adapt_bench", copy), status)
+            self.assertTrue(self.has_report())
+            (self.folder / "results" / "report.html").unlink()
+        self.assertEqual(self.suite("meshadapt", "adapt_bench", "exit 2"), 2)
+        self.assertEqual(self.suite("meshadapt", "adapt_bench", '[ "$#" = 2 ]', "-o", "elsewhere"), 0)
+        self.assertFalse(self.has_report())
+        self.write("results/results.json", "{")
+        self.assertEqual(self.suite("meshadapt", "adapt_bench", "exit 0"), 1)
+
+    def test_irregular_algorithms_keep_the_last_results_where_a_run_fails(self):
+        made = self.write("made.json", [entry()])
+        copy = f'[ "$1" = --json ] && cp {made} "$2"; exit '
+        self.assertEqual(self.suite("irregular", "irregular_bench", "exit 2"), 2)
+        self.assertFalse(self.has_report())
+        for status in 0, 1:
+            self.assertEqual(self.suite("irregular", "irregular_bench", f"{copy} {status}", "--quick"), status)
+            self.assertTrue(self.has_report())
+        self.assertEqual(self.suite("irregular", "irregular_bench", "exit 1"), 1)
+        self.assertEqual(self.suite("irregular", "irregular_bench", '[ "$*" = "--json x" ]', "--json", "x"), 0)
+        self.assertEqual(sorted(p.name for p in (self.folder / "results").iterdir()), ["report.html", "results.json"])
 
 
 class CommandLine(unittest.TestCase):
