@@ -177,7 +177,8 @@ class GoogleBenchmark(InFolder):
         whole = json.dumps(google(benchmark(), benchmark("BM_other")))
         wrong = [whole[:size] for size in range(0, len(whole), 5)]
         wrong += ["[1, 2", "[]", "{}", "7", "null", '{"benchmarks": [], "contexts": 1}',
-                  '{"benchmarks": 3, "context": {}}', '{"benchmarks": [7], "context": {}}', '{"benchmarks": [{}], "context": {}}',
+                  '{"benchmarks": 3, "context": {}}', '{"benchmarks": [7], "context": {}}',
+                  '{"benchmarks": [{}], "context": {}}',
                   whole.replace('"us"', '"years"'), whole.replace("150.0", '"x"')]
         for text in wrong:
             with self.assertRaises(page.BadFile, msg=text) as caught:
