@@ -17,8 +17,8 @@ endfunction()
 ductile_unite(ductile_runtime ductile_meshadapt ductile_meshadapt_v3 ductile_meshadapt_v4 ductile_cli ductile_c
   ductile_petsc_parts ductile_mpi ductile_python_module
   test_support runtime_tests meshadapt_tests io_tests cli_tests process_tests campaign_parts campaign_tests
-  ductile_bench_report ductile_bench_cases ductile_adapt_bench bench_tests adapt_bench_tests
-  irregular_bench_parts runtime_bench_support runtime_report_parts runtime_bench_tests
+  ductile_bench_cases ductile_adapt_bench bench_tests adapt_bench_tests
+  irregular_bench_parts runtime_bench_support runtime_bench_tests
   ductile_paper compliance fingering synthetic)
 # They have names in common with others.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/runtime/steal_by_signal.cpp

@@ -3,14 +3,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
-
-#include "summary.hpp"
 
 namespace ductile::bench {
 
@@ -79,6 +78,13 @@ double rate(const std::function<double()>& work, int copies) {
   }
   if (failed) throw std::runtime_error("a copy of the benchmark failed");
   return sum;
+}
+
+/// The middle one of an odd number.
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 /// @file
 /// The whole adaptation, measured: time by kernel and phase on 1, 2, ... threads, what the
 /// published method costs on the same kernels, quality and memory; and Mmg on the same files, if it
-/// is there. Leaves a page, plots, and every sample in a folder.
+/// is there. Leaves every sample in results.json, from which bench/report makes a page.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -12,7 +12,6 @@
 #include "ductile/runtime/executor.hpp"
 #include "peer.hpp"
 #include "plan.hpp"
-#include "report/gnuplot.hpp"
 #include "results.hpp"
 #include "sample.hpp"
 #include "system.hpp"
@@ -82,40 +81,29 @@ void measure_peer(Results& results, const Plan& plan, const AdaptCase& made) {
                 pair.mmg.child.status);
     results.pairs.push_back(pair);
     if (pair.ductile.child.status != 0 || pair.mmg.child.status != 0)
-      results.notes.push_back(made.name + ": a program failed, see pairs.csv.");
+      results.notes.push_back(made.name + ": a program failed, see results.json.");
   }
 }
 
-/// What an earlier run left would end up in the page of this one.
-void clear_folder(const fs::path& folder) {
-  fs::create_directories(folder);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".csv" || entry.path().extension() == ".svg")
-      fs::remove(entry.path());
-}
-
-/// Tables are written after each case, so that a run that is cut short leaves what it has.
+/// Results are written after each case, so that a run that is cut short leaves what it has.
 int run(const Plan& plan) {
   const auto start = std::chrono::steady_clock::now();
   Results results;
-  clear_folder(plan.folder);
+  fs::create_directories(plan.folder);
+  const fs::path file = plan.folder / "results.json";
+  fs::remove(file);  // of an earlier run
   for (const std::string& name : plan.cases) {
     const AdaptCase made = make_case(ductile::runtime::Executor(), name);
     measure_case(results, plan, made);
     measure_peer(results, plan, made);
-    write_tables(results, plan.folder);
+    write_json(results, file);
   }
   results.notes.push_back("Measured in " + std::to_string(static_cast<int>(seconds_since(start))) +
                           " s.");
-  if (!draw_plots(DUCTILE_PLOTS, plan.folder)) results.notes.emplace_back(no_plots);
-  write_page(results, plan.folder);
-  const std::vector<Summary> summaries = summarise(results.samples);
-  std::printf("\n%s", time_table(summaries).text().c_str());
-  if (!results.copies.empty())
-    std::printf("\n%s", copies_table(summaries, results.copies).text().c_str());
-  if (!results.pairs.empty()) std::printf("\n%s", ratio_table(results.pairs).text().c_str());
-  std::printf("\n%s\n", fs::absolute(plan.folder / "report.html").c_str());
-  if (!results.sound()) std::fprintf(stderr, "adapt_bench: results are not sound, see the page\n");
+  write_json(results, file);
+  std::printf("\nAll samples are in %s\n", fs::absolute(file).c_str());
+  if (!results.sound())
+    std::fprintf(stderr, "adapt_bench: a mesh is not valid, or threads made a difference\n");
   return results.sound() ? 0 : 1;
 }
 

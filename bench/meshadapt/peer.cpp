@@ -99,25 +99,4 @@ std::vector<Pair> run_pairs(const AdaptCase& made, const fs::path& mmg,
   return pairs;
 }
 
-Table pair_table(const std::vector<Pair>& pairs) {
-  std::vector<std::string> columns{"case", "pair"};
-  for (const char* program : {"ductile", "mmg"})
-    for (const char* figure : {"status", "processor_s", "wall_s", "peak_bytes", "elements",
-                               "in_range", "mean_quality", "least_quality", "valid"})
-      columns.push_back(std::string(program) + "_" + figure);
-  Table table(columns);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    std::vector<Cell> row{pairs[i].case_name, i + 1};
-    for (const ProgramRun* run : {&pairs[i].ductile, &pairs[i].mmg})
-      for (const Cell& cell :
-           {Cell(run->child.status), Cell(run->child.processor_seconds),
-            Cell(run->child.wall_seconds), Cell(run->child.peak_memory), Cell(run->elements),
-            Cell(run->figures.share_in_range), Cell(run->figures.mean_quality),
-            Cell(run->figures.least_quality), Cell(run->figures.valid)})
-        row.push_back(cell);
-    table.add(row);
-  }
-  return table;
-}
-
 }  // namespace ductile::bench

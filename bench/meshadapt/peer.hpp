@@ -10,7 +10,6 @@
 
 #include "cases/adapt_case.hpp"
 #include "child.hpp"
-#include "report/table.hpp"
 #include "sample.hpp"
 
 namespace ductile::bench {
@@ -39,8 +38,5 @@ std::optional<std::filesystem::path> find_mmg(int dimension);
 /// Who goes first alternates. A program that fails leaves its status in the pair.
 std::vector<Pair> run_pairs(const AdaptCase& adapt_case, const std::filesystem::path& mmg,
                             const PairSettings& settings);
-
-/// All pairs, a row each.
-Table pair_table(const std::vector<Pair>& pairs);
 
 }  // namespace ductile::bench

@@ -1,17 +1,14 @@
 /// @file
-/// Results: all that was measured, and the files that tell it: every sample as CSV, the tables that
-/// plots.gp draws, and a page with tables and plots.
+/// Results: all that was measured, and the JSON file that tells it.
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "copies.hpp"
 #include "peer.hpp"
 #include "sample.hpp"
-#include "summary.hpp"
 
 namespace ductile::bench {
 
@@ -25,30 +22,8 @@ struct Results {
   bool sound() const;
 };
 
-/// Writes samples.csv, copies.csv, pairs.csv and the tables for plots into the
-/// folder. Throws Error.
-void write_tables(const Results& results, const std::filesystem::path& folder);
-
-/// Writes report.html, with those plots that are there.
-void write_page(const Results& results, const std::filesystem::path& folder);
-
-// ---- The tables of the page ----
-
-/// Seconds, speed, parallel efficiency, by case, threads and mode.
-Table time_table(std::span<const Summary> summaries);
-/// How many times as fast threads of one program are, beside what as many programs get done.
-Table copies_table(std::span<const Summary> summaries, std::span<const CopiesRow> copies);
-/// Elements, quality, memory, and whether bytes were the same.
-Table mesh_table(std::span<const Summary> summaries);
-/// Seconds of each part, in tiles.
-Table part_table(std::span<const Summary> summaries);
-/// Seconds of each phase of each kernel on the fewest threads.
-Table phase_table(std::span<const Summary> summaries);
-/// What the published method, by colours, takes, and each kernel's time over that of ours.
-Table colours_table(std::span<const Summary> summaries);
-/// Time per element of NAME@FACTOR beside NAME's.
-Table growth_table(std::span<const Summary> summaries);
-/// Medians of pairs, by case.
-Table ratio_table(std::span<const Pair> pairs);
+/// The file appears whole or not at all. Throws std::runtime_error, naming it, if it cannot be
+/// written.
+void write_json(const Results& results, const std::filesystem::path& path);
 
 }  // namespace ductile::bench

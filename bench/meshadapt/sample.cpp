@@ -148,37 +148,4 @@ Sample Sampler::take(const RunSettings& settings, int repetition) {
   return sample;
 }
 
-// ---- The table of all samples ----
-
-Table sample_table(const std::vector<Sample>& samples) {
-  std::vector<std::string> columns{"case",       "threads", "mode",
-                                   "repetition", "wall_s",  "processor_s"};
-  for (const char* part : part_names) columns.push_back(std::string(part) + "_s");
-  for (std::size_t k = 0; k < kernel_count; ++k)
-    for (const char* phase : phase_names)
-      columns.push_back(std::string(part_names[k]) + "_" + phase + "_s");
-  for (const char* name :
-       {"start_elements", "elements", "in_range", "mean_quality", "least_quality", "valid",
-        "peak_bytes", "fingerprint", "nearest_before_ns", "farthest_before_ns", "nearest_after_ns",
-        "farthest_after_ns"})
-    columns.emplace_back(name);
-  Table table(columns);
-  for (const Sample& s : samples) {
-    std::vector<Cell> row{s.case_name,  s.settings.threads, name_of(s.settings.mode),
-                          s.repetition, s.wall_seconds,     s.processor_seconds};
-    row.insert(row.end(), s.part_seconds.begin(), s.part_seconds.end());
-    for (const PhaseSeconds& phases : s.phase_seconds)
-      row.insert(row.end(), phases.begin(), phases.end());
-    const MeshFigures& figures = s.figures;
-    for (const Cell& cell :
-         {Cell(s.start_elements), Cell(s.elements), Cell(figures.share_in_range),
-          Cell(figures.mean_quality), Cell(figures.least_quality), Cell(figures.valid),
-          Cell(s.peak_memory), Cell(std::to_string(s.fingerprint)), Cell(s.before.nearest_ns),
-          Cell(s.before.farthest_ns), Cell(s.after.nearest_ns), Cell(s.after.farthest_ns)})
-      row.push_back(cell);
-    table.add(row);
-  }
-  return table;
-}
-
 }  // namespace ductile::bench

@@ -13,7 +13,6 @@
 #include "cases/adapt_case.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "machine.hpp"
-#include "report/table.hpp"
 
 namespace ductile::bench {
 
@@ -93,8 +92,5 @@ class Sampler {
 
 /// A hash of everything in the mesh and the metric (FNV-1a over 64-bit words).
 std::uint64_t fingerprint(const meshadapt::AdaptedMesh& result);
-
-/// All samples, a row each.
-Table sample_table(const std::vector<Sample>& samples);
 
 }  // namespace ductile::bench

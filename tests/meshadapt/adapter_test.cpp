@@ -6,10 +6,10 @@
 
 #include <cmath>
 
-#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "geometry/make_mesh.hpp"
+#include "support/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "checks/check_structure.hpp"
 #include "geometry/make_mesh.hpp"
 #include "io_support.hpp"
 #include "operators/cavity.hpp"
+#include "support/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

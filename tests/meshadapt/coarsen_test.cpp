@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/runtime/run_rounds.hpp"
+#include "support/check_structure.hpp"
 #include "support/checked_kernel.hpp"
 
 namespace ductile::meshadapt::coarsen_test {

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "adapt/take_apart.hpp"
-#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "support/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "adapt/take_apart.hpp"
-#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "geometry/make_mesh.hpp"
+#include "support/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/preserved.hpp"
 

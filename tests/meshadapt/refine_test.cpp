@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
-#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "geometry/make_mesh.hpp"
+#include "support/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"

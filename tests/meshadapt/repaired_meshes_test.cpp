@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "adapt/take_apart.hpp"
-#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "geometry/make_mesh.hpp"
+#include "support/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/trials.hpp"
 

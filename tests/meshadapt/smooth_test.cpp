@@ -9,10 +9,10 @@
 #include <set>
 #include <utility>
 
-#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/runtime/run_rounds.hpp"
 #include "geometry/make_mesh.hpp"
+#include "support/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 

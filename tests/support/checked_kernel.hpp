@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "checks/check_structure.hpp"
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/runtime/checked_rounds.hpp"
 #include "geometry/make_mesh.hpp"
 #include "operators/background.hpp"
+#include "support/check_structure.hpp"
 #include "support/meshes.hpp"
 #include "support/metrics.hpp"
 #include "support/preserved.hpp"

@@ -6,9 +6,9 @@
 
 #include "ductile/meshadapt/files.hpp"
 #include "picture/draw.hpp"
-#include "report/table.hpp"
 #include "shared/picture.hpp"
 #include "shared/progress_line.hpp"
+#include "shared/table.hpp"
 #include "shared/vtu_series.hpp"
 
 namespace ductile::paper {
@@ -71,7 +71,7 @@ void add_to(Outcome& outcome, const Iteration& found) {
   outcome.solve_seconds += found.solve_seconds;
 }
 
-void add_to(bench::Table& history, const Iteration& found) {
+void add_to(Table& history, const Iteration& found) {
   history.add({static_cast<double>(found.number + 1), static_cast<double>(found.elements),
                found.sharpness, found.compliance, found.volume_fraction, found.change,
                found.adapt_seconds, found.solve_seconds, found.seconds});
@@ -119,8 +119,8 @@ Outcome optimise(Experiment& experiment, const std::string& name, const Settings
   Optimiser<Dim> optimiser(experiment.executor(), settings);
   ProgressLine progress;
   VtuSeries series(experiment.file(name + ".pvd"));
-  bench::Table history({"iteration", "elements", "sharpness", "compliance", "volume", "change",
-                        "adapt_seconds", "solve_seconds", "seconds"});
+  Table history({"iteration", "elements", "sharpness", "compliance", "volume", "change",
+                 "adapt_seconds", "solve_seconds", "seconds"});
   Outcome outcome{.name = name, .mesh = {}, .density_of = {}, .last = {}};
   std::vector<Frame> frames;
   for (int i = 0; i < settings.path.iterations; ++i) {

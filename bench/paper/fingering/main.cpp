@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "fingering/study.hpp"
-#include "report/table.hpp"
 #include "shared/experiment.hpp"
 #include "shared/picture.hpp"
 #include "shared/progress_line.hpp"
+#include "shared/table.hpp"
 #include "shared/vtu_series.hpp"
 
 namespace {
@@ -92,8 +92,8 @@ class Comparison {
   }
 
   void report() const {
-    bench::Table table({"adapted", "triangles", "error", "seconds", "processor_seconds",
-                        "solver_seconds", "steps"});
+    Table table({"adapted", "triangles", "error", "seconds", "processor_seconds", "solver_seconds",
+                 "steps"});
     std::vector<Outcome> uniform;
     for (const Outcome& run : outcomes_) {
       table.add({run.adapted ? 1.0 : 0.0, run.triangles, run.error, run.seconds.wall,
@@ -172,9 +172,7 @@ class Show {
   }
 
  private:
-  double reach(std::size_t row) const {
-    return history_.row(row)[3].number - history_.row(row)[2].number;
-  }
+  double reach(std::size_t row) const { return history_.row(row)[3] - history_.row(row)[2]; }
 
   void record(Simulation& run) {
     const Fingers now = fingers(run);
@@ -198,7 +196,7 @@ class Show {
   Experiment& experiment_;
   ProgressLine progress_;
   VtuSeries series_;
-  bench::Table history_{{"time", "triangles", "root", "tip", "fingers", "mass_error", "overshoot"}};
+  Table history_{{"time", "triangles", "root", "tip", "fingers", "mass_error", "overshoot"}};
   static constexpr int strip_frames = 6;
   std::vector<Frame> strip_;
   int intervals_ = 0;

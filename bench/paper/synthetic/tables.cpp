@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "report/table.hpp"
+#include "shared/table.hpp"
 
 namespace ductile::paper {
 
@@ -34,7 +34,7 @@ double rate_between(const ErrorRow& coarse, const ErrorRow& fine,
 }  // namespace
 
 void say_kernels(Experiment& experiment, const std::string& name, const MarchReport& report) {
-  bench::Table seconds(columns("threads")), efficiency(columns("threads")), all(columns("threads"));
+  Table seconds(columns("threads")), efficiency(columns("threads")), all(columns("threads"));
   const auto row = [](int threads, std::vector<double> values) {
     values.insert(values.begin(), threads);
     return values;
@@ -46,10 +46,10 @@ void say_kernels(Experiment& experiment, const std::string& name, const MarchRep
     std::vector<double> share = taken;
     for (std::size_t k = 0; k < share.size(); ++k)
       share[k] = alone[k] * fewest.threads / (taken[k] * timed.threads);
-    seconds.add_numbers(row(timed.threads, taken));
-    efficiency.add_numbers(row(timed.threads, share));
+    seconds.add(row(timed.threads, taken));
+    efficiency.add(row(timed.threads, share));
   }
-  all.add_numbers(row(report.all.threads, seconds_per_step(report.all)));
+  all.add(row(report.all.threads, seconds_per_step(report.all)));
   seconds.write_csv(experiment.file("seconds_" + name + ".csv"));
   efficiency.write_csv(experiment.file("efficiency_" + name + ".csv"));
   experiment.say("\n%s, %.0f elements on average; seconds per step, mean of all %d steps:\n%s",
@@ -61,7 +61,7 @@ void say_kernels(Experiment& experiment, const std::string& name, const MarchRep
 
 void say_errors(Experiment& experiment, const std::string& name,
                 const std::vector<ErrorRow>& rows) {
-  bench::Table table({"elements", "L2_beside_jump", "rate", "L1_everywhere", "rate"});
+  Table table({"elements", "L2_beside_jump", "rate", "L1_everywhere", "rate"});
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const InterpolationError& error = rows[i].error;
     const ErrorRow& before = rows[i == 0 ? 0 : i - 1];

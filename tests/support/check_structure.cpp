@@ -1,4 +1,4 @@
-#include "checks/check_structure.hpp"
+#include "support/check_structure.hpp"
 
 #include <algorithm>
 #include <cmath>
