@@ -10,6 +10,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/check_input.hpp"
 #include "geometry/classify.hpp"
+#include "geometry/marked_points.hpp"
 #include "geometry/tag_boundary.hpp"
 #include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"
@@ -38,6 +39,7 @@ class MeshMaker {
     find_neighbours();
     auto facets = tag_facets(making_);
     classify(executor_, mesh_, std::move(facets), tag_edges(making_), making_.options);
+    drop_other_references();
     return std::move(mesh_);
   }
 
@@ -55,6 +57,10 @@ class MeshMaker {
     });
     for (const std::uint32_t v : any_.corners) mesh_.kind_of[v].corner = true;
     for (const std::uint32_t v : any_.required_vertices) mesh_.kind_of[v].required = true;
+    const std::vector<std::uint8_t> marked_of = marked_points(any_);
+    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
+      if (marked_of[v] != 0 && !mesh_.kind_of[v].required) mesh_.kind_of[v].corner = true;
+    });
     parallel_for(executor_, cells.size(), [&](std::size_t e) {
       mesh_.corners_of[e] = cells.vertices[e];
       mesh_.patches_of[e].fill(0);
@@ -63,6 +69,27 @@ class MeshMaker {
     const auto& required = Dim == 2 ? any_.required_triangles : any_.required_tetrahedra;
     const auto locked = marked(any_, cells.size(), required, element_name<Dim>());
     number_regions(cells.reference, locked);
+  }
+
+  /// References that say where vertices lie would soon be those of some vertices only, and look
+  /// like marks: vertices that may move or go have none.
+  void drop_other_references() {
+    const auto has_other = [&](std::size_t v) {
+      return mesh_.reference_of[v] != 0 && mesh_.vertex_alive(static_cast<VertexId>(v)) &&
+             mesh_.kind_of[v].class_dimension != 0;
+    };
+    const auto dropped = runtime::parallel_reduce(
+        executor_, mesh_.vertex_slots(), std::size_t{0},
+        [&](std::size_t v) {
+          const bool drops = has_other(v);
+          if (drops) mesh_.reference_of[v] = 0;
+          return std::size_t{drops};
+        },
+        [](std::size_t a, std::size_t b) { return a + b; });
+    if (dropped != 0)
+      warnings_.push_back(any_.name + ": references of " + std::to_string(dropped) +
+                          " vertices say where they lie, not which points to keep, and are left "
+                          "out; require vertices that are to stay");
   }
 
   /// Regions are numbered in the order of their first elements.
