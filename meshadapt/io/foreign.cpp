@@ -31,9 +31,8 @@ struct ForeignBeginning {
   const char* advice;
 };
 constexpr std::array beginnings{
-    ForeignBeginning{"MFEM mesh", "a mesh of MFEM",
-                     "; save it there as .vtu (ParaViewDataCollection) or by Mesh::PrintVTK"},
-    ForeignBeginning{"MFEM NC mesh", "a mesh of MFEM", "; save it there by Mesh::PrintVTK"},
+    ForeignBeginning{"MFEM mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
+    ForeignBeginning{"MFEM NC mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
     ForeignBeginning{"*HEADING", "Abaqus input", by_meshio},
     ForeignBeginning{"*NODE", "Abaqus input", by_meshio},
     ForeignBeginning{"*PART", "Abaqus input", by_meshio},
