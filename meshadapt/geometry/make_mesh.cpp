@@ -39,7 +39,6 @@ class MeshMaker {
     find_neighbours();
     auto facets = tag_facets(making_);
     classify(executor_, mesh_, std::move(facets), tag_edges(making_), making_.options);
-    drop_other_references();
     return std::move(mesh_);
   }
 
@@ -69,27 +68,6 @@ class MeshMaker {
     const auto& required = Dim == 2 ? any_.required_triangles : any_.required_tetrahedra;
     const auto locked = marked(any_, cells.size(), required, element_name<Dim>());
     number_regions(cells.reference, locked);
-  }
-
-  /// References that say where vertices lie would soon be those of some vertices only, and look
-  /// like marks: vertices that may move or go have none.
-  void drop_other_references() {
-    const auto has_other = [&](std::size_t v) {
-      return mesh_.reference_of[v] != 0 && mesh_.vertex_alive(static_cast<VertexId>(v)) &&
-             mesh_.kind_of[v].class_dimension != 0;
-    };
-    const auto dropped = runtime::parallel_reduce(
-        executor_, mesh_.vertex_slots(), std::size_t{0},
-        [&](std::size_t v) {
-          const bool drops = has_other(v);
-          if (drops) mesh_.reference_of[v] = 0;
-          return std::size_t{drops};
-        },
-        [](std::size_t a, std::size_t b) { return a + b; });
-    if (dropped != 0)
-      warnings_.push_back(any_.name + ": references of " + std::to_string(dropped) +
-                          " vertices say where they lie, not which points to keep, and are left "
-                          "out; require vertices that are to stay");
   }
 
   /// Regions are numbered in the order of their first elements.

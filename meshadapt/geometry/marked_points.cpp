@@ -46,9 +46,11 @@ std::vector<std::uint8_t> marked_points(const AnyMesh& mesh) {
   const std::size_t labelled = reference_of.size() - plain;
   if (labelled == 0 || (labelled > few && labelled >= plain)) return marked;
   std::set<std::int32_t> wide;
-  add_lines(reference_of, mesh.edges, wide);
-  add_whole(reference_of, mesh.triangles, wide);
-  add_whole(reference_of, mesh.tetrahedra, wide);
+  if (labelled > few) {
+    add_lines(reference_of, mesh.edges, wide);
+    add_whole(reference_of, mesh.triangles, wide);
+    add_whole(reference_of, mesh.tetrahedra, wide);
+  }
   for (std::size_t v = 0; v < marked.size(); ++v)
     marked[v] = reference_of[v] != 0 && !wide.contains(reference_of[v]);
   return marked;

@@ -2,6 +2,7 @@
 /// What files say beside cells: groups, markers, pieces, counts and the order of components. Each
 /// kind is tried with many random inputs.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -300,6 +302,106 @@ TEST(TaggedFiles, RefusePiecesThatDoNotFit) {
   const std::string more = triangle("9 0 0 8 0 0 8 1 0 9 9 0", array("Float64", "u", 1, "1 2 3 4"));
   EXPECT_NE(complaint_about("a.vtu", vtu_of(once + more)).find("arrays"), std::string::npos);
   EXPECT_NE(complaint_about("a.vtu", vtu_of(more + once)).find("'u'"), std::string::npos);
+}
+
+/// Zeros as appended data: a table of one block, and the block.
+std::string packed_zeros(std::size_t bytes) {
+  const std::string plain(bytes, '\0');
+  uLongf size = compressBound(bytes);
+  std::string packed(size, '\0');
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+           reinterpret_cast<const Bytef*>(plain.data()), bytes);
+  packed.resize(size);
+  std::string head;
+  for (const std::size_t number : {std::size_t{1}, bytes, std::size_t{0}, packed.size()})
+    for (std::size_t k = 0; k < 4; ++k) head.push_back(static_cast<char>(number >> (8 * k) & 255));
+  return head + packed;
+}
+
+/// A grid of points, and arrays at them that all begin at the same compressed block.
+std::string sharing(int arrays, std::size_t values) {
+  const std::string points = packed_zeros(24 * values);
+  const std::string type = "<DataArray type=\"Float64\" format=\"appended\" ";
+  std::string text =
+      "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" "
+      "compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid><Piece NumberOfPoints=\"" +
+      std::to_string(values) + "\" NumberOfCells=\"0\"><PointData>";
+  for (int i = 0; i < arrays; ++i)
+    text += type + "Name=\"a" + std::to_string(i) + "\" offset=\"" + std::to_string(points.size()) +
+            "\"/>";
+  return text + "</PointData><Points>" + type + "NumberOfComponents=\"3\" offset=\"0\"/></Points>" +
+         "<Cells>" + array("Int64", "connectivity", 1, "") + array("Int64", "offsets", 1, "") +
+         array("UInt8", "types", 1, "") +
+         "</Cells></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_" + points +
+         packed_zeros(8 * values) + "</AppendedData></VTKFile>";
+}
+
+TEST(TaggedFiles, ShareNoCompressedBlocksBeyondTheirSize) {
+  // Without a bound, 100 arrays of the same block hold 100 times as much as is in it.
+  for (const int arrays : {60, 100, 1000}) {
+    const std::string told = complaint_about("a.vtu", sharing(arrays, 100000));
+    EXPECT_NE(told.find("share"), std::string::npos) << told;
+  }
+  EXPECT_EQ(read_text("b.vtu", sharing(1, 1000)).vertex_count(), 1000U);
+}
+
+// ---- Vertices whose references mark points ----
+
+AnyMesh random_box(Random& random, int dimension) {
+  const int n = 3 + below(random, 4);
+  return dimension == 2 ? box_mesh<2>({1, 1}, {n, n + 1}) : box_mesh({1, 1, 1}, {n, n, 3});
+}
+
+AdaptedMesh adapted(const AnyMesh& mesh, double size) {
+  return adapt(runtime::Executor({.threads = 2}), mesh, constant_metric(mesh, size));
+}
+
+using Marks = std::set<std::pair<std::int32_t, std::vector<double>>>;
+
+Marks marks_of(const AnyMesh& mesh) {
+  const auto d = static_cast<std::size_t>(mesh.dimension);
+  Marks marks;
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.vertex_reference[v] != 0)
+      marks.insert(
+          {mesh.vertex_reference[v], {&mesh.coordinates[d * v], &mesh.coordinates[d * v] + d}});
+  return marks;
+}
+
+TEST(TaggedFiles, KeepVerticesThatAreMarked) {
+  const test::TemporaryFolder folder;
+  Random random(9);
+  for (const int dimension : {2, 3})
+    for (int trial = 0; trial < 30; ++trial) {
+      AnyMesh mesh = random_box(random, dimension);
+      for (int k = 1 + below(random, 5); k > 0; --k)
+        mesh.vertex_reference[random() % mesh.vertex_count()] =
+            10 + below(random, 3) - 20 * below(random, 2);
+      const Marks marks = marks_of(mesh);
+      for (const char* name : {"a.mesh", "a.meshb", "a.msh", "a.vtu", "a.vtk"}) {
+        write_mesh(folder / name, mesh);
+        // Twice, coarser and finer: what is kept once must be kept again.
+        const AnyMesh once = adapted(read_mesh(folder / name), 0.8).mesh;
+        write_mesh(folder / name, once);
+        const AnyMesh twice = adapted(read_mesh(folder / name), 0.2).mesh;
+        EXPECT_EQ(marks_of(once), marks) << name;
+        EXPECT_EQ(marks_of(twice), marks) << name;
+      }
+    }
+}
+
+TEST(TaggedFiles, FreezeNoBoundaryWhoseVerticesAreLabelled) {
+  for (const int dimension : {2, 3}) {
+    AnyMesh mesh = dimension == 2 ? box_mesh<2>({1, 1}, {12, 12}) : box_mesh({1, 1, 1}, {8, 8, 8});
+    const auto plain = adapted(mesh, 0.5).mesh.vertex_count();
+    for (std::size_t i = 0; i < mesh.edges.size() && dimension == 2; ++i)
+      for (const std::uint32_t v : mesh.edges.vertices[i])
+        mesh.vertex_reference[v] = mesh.edges.reference[i];
+    for (std::size_t i = 0; i < mesh.triangles.size() && dimension == 3; ++i)
+      for (const std::uint32_t v : mesh.triangles.vertices[i])
+        mesh.vertex_reference[v] = mesh.triangles.reference[i];
+    EXPECT_EQ(adapted(mesh, 0.5).mesh.vertex_count(), plain);
+  }
 }
 
 // ---- Formats that are not read, and components in another order ----
