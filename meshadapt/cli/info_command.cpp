@@ -49,12 +49,13 @@ Validity check(const Executor& executor, const AnyMesh& mesh, const AnyField* me
   return validity;
 }
 
-/// " (steel)" after the reference; nothing if it has no name.
+/// " (steel)" after the reference, " (all+steel)" if it has two names; nothing if it has none.
 std::string name_after(const AnyMesh& mesh, int dimension, std::int32_t reference) {
+  std::string names;
   for (const meshadapt::ReferenceName& name : mesh.names)
     if (name.dimension == dimension && name.reference == reference)
-      return " (" + meshadapt::printable(name.name) + ")";
-  return {};
+      names += (names.empty() ? "" : "+") + meshadapt::printable(name.name);
+  return names.empty() ? names : " (" + names + ")";
 }
 
 template <class References>

@@ -37,7 +37,9 @@ void print_overview(std::FILE* to) {
   for (const meshadapt::MeshFormat& format : meshadapt::mesh_formats())
     std::fprintf(to, "  %-8s %s%s%s\n", std::string(format.ending).c_str(),
                  std::string(format.what).c_str(), format.holds_fields ? ", with fields" : "",
-                 format.is_read ? "" : " (written only)");
+                 !format.is_read      ? " (written only)"
+                 : !format.is_written ? " (read only)"
+                                      : "");
   std::fprintf(to,
                "\n"
                "Exit status: 0 the output is valid and written; 1 it could not be done;\n"

@@ -10,6 +10,7 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/check_input.hpp"
 #include "geometry/classify.hpp"
+#include "geometry/marked_points.hpp"
 #include "geometry/tag_boundary.hpp"
 #include "mesh/neighbours.hpp"
 #include "mesh/wording.hpp"
@@ -55,6 +56,10 @@ class MeshMaker {
     });
     for (const std::uint32_t v : any_.corners) mesh_.kind_of[v].corner = true;
     for (const std::uint32_t v : any_.required_vertices) mesh_.kind_of[v].required = true;
+    const std::vector<std::uint8_t> marked_of = marked_points(any_);
+    parallel_for(executor_, any_.vertex_count(), [&](std::size_t v) {
+      if (marked_of[v] != 0 && !mesh_.kind_of[v].required) mesh_.kind_of[v].corner = true;
+    });
     parallel_for(executor_, cells.size(), [&](std::size_t e) {
       mesh_.corners_of[e] = cells.vertices[e];
       mesh_.patches_of[e].fill(0);

@@ -4,6 +4,7 @@
 #include <new>
 #include <string>
 
+#include "foreign.hpp"
 #include "gmf_mesh.hpp"
 #include "msh_read.hpp"
 #include "msh_write.hpp"
@@ -54,6 +55,10 @@ constexpr std::array rows{
               is_vtu,
               mesh_from<read_vtu>,
               write_vtu},
+    FormatRow{{".pvtu", "VTK and ParaView, pieces in files", true, false, true},
+              nullptr,
+              mesh_from<read_vtu>,
+              nullptr},
     FormatRow{{".vtk", "VTK and ParaView, legacy", true, true, true},
               is_vtk,
               mesh_from<read_vtk>,
@@ -76,6 +81,7 @@ const FormatRow& format_row(const FileBytes& bytes) {
   const std::string_view text(bytes.begin(), bytes.size);
   for (const FormatRow& row : rows)
     if (row.is_it != nullptr && row.is_it(text)) return row;
+  refuse_foreign(bytes);
   return rows[0];
 }
 

@@ -57,14 +57,14 @@ std::uint32_t MshCells::vertex(std::uint64_t node) const {
 }
 
 template <int Corners>
-void MshCells::append(Cells<Corners>& cells, const std::uint64_t* nodes, MshGroup group) {
+void MshCells::append(Cells<Corners>& cells, const std::uint64_t* nodes, const MshGroup& group) {
   std::array<std::uint32_t, Corners> corners;
   for (std::size_t i = 0; i < Corners; ++i) corners[i] = vertex(nodes[i]);
-  cells.add(corners, group.physical);
+  const std::int32_t set = groups_[Corners].number_of(group.physical);
+  cells.add(corners, set);
   elementary_of_[Corners].push_back(group.elementary);
-  in_groups_[Corners] = in_groups_[Corners] || group.physical != 0;
-  const auto& first = *group_of_[Corners].try_emplace(group.elementary, group.physical).first;
-  repeated_[Corners] = repeated_[Corners] || first.second != group.physical;
+  const auto& first = *set_of_[Corners].try_emplace(group.elementary, set).first;
+  repeated_[Corners] = repeated_[Corners] || first.second != set;
 }
 
 void MshCells::append_number(std::vector<std::size_t>& places, std::size_t corners,
@@ -73,10 +73,13 @@ void MshCells::append_number(std::vector<std::size_t>& places, std::size_t corne
   numbers_[corners].push_back(number);
 }
 
-void MshCells::add(std::uint64_t number, int corners, const std::uint64_t* nodes, MshGroup group) {
+void MshCells::add(std::uint64_t number, int corners, const std::uint64_t* nodes,
+                   const MshGroup& group) {
   if (corners == 1) {
-    const std::uint32_t at = vertex(nodes[0]);
-    if (group.physical != 0) to_.mesh.vertex_reference[at] = group.physical;
+    std::int32_t& set = to_.mesh.vertex_reference[vertex(nodes[0])];
+    GroupSet groups = groups_[1].set_of(set);
+    groups.insert(group.physical.begin(), group.physical.end());
+    set = groups_[1].number_of(groups);
   } else if (corners == 2) {
     numbers_[2].push_back(number);
     append(to_.mesh.edges, nodes, group);
@@ -91,7 +94,13 @@ void MshCells::add(std::uint64_t number, int corners, const std::uint64_t* nodes
 
 void MshCells::finish(int dimension, std::vector<std::int32_t>& reference) {
   const auto corners = static_cast<std::size_t>(dimension + 1);
-  if (in_groups_.at(corners)) return;
+  const auto reference_of = groups_.at(corners).references(dimension, to_.mesh.names);
+  std::int32_t any = 0;
+  for (std::int32_t& set : reference) {
+    set = reference_of[static_cast<std::size_t>(set)];
+    any |= set;
+  }
+  if (any != 0 || dimension == 0) return;
   reference = std::move(elementary_of_.at(corners));
   if (std::all_of(reference.begin(), reference.end(), [](std::int32_t r) { return r == 0; }))
     return;
@@ -101,8 +110,8 @@ void MshCells::finish(int dimension, std::vector<std::int32_t>& reference) {
 }
 
 template <int Corners>
-std::size_t MshCells::drop_repeated(Cells<Corners>& cells) {
-  if (!repeated_[Corners]) return 0;
+void MshCells::drop_repeated(Cells<Corners>& cells) {
+  if (!repeated_[Corners]) return;
   std::vector<std::pair<std::array<std::uint32_t, Corners>, std::size_t>> sorted;
   sorted.reserve(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -111,8 +120,17 @@ std::size_t MshCells::drop_repeated(Cells<Corners>& cells) {
   }
   std::sort(sorted.begin(), sorted.end());
   std::vector<bool> goes(cells.size(), false);
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-    goes[sorted[i].second] = sorted[i].first == sorted[i - 1].first;
+  for (std::size_t i = 1, first = 0; i < sorted.size(); ++i) {
+    if (sorted[i].first != sorted[first].first) {
+      first = i;
+      continue;
+    }
+    goes[sorted[i].second] = true;
+    std::int32_t& set = cells.reference[sorted[first].second];
+    GroupSet groups = groups_[Corners].set_of(set);
+    groups.merge(GroupSet(groups_[Corners].set_of(cells.reference[sorted[i].second])));
+    set = groups_[Corners].number_of(groups);
+  }
   std::size_t kept = 0;
   auto& numbers = numbers_[Corners];
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -123,12 +141,10 @@ std::size_t MshCells::drop_repeated(Cells<Corners>& cells) {
     if (!numbers.empty()) numbers[kept] = numbers[i];
     ++kept;
   }
-  const std::size_t gone = cells.size() - kept;
   cells.vertices.resize(kept);
   cells.reference.resize(kept);
   elementary_of_[Corners].resize(kept);
   if (!numbers.empty()) numbers.resize(kept);
-  return gone;
 }
 
 template <int Corners>
@@ -149,18 +165,19 @@ void MshCells::put_in_order(Cells<Corners>& cells) {
   }
 }
 
-std::size_t MshCells::finish() {
-  const std::size_t gone = drop_repeated(to_.mesh.edges) + drop_repeated(to_.mesh.triangles) +
-                           drop_repeated(to_.mesh.tetrahedra);
+void MshCells::finish() {
+  drop_repeated(to_.mesh.edges);
+  drop_repeated(to_.mesh.triangles);
+  drop_repeated(to_.mesh.tetrahedra);
   put_in_order(to_.mesh.edges);
   put_in_order(to_.mesh.triangles);
   put_in_order(to_.mesh.tetrahedra);
   to_.cell_of_triangle.resize(to_.mesh.triangles.size());
   to_.cell_of_tetrahedron.resize(to_.mesh.tetrahedra.size());
+  finish(0, to_.mesh.vertex_reference);
   finish(1, to_.mesh.edges.reference);
   finish(2, to_.mesh.triangles.reference);
   finish(3, to_.mesh.tetrahedra.reference);
-  return gone;
 }
 
 }  // namespace ductile::meshadapt

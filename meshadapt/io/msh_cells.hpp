@@ -1,6 +1,6 @@
 /// @file
-/// MshCells: the elements of a Gmsh file as they are collected, whatever the version. What group an
-/// element is in becomes its reference when all are there.
+/// MshCells: the elements of a Gmsh file as they are collected, whatever the version. What groups
+/// an element is in become its reference when all are there.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "msh_groups.hpp"
 #include "number_cursor.hpp"
 #include "number_index.hpp"
 #include "spatial_mesh.hpp"
@@ -21,7 +22,7 @@ int msh_corners(const NumberCursor& in, std::int64_t type);
 
 /// What Gmsh says about an element, or a block of them.
 struct MshGroup {
-  std::int32_t physical = 0;    ///< group; 0: none
+  GroupSet physical;            ///< groups; none is as 0
   std::int32_t elementary = 0;  ///< entity of the geometry
 };
 
@@ -32,11 +33,11 @@ class MshCells {
       : in_(in), to_(to), index_of_(index_of) {}
 
   /// `nodes` are numbers of `corners` nodes.
-  void add(std::uint64_t number, int corners, const std::uint64_t* nodes, MshGroup group);
-  /// To be called after the last: gives references, and puts elements in the order of their
-  /// numbers, which files list by entities. Returns how many elements went because they were listed
-  /// before, as version 2 does for each group of an entity.
-  std::size_t finish();
+  void add(std::uint64_t number, int corners, const std::uint64_t* nodes, const MshGroup& group);
+  /// To be called after the last: gives references, puts elements in the order of their numbers,
+  /// which files list by entities, and joins those that version 2 lists for each group of an
+  /// entity.
+  void finish();
   /// The numbers of the tetrahedra or, if there are none, the triangles.
   const std::vector<std::uint64_t>& numbers() const {
     return numbers_[4].empty() ? numbers_[3] : numbers_[4];
@@ -45,10 +46,10 @@ class MshCells {
  private:
   std::uint32_t vertex(std::uint64_t node) const;
   template <int Corners>
-  void append(Cells<Corners>& cells, const std::uint64_t* nodes, MshGroup group);
+  void append(Cells<Corners>& cells, const std::uint64_t* nodes, const MshGroup& group);
   void finish(int dimension, std::vector<std::int32_t>& reference);
   template <int Corners>
-  std::size_t drop_repeated(Cells<Corners>& cells);
+  void drop_repeated(Cells<Corners>& cells);
   template <int Corners>
   void put_in_order(Cells<Corners>& cells);
   void append_number(std::vector<std::size_t>& places, std::size_t corners, std::uint64_t number);
@@ -59,9 +60,9 @@ class MshCells {
   // [corners][cell of that shape]
   std::array<std::vector<std::uint64_t>, 5> numbers_;  ///< as the file has them
   std::array<std::vector<std::int32_t>, 5> elementary_of_;
-  std::array<bool, 5> in_groups_{};  ///< whether any is
-  std::array<bool, 5> repeated_{};   ///< whether an entity is in several groups
-  std::array<std::map<std::int32_t, std::int32_t>, 5> group_of_;  ///< [elementary] the first
+  std::array<GroupReferences, 5> groups_;  ///< cells have numbers of sets as references meanwhile
+  std::array<bool, 5> repeated_{};         ///< whether an entity is in several sets of groups
+  std::array<std::map<std::int32_t, std::int32_t>, 5> set_of_;  ///< [elementary] the first
 };
 
 }  // namespace ductile::meshadapt

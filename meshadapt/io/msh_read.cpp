@@ -133,7 +133,7 @@ void MshReader::read_elements() {
   has_elements_ = true;
   MshCells cells(in_, to_, node_index_);
   version_ == 2 ? read_elements_2(cells) : read_elements_4(cells);
-  repeated_ = cells.finish();
+  cells.finish();
   element_numbers_ = cells.numbers();
 }
 
@@ -150,11 +150,6 @@ void MshReader::say_what_is_left_out() {
   };
   if (const std::string text = left_out_.warning(); warnings_ && !text.empty())
     warnings_->push_back(printable(text));
-  warn(several_groups_,
-       " entities are in several physical groups; their elements have the reference of the first");
-  warn(repeated_,
-       " elements are listed again for further physical groups; they have the reference of the "
-       "first");
   warn(between_parts_, " elements between partitions are left out");
   warn(in_parts_, " elements say which partition they are in, which is left out");
 }

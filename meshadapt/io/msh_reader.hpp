@@ -48,7 +48,7 @@ class MshReader {
 
   // ---- Version 4.1 ----
   struct Entity {
-    std::int32_t physical = 0;
+    GroupSet physical;
     bool between_parts = false;
   };
   void read_entities(bool partitioned);
@@ -98,7 +98,7 @@ class MshReader {
   std::map<std::pair<int, std::int32_t>, Entity> entity_of_;
   std::map<std::pair<bool, std::string>, std::size_t> field_of_;  ///< [in cells, name]
   gmf::LeftOut left_out_;
-  std::size_t several_groups_ = 0, repeated_ = 0, between_parts_ = 0, in_parts_ = 0;
+  std::size_t between_parts_ = 0, in_parts_ = 0;
 };
 
 }  // namespace ductile::meshadapt

@@ -30,7 +30,7 @@ void MshReader::read_element_2(MshCells& cells, std::uint64_t number_of_it, int 
   MshGroup group;
   for (std::int32_t i = 0; i < tags; ++i) {
     const std::int32_t tag = number("a tag of an element");
-    if (i == 0) group.physical = tag;
+    if (i == 0 && tag != 0) group.physical.insert(tag);
     if (i == 1) group.elementary = tag;
     if (i == 2 && tag > 0) ++in_parts_;
   }
@@ -101,9 +101,8 @@ void MshReader::read_entity(int dimension, bool partitioned) {
     const std::int32_t group = number("a physical group");
     // Gmsh has entities that are turned round in a group under its negative number.
     const bool turned = dimension > 0 && group < 0 && group > -2147483647 && tag != group;
-    if (i == 0) entity.physical = turned ? -group : group;
+    if (group != 0) entity.physical.insert(turned ? -group : group);
   }
-  several_groups_ += groups > 1;
   if (dimension > 0) {
     const std::uint64_t around = size("the number of bounding entities");
     for (std::uint64_t i = 0; i < around; ++i) number("a bounding entity");
@@ -143,13 +142,13 @@ void MshReader::read_elements_4(MshCells& cells) {
     const auto found = entity_of_.find({dimension, tag});
     const Entity entity = found == entity_of_.end() ? Entity{} : found->second;
     if (entity.between_parts) between_parts_ += static_cast<std::size_t>(count);
+    const MshGroup group{entity.physical, tag};
     std::array<std::uint64_t, 4> nodes{};
     for (std::uint64_t i = 0; i < count; ++i) {
       const std::uint64_t number_of_it = size("the number of an element");
       for (int k = 0; k < corners; ++k)
         nodes[static_cast<std::size_t>(k)] = size("the number of a node");
-      if (!entity.between_parts)
-        cells.add(number_of_it, corners, nodes.data(), {entity.physical, tag});
+      if (!entity.between_parts) cells.add(number_of_it, corners, nodes.data(), group);
     }
   }
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/atomic_file.hpp"
+#include "msh_groups.hpp"
 #include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
@@ -64,10 +65,10 @@ std::size_t element_count(const AnyMesh& mesh) {
 }
 
 /// Gmsh's files have no way to write a quotation mark or the end of a line in a name.
-void put_names(MshSink& sink, const AnyMesh& mesh) {
-  if (mesh.names.empty()) return;
-  std::string text = "$PhysicalNames\n" + std::to_string(mesh.names.size()) + "\n";
-  for (const ReferenceName& name : mesh.names) {
+void put_names(MshSink& sink, const std::vector<ReferenceName>& names) {
+  if (names.empty()) return;
+  std::string text = "$PhysicalNames\n" + std::to_string(names.size()) + "\n";
+  for (const ReferenceName& name : names) {
     std::string plain = name.name;
     std::replace_if(
         plain.begin(), plain.end(), [](char c) { return c == '"' || c == '\n' || c == '\r'; }, ' ');
@@ -90,7 +91,7 @@ void put_nodes_2(MshSink& sink, const AnyMesh& mesh) {
   sink.text(sink.is_binary() ? "\n$EndNodes\n" : "$EndNodes\n");
 }
 
-/// Elements of one type, one after the other, each with its reference as group and entity.
+/// Elements of one type, one after the other, each with a group and an entity.
 class ElementsIn2 {
  public:
   explicit ElementsIn2(MshSink& sink) : sink_(sink) {}
@@ -103,14 +104,15 @@ class ElementsIn2 {
     sink_.put(std::int32_t{2});
   }
   template <std::size_t Corners>
-  void put(const std::array<std::uint32_t, Corners>& corners, std::int32_t reference) {
+  void put(const std::array<std::uint32_t, Corners>& corners, std::int32_t group,
+           std::int32_t entity) {
     sink_.put(++number_);
     if (!sink_.is_binary()) {
       sink_.put(std::int32_t{type_});
       sink_.put(std::int32_t{2});
     }
-    sink_.put(reference);
-    sink_.put(reference);
+    sink_.put(group);
+    sink_.put(entity);
     for (const std::uint32_t vertex : corners) sink_.put(static_cast<std::int32_t>(vertex + 1));
     sink_.end_record();
   }
@@ -121,18 +123,52 @@ class ElementsIn2 {
   std::int32_t number_ = 0;
 };
 
-void put_elements_2(MshSink& sink, const AnyMesh& mesh) {
-  sink.text("$Elements\n" + std::to_string(element_count(mesh)) + "\n");
-  ElementsIn2 elements(sink);
-  elements.begin(15, msh_point_count(mesh));
+/// The vertices with a reference, as cells.
+Cells<1> points_of(const AnyMesh& mesh) {
+  Cells<1> points;
   for (std::uint32_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
-    if (mesh.vertex_reference[vertex] != 0)
-      elements.put<1>({vertex}, mesh.vertex_reference[vertex]);
-  for_each_msh_cells(mesh, [&](int, int type, const auto& cells) {
-    elements.begin(type, cells.size());
-    for (std::size_t cell = 0; cell < cells.size(); ++cell)
-      elements.put(cells.vertices[cell], cells.reference[cell]);
-  });
+    if (mesh.vertex_reference[vertex] != 0) points.add({vertex}, mesh.vertex_reference[vertex]);
+  return points;
+}
+
+/// Elements in their n-th group, counted from 0: this version has one group for each, so that those
+/// in several are listed again, as Gmsh does.
+template <int Corners>
+std::vector<std::size_t> in_group(const GroupsOfReferences& groups, const Cells<Corners>& cells,
+                                  std::size_t n) {
+  std::vector<std::size_t> those;
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    if (n < groups.of(Corners - 1, cells.reference[cell]).size()) those.push_back(cell);
+  return those;
+}
+
+/// All elements come first, so that fields know their numbers; those that are listed again follow.
+void put_elements_2(MshSink& sink, const AnyMesh& mesh, const GroupsOfReferences& groups) {
+  const Cells<1> points = points_of(mesh);
+  std::vector<std::array<std::vector<std::size_t>, 4>> listings;  // [n-th group][dimension]
+  for (std::size_t n = 0, count = 1; count > 0; ++n) {
+    listings.push_back({in_group(groups, points, n), in_group(groups, mesh.edges, n),
+                        in_group(groups, mesh.triangles, n), in_group(groups, mesh.tetrahedra, n)});
+    count = 0;
+    for (const auto& cells : listings.back()) count += cells.size();
+  }
+  std::size_t total = 0;
+  for (const auto& listing : listings)
+    for (const auto& cells : listing) total += cells.size();
+  sink.text("$Elements\n" + std::to_string(total) + "\n");
+  ElementsIn2 elements(sink);
+  for (std::size_t n = 0; n < listings.size(); ++n) {
+    const auto put = [&](int dimension, int type, const auto& cells) {
+      const auto& those = listings[n][static_cast<std::size_t>(dimension)];
+      elements.begin(type, those.size());
+      for (const std::size_t cell : those) {
+        const std::int32_t reference = cells.reference[cell];
+        elements.put(cells.vertices[cell], groups.of(dimension, reference)[n], reference);
+      }
+    };
+    put(0, 15, points);
+    for_each_msh_cells(mesh, put);
+  }
   sink.text(sink.is_binary() ? "\n$EndElements\n" : "$EndElements\n");
 }
 
@@ -160,13 +196,14 @@ std::map<std::int32_t, EntityBox> boxes_of(const Cells<Corners>& cells,
   return box_of;
 }
 
-void put_group(MshSink& sink, std::int32_t reference) {
-  sink.put(std::uint64_t{reference != 0});
-  if (reference != 0) sink.put(reference);
+void put_groups(MshSink& sink, const std::vector<std::int32_t>& groups) {
+  sink.put(std::uint64_t{groups.size()});
+  for (const std::int32_t group : groups) sink.put(group);
 }
 
 /// An entity of the geometry for each reference, and one for each point.
-void put_entities(MshSink& sink, const AnyMesh& mesh, const std::vector<double>& points) {
+void put_entities(MshSink& sink, const AnyMesh& mesh, const GroupsOfReferences& groups,
+                  const std::vector<double>& points) {
   sink.text("$Entities\n");
   sink.put(std::uint64_t{msh_point_count(mesh)});
   std::array<std::map<std::int32_t, EntityBox>, 3> boxes{boxes_of(mesh.edges, points),
@@ -178,14 +215,14 @@ void put_entities(MshSink& sink, const AnyMesh& mesh, const std::vector<double>&
     if (mesh.vertex_reference[vertex] == 0) continue;
     sink.put(static_cast<std::int32_t>(vertex + 1));
     for (std::size_t axis = 0; axis < 3; ++axis) sink.put(points[3 * vertex + axis]);
-    put_group(sink, mesh.vertex_reference[vertex]);
+    put_groups(sink, groups.of(0, mesh.vertex_reference[vertex]));
     sink.end_record();
   }
-  for (const auto& box_of : boxes)
-    for (const auto& [reference, box] : box_of) {
+  for (std::size_t d = 0; d < boxes.size(); ++d)
+    for (const auto& [reference, box] : boxes[d]) {
       sink.put(reference);
       for (const double x : box) sink.put(x);
-      put_group(sink, reference);
+      put_groups(sink, groups.of(static_cast<int>(d) + 1, reference));
       sink.put(std::uint64_t{0});
       sink.end_record();
     }
@@ -321,13 +358,14 @@ void write_msh(AtomicOutputs& outputs, const std::filesystem::path& path, const 
   sink.text(std::string("$MeshFormat\n") + (old ? "2.2 " : "4.1 ") + (binary ? "1 8\n" : "0 8\n"));
   if (binary) sink.put(std::int32_t{1});
   sink.text(binary ? "\n$EndMeshFormat\n" : "$EndMeshFormat\n");
-  put_names(sink, mesh);
+  const GroupsOfReferences groups(mesh);
+  put_names(sink, groups.names());
   if (old) {
     put_nodes_2(sink, mesh);
-    put_elements_2(sink, mesh);
+    put_elements_2(sink, mesh, groups);
   } else {
     const std::vector<double> points = points_in_space(mesh);
-    put_entities(sink, mesh, points);
+    put_entities(sink, mesh, groups, points);
     put_nodes_4(sink, mesh, points);
     put_elements_4(sink, mesh);
   }

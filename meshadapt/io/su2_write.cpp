@@ -5,6 +5,7 @@
 #include <charconv>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,26 +39,71 @@ class Su2Sink {
   OutputFile& out_;
 };
 
-/// A marker ends at white space, so a name has none.
-std::string marker_name(const AnyMesh& mesh, std::int32_t reference) {
-  for (const ReferenceName& name : mesh.names) {
-    if (name.dimension != mesh.dimension - 1 || name.reference != reference || name.name.empty())
-      continue;
-    std::string text = name.name;
-    std::replace_if(
-        text.begin(), text.end(),
-        [](char c) { return static_cast<unsigned char>(c) <= ' ' || c == '=' || c == '%'; }, '_');
-    return text;
-  }
-  return std::to_string(reference);
+/// The names of a reference, several with a plus between. A marker ends at white space, so that it
+/// has none. Empty: there is no name.
+std::string plain_name(const AnyMesh& mesh, std::int32_t reference) {
+  std::string text;
+  for (const ReferenceName& name : mesh.names)
+    if (name.dimension == mesh.dimension - 1 && name.reference == reference && !name.name.empty())
+      text += (text.empty() ? "" : "+") + name.name;
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) <= ' ' || c == '=' || c == '%'; }, '_');
+  return text;
+}
+
+/// Whether it is read as a reference of its own.
+bool is_number(const std::string& name) {
+  std::int32_t number = 0;
+  const auto [after, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  return error == std::errc{} && after == name.data() + name.size();
+}
+
+/// [reference] a name of its own for each. Names that are as in the mesh come before altered ones;
+/// what is called by a number would be read as that reference.
+std::map<std::int32_t, std::string> marker_names(const AnyMesh& mesh,
+                                                 const std::set<std::int32_t>& references,
+                                                 Warnings* warnings) {
+  std::map<std::int32_t, std::string> name_of;
+  std::set<std::string> taken;
+  const auto give = [&](std::int32_t reference, const std::string& name) {
+    if (!taken.insert(name).second) return false;
+    name_of[reference] = name;
+    return true;
+  };
+  for (const std::int32_t reference : references)
+    if (const std::string number = std::to_string(reference);
+        plain_name(mesh, reference).empty() || plain_name(mesh, reference) == number)
+      give(reference, number);
+  for (const bool exact : {true, false})
+    for (const std::int32_t reference : references) {
+      const std::string name = plain_name(mesh, reference);
+      const bool is_exact =
+          std::any_of(mesh.names.begin(), mesh.names.end(), [&](const ReferenceName& one) {
+            return one.dimension == mesh.dimension - 1 && one.reference == reference &&
+                   one.name == name;
+          });
+      if (name_of.contains(reference) || (exact && !is_exact)) continue;
+      if (!is_number(name) && give(reference, name)) continue;
+      if (exact) continue;
+      std::string other = name + "_" + std::to_string(reference);
+      while (!give(reference, other)) other += "_";
+      if (warnings)
+        warnings->push_back(printable("the boundary '" + name + "' of reference " +
+                                      std::to_string(reference) + " is called '" + other +
+                                      "', because its name is that of another marker or a number"));
+    }
+  return name_of;
 }
 
 template <int Dim>
-void put_markers(Su2Sink& sink, const AnyMesh& mesh) {
+void put_markers(Su2Sink& sink, const AnyMesh& mesh, Warnings* warnings) {
   const auto& facets = facets_in<Dim>(mesh);
+  const std::set<std::int32_t> references(facets.reference.begin(), facets.reference.end());
+  const auto name_of = marker_names(mesh, references, warnings);
   std::map<std::string, std::vector<std::size_t>> facets_of;  // [marker]
   for (std::size_t i = 0; i < facets.size(); ++i)
-    facets_of[marker_name(mesh, facets.reference[i])].push_back(i);
+    facets_of[name_of.at(facets.reference[i])].push_back(i);
   sink.text("NMARK= " + std::to_string(facets_of.size()) + "\n");
   for (const auto& [name, those] : facets_of) {
     sink.text("MARKER_TAG= " + name + "\nMARKER_ELEMS= " + std::to_string(those.size()) + "\n");
@@ -67,7 +113,7 @@ void put_markers(Su2Sink& sink, const AnyMesh& mesh) {
 }
 
 template <int Dim>
-void put_mesh(Su2Sink& sink, const AnyMesh& mesh) {
+void put_mesh(Su2Sink& sink, const AnyMesh& mesh, Warnings* warnings) {
   const auto& elements = elements_in<Dim>(mesh);
   sink.text("NDIME= " + std::to_string(Dim) + "\nNELEM= " + std::to_string(elements.size()) + "\n");
   for (const auto& corners : elements.vertices)
@@ -77,7 +123,7 @@ void put_mesh(Su2Sink& sink, const AnyMesh& mesh) {
     sink.put(mesh.coordinates[i]);
     if ((i + 1) % Dim == 0) sink.text("\n");
   }
-  put_markers<Dim>(sink, mesh);
+  put_markers<Dim>(sink, mesh, warnings);
 }
 
 bool several(const std::vector<std::int32_t>& reference) {
@@ -96,7 +142,7 @@ void write_su2(AtomicOutputs& outputs, const std::filesystem::path& path, const 
     lost += std::string(lost.empty() ? "" : ", ") + "references of elements";
   warn_of_lost(options, path, lost);
   Su2Sink sink(outputs.stage(path));
-  flat ? put_mesh<2>(sink, mesh) : put_mesh<3>(sink, mesh);
+  flat ? put_mesh<2>(sink, mesh, options.warnings) : put_mesh<3>(sink, mesh, options.warnings);
 }
 
 }  // namespace ductile::meshadapt

@@ -33,6 +33,7 @@ class ByteStream {
  public:
   ByteStream(std::string_view encoded, bool base64) : rest_(encoded), base64_(base64) {}
 
+  std::string_view rest() const { return rest_; }
   /// At most that many can follow.
   std::size_t left() const {
     return waiting_.size() + (base64_ ? rest_.size() / 4 * 3 : rest_.size());
@@ -98,8 +99,8 @@ std::uint64_t take_head(ByteStream& bytes, const VtkEncoding& encoding) {
 }
 
 void append_block(std::string& to, const std::string& block, std::size_t size) {
-  // zlib makes bytes a thousandth at best.
-  if (size / 1100 > block.size() + 100)
+  constexpr std::size_t zlib_ratio = 1032;  // the largest that its format allows
+  if (size / zlib_ratio > block.size())
     throw InputError("expected fewer bytes than " + std::to_string(size) +
                      " in a compressed block" + damaged);
   const std::size_t start = to.size();
@@ -115,8 +116,9 @@ void append_block(std::string& to, const std::string& block, std::size_t size) {
 }
 
 std::string decompressed(ByteStream& bytes, const VtkEncoding& encoding) {
-  const std::uint64_t blocks = take_head(bytes, encoding), size = take_head(bytes, encoding),
-                      last = take_head(bytes, encoding);
+  const std::uint64_t blocks = take_head(bytes, encoding);
+  if (blocks == 0) return {};  // VTK writes no sizes then
+  const std::uint64_t size = take_head(bytes, encoding), last = take_head(bytes, encoding);
   if (blocks > bytes.left() / encoding.head_bytes)
     throw InputError("expected fewer compressed blocks than " + std::to_string(blocks) + damaged);
   std::vector<std::uint64_t> compressed(static_cast<std::size_t>(blocks));
@@ -167,14 +169,20 @@ VtkNumber vtk_number(std::string_view type) {
   return {};
 }
 
-std::string vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding& encoding) {
+VtkDecoded vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding& encoding) {
   ByteStream bytes(encoded, base64);
-  if (encoding.compressed) return decompressed(bytes, encoding);
-  const std::uint64_t size = take_head(bytes, encoding);
-  if (size > bytes.left())
-    throw InputError("expected " + std::to_string(size) + " bytes of an array, found fewer" +
-                     damaged);
-  return bytes.take(static_cast<std::size_t>(size));
+  VtkDecoded result;
+  if (encoding.compressed) {
+    result.bytes = decompressed(bytes, encoding);
+  } else {
+    const std::uint64_t size = take_head(bytes, encoding);
+    if (size > bytes.left())
+      throw InputError("expected " + std::to_string(size) + " bytes of an array, found fewer" +
+                       damaged);
+    result.bytes = bytes.take(static_cast<std::size_t>(size));
+  }
+  result.taken = encoded.size() - bytes.rest().size();
+  return result;
 }
 
 std::vector<double> vtk_reals(std::string_view bytes, VtkNumber number, bool swapped) {

@@ -24,9 +24,15 @@ struct VtkNumber {
 };
 VtkNumber vtk_number(std::string_view type);
 
-/// The bytes of an array: base64 as far as it goes, or raw. Memory in proportion to `encoded`.
+/// The bytes of an array, and how many bytes of the file it takes.
+struct VtkDecoded {
+  std::string bytes;
+  std::size_t taken = 0;
+};
+
+/// Decodes base64 as far as it goes, or raw bytes. Memory in proportion to `encoded`.
 /// Throws InputError with a text about what is wrong, which lacks the name of the file.
-std::string vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding& encoding);
+VtkDecoded vtk_decoded(std::string_view encoded, bool base64, const VtkEncoding& encoding);
 
 /// Real numbers, or whole ones, out of their bytes or text. Throw InputError as above.
 std::vector<double> vtk_reals(std::string_view bytes, VtkNumber number, bool swapped);

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 
+#include "ductile/meshadapt/error.hpp"
 #include "gmf_left_out.hpp"
 #include "number_cursor.hpp"
 #include "vtk_grid.hpp"
@@ -44,6 +46,7 @@ class VtkReader {
       if (word.empty()) break;
       read_part(word);
     }
+    expect_counts();
     if (const std::string text = left_out_.warning(); warnings_ && !text.empty())
       warnings_->push_back(printable(text));
     return std::move(grid_);
@@ -51,8 +54,15 @@ class VtkReader {
 
  private:
   enum class Data { none, points, cells };
+  /// A part that a file has once at most, and how many things it says there are.
+  struct Part {
+    std::string where;
+    std::uint64_t count = 0;
+  };
 
   void read_head();
+  void begin_part(const std::string& word);
+  void expect_counts() const;
   void read_part(const std::string& word);
   void read_points();
   void read_cells();
@@ -93,6 +103,7 @@ class VtkReader {
   bool binary_ = false;
   Data data_ = Data::none;
   std::uint64_t data_count_ = 0;
+  std::map<std::string, Part> parts_;
   gmf::LeftOut left_out_;
 };
 
@@ -105,7 +116,29 @@ void VtkReader::read_head() {
   binary_ = form == "BINARY";
 }
 
+void VtkReader::begin_part(const std::string& word) {
+  if (!parts_.try_emplace(word, Part{in_.where(), 0}).second)
+    in_.fail("expected one part " + word + ", found a second; remove one, or join them");
+}
+
+/// Parts come in any order, so what each says is compared when all have been read.
+void VtkReader::expect_counts() const {
+  const auto expect = [&](const char* word, std::size_t there, const char* what) {
+    const auto part = parts_.find(word);
+    if (part != parts_.end() && part->second.count != there)
+      throw InputError(part->second.where + "expected a count of " + std::to_string(there) +
+                       " behind " + word + ", as many as there are " + what + ", found " +
+                       std::to_string(part->second.count) + "; correct it");
+  };
+  expect("CELL_TYPES", grid_.ends.size(), "cells");
+  expect("POINT_DATA", grid_.points.size() / 3, "points");
+  expect("CELL_DATA", grid_.ends.size(), "cells");
+}
+
 void VtkReader::read_part(const std::string& word) {
+  if (word == "DATASET" || word == "POINTS" || word == "CELLS" || word == "CELL_TYPES" ||
+      word == "POINT_DATA" || word == "CELL_DATA")
+    begin_part(word);
   if (word == "DATASET") {
     if (const std::string_view kind = in_.word(); kind != "UNSTRUCTURED_GRID")
       in_.fail("expected DATASET UNSTRUCTURED_GRID, found " + quoted(kind) +
@@ -118,11 +151,7 @@ void VtkReader::read_part(const std::string& word) {
     read_types();
   } else if (word == "POINT_DATA" || word == "CELL_DATA") {
     data_ = word == "POINT_DATA" ? Data::points : Data::cells;
-    data_count_ = count("a count of values");
-    const std::size_t there = data_ == Data::points ? grid_.points.size() / 3 : grid_.types.size();
-    if (data_count_ != there)
-      in_.fail("expected values of " + std::to_string(there) + ", found a count of " +
-               std::to_string(data_count_) + "; correct it");
+    parts_[word].count = data_count_ = count("a count of values");
   } else if (word == "FIELD") {
     read_field();
   } else if (word == "METADATA") {
@@ -186,6 +215,7 @@ void VtkReader::read_cells_with_offsets(std::uint64_t offsets, std::uint64_t poi
 
 void VtkReader::read_types() {
   const std::uint64_t cells = count("a count of cells");
+  parts_["CELL_TYPES"].count = cells;
   begin_numbers();
   grid_.types = indices(cells, false);
 }

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <new>
 #include <pugixml.hpp>
 #include <string>
@@ -11,6 +12,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "vtk_decode.hpp"
 #include "vtk_grid.hpp"
+#include "vtk_join.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -23,29 +25,62 @@ struct Appended {
 
 class VtuReader {
  public:
-  explicit VtuReader(const FileBytes& bytes) : name_(bytes.name) {
+  explicit VtuReader(const FileBytes& bytes) : name_(bytes.name), size_(bytes.size) {
     parse({bytes.begin(), bytes.size});
   }
 
   VtkGrid read() {
     const pugi::xml_node file = document_.child("VTKFile");
     if (!file) fail("expected the element VTKFile, found none; give a .vtu file");
-    read_head(file);
-    const pugi::xml_node grid = file.child("UnstructuredGrid");
-    const pugi::xml_node piece = grid.child("Piece");
-    if (!piece) fail("expected a Piece of an UnstructuredGrid, found none; write the file again");
-    if (piece.next_sibling("Piece"))
-      fail(
-          "expected one Piece, found several; write the grid in one, as ParaView does after Merge");
-    VtkGrid result;
-    result.name = name_;
-    read_piece(result, piece);
-    read_names(result, grid.child("FieldData"));
-    return result;
+    const bool in_files = file.attribute("type").value() == std::string("PUnstructuredGrid");
+    return in_files ? read_files(file.child("PUnstructuredGrid")) : read_pieces(file);
   }
 
  private:
   [[noreturn]] void fail(const std::string& text) const { throw InputError(name_ + ": " + text); }
+
+  // ---- Pieces ----
+
+  /// A piece without points and cells, as ranks write that have nothing, may lack its arrays.
+  VtkGrid read_pieces(pugi::xml_node file) {
+    read_head(file);
+    const pugi::xml_node grid = file.child("UnstructuredGrid");
+    if (!grid.child("Piece"))
+      fail("expected a Piece of an UnstructuredGrid, found none; write the file again");
+    std::vector<VtkGrid> pieces;
+    for (const pugi::xml_node piece : grid.children("Piece")) {
+      VtkGrid& part = pieces.emplace_back();
+      part.name = name_;
+      if (piece.attribute("NumberOfPoints").as_ullong() != 0 ||
+          piece.attribute("NumberOfCells").as_ullong() != 0)
+        read_piece(part, piece);
+    }
+    read_names(pieces[0], grid.child("FieldData"));
+    return joined(name_, std::move(pieces));
+  }
+
+  /// The pieces of a .pvtu are files of their own, named relative to it.
+  VtkGrid read_files(pugi::xml_node grid) const {
+    std::vector<VtkGrid> pieces;
+    for (const pugi::xml_node piece : grid.children("Piece")) {
+      const std::string source = piece.attribute("Source").value();
+      try {
+        if (!source.ends_with(".vtu"))
+          throw InputError("expected the name of a .vtu file as its Source, found " +
+                           quoted_type(source));
+        const auto folder = std::filesystem::path(name_).parent_path();
+        VtuReader reader(read_bytes(folder / source));
+        pieces.push_back(reader.read_pieces(reader.document_.child("VTKFile")));
+      } catch (const InputError& error) {
+        fail("Piece " + std::to_string(pieces.size() + 1) + ": " + error.what());
+      }
+    }
+    if (pieces.empty())
+      fail("expected a Piece of a PUnstructuredGrid, found none; write the files again");
+    return joined(name_, std::move(pieces));
+  }
+
+  // ---- One file ----
 
   /// XML ends where raw bytes may begin.
   void parse(std::string_view bytes) {
@@ -71,7 +106,7 @@ class VtuReader {
     const std::string type = file.attribute("type").value();
     if (type != "UnstructuredGrid")
       fail("expected VTK's type UnstructuredGrid, found " + quoted_type(type) +
-           "; write an unstructured grid in one file");
+           "; write an unstructured grid");
     const std::string compressor = file.attribute("compressor").value();
     if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
       fail("expected arrays compressed by zlib or not at all, found " + quoted_type(compressor) +
@@ -89,18 +124,24 @@ class VtuReader {
   }
 
   /// The bytes of an array that is no text.
-  std::string bytes_of(pugi::xml_node node) const {
+  std::string bytes_of(pugi::xml_node node) {
     if (node.attribute("format").value() != std::string("appended"))
-      return vtk_decoded(node.text().get(), true, encoding_);
+      return vtk_decoded(node.text().get(), true, encoding_).bytes;
     const std::uint64_t offset = node.attribute("offset").as_ullong();
     if (offset >= appended_.bytes.size())
       throw InputError("expected an offset within the appended data, found " +
                        std::to_string(offset) + "; the file is cut short");
-    return vtk_decoded(appended_.bytes.substr(static_cast<std::size_t>(offset)), appended_.base64,
-                       encoding_);
+    VtkDecoded decoded = vtk_decoded(appended_.bytes.substr(static_cast<std::size_t>(offset)),
+                                     appended_.base64, encoding_);
+    taken_ += decoded.taken;
+    if (taken_ > 2 * size_)  // memory is to stay in proportion to the file
+      throw InputError(
+          "expected bytes of its own in the appended data, found that arrays share "
+          "them, which take more than the file has; write the file again");
+    return std::move(decoded.bytes);
   }
 
-  std::vector<double> numbers_of(pugi::xml_node node) const {
+  std::vector<double> numbers_of(pugi::xml_node node) {
     try {
       const std::string format = node.attribute("format").value();
       if (format != "binary" && format != "appended") return vtk_reals(node.text().get());
@@ -114,8 +155,7 @@ class VtuReader {
     }
   }
 
-  std::vector<std::int64_t> indices_of(pugi::xml_node cells, const char* name,
-                                       std::size_t count) const {
+  std::vector<std::int64_t> indices_of(pugi::xml_node cells, const char* name, std::size_t count) {
     const pugi::xml_node node = cells.find_child_by_attribute("DataArray", "Name", name);
     if (!node)
       fail(std::string("expected the array '") + name + "' of Cells, found none; write it");
@@ -133,7 +173,7 @@ class VtuReader {
   }
 
   /// Those of numbers that have values for all.
-  std::vector<VtkArray> arrays_of(pugi::xml_node data, std::size_t count) const {
+  std::vector<VtkArray> arrays_of(pugi::xml_node data, std::size_t count) {
     std::vector<VtkArray> arrays;
     for (const pugi::xml_node node : data.children("DataArray")) {
       if (vtk_number(node.attribute("type").value()).bytes == 0) continue;  // texts
@@ -151,7 +191,7 @@ class VtuReader {
     return arrays;
   }
 
-  void read_piece(VtkGrid& grid, pugi::xml_node piece) const {
+  void read_piece(VtkGrid& grid, pugi::xml_node piece) {
     const std::size_t points = piece.attribute("NumberOfPoints").as_ullong();
     const std::size_t cells = piece.attribute("NumberOfCells").as_ullong();
     const pugi::xml_node coordinates = piece.child("Points").child("DataArray");
@@ -167,13 +207,15 @@ class VtuReader {
     grid.cell_data = arrays_of(piece.child("CellData"), cells);
   }
 
-  void read_names(VtkGrid& grid, pugi::xml_node field_data) const {
+  void read_names(VtkGrid& grid, pugi::xml_node field_data) {
     const pugi::xml_node node = field_data.find_child_by_attribute("DataArray", "Name", "names");
     if (node.attribute("type").value() == std::string("UInt8")) grid.names = numbers_of(node);
   }
 
   static constexpr std::size_t any_count = ~std::size_t{0};
   std::string name_;
+  std::size_t size_;       ///< of the file
+  std::size_t taken_ = 0;  ///< bytes of appended data that arrays have been read from
   pugi::xml_document document_;
   Appended appended_;
   VtkEncoding encoding_;

@@ -51,6 +51,45 @@ void expect_one_metric(const AnyField& field, const AnyMesh& mesh) {
   expect_values(field);
 }
 
+/// An order of components that others write, and where ours are in it.
+template <int Dim>
+struct ComponentOrder {
+  const char* text;
+  std::array<std::size_t, Metric<Dim>::size> from;
+};
+
+template <int Dim>
+auto other_orders() {
+  if constexpr (Dim == 2)
+    return std::array{ComponentOrder<2>{"xx yy xy, not xx xy yy", {0, 2, 1}}};
+  else
+    return std::array{
+        ComponentOrder<3>{"xx yy zz xy yz xz, as in VTK's files, not xx xy yy xz yz zz",
+                          {0, 3, 1, 5, 4, 2}},
+        ComponentOrder<3>{"xx xy yy xz yz zz, not xx yy zz xy yz xz, as in VTK's files",
+                          {0, 2, 5, 1, 4, 3}},
+        ComponentOrder<3>{"xx yy zz yz xz xy, not xx xy yy xz yz zz", {0, 5, 1, 4, 3, 2}}};
+}
+
+/// If all tensors are metrics in another order of components, a hint that it is theirs.
+template <int Dim>
+std::string suspected_order(const AnyField& field) {
+  if (field.types[0] != Type::symmetric || field.dimension != Dim) return {};
+  for (const ComponentOrder<Dim>& order : other_orders<Dim>()) {
+    bool all = true;
+    for (std::size_t v = 0; all && v < field.vertex_count; ++v) {
+      Metric<Dim> metric;
+      for (std::size_t k = 0; k < metric.m.size(); ++k)
+        metric.m[k] = field.values[v * Metric<Dim>::size + order.from[k]];
+      all = in_range(metric);
+    }
+    if (all)
+      return "; the order of components may be " + std::string(order.text) +
+             ": all tensors are positive definite in that order";
+  }
+  return {};
+}
+
 template <int Dim>
 void expect_metric(const AnyField& field, std::size_t vertex, const Metric<Dim>& metric) {
   if (surely_in_range(metric)) return;
@@ -68,7 +107,8 @@ void expect_metric(const AnyField& field, std::size_t vertex, const Metric<Dim>&
       return;
     case RangeFault::indefinite:
       fail_at(field, vertex, "a positive definite tensor",
-              "eigenvalues from " + number(*smallest) + " to " + number(*largest));
+              "eigenvalues from " + number(*smallest) + " to " + number(*largest) +
+                  suspected_order<Dim>(field));
     case RangeFault::size:
       fail_at(field, vertex, "sizes from 1e-75 to 1e75",
               number(shortest) + " to " + number(longest));

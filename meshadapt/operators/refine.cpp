@@ -227,8 +227,13 @@ void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& spli
   };
   split.in_layer =
       split.kind.class_dimension < Dim && std::all_of(shell.begin(), shell.end(), is_fine_or_spans);
+  // The references of corners mark points, and are of these only.
+  const auto is_corner = [&](VertexId v) {
+    return mesh_.kind_of[v].corner || mesh_.kind_of[v].required;
+  };
   const std::int32_t reference = mesh_.reference_of[edge.a];
-  split.reference = reference == mesh_.reference_of[edge.b] ? reference : 0;
+  const bool same = reference == mesh_.reference_of[edge.b];
+  split.reference = same && !(is_corner(edge.a) && is_corner(edge.b)) ? reference : 0;
 }
 
 /// Does an element reach from one side of a layer to the other? None of its corners is inside.
