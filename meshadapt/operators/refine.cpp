@@ -59,7 +59,7 @@ bool Refine<Dim>::splits(const LongEdge& edge) const {
     Cuts cuts{};
     const std::size_t k = edge_of<Dim>(mesh_.corners_of[element], edge.a, edge.b);
     Points points = points_of(element, cuts);
-    points[middle_of<Dim>(k)] = &split.site;
+    points.set_middle(k, split);
     Pieces<Dim> pieces;
     Qualities qualities{mesh_.quality_of[element]};
     return cut(pieces, qualities, k, split, points);
@@ -182,7 +182,8 @@ bool Refine<Dim>::locate(const LongEdge& edge, const Shell& shell, Split& split)
   if (!(split.site.scale > 0)) return false;
   classify(edge, shell, split);
   return !shorter_than(a, split.site, rules_.shortest_split) &&
-         !shorter_than(b, split.site, rules_.shortest_split);
+         !shorter_than(b, split.site, rules_.shortest_split) &&
+         !leads_through_layer(edge, shell, split);
 }
 
 /// Required elements, facets and edges stay as they are.
@@ -237,6 +238,41 @@ bool Refine<Dim>::spans_layer(ElementId element) const {
   const Corners<Dim>& corners = mesh_.corners_of[element];
   return std::none_of(corners.begin(), corners.end(),
                       [&](VertexId v) { return mesh_.kind_of[v].class_dimension == Dim; });
+}
+
+/// Is the least height of an element below the length of short edges?
+template <int Dim>
+bool Refine<Dim>::is_thin(ElementId element, const Site<Dim>& judge) const {
+  const Corners<Dim>& corners = mesh_.corners_of[element];
+  std::array<Vector<Dim>, Dim + 1> p;
+  for (std::size_t i = 0; i <= Dim; ++i) p[i] = mesh_.site_of[corners[i]].position;
+  double largest = 0;  // squared length of an edge, or four times the squared area of a triangle
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    const Vector<Dim>& origin = p[(i + 1) % (Dim + 1)];
+    const Vector<Dim> u = p[(i + 2) % (Dim + 1)] - origin;
+    double measure = squared_length(judge.metric, u);
+    if constexpr (Dim == 3) {
+      const Vector<Dim> v = p[(i + 3) % (Dim + 1)] - origin;
+      const double squares = squared_length(judge.metric, v);
+      const double product = (measure + squares - squared_length(judge.metric, u - v)) / 2;
+      measure = measure * squares - product * product;
+    }
+    largest = std::max(largest, measure);
+  }
+  const double volume = metric_volume<Dim>(certain_determinant<Dim>(p), judge.scale);
+  return volume < rules_.short_edge * std::sqrt(largest);
+}
+
+/// Does an edge lead from one side of a thin layer to the other? A vertex inside the layer would
+/// be in the way of splits of the sides, after which swaps make the edge shorter.
+template <int Dim>
+bool Refine<Dim>::leads_through_layer(const LongEdge& edge, const Shell& shell,
+                                      const Split& split) const {
+  if (split.kind.class_dimension < Dim || mesh_.kind_of[edge.a].class_dimension == Dim ||
+      mesh_.kind_of[edge.b].class_dimension == Dim)
+    return false;
+  return std::all_of(shell.begin(), shell.end(),
+                     [&](ElementId e) { return spans_layer(e) && is_thin(e, split.site); });
 }
 
 // ---- Who refuses ----
@@ -375,10 +411,11 @@ auto Refine<Dim>::order_of(const Cuts& cuts) const -> Order {
 
 template <int Dim>
 auto Refine<Dim>::points_of(ElementId element, const Cuts& cuts) const -> Points {
-  Points points{};
-  for (std::size_t i = 0; i <= Dim; ++i) points[i] = &mesh_.site_of[mesh_.corners_of[element][i]];
+  Points points{element, {}, 0};
+  for (std::size_t i = 0; i <= Dim; ++i)
+    points.site[i] = &mesh_.site_of[mesh_.corners_of[element][i]];
   for (std::size_t k = 0; k < cuts.split.size(); ++k)
-    if (cuts.split[k] != 0) points[middle_of<Dim>(k)] = &splits_[cuts.split[k] - 1].site;
+    if (cuts.split[k] != 0) points.set_middle(k, splits_[cuts.split[k] - 1]);
   return points;
 }
 
@@ -400,7 +437,7 @@ bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& point
     pieces.cut(order.edge[i]);
   }
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    cuts.quality[p] = static_cast<float>(quality<Dim>(sites_of<Dim>(pieces[p], points)));
+    cuts.quality[p] = static_cast<float>(quality<Dim>(sites_of<Dim>(pieces[p], points.site)));
     if (!(cuts.quality[p] >= rules_.accepted_quality)) return false;
   }
   cuts.pieces = static_cast<std::uint32_t>(pieces.size());
@@ -417,7 +454,7 @@ bool Refine<Dim>::cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edg
   halves.cut(edge);
   Qualities after = qualities;
   const auto is_fine = [&](std::size_t half, double before) {
-    const double value = quality<Dim>(sites_of<Dim>(halves[half], points));
+    const double value = quality<Dim>(sites_of<Dim>(halves[half], points.site));
     after[half] = static_cast<float>(value);
     return value > 0 && value >= least_quality(std::min<double>(before, split.worst_around), split);
   };
@@ -436,11 +473,34 @@ template <int Dim>
 bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
                                  const Points& points) const {
   const auto [a, b] = Simplex<Dim>::edge[edge];
-  const Site<Dim>& middle = *points[middle_of<Dim>(edge)];
+  const Site<Dim>& middle = *points.site[middle_of<Dim>(edge)];
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     if (!pieces.has_edge(p, edge)) continue;
     for (const PointOfCut c : pieces[p].corners)
-      if (c != a && c != b && shorter_than(*points[c], middle, rules_.shortest_split)) return false;
+      if (c != a && c != b && shorter_than(*points.site[c], middle, rules_.shortest_split) &&
+          !is_across(pieces[p], edge, c, points))
+        return false;
+  }
+  return true;
+}
+
+/// Does a corner of a piece lie on another side of a layer than the edge that is cut? How far they
+/// are from each other is for the layer to say, and no collapse may join them.
+template <int Dim>
+bool Refine<Dim>::is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCut corner,
+                            const Points& points) const {
+  const auto is_on_side = [&](PointOfCut point) {
+    if (point > Dim) return (points.on_side >> (point - Dim - 1U) & 1U) != 0;
+    return mesh_.kind_of[mesh_.corners_of[points.element][point]].class_dimension < Dim;
+  };
+  if (!is_on_side(middle_of<Dim>(edge)) || !is_on_side(corner)) return false;
+  if (Dim == 2) return true;
+  const auto [a, b] = Simplex<Dim>::edge[edge];
+  const auto& patches = mesh_.patches_of[points.element];
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    const PointOfCut other = piece.corners[i];
+    if (other == a || other == b || other == corner) continue;
+    if (piece.facet_of[i] < patches.size() && patches[piece.facet_of[i]] != 0) return false;
   }
   return true;
 }
