@@ -47,6 +47,45 @@ std::size_t edge_of(const Corners<Dim>& corners, VertexId a, VertexId b) {
   return k;
 }
 
+/// Square of twice the metric area of the triangle that two vectors span.
+template <int Dim>
+double squared_area(const Metric<Dim>& metric, const Vector<Dim>& u, const Vector<Dim>& v) {
+  const double uu = squared_length(metric, u), vv = squared_length(metric, v);
+  const double uv = (uu + vv - squared_length(metric, u - v)) / 2;
+  return uu * vv - uv * uv;
+}
+
+/// Metric length of the least height of a triangle.
+template <int Dim>
+double least_height_of_triangle(const std::array<Vector<Dim>, 3>& p, const Metric<Dim>& metric) {
+  double longest = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    longest = std::max(longest, squared_length(metric, p[(i + 1) % 3] - p[i]));
+  return std::sqrt(std::max(0.0, squared_area(metric, p[1] - p[0], p[2] - p[0])) / longest);
+}
+
+/// Metric length of the least height of an element.
+double least_height(const std::array<Vector<2>, 3>& p, const Site<2>& judge) {
+  return least_height_of_triangle(p, judge.metric);
+}
+double least_height(const std::array<Vector<3>, 4>& p, const Site<3>& judge) {
+  double largest = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vector<3>& origin = p[(i + 1) % 4];
+    largest = std::max(
+        largest, squared_area(judge.metric, p[(i + 2) % 4] - origin, p[(i + 3) % 4] - origin));
+  }
+  return metric_volume<3>(certain_determinant<3>(p), judge.scale) / std::sqrt(largest);
+}
+
+template <int Dim, std::size_t n>
+std::array<Vector<Dim>, n> positions_of(const Mesh<Dim>& mesh,
+                                        const std::array<VertexId, n>& vertices) {
+  std::array<Vector<Dim>, n> positions;
+  for (std::size_t i = 0; i < n; ++i) positions[i] = mesh.site_of[vertices[i]].position;
+  return positions;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -240,39 +279,31 @@ bool Refine<Dim>::spans_layer(ElementId element) const {
                       [&](VertexId v) { return mesh_.kind_of[v].class_dimension == Dim; });
 }
 
-/// Is the least height of an element below the length of short edges?
-template <int Dim>
-bool Refine<Dim>::is_thin(ElementId element, const Site<Dim>& judge) const {
-  const Corners<Dim>& corners = mesh_.corners_of[element];
-  std::array<Vector<Dim>, Dim + 1> p;
-  for (std::size_t i = 0; i <= Dim; ++i) p[i] = mesh_.site_of[corners[i]].position;
-  double largest = 0;  // squared length of an edge, or four times the squared area of a triangle
-  for (std::size_t i = 0; i <= Dim; ++i) {
-    const Vector<Dim>& origin = p[(i + 1) % (Dim + 1)];
-    const Vector<Dim> u = p[(i + 2) % (Dim + 1)] - origin;
-    double measure = squared_length(judge.metric, u);
-    if constexpr (Dim == 3) {
-      const Vector<Dim> v = p[(i + 3) % (Dim + 1)] - origin;
-      const double squares = squared_length(judge.metric, v);
-      const double product = (measure + squares - squared_length(judge.metric, u - v)) / 2;
-      measure = measure * squares - product * product;
-    }
-    largest = std::max(largest, measure);
-  }
-  const double volume = metric_volume<Dim>(certain_determinant<Dim>(p), judge.scale);
-  return volume < rules_.short_edge * std::sqrt(largest);
-}
-
-/// Does an edge lead from one side of a thin layer to the other? A vertex inside the layer would
-/// be in the way of splits of the sides, after which swaps make the edge shorter.
+/// Does an edge lead from one side of a thin layer to the other, or of a thin strip of a patch? A
+/// vertex inside would be in the way of splits of the sides, after which swaps make the edge
+/// shorter.
 template <int Dim>
 bool Refine<Dim>::leads_through_layer(const LongEdge& edge, const Shell& shell,
                                       const Split& split) const {
-  if (split.kind.class_dimension < Dim || mesh_.kind_of[edge.a].class_dimension == Dim ||
-      mesh_.kind_of[edge.b].class_dimension == Dim)
-    return false;
-  return std::all_of(shell.begin(), shell.end(),
-                     [&](ElementId e) { return spans_layer(e) && is_thin(e, split.site); });
+  const int inside = split.kind.class_dimension;
+  const auto on_side = [&](VertexId v) { return mesh_.kind_of[v].class_dimension < inside; };
+  if (inside < 2 || !on_side(edge.a) || !on_side(edge.b)) return false;
+  return std::all_of(shell.begin(), shell.end(), [&](ElementId e) {
+    const Corners<Dim>& corners = mesh_.corners_of[e];
+    if (inside == Dim)
+      return std::all_of(corners.begin(), corners.end(), on_side) &&
+             least_height(positions_of(mesh_, corners), split.site) < rules_.short_edge;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      if (mesh_.patches_of[e][i] == 0 || corners[i] == edge.a || corners[i] == edge.b) continue;
+      const auto facet = facet_of<Dim>(corners, static_cast<int>(i));
+      if (!std::all_of(facet.begin(), facet.end(), on_side)) return false;
+      if constexpr (Dim == 3)
+        if (!(least_height_of_triangle(positions_of(mesh_, facet), split.site.metric) <
+              rules_.short_edge))
+          return false;
+    }
+    return true;
+  });
 }
 
 // ---- Who refuses ----
@@ -411,7 +442,7 @@ auto Refine<Dim>::order_of(const Cuts& cuts) const -> Order {
 
 template <int Dim>
 auto Refine<Dim>::points_of(ElementId element, const Cuts& cuts) const -> Points {
-  Points points{element, {}, 0};
+  Points points{element, {}, {}};
   for (std::size_t i = 0; i <= Dim; ++i)
     points.site[i] = &mesh_.site_of[mesh_.corners_of[element][i]];
   for (std::size_t k = 0; k < cuts.split.size(); ++k)
@@ -484,25 +515,26 @@ bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
   return true;
 }
 
-/// Does a corner of a piece lie on another side of a layer than the edge that is cut? How far they
-/// are from each other is for the layer to say, and no collapse may join them.
+/// Does a corner of a piece lie on another side of a layer, or of a strip of a patch, than the edge
+/// that is cut? How far they are from each other is for the layer to say, and no collapse may join
+/// them.
 template <int Dim>
 bool Refine<Dim>::is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCut corner,
                             const Points& points) const {
-  const auto is_on_side = [&](PointOfCut point) {
-    if (point > Dim) return (points.on_side >> (point - Dim - 1U) & 1U) != 0;
-    return mesh_.kind_of[mesh_.corners_of[points.element][point]].class_dimension < Dim;
+  const auto class_of = [&](PointOfCut point) -> int {
+    return point > Dim ? points.class_of_middle[point - Dim - 1U]
+                       : mesh_.kind_of[mesh_.corners_of[points.element][point]].class_dimension;
   };
-  if (!is_on_side(middle_of<Dim>(edge)) || !is_on_side(corner)) return false;
-  if (Dim == 2) return true;
+  const int highest = std::max(class_of(middle_of<Dim>(edge)), class_of(corner));
+  if (Dim == 2 || highest != 2) return highest == 1;
   const auto [a, b] = Simplex<Dim>::edge[edge];
   const auto& patches = mesh_.patches_of[points.element];
   for (std::size_t i = 0; i <= Dim; ++i) {
     const PointOfCut other = piece.corners[i];
     if (other == a || other == b || other == corner) continue;
-    if (piece.facet_of[i] < patches.size() && patches[piece.facet_of[i]] != 0) return false;
+    return piece.facet_of[i] >= patches.size() || patches[piece.facet_of[i]] == 0;
   }
-  return true;
+  return false;
 }
 
 /// Where the metric changes a lot over an element, as it does along overlong edges, its quality

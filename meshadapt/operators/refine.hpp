@@ -87,11 +87,11 @@ class Refine {
   struct Points {
     ElementId element;
     std::array<const Site<Dim>*, points_of_cut<Dim>> site;
-    std::uint32_t on_side;  // a bit for each middle that lies on a patch or a curve
+    std::array<std::uint8_t, Simplex<Dim>::edges> class_of_middle;  // dimension of the class
 
     void set_middle(std::size_t edge, const Split& split) {
       site[middle_of<Dim>(edge)] = &split.site;
-      on_side |= static_cast<std::uint32_t>(split.kind.class_dimension < Dim) << edge;
+      class_of_middle[edge] = split.kind.class_dimension;
     }
   };
   using Qualities = std::array<float, Pieces<Dim>::most>;
@@ -103,7 +103,6 @@ class Refine {
   bool locate(const LongEdge& edge, const Shell& shell, Split& split) const;
   void classify(const LongEdge& edge, const Shell& shell, Split& split) const;
   bool spans_layer(ElementId element) const;
-  bool is_thin(ElementId element, const Site<Dim>& judge) const;
   bool leads_through_layer(const LongEdge& edge, const Shell& shell, const Split& split) const;
 
   // ---- 2. What is refused: elements ask to, that would be cut into what the rules do not allow.
