@@ -47,6 +47,45 @@ std::size_t edge_of(const Corners<Dim>& corners, VertexId a, VertexId b) {
   return k;
 }
 
+/// Square of twice the metric area of the triangle that two vectors span.
+template <int Dim>
+double squared_area(const Metric<Dim>& metric, const Vector<Dim>& u, const Vector<Dim>& v) {
+  const double uu = squared_length(metric, u), vv = squared_length(metric, v);
+  const double uv = (uu + vv - squared_length(metric, u - v)) / 2;
+  return uu * vv - uv * uv;
+}
+
+/// Metric length of the least height of a triangle.
+template <int Dim>
+double least_height_of_triangle(const std::array<Vector<Dim>, 3>& p, const Metric<Dim>& metric) {
+  double longest = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    longest = std::max(longest, squared_length(metric, p[(i + 1) % 3] - p[i]));
+  return std::sqrt(std::max(0.0, squared_area(metric, p[1] - p[0], p[2] - p[0])) / longest);
+}
+
+/// Metric length of the least height of an element.
+double least_height(const std::array<Vector<2>, 3>& p, const Site<2>& judge) {
+  return least_height_of_triangle(p, judge.metric);
+}
+double least_height(const std::array<Vector<3>, 4>& p, const Site<3>& judge) {
+  double largest = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vector<3>& origin = p[(i + 1) % 4];
+    largest = std::max(
+        largest, squared_area(judge.metric, p[(i + 2) % 4] - origin, p[(i + 3) % 4] - origin));
+  }
+  return metric_volume<3>(certain_determinant<3>(p), judge.scale) / std::sqrt(largest);
+}
+
+template <int Dim, std::size_t n>
+std::array<Vector<Dim>, n> positions_of(const Mesh<Dim>& mesh,
+                                        const std::array<VertexId, n>& vertices) {
+  std::array<Vector<Dim>, n> positions;
+  for (std::size_t i = 0; i < n; ++i) positions[i] = mesh.site_of[vertices[i]].position;
+  return positions;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -59,7 +98,7 @@ bool Refine<Dim>::splits(const LongEdge& edge) const {
     Cuts cuts{};
     const std::size_t k = edge_of<Dim>(mesh_.corners_of[element], edge.a, edge.b);
     Points points = points_of(element, cuts);
-    points[middle_of<Dim>(k)] = &split.site;
+    points.set_middle(k, split);
     Pieces<Dim> pieces;
     Qualities qualities{mesh_.quality_of[element]};
     return cut(pieces, qualities, k, split, points);
@@ -182,7 +221,8 @@ bool Refine<Dim>::locate(const LongEdge& edge, const Shell& shell, Split& split)
   if (!(split.site.scale > 0)) return false;
   classify(edge, shell, split);
   return !shorter_than(a, split.site, rules_.shortest_split) &&
-         !shorter_than(b, split.site, rules_.shortest_split);
+         !shorter_than(b, split.site, rules_.shortest_split) &&
+         !leads_through_layer(edge, shell, split);
 }
 
 /// Required elements, facets and edges stay as they are.
@@ -242,6 +282,33 @@ bool Refine<Dim>::spans_layer(ElementId element) const {
   const Corners<Dim>& corners = mesh_.corners_of[element];
   return std::none_of(corners.begin(), corners.end(),
                       [&](VertexId v) { return mesh_.kind_of[v].class_dimension == Dim; });
+}
+
+/// Does an edge lead from one side of a thin layer to the other, or of a thin strip of a patch? A
+/// vertex inside would be in the way of splits of the sides, after which swaps make the edge
+/// shorter.
+template <int Dim>
+bool Refine<Dim>::leads_through_layer(const LongEdge& edge, const Shell& shell,
+                                      const Split& split) const {
+  const int inside = split.kind.class_dimension;
+  const auto on_side = [&](VertexId v) { return mesh_.kind_of[v].class_dimension < inside; };
+  if (inside < 2 || !on_side(edge.a) || !on_side(edge.b)) return false;
+  return std::all_of(shell.begin(), shell.end(), [&](ElementId e) {
+    const Corners<Dim>& corners = mesh_.corners_of[e];
+    if (inside == Dim)
+      return std::all_of(corners.begin(), corners.end(), on_side) &&
+             least_height(positions_of(mesh_, corners), split.site) < rules_.short_edge;
+    for (std::size_t i = 0; i <= Dim; ++i) {
+      if (mesh_.patches_of[e][i] == 0 || corners[i] == edge.a || corners[i] == edge.b) continue;
+      const auto facet = facet_of<Dim>(corners, static_cast<int>(i));
+      if (!std::all_of(facet.begin(), facet.end(), on_side)) return false;
+      if constexpr (Dim == 3)
+        if (!(least_height_of_triangle(positions_of(mesh_, facet), split.site.metric) <
+              rules_.short_edge))
+          return false;
+    }
+    return true;
+  });
 }
 
 // ---- Who refuses ----
@@ -380,10 +447,11 @@ auto Refine<Dim>::order_of(const Cuts& cuts) const -> Order {
 
 template <int Dim>
 auto Refine<Dim>::points_of(ElementId element, const Cuts& cuts) const -> Points {
-  Points points{};
-  for (std::size_t i = 0; i <= Dim; ++i) points[i] = &mesh_.site_of[mesh_.corners_of[element][i]];
+  Points points{element, {}, {}};
+  for (std::size_t i = 0; i <= Dim; ++i)
+    points.site[i] = &mesh_.site_of[mesh_.corners_of[element][i]];
   for (std::size_t k = 0; k < cuts.split.size(); ++k)
-    if (cuts.split[k] != 0) points[middle_of<Dim>(k)] = &splits_[cuts.split[k] - 1].site;
+    if (cuts.split[k] != 0) points.set_middle(k, splits_[cuts.split[k] - 1]);
   return points;
 }
 
@@ -405,7 +473,7 @@ bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& point
     pieces.cut(order.edge[i]);
   }
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    cuts.quality[p] = static_cast<float>(quality<Dim>(sites_of<Dim>(pieces[p], points)));
+    cuts.quality[p] = static_cast<float>(quality<Dim>(sites_of<Dim>(pieces[p], points.site)));
     if (!(cuts.quality[p] >= rules_.accepted_quality)) return false;
   }
   cuts.pieces = static_cast<std::uint32_t>(pieces.size());
@@ -422,7 +490,7 @@ bool Refine<Dim>::cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edg
   halves.cut(edge);
   Qualities after = qualities;
   const auto is_fine = [&](std::size_t half, double before) {
-    const double value = quality<Dim>(sites_of<Dim>(halves[half], points));
+    const double value = quality<Dim>(sites_of<Dim>(halves[half], points.site));
     after[half] = static_cast<float>(value);
     return value > 0 && value >= least_quality(std::min<double>(before, split.worst_around), split);
   };
@@ -441,13 +509,37 @@ template <int Dim>
 bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
                                  const Points& points) const {
   const auto [a, b] = Simplex<Dim>::edge[edge];
-  const Site<Dim>& middle = *points[middle_of<Dim>(edge)];
+  const Site<Dim>& middle = *points.site[middle_of<Dim>(edge)];
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     if (!pieces.has_edge(p, edge)) continue;
     for (const PointOfCut c : pieces[p].corners)
-      if (c != a && c != b && shorter_than(*points[c], middle, rules_.shortest_split)) return false;
+      if (c != a && c != b && shorter_than(*points.site[c], middle, rules_.shortest_split) &&
+          !is_across(pieces[p], edge, c, points))
+        return false;
   }
   return true;
+}
+
+/// Does a corner of a piece lie on another side of a layer, or of a strip of a patch, than the edge
+/// that is cut? How far they are from each other is for the layer to say, and no collapse may join
+/// them.
+template <int Dim>
+bool Refine<Dim>::is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCut corner,
+                            const Points& points) const {
+  const auto class_of = [&](PointOfCut point) -> int {
+    return point > Dim ? points.class_of_middle[point - Dim - 1U]
+                       : mesh_.kind_of[mesh_.corners_of[points.element][point]].class_dimension;
+  };
+  const int highest = std::max(class_of(middle_of<Dim>(edge)), class_of(corner));
+  if (Dim == 2 || highest != 2) return highest == 1;
+  const auto [a, b] = Simplex<Dim>::edge[edge];
+  const auto& patches = mesh_.patches_of[points.element];
+  for (std::size_t i = 0; i <= Dim; ++i) {
+    const PointOfCut other = piece.corners[i];
+    if (other == a || other == b || other == corner) continue;
+    return piece.facet_of[i] >= patches.size() || patches[piece.facet_of[i]] == 0;
+  }
+  return false;
 }
 
 /// Where the metric changes a lot over an element, as it does along overlong edges, its quality

@@ -83,7 +83,17 @@ class Refine {
     std::array<std::uint8_t, Simplex<Dim>::edges> edge;
     std::size_t size = 0;
   };
-  using Points = std::array<const Site<Dim>*, points_of_cut<Dim>>;
+  /// An element that is cut, and where its corners and the middles of its edges are.
+  struct Points {
+    ElementId element;
+    std::array<const Site<Dim>*, points_of_cut<Dim>> site;
+    std::array<std::uint8_t, Simplex<Dim>::edges> class_of_middle;  // dimension of the class
+
+    void set_middle(std::size_t edge, const Split& split) {
+      site[middle_of<Dim>(edge)] = &split.site;
+      class_of_middle[edge] = split.kind.class_dimension;
+    }
+  };
   using Qualities = std::array<float, Pieces<Dim>::most>;
 
   // ---- 1. Where the new vertices go, and which elements each edge cuts ----
@@ -93,6 +103,7 @@ class Refine {
   bool locate(const LongEdge& edge, const Shell& shell, Split& split) const;
   void classify(const LongEdge& edge, const Shell& shell, Split& split) const;
   bool spans_layer(ElementId element) const;
+  bool leads_through_layer(const LongEdge& edge, const Shell& shell, const Split& split) const;
 
   // ---- 2. What is refused: elements ask to, that would be cut into what the rules do not allow.
   // Without the edges refused they are cut otherwise, and look again, until none asks. ----
@@ -110,6 +121,8 @@ class Refine {
   bool cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edge, const Split& split,
            const Points& points) const;
   bool keeps_distance(const Pieces<Dim>& pieces, std::size_t edge, const Points& points) const;
+  bool is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCut corner,
+                 const Points& points) const;
   double least_quality(double before, const Split& split) const;
 
   // ---- 3. New vertices and elements take numbers in order; each element is cut on its own: in
