@@ -1,7 +1,7 @@
 /// @file
 /// CrossingFacets: which listed facets of a mesh cross each other. What rounding does to points
 /// does not count, if they are points that two facets share, or that lie on both sides of a closed
-/// crack. For sources only, see BoxIndex.
+/// crack.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
-#include "mesh/box_index.hpp"
+#include "mesh/box_hierarchy.hpp"
 #include "mesh/scale.hpp"
 
 namespace ductile::meshadapt {
@@ -133,7 +133,7 @@ class CrossingFacets {
 
   const AnyMesh& mesh_;
   double slack_;  // of depth(), which rounding may make as large
-  BoxIndex<Dim> index_;
+  BoxHierarchy<Dim> index_;
 };
 
 }  // namespace ductile::meshadapt

@@ -157,7 +157,7 @@ std::vector<std::uint32_t> boundary_vertices_near(const AdjacentMesh& mesh,
                                                   const std::vector<Box<Dim>>& places,
                                                   double distance) {
   const Executor& executor = mesh.executor();
-  const BoxIndex<Dim> index(places.size(), [&](std::size_t i) { return places[i]; });
+  const BoxHierarchy<Dim> index(executor, places.size(), [&](std::size_t i) { return places[i]; });
   const auto sides = sides_of<Dim>(executor, mesh.adjacency<Dim>());
   auto near = runtime::parallel_collect<std::uint32_t>(
       executor, sides.size(), [&](std::size_t s, auto&& append) {

@@ -12,7 +12,7 @@
 #include "core/unit.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "geometry/sheets.hpp"
-#include "mesh/box_index.hpp"
+#include "mesh/box_hierarchy.hpp"
 #include "mesh/distance.hpp"
 
 namespace ductile::meshadapt {
@@ -41,8 +41,8 @@ Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners>& corner) {
 
 /// Of the facets: their parts are looked at one by one.
 template <int Dim, std::size_t Corners>
-struct Sheets<Dim, Corners>::Tree : BoxIndex<Dim> {
-  using BoxIndex<Dim>::BoxIndex;
+struct Sheets<Dim, Corners>::Tree : BoxHierarchy<Dim> {
+  using BoxHierarchy<Dim>::BoxHierarchy;
 };
 
 /// Calls visit(part) for each part whose box has a point in common with this one.

@@ -10,7 +10,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "geometry/projection.hpp"
 #include "geometry/sheets_parts.hpp"
-#include "mesh/box_index.hpp"
+#include "mesh/box_hierarchy.hpp"
 #include "mesh/distance.hpp"
 
 namespace ductile::meshadapt {
@@ -158,7 +158,7 @@ class SurfaceMaker {
   /// part of the domain: at least half of the way there is shall remain. Does it hold any?
   bool hold_facing(const SmoothModel<Dim>& model, ModelInput<Dim>& input) const {
     const auto box_of = [&](std::size_t f) { return box_around(points(corners(facets_[f]))); };
-    const BoxIndex<Dim> index(facets_.size(), box_of);
+    const BoxHierarchy<Dim> index(facets_.size(), box_of);
     std::vector<std::uint8_t> held(facets_.size());
     for (std::size_t f = 0; f < facets_.size(); ++f) {
       if (!model.facets[f] || facets_[f].other != none) continue;

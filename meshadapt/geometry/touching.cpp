@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ductile/runtime/worklist.hpp"
-#include "mesh/box_index.hpp"
+#include "mesh/box_hierarchy.hpp"
 #include "mesh/distance.hpp"
 
 namespace ductile::meshadapt {
@@ -19,7 +19,8 @@ std::vector<std::uint8_t> touching_vertices(const runtime::Executor& executor,
     for (std::size_t i = 0; i < Dim; ++i) at[i] = mesh.site_of[facets[f][i]].position;
     return at;
   };
-  const BoxIndex<Dim> index(facets.size(), [&](std::size_t f) { return box_around(points(f)); });
+  const BoxHierarchy<Dim> index(facets.size(),
+                                [&](std::size_t f) { return box_around(points(f)); });
   using Contact = std::pair<VertexId, std::uint32_t>;  // and a facet
   const auto find = [&](std::size_t f, auto&& append) {
     for (const VertexId v : facets[f]) {

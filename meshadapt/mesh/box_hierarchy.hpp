@@ -1,5 +1,5 @@
 /// @file
-/// BoxHierarchy: a tree of boxes around many things, to find those near a point.
+/// BoxHierarchy: a tree of boxes around many things, to find those near a point, or in a box.
 #pragma once
 
 #include <algorithm>
@@ -53,6 +53,10 @@ class BoxHierarchy {
     while (boxes_of_.back().size() > 1) add_level(executor);
   }
 
+  /// The same on one thread.
+  BoxHierarchy(std::size_t n, const auto& box_of)
+      : BoxHierarchy(runtime::Executor({.threads = 1}), n, box_of) {}
+
   /// The things along a space-filling curve.
   const std::vector<std::uint32_t>& order() const { return order_; }
 
@@ -61,6 +65,12 @@ class BoxHierarchy {
   /// thread.
   void visit_near(const Vector<Dim>& point, const double& square, const auto& look_at) const {
     if (!order_.empty()) look_into(boxes_of_.size() - 1, 0, Search{point, square}, look_at);
+  }
+
+  /// Calls visit(i) for each thing whose box has a point in common with this one, in an order that
+  /// is the same each time. Thread safety: any thread.
+  void each_meeting(const Box<Dim>& box, const auto& visit) const {
+    if (!order_.empty()) visit_meeting(boxes_of_.size() - 1, 0, box, visit);
   }
 
   std::size_t bytes() const {
@@ -105,6 +115,14 @@ class BoxHierarchy {
     std::sort(below.begin(), below.begin() + static_cast<std::ptrdiff_t>(count));
     for (std::size_t i = 0; i < count && below[i].first < search.square; ++i)
       look_into(level - 1, below[i].second, search, look_at);
+  }
+
+  void visit_meeting(std::size_t level, std::size_t index, const Box<Dim>& box,
+                     const auto& visit) const {
+    if (!meet(boxes_of_[level][index], box)) return;
+    if (level == 0) return visit(order_[index]);
+    const std::size_t end = std::min(boxes_of_[level - 1].size(), (index + 1) * width);
+    for (std::size_t k = index * width; k < end; ++k) visit_meeting(level - 1, k, box, visit);
   }
 
   std::vector<std::uint32_t> order_;

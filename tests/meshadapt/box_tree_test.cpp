@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "mesh/box_index.hpp"
+#include "mesh/box_hierarchy.hpp"
 #include "support/meshes.hpp"
 
 namespace ductile::meshadapt::box_tree_test {
@@ -143,7 +143,7 @@ TYPED_TEST(BoxTreeIn, TheIndexFindsTheBoxesThatMeetAnother) {
       return box;
     };
     for (auto& box : boxes) box = random_box();
-    const BoxIndex<Dim> index(count, [&](std::size_t i) { return boxes[i]; });
+    const BoxHierarchy<Dim> index(count, [&](std::size_t i) { return boxes[i]; });
     for (int trial = 0; trial < 100; ++trial) {
       const auto box = random_box();
       std::multiset<std::size_t> found, expected;
