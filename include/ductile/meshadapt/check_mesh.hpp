@@ -45,6 +45,14 @@ std::vector<std::string> check_domain(const runtime::Executor& executor, const A
 /// executor.
 std::vector<std::string> check_boundary(const runtime::Executor& executor, const AnyMesh& mesh);
 
+/// Where a mesh is not connected although its facets meet, a line for each kind, naming the first
+/// vertex: those that lie on a listed facet of which they are no corner (they hang), and those at
+/// the place of another (they are doubled, as along a crack). "On" means within 2e-10 of the extent
+/// and the rounding of coordinates. Empty if there are none. Throws as check_boundary() does.
+/// Takes a logarithm more than linear in the facets. Thread safety: one caller; runs on the
+/// executor.
+std::vector<std::string> check_conformity(const runtime::Executor& executor, const AnyMesh& mesh);
+
 /// How the topology of `after` differs from that of `before`, a line each; empty if it does not. Of
 /// the whole and of the elements of each reference that both have are compared: the number of
 /// connected parts, that of connected parts of the boundary around them, and its Euler
