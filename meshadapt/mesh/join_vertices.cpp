@@ -40,8 +40,8 @@ std::vector<std::uint32_t> first_of_each(const AnyMesh& mesh, double tolerance) 
     }
     index.each_meeting(box, [&](std::size_t w) {
       if (w >= v || norm(position_in<Dim>(mesh, w) - at) > tolerance) return;
-      const auto [low, high] = std::minmax(root(v), root(static_cast<std::uint32_t>(w)));
-      first[high] = low;
+      const std::uint32_t a = root(v), b = root(static_cast<std::uint32_t>(w));
+      first[std::max(a, b)] = std::min(a, b);
     });
   }
   for (std::uint32_t v = 0; v < first.size(); ++v) first[v] = root(v);
