@@ -266,7 +266,10 @@ std::vector<meshadapt::NamedField> chosen_solutions(const std::vector<std::strin
   auto fields = from_file ? read_solutions(words[0], mesh.mesh, warnings)
                           : solutions_among(mesh.fields, source);
   const std::vector<std::string> names(words.begin() + (from_file ? 1 : 0), words.end());
-  if (names.empty() && fields.size() > 1)
+  if (names.empty() && fields.size() > 1 && from_file && !holds_fields(words[0]))
+    warnings.push_back(source + ": the metric is made of all its fields, " + names_of(fields) +
+                       "; name one of them to make it of that alone");
+  else if (names.empty() && fields.size() > 1)
     throw meshadapt::InputError(
         source + ": expected the name of a field after it, because it has " +
         std::to_string(fields.size()) + ": " + names_of(fields) + "; name one of them, or several");

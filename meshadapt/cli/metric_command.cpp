@@ -76,7 +76,7 @@ void set_files(Job& job, const Arguments& arguments) {
     std::size_t least, most;  // files
   };
   constexpr std::array<Operation, 7> operations{
-      {{"make", "a mesh and a field, or a file and fields in it", 2, std::string::npos},
+      {{"make", "a mesh and a field", 2, std::string::npos},
        {"size", "a mesh", 1, 1},
        {"implied", "a mesh", 1, 1},
        {"intersect", "a mesh and two metrics or more", 3, std::string::npos},

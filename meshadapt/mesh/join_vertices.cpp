@@ -50,8 +50,8 @@ std::vector<std::uint32_t> first_of_each(const AnyMesh& mesh, double tolerance) 
 
 /// Throws if a cell has lost a corner.
 template <int Corners>
-void rename_corners(const AnyMesh& mesh, Cells<Corners>& cells, const std::vector<std::uint32_t>& new_of,
-            const char* kind) {
+void rename_corners(const AnyMesh& mesh, Cells<Corners>& cells,
+                    const std::vector<std::uint32_t>& new_of, const char* kind) {
   for (std::size_t c = 0; c < cells.size(); ++c) {
     auto& corners = cells.vertices[c];
     for (std::uint32_t& corner : corners) corner = new_of[corner];
