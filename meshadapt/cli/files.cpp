@@ -71,7 +71,10 @@ fs::path place_of(const fs::path& output) {
 void expect_mesh_name(const fs::path& path) {
   const auto* const format = meshadapt::format_of(path);
   if (format == nullptr || !format->is_written)
-    throw UsageError(path.string() + ": expected a name ending in " + meshadapt::written_endings());
+    throw UsageError(path.string() + ": expected a name ending in " + meshadapt::written_endings() +
+                     (path.extension() == ".pos"
+                          ? "; Gmsh opens a .msh with fields as views, and takes sizes from these"
+                          : ""));
 }
 
 bool holds_fields(const fs::path& path) {

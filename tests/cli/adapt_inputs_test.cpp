@@ -151,6 +151,16 @@ TEST_P(AdaptInputs, MakesTheMetricOfAFieldInOneCommand) {
   EXPECT_EQ(folder_.run("adapt part.vtu --solution u -o no.mesh").status, 2);
 }
 
+TEST_P(AdaptInputs, OfViewsOfGmshTheWayOutIsNamed) {
+  folder_.write("size.pos", "View \"size\" {\nSP(0,0,0){0.1};\n};\n");
+  write("part.mesh", grid(dimension_, 2));
+  for (const std::string words : {"info size.pos", "convert part.mesh out.pos"}) {
+    const Outcome outcome = folder_.run(words);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(contains(outcome.err, "a .msh with")) << outcome.err;
+  }
+}
+
 TEST_P(AdaptInputs, SizesOnElementsAreUsed) {
   const AnyMesh mesh = grid(dimension_, 4);
   const auto half = [](std::size_t) { return 0.5; };
