@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/sizes.hpp"
@@ -108,6 +109,17 @@ double figure(const AdaptReport& report, std::string_view name) {
   throw InputError("figure " + std::string(name) + ": expected one of " + names);
 }
 
+/// The handle of what adapt(executor) gives, with a warning of vertices that are not connected.
+template <class Adapt>
+ductile_mesh* adapted_by(const ductile_options& options, const meshadapt::AnyMesh& mesh,
+                         Adapt&& adapt) {
+  const runtime::Executor executor(options.executor);
+  meshadapt::AdaptedMesh adapted = adapt(executor);
+  for (const std::string& loose : meshadapt::check_conformity(executor, mesh))
+    adapted.report.warnings.push_back(loose + "; the mesh is not connected there");
+  return handle_of(std::move(adapted));
+}
+
 }  // namespace
 }  // namespace ductile::c
 
@@ -123,8 +135,9 @@ int ductile_adapt(const ductile_mesh* mesh, int components, const double* metric
     const ductile_options defaults;
     const ductile_options& used = options == nullptr ? defaults : *options;
     const meshadapt::AnyField wanted = c::metric_of(mesh->mesh, components, metric, used);
-    *adapted = c::handle_of(
-        meshadapt::adapt(runtime::Executor(used.executor), mesh->mesh, wanted, used.adapt));
+    *adapted = c::adapted_by(used, mesh->mesh, [&](const runtime::Executor& executor) {
+      return meshadapt::adapt(executor, mesh->mesh, wanted, used.adapt);
+    });
   });
 }
 
@@ -137,8 +150,9 @@ int ductile_adapt_to_sizes(const ductile_mesh* mesh, const ductile_sizes* sizes,
     c::expect_dimension_of(*sizes, *mesh);
     const ductile_options defaults;
     const ductile_options& used = options == nullptr ? defaults : *options;
-    *adapted = c::handle_of(meshadapt::adapt_to_sizes(runtime::Executor(used.executor), mesh->mesh,
-                                                      sizes->sizes, used.adapt));
+    *adapted = c::adapted_by(used, mesh->mesh, [&](const runtime::Executor& executor) {
+      return meshadapt::adapt_to_sizes(executor, mesh->mesh, sizes->sizes, used.adapt);
+    });
   });
 }
 

@@ -25,6 +25,18 @@ if(DUCTILE_BUILD_MESHADAPT)
 endif()
 if(TARGET ductile_c)
   ductile_install_component(ductile_c c)
+  # Relative to where the file is, so that it goes along when the prefix is moved.
+  file(RELATIVE_PATH ductile_prefix_from_pc
+    ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" ductile_pc_prefix "\${pcfiledir}/${ductile_prefix_from_pc}")
+  foreach(dir IN ITEMS libdir includedir)
+    string(TOUPPER CMAKE_INSTALL_${dir} where)
+    cmake_path(IS_ABSOLUTE ${where} is_absolute)
+    set(ductile_pc_${dir} "${${where}}")
+    if(NOT is_absolute)
+      string(PREPEND ductile_pc_${dir} "\${prefix}/")
+    endif()
+  endforeach()
   configure_file(${PROJECT_SOURCE_DIR}/c/ductile.pc.in ${PROJECT_BINARY_DIR}/ductile.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/ductile.pc
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT c)

@@ -17,9 +17,11 @@
 #include "adapt/rescue.hpp"
 #include "adapt/take_apart.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/simplex.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/process.hpp"
 #include "geometry/curvature.hpp"
 #include "geometry/make_mesh.hpp"
 #include "metric/demand.hpp"
@@ -105,17 +107,21 @@ std::vector<Metric<Dim>> metrics_of(const runtime::Executor& executor, const Any
   return metric_of;
 }
 
-/// Of what the metric asks for, that there can be so much of it.
+/// Throws unless the elements that the metric asks for can be numbered and fit in memory.
 template <int Dim>
 void expect_possible(const runtime::Executor& executor, const Mesh<Dim>& mesh,
                      const std::vector<Metric<Dim>>& metric_of, const std::string& name,
                      const AdaptOptions& options) {
   if (!options.insert) return;
   constexpr int enough_to_refine = 6;
-  const double complexity = complexity_of_demand(executor, mesh, metric_of);
-  expect_countable(name, complexity);
-  if (options.memory_limit > 0 && options.iterations >= enough_to_refine)
-    expect_room(name, Dim, complexity, options.memory_limit);
+  const double elements =
+      complexity_of_demand(executor, mesh, metric_of) / complexity_of_elements(Dim, 1);
+  const double least = options.make.lock_boundary ? 0 : least_elements(executor, mesh, metric_of);
+  expect_countable(name, Dim, std::max(elements, least));
+  const std::size_t limit =
+      options.memory_limit > 0 ? options.memory_limit : runtime::most_memory();
+  if (limit > 0 && options.iterations >= enough_to_refine)
+    expect_room(name, Dim, std::max(elements, least), limit);
 }
 
 template <int Dim>

@@ -18,6 +18,7 @@
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
@@ -41,12 +42,15 @@ using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
-constexpr std::array<Option, 32> own_options{{
+constexpr std::array<Option, 35> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
      "--out"},
     {"-hsiz", "X", "asks for edges of length X everywhere"},
+    {"--solution", "FIELD",
+     "the metric in which this field of MESH, or of a file, is resolved by --elements elements"},
+    {"--elements", "N", "with --solution: about how many elements to have"},
     {"--near", "PLACE:H[:GROW]",
      "asks for H near a place (ductile help metric), -hsiz elsewhere; may be given again"},
     {"--on", "BOUNDARY:H[:GROW]", "asks for H on a boundary, by its reference or name; likewise"},
@@ -76,8 +80,9 @@ constexpr std::array<Option, 32> own_options{{
     {"--by-colours", "",
      "as published: kernels by classes of a colouring, deferred updates; slower"},
     {"--racing", "", "with --by-colours, in order of arrival: runs may differ"},
-    {"--json", "FILE", "writes counts, times, quality and memory there, a .json"},
+    {"--json", "FILE", "writes counts, times, quality and memory there, a .json, or - for output"},
     {"--vtu", "FILE", "writes the adapted mesh for ParaView, too, a .vtu"},
+    {"--join", "X", "makes one of vertices that are at most X from each other; 0: at one place"},
     {"--complete-boundary", "", "gives boundary facets missing in the file reference 0"},
     {"--no-metric", "", "writes no metric beside the adapted mesh"},
     {"--field", "FIELD", "carries fields to OUT.FIELD.sol, integrals kept; may be given again"},
@@ -132,6 +137,7 @@ void set_sizes(Job& job, const Arguments& arguments) {
   if (job.places.any()) add("-f");
   if (!job.places.any()) add("-hsiz");
   add("-sol");
+  add("--solution");
   for (const char* option : {"--near", "--on", "--inside"})  // which are one way together
     if (given.empty() || !given.back().starts_with("--")) add(option);
   if (given.size() > 1)
@@ -141,13 +147,24 @@ void set_sizes(Job& job, const Arguments& arguments) {
     throw UsageError(
         "option -A: expected -hausd, which says how far from curved boundaries edges may be, found "
         "none");
-  if (given.empty()) job.metric_in = metric_beside(job.input);
+  if (const auto field = arguments.text("--solution")) job.solution = {*field};
+  job.elements = arguments.positive("--elements").value_or(0);
+  if (job.solution.empty() != (job.elements == 0))
+    throw UsageError("options --solution and --elements: expected both or none, found one");
+  if (!given.empty()) return;
+  job.metric_in = metric_beside(job.input);
+  job.metric_found = job.metric_in.has_value();
 }
 
 void set_files(Job& job, const Arguments& arguments, const std::optional<fs::path>& output) {
   job.input = only_mesh(arguments);
   set_output(job, arguments, output);
-  job.json = arguments.text("--json");
+  job.json = json_output(arguments);
+  if (job.json == standard_output && is_standard_output(job.output))
+    throw UsageError("option --json: expected a file, because the mesh goes to standard output");
+  job.join = arguments.number("--join");
+  if (job.join && !(*job.join >= 0 && *job.join <= meshadapt::largest_size))
+    refuse_value("--join", "a distance of 0 or more", *arguments.text("--join"));
   job.vtu = arguments.text("--vtu");
   if (job.vtu && job.vtu->extension() != ".vtu")
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
@@ -200,8 +217,8 @@ std::vector<fs::path> outputs_of(const Job& job) {
   std::vector<fs::path> paths = {place_of(job.output)};
   if (job.metric_out) paths.push_back(*job.metric_out);
   paths.insert(paths.end(), job.fields.outputs().begin(), job.fields.outputs().end());
-  for (const auto& path : {job.vtu, job.json})
-    if (path) paths.push_back(*path);
+  if (job.vtu) paths.push_back(*job.vtu);
+  if (job.json && *job.json != standard_output) paths.push_back(*job.json);
   return paths;
 }
 
@@ -241,24 +258,6 @@ AdaptJob read_adapt_job(const Arguments& arguments, const std::optional<fs::path
   expect_inputs_to_stay(job);
   meshadapt::check_writable(outputs_of(job));
   return job;
-}
-
-AnyField choose_metric(const Executor& executor, const Job& job,
-                       const meshadapt::MeshWithFields& file, const meshadapt::Sizes& sizes,
-                       meshadapt::Warnings& warnings) {
-  const AnyMesh& mesh = file.mesh;
-  const meshadapt::SizeBounds bounds{job.adapt.smallest_size, job.adapt.largest_size};
-  if (job.places.any())
-    return meshadapt::metric_of(meshadapt::size_field(executor, mesh, sizes), mesh, bounds);
-  if (job.adapt.curved_sizes) return meshadapt::coarsest_metric(mesh, job.adapt.largest_size);
-  if (job.size) return meshadapt::constant_metric(mesh, *job.size);
-  if (job.metric_in) return read_metric(*job.metric_in, mesh, warnings, bounds);
-  if (const auto metric = metric_in(file); metric && !job.keep_sizes)
-    return meshadapt::metric_of(*metric, mesh, bounds);
-  warnings.push_back(mesh.name +
-                     ": no metric given (-sol) or found beside it; adapting to the sizes"
-                     " that the mesh has");
-  return meshadapt::default_metric(executor, mesh);
 }
 
 namespace {
@@ -337,9 +336,22 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const Carried& ca
   if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
   job.fields.write(outputs, carried.fields);
   if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, adapted.mesh, with_fields);
-  if (job.json) write_bytes(outputs, *job.json, json);
   print_warnings(warnings, job.verbosity);
+  if (job.json) put_json(outputs, *job.json, json);
   outputs.commit();
+}
+
+/// Makes one of vertices that lie together, where that is asked for, in all that is known of them.
+void join(const Job& job, AnyMesh& mesh, AnyField& metric, AnyField& fields,
+          meshadapt::Warnings& warnings) {
+  if (!job.join) return;
+  auto joined = meshadapt::join_vertices(std::move(mesh), *job.join);
+  const std::size_t gone = metric.vertex_count - joined.kept.size();
+  mesh = std::move(joined.mesh);
+  warnings.push_back(mesh.name + ": " + counted(gone, "vertex was", "vertices were") +
+                     " joined with others");
+  metric = meshadapt::at_kept(metric, joined.kept);
+  if (!fields.types.empty()) fields = meshadapt::at_kept(fields, joined.kept);
 }
 
 std::string what_was_done(const Job& job, const AdaptSummary& summary) {
@@ -376,15 +388,18 @@ int work(const Executor& executor, Job job) {
   if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
   meshadapt::Warnings warnings;
   if (!job.unneeded.empty()) warnings.push_back(job.unneeded);
-  const meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
+  meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
   const AnyMesh& mesh = file.mesh;
   warn_of_fields_left(job, file, warnings);
   const meshadapt::Sizes sizes = job.places.sizes_for(mesh, warnings);
   AnyField metric = choose_metric(executor, job, file, sizes, warnings);
+  CarriedFields::Values fields = job.fields.read(mesh, warnings, {"metric"});
+  const MetricInForce in_force{metric_said(job, file), values_in_force(job)};
+  join(job, file.mesh, metric, fields.all, warnings);
+  warn_of_loose_vertices(executor, mesh, warnings);
   if (!job.places.any())
     bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings),
                   metric, job.adapt);
-  const CarriedFields::Values fields = job.fields.read(mesh, warnings, {"metric"});
   job.adapt.make.geometry = read_geometry(executor, job, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric, sizes);
@@ -398,13 +413,14 @@ int work(const Executor& executor, Job job) {
        .after = job.json || job.verbosity > 0,
        .expects_lengths = job.adapt.insert,
        .keeps_surface = job.adapt.make.hausdorff_tolerance == 0 && !job.adapt.make.lock_boundary,
-       .hausdorff_tolerance =
-           job.adapt.make.lock_boundary ? 0 : job.adapt.make.hausdorff_tolerance});
+       .hausdorff_tolerance = job.adapt.make.lock_boundary ? 0 : job.adapt.make.hausdorff_tolerance,
+       .in_force = in_force});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   const std::string said = job.verbosity > 0 ? what_was_done(job, summary) : std::string();
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string(), warnings);
   // No memory is taken now that the outputs are there.
-  std::fputs(said.c_str(), is_standard_output(job.output) ? stderr : stdout);
+  const bool taken = is_standard_output(job.output) || job.json == standard_output;
+  std::fputs(said.c_str(), taken ? stderr : stdout);
   return done;
 }
 

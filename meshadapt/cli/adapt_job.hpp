@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "adapt_report.hpp"
 #include "arguments.hpp"
 #include "carried_fields.hpp"
 #include "ductile/meshadapt/adapt.hpp"
@@ -26,14 +28,18 @@ struct AdaptJob {
   CarriedFields fields;
   std::string unneeded;  // options of Mmg's
   std::optional<double> size;
+  std::vector<std::string> solution;  // a field of the mesh's file, or a file; empty: none
+  double elements = 0;                // that a solution is to be resolved by
+  std::optional<double> join;         // the distance of vertices that become one
   SizeOptions places;
   std::optional<std::size_t> memory;  // bytes
   meshadapt::AdaptOptions adapt;
   int verbosity = 1;
   int threads = 0;
   bool racing = false;
-  bool with_metric = true;  // write the metric at the new vertices
-  bool keep_sizes = false;  // whatever metric there is with the mesh
+  bool metric_found = false;  // beside the mesh
+  bool with_metric = true;    // write the metric at the new vertices
+  bool keep_sizes = false;    // whatever metric there is with the mesh
 };
 
 /// Throws UsageError, and InputError where outputs cannot be written. `output` comes before what
@@ -48,5 +54,11 @@ void set_options_of_work(AdaptJob& job, const Arguments& arguments);
 meshadapt::AnyField choose_metric(const runtime::Executor& executor, const AdaptJob& job,
                                   const meshadapt::MeshWithFields& file,
                                   const meshadapt::Sizes& sizes, meshadapt::Warnings& warnings);
+
+/// Where that metric comes from: "part.sol (found beside the mesh)".
+std::string metric_said(const AdaptJob& job, const meshadapt::MeshWithFields& file);
+
+/// The options that bear on sizes, as far as they are in force.
+std::vector<ValueInForce> values_in_force(const AdaptJob& job);
 
 }  // namespace ductile::cli

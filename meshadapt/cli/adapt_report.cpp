@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
 #include "metric/measure.hpp"
@@ -27,10 +29,46 @@ MeshSummary summarise_mesh(const AnyMesh& mesh) {
 }
 
 std::string counts(const MeshSummary& mesh) {
-  std::string text = mesh.name + ": " + with_commas(mesh.vertices) + " vertices, " +
-                     with_commas(mesh.triangles) + " triangles";
-  if (mesh.dimension == 3) text += ", " + with_commas(mesh.tetrahedra) + " tetrahedra";
+  std::string text = mesh.name + ": " + counted(mesh.vertices, "vertex", "vertices") + ", " +
+                     counted(mesh.triangles, "triangle", "triangles");
+  if (mesh.dimension == 3) text += ", " + counted(mesh.tetrahedra, "tetrahedron", "tetrahedra");
   return text + "\n";
+}
+
+std::size_t element_count(const MeshSummary& mesh) {
+  return mesh.dimension == 2 ? mesh.triangles : mesh.tetrahedra;
+}
+
+/// About how many elements the metric asks for; 0 if it was not measured.
+std::size_t elements_wanted(const MeshSummary& mesh) {
+  if (!mesh.statistics || !mesh.statistics->in_metric) return 0;
+  const double each = meshadapt::complexity_of_elements(mesh.dimension, 1);
+  return static_cast<std::size_t>(std::lround(std::min(mesh.statistics->complexity / each, 1e18)));
+}
+
+/// "metric: part.sol (found beside the mesh); -hmax 0.1, -hgrad 1.3".
+std::string in_words(const MetricInForce& in_force) {
+  std::string text = "metric: " + in_force.source;
+  for (const auto& [option, value] : in_force.values) {
+    std::array<char, 64> words;
+    std::snprintf(words.data(), words.size(), " -%s %g", option.c_str(), value);
+    text += (&option == &in_force.values[0].option ? ";" : ",") + std::string(words.data());
+  }
+  return meshadapt::printable(text) + "\n";
+}
+
+std::string demand_in_words(const MeshSummary& mesh) {
+  const std::size_t wanted = elements_wanted(mesh);
+  if (wanted == 0) return {};
+  return "  the metric asks for about " + with_commas(wanted) + " elements, the mesh has " +
+         with_commas(element_count(mesh)) + "\n";
+}
+
+std::string json_of(const MetricInForce& in_force) {
+  std::string options;
+  for (const auto& [option, value] : in_force.values)
+    options += (options.empty() ? "" : ", ") + json_string(option) + ": " + json_number(value);
+  return "{\"source\": " + json_string(in_force.source) + ", \"options\": {" + options + "}}";
 }
 
 std::string seconds(double s) {
@@ -169,6 +207,7 @@ AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::A
                        .report = adapted.report,
                        .threads = after.executor().threads(),
                        .deterministic = after.executor().deterministic()};
+  summary.in_force = options.in_force;
   summary.peak_memory = runtime::peak_memory();
   if (options.before) summary.before.statistics = measure(before, &metric);
   if (options.after) summary.after.statistics = measure(after, &adapted.metric);
@@ -181,17 +220,18 @@ AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::A
 std::string to_text(const AdaptSummary& summary, bool with_histograms) {
   const AdaptReport& report = summary.report;
   std::string text = counts(summary.before) + figures(summary.before, with_histograms);
-  text += "adapted in " + seconds(report.total_seconds) + " on " + std::to_string(summary.threads) +
-          (summary.threads == 1 ? " thread, " : " threads, ") + std::to_string(report.iterations) +
-          " iterations" +
+  if (!summary.in_force.source.empty()) text += in_words(summary.in_force);
+  text += "adapted in " + seconds(report.total_seconds) + " on " +
+          counted(static_cast<std::size_t>(summary.threads), "thread", "threads") + ", " +
+          counted(static_cast<std::size_t>(report.iterations), "iteration", "iterations") +
           (report.converged ? "" : " (the most allowed; more may help: --iterations)") +
           ", peak memory " + with_commas(summary.peak_memory >> 20U) + " MB\n ";
   for (const auto& [name, kernel] : meshadapt::kernels)
     text += " " + std::string(name) + " " + seconds((report.*kernel).seconds) + ",";
   text += " set-up " + seconds(report.setup_seconds) + ", renumbering " +
           seconds(report.renumber_seconds) + "\n";
-  return text + counts(summary.after) + figures(summary.after, with_histograms) +
-         held_edges(report);
+  return text + counts(summary.after) + demand_in_words(summary.after) +
+         figures(summary.after, with_histograms) + held_edges(report);
 }
 
 std::string to_json(const AdaptSummary& summary) {
@@ -203,6 +243,9 @@ std::string to_json(const AdaptSummary& summary) {
   for (const std::string& warning : report.warnings)
     warnings += (warnings.empty() ? "" : ", ") + json_string(warning);
   return "{\"before\": " + json_of(summary.before) + ",\n \"after\": " + json_of(summary.after) +
+         ",\n \"metric\": " + json_of(summary.in_force) +
+         ", \"elements_wanted\": " + std::to_string(elements_wanted(summary.after)) +
+         ", \"elements\": " + std::to_string(element_count(summary.after)) +
          ",\n \"threads\": " + std::to_string(summary.threads) +
          ", \"deterministic\": " + (summary.deterministic ? "true" : "false") +
          ", \"instructions\": " + json_string(std::string(report.instructions)) +

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/statistics.hpp"
@@ -18,8 +19,20 @@ struct MeshSummary {
   std::optional<meshadapt::MeshStatistics> statistics;
 };
 
+/// An option with a number: "hmin", 0.1.
+struct ValueInForce {
+  std::string option;
+  double value = 0;
+};
+
+struct MetricInForce {
+  std::string source;  ///< "part.sol (found beside the mesh)"
+  std::vector<ValueInForce> values;
+};
+
 struct AdaptSummary {
   MeshSummary before, after;
+  MetricInForce in_force;
   meshadapt::AdaptReport report;
   int threads = 0;
   bool deterministic = true;
@@ -31,6 +44,7 @@ struct SummaryOptions {
   bool expects_lengths = true;       ///< a warning is added if too many edges are too long
   bool keeps_surface = false;        ///< ... or too short, which curved boundaries may be why
   double hausdorff_tolerance = 0;    ///< ... or are, because they stay within this; 0: they stay
+  MetricInForce in_force = {};
 };
 
 /// `after` is the mesh of `adapted`.

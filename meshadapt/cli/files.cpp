@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "arguments.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
+#include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 
 namespace ductile::cli {
@@ -69,7 +71,10 @@ fs::path place_of(const fs::path& output) {
 void expect_mesh_name(const fs::path& path) {
   const auto* const format = meshadapt::format_of(path);
   if (format == nullptr || !format->is_written)
-    throw UsageError(path.string() + ": expected a name ending in " + meshadapt::written_endings());
+    throw UsageError(path.string() + ": expected a name ending in " + meshadapt::written_endings() +
+                     (path.extension() == ".pos"
+                          ? "; Gmsh opens a .msh with fields as views, and takes sizes from these"
+                          : ""));
 }
 
 bool holds_fields(const fs::path& path) {
@@ -109,23 +114,66 @@ std::size_t entity_count(const meshadapt::AnyMesh& mesh, meshadapt::NamedField::
   return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
+/// A size or a metric on each element, at the vertices: the mean of the logarithms around them.
+template <int Dim>
+meshadapt::AnyField mean_at_vertices(const meshadapt::NamedField& field,
+                                     const meshadapt::AnyMesh& mesh) {
+  using meshadapt::Metric;
+  const auto& elements = meshadapt::elements_in<Dim>(mesh);
+  meshadapt::AnyMesh places;  // as many as elements
+  places.dimension = Dim;
+  places.dropped_axis = mesh.dropped_axis;
+  places.vertex_reference.assign(elements.size(), 0);
+  places.coordinates.assign(elements.size() * Dim, 0);
+  const auto metric = meshadapt::metric_of(
+      {Dim, elements.size(), {field.type}, field.values, mesh.name + ", on elements"}, places);
+  std::vector<Metric<Dim>> sum(mesh.vertex_count());
+  std::vector<double> count(mesh.vertex_count());
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    Metric<Dim> on_element;
+    std::copy_n(&metric.values[e * on_element.m.size()], on_element.m.size(), on_element.m.begin());
+    const Metric<Dim> log = meshadapt::logarithm(on_element);
+    for (const std::uint32_t v : elements.vertices[e]) {
+      sum[v] += log;
+      ++count[v];
+    }
+  }
+  meshadapt::AnyField result{Dim, sum.size(), metric.types, {}, mesh.name};
+  for (std::size_t v = 0; v < sum.size(); ++v) {
+    const Metric<Dim> mean = meshadapt::exponential(1 / std::max(count[v], 1.0) * sum[v]);
+    result.values.insert(result.values.end(), mean.m.begin(), mean.m.end());
+  }
+  return result;
+}
+
+/// At the vertices, wherever it lives.
+meshadapt::AnyField metric_at_vertices(const meshadapt::NamedField& field,
+                                       const meshadapt::AnyMesh& mesh) {
+  if (is_at_vertices(field)) return any_field(field, mesh);
+  return mesh.dimension == 2 ? mean_at_vertices<2>(field, mesh) : mean_at_vertices<3>(field, mesh);
+}
+
 meshadapt::AnyField metric_of_file(const fs::path& path, meshadapt::Warnings& warnings) {
   if (!holds_fields(path)) return meshadapt::read_field(path, &warnings, {.infinite = true});
   const auto file = meshadapt::read_mesh_with_fields(path, &warnings);
   if (const auto metric = metric_in(file)) return *metric;
-  if (std::count_if(file.fields.begin(), file.fields.end(), is_at_vertices) != 1)
-    throw meshadapt::InputError(
-        path.string() + ": expected a field 'metric' at vertices, or one alone, found " +
-        std::to_string(file.fields.size()) + " fields of other names; rename the metric");
-  return any_field(*std::find_if(file.fields.begin(), file.fields.end(), is_at_vertices),
-                   file.mesh);
+  const auto at = std::find_if(file.fields.begin(), file.fields.end(), is_at_vertices);
+  const auto count = std::count_if(file.fields.begin(), file.fields.end(), is_at_vertices);
+  if (count == 1) return any_field(*at, file.mesh);
+  if (count == 0 && file.fields.size() == 1) return metric_at_vertices(file.fields[0], file.mesh);
+  throw meshadapt::InputError(path.string() + ": expected a field 'metric', or one alone, found " +
+                              (file.fields.empty() ? "none" : names_of(file.fields)) +
+                              "; rename the metric");
 }
 
 }  // namespace
 
 std::optional<meshadapt::AnyField> metric_in(const meshadapt::MeshWithFields& file) {
-  for (const auto& field : file.fields)
-    if (is_at_vertices(field) && field.name == "metric") return any_field(field, file.mesh);
+  for (const auto place :
+       {meshadapt::NamedField::Place::vertices, meshadapt::NamedField::Place::elements})
+    for (const auto& field : file.fields)
+      if (field.place == place && field.name == "metric")
+        return metric_at_vertices(field, file.mesh);
   return std::nullopt;
 }
 
@@ -177,17 +225,87 @@ std::vector<meshadapt::NamedField> read_named_fields(const fs::path& path,
   return std::move(file.fields);
 }
 
+namespace {
+
+/// Those at vertices, without a metric beside others.
+std::vector<meshadapt::NamedField> solutions_among(std::vector<meshadapt::NamedField> fields,
+                                                   const std::string& source) {
+  std::erase_if(fields, [](const auto& field) { return !is_at_vertices(field); });
+  if (fields.empty())
+    throw meshadapt::InputError(source + ": expected fields at vertices, found none");
+  if (fields.size() > 1) std::erase_if(fields, [](const auto& f) { return f.name == "metric"; });
+  return fields;
+}
+
+bool has_field(const meshadapt::MeshWithFields& mesh, const std::string& name) {
+  return std::any_of(mesh.fields.begin(), mesh.fields.end(),
+                     [&](const auto& field) { return field.name == name; });
+}
+
+}  // namespace
+
 std::vector<meshadapt::NamedField> read_solutions(const fs::path& path,
                                                   const meshadapt::AnyMesh& mesh,
                                                   meshadapt::Warnings& warnings) {
   auto fields = read_named_fields(path, mesh, warnings);
   if (!holds_fields(path)) return fields;
-  std::erase_if(fields, [](const auto& field) { return !is_at_vertices(field); });
-  if (fields.empty())
-    throw meshadapt::InputError(path.string() + ": expected fields at vertices, found none");
-  if (fields.size() > 1) std::erase_if(fields, [](const auto& f) { return f.name == "metric"; });
+  fields = solutions_among(std::move(fields), path.string());
   if (fields[0].name == "metric") fields[0].name = as_utf8(path.stem().string());
   return fields;
+}
+
+bool is_file(const std::string& word) {
+  std::error_code ignored;
+  const fs::path path = word;
+  return path.extension() == ".sol" || path.extension() == ".solb" || holds_fields(path) ||
+         fs::exists(path, ignored);
+}
+
+std::vector<meshadapt::NamedField> chosen_solutions(const std::vector<std::string>& words,
+                                                    const meshadapt::MeshWithFields& mesh,
+                                                    meshadapt::Warnings& warnings) {
+  const bool from_file = is_file(words.at(0)) && !has_field(mesh, words[0]);
+  const std::string source = from_file ? words[0] : mesh.mesh.name;
+  auto fields = from_file ? read_solutions(words[0], mesh.mesh, warnings)
+                          : solutions_among(mesh.fields, source);
+  const std::vector<std::string> names(words.begin() + (from_file ? 1 : 0), words.end());
+  if (names.empty() && fields.size() > 1 && from_file && !holds_fields(words[0]))
+    warnings.push_back(source + ": the metric is made of all its fields, " + names_of(fields) +
+                       "; name one of them to make it of that alone");
+  else if (names.empty() && fields.size() > 1)
+    throw meshadapt::InputError(
+        source + ": expected the name of a field after it, because it has " +
+        std::to_string(fields.size()) + ": " + names_of(fields) + "; name one of them, or several");
+  std::vector<meshadapt::NamedField> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(fields.begin(), fields.end(),
+                                    [&](const auto& field) { return field.name == name; });
+    if (found == fields.end())
+      throw meshadapt::InputError(source + ": expected a field '" + name +
+                                  "' at its vertices, found " + names_of(fields) +
+                                  "; give one of these, or a file that is there");
+    chosen.push_back(*found);
+  }
+  return names.empty() ? fields : chosen;
+}
+
+void warn_of_loose_vertices(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
+                            meshadapt::Warnings& warnings) {
+  for (const std::string& loose : meshadapt::check_conformity(executor, mesh))
+    warnings.push_back(mesh.name + ": " + loose +
+                       "; the mesh is not connected there (--join makes one of doubled vertices)");
+}
+
+std::optional<fs::path> json_output(const Arguments& arguments) {
+  const auto place = arguments.text("--json");
+  return place ? std::optional<fs::path>(*place) : std::nullopt;
+}
+
+void put_json(meshadapt::AtomicOutputs& outputs, const fs::path& place, const std::string& json) {
+  if (place == standard_output)
+    std::fputs(json.c_str(), stdout);
+  else
+    meshadapt::write_bytes(outputs, place, json);
 }
 
 std::string as_utf8(const std::string& text) {
@@ -219,6 +337,10 @@ std::string with_commas(std::size_t number) {
   std::string digits = std::to_string(number);
   for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
   return digits;
+}
+
+std::string counted(std::size_t number, const char* one, const char* many) {
+  return with_commas(number) + " " + (number == 1 ? one : many);
 }
 
 }  // namespace ductile::cli

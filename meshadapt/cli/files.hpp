@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
+#include "ductile/runtime/executor.hpp"
 
 namespace ductile::cli {
 
@@ -44,7 +46,8 @@ void expect_mesh_name(const std::filesystem::path& path);
 /// Whether files of this name hold a mesh and fields.
 bool holds_fields(const std::filesystem::path& path);
 
-/// The field "metric" that a file has at the vertices beside its mesh, if it has one.
+/// The field "metric" that a file has beside its mesh, if it has one: at the vertices, or on
+/// elements, of which vertices get the means.
 std::optional<meshadapt::AnyField> metric_in(const meshadapt::MeshWithFields& file);
 
 /// Throws UsageError if an output that is none of its kind would take the place of an input.
@@ -74,6 +77,29 @@ std::vector<meshadapt::NamedField> read_solutions(const std::filesystem::path& p
                                                   const meshadapt::AnyMesh& mesh,
                                                   meshadapt::Warnings& warnings);
 
+/// Whether a word stands for a file of fields, not for one field by name.
+bool is_file(const std::string& word);
+
+/// The fields that a metric is made of: `words` are names of fields at the vertices of this mesh,
+/// or a file and names of fields in it. Without names there must be one alone, beside a metric; of a
+/// .sol, which has no names, all are taken, with a warning. Throws InputError with the names that
+/// there are.
+std::vector<meshadapt::NamedField> chosen_solutions(const std::vector<std::string>& words,
+                                                    const meshadapt::MeshWithFields& mesh,
+                                                    meshadapt::Warnings& warnings);
+
+/// Warns of vertices that hang or are doubled, where the mesh is not connected.
+void warn_of_loose_vertices(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
+                            meshadapt::Warnings& warnings);
+
+/// Standard output as the word for a file: "-".
+inline constexpr const char* standard_output = "-";
+/// What --json says: a file, or standard_output.
+std::optional<std::filesystem::path> json_output(const Arguments& arguments);
+/// Writes to a file as one of the outputs, or to standard output at once.
+void put_json(meshadapt::AtomicOutputs& outputs, const std::filesystem::path& place,
+              const std::string& json);
+
 /// Fields at the vertices of a mesh, of which there is at least one, side by side.
 meshadapt::AnyField side_by_side(const std::vector<meshadapt::NamedField>& fields,
                                  const meshadapt::AnyMesh& mesh);
@@ -89,5 +115,7 @@ std::string as_utf8(const std::string& text);
 
 /// 1234567 as "1,234,567".
 std::string with_commas(std::size_t number);
+/// "1 vertex", "1,234 vertices".
+std::string counted(std::size_t number, const char* one, const char* many);
 
 }  // namespace ductile::cli

@@ -24,7 +24,7 @@ using runtime::Executor;
 
 constexpr std::array<Option, 3> options{{
     {"-sol", "METRIC", "measures lengths and quality in this metric (.sol, .solb)"},
-    {"--json", "FILE", "writes them there, too, a .json"},
+    {"--json", "FILE", "writes them there, too, a .json; with - to standard output alone"},
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
 }};
 
@@ -40,6 +40,7 @@ Validity check(const Executor& executor, const AnyMesh& mesh, const AnyField* me
   try {
     validity.warnings = meshadapt::expect_adaptable(executor, mesh);
     if (metric == nullptr) meshadapt::default_metric(executor, mesh);
+    warn_of_loose_vertices(executor, mesh, validity.warnings);
     for (const std::string& crossing : meshadapt::check_boundary(executor, mesh))
       validity.warnings.push_back(mesh.name + ": " + crossing +
                                   "; what is adapted may be refused as not valid");
@@ -111,18 +112,18 @@ std::string names_json(const AnyMesh& mesh) {
   return "[" + text + "]";
 }
 
-void write_json(const std::string& path, const AnyMesh& mesh, const Validity& validity,
+void write_json(const std::filesystem::path& path, const AnyMesh& mesh, const Validity& validity,
                 const std::string& statistics) {
   meshadapt::AtomicOutputs outputs;
-  write_bytes(outputs, path,
-              "{\"mesh\": " + json_string(mesh.name) +
-                  ", \"dimension\": " + std::to_string(mesh.dimension) +
-                  ", \"valid\": " + (validity.reason.empty() ? "true" : "false") +
-                  ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
-                  ", \"edges\": " + std::to_string(mesh.edges.size()) +
-                  ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
-                  ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
-                  ", \"names\": " + names_json(mesh) + ", \"statistics\": " + statistics + "}\n");
+  put_json(outputs, path,
+           "{\"mesh\": " + json_string(mesh.name) +
+               ", \"dimension\": " + std::to_string(mesh.dimension) +
+               ", \"valid\": " + (validity.reason.empty() ? "true" : "false") +
+               ", \"vertices\": " + std::to_string(mesh.vertex_count()) +
+               ", \"edges\": " + std::to_string(mesh.edges.size()) +
+               ", \"triangles\": " + std::to_string(mesh.triangles.size()) +
+               ", \"tetrahedra\": " + std::to_string(mesh.tetrahedra.size()) +
+               ", \"names\": " + names_json(mesh) + ", \"statistics\": " + statistics + "}\n");
   outputs.commit();
 }
 
@@ -134,26 +135,29 @@ int work(const Executor& executor, const Arguments& arguments) {
   const bool has_elements =
       !(mesh.dimension == 2 ? mesh.triangles.reference.empty() : mesh.tetrahedra.reference.empty());
   const AnyField* const given = metric ? &*metric : nullptr;
-  print_counts(mesh);
+  const auto json = json_output(arguments);
+  const bool shown = json != standard_output;
+  if (shown) print_counts(mesh);
   const Validity validity = check(executor, mesh, given);
   warnings.insert(warnings.end(), validity.warnings.begin(), validity.warnings.end());
-  std::printf("  %s\n", validity.reason.empty() ? "valid: it can be adapted"
-                                                : ("not valid: " + validity.reason).c_str());
+  if (shown)
+    std::printf("  %s\n", validity.reason.empty() ? "valid: it can be adapted"
+                                                  : ("not valid: " + validity.reason).c_str());
   std::string statistics = "null";
   if (has_elements) {
     const auto measured = meshadapt::measure(executor, mesh, given);
-    std::printf("%s", to_text(measured).c_str());
+    if (shown) std::printf("%s", to_text(measured).c_str());
     statistics = to_json(measured);
   }
   print_warnings(warnings);
-  if (const auto path = arguments.text("--json")) write_json(*path, mesh, validity, statistics);
+  if (json) write_json(*json, mesh, validity, statistics);
   return validity.reason.empty() ? done : misused;
 }
 
 int run(const Arguments& arguments) {
   if (arguments.operands().size() != 1)
     throw UsageError("expected one mesh, found " + std::to_string(arguments.operands().size()));
-  if (const auto json = arguments.text("--json")) {
+  if (const auto json = arguments.text("--json"); json && *json != standard_output) {
     expect_no_input(*json, {arguments.operands()[0], arguments.text("-sol").value_or("")});
     meshadapt::check_writable(*json);
   }

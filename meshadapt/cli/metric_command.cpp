@@ -76,7 +76,7 @@ void set_files(Job& job, const Arguments& arguments) {
     std::size_t least, most;  // files
   };
   constexpr std::array<Operation, 7> operations{
-      {{"make", "a mesh and a field", 2, 2},
+      {{"make", "a mesh and a field", 2, std::string::npos},
        {"size", "a mesh", 1, 1},
        {"implied", "a mesh", 1, 1},
        {"intersect", "a mesh and two metrics or more", 3, std::string::npos},
@@ -187,8 +187,9 @@ Job read_job(const Arguments& arguments) {
 template <int Dim>
 class Work {
  public:
-  Work(const Executor& executor, const Job& job, const AnyMesh& mesh, meshadapt::Warnings& warnings)
-      : executor_(executor), job_(job), mesh_(mesh), warnings_(warnings) {
+  Work(const Executor& executor, const Job& job, const meshadapt::MeshWithFields& file,
+       meshadapt::Warnings& warnings)
+      : executor_(executor), job_(job), file_(file), warnings_(warnings) {
     goal_ = job.fit.goal;
     if (job.elements > 0) goal_.complexity = meshadapt::complexity_of_elements(Dim, job.elements);
   }
@@ -249,8 +250,10 @@ class Work {
   }
 
   void make() {
-    AnyField field = side_by_side(read_solutions(job_.fields[0], mesh_, warnings_), mesh_);
-    field.name = job_.fields[0].string();
+    std::vector<std::string> words;
+    for (const fs::path& word : job_.fields) words.push_back(word.string());
+    AnyField field = side_by_side(chosen_solutions(words, file_, warnings_), mesh_);
+    field.name = words.back();
     const auto made = meshadapt::solution_metric(executor_, mesh_, field,
                                                  {goal_, job_.gradation, job_.fit.recovery});
     metric_of_ = meshadapt::tensors_of<Dim>(executor_, made.metric);
@@ -310,16 +313,18 @@ class Work {
 
   const Executor& executor_;
   const Job& job_;
-  const AnyMesh& mesh_;
+  const meshadapt::MeshWithFields& file_;
+  const AnyMesh& mesh_ = file_.mesh;
   meshadapt::Warnings& warnings_;
   meshadapt::HessianMetricOptions goal_;
   std::vector<Metric<Dim>> metric_of_;  // [vertex]
 };
 
 template <int Dim>
-void work(const Executor& executor, const Job& job, const AnyMesh& mesh,
+void work(const Executor& executor, const Job& job, const meshadapt::MeshWithFields& file,
           meshadapt::Warnings& warnings) {
-  Work<Dim> work(executor, job, mesh, warnings);
+  const AnyMesh& mesh = file.mesh;
+  Work<Dim> work(executor, job, file, warnings);
   const AnyField metric = work.run();
   const std::string summary = work.summary();  // which may find fault with the mesh: before writing
   print_warnings(warnings, job.verbosity);
@@ -336,9 +341,9 @@ int run(const Arguments& arguments) {
   const Job job = read_job(arguments);
   return run_in_team({.threads = job.threads}, [&](const Executor& executor) {
     meshadapt::Warnings warnings;
-    const AnyMesh mesh = meshadapt::read_mesh(job.mesh, &warnings);
-    mesh.dimension == 2 ? work<2>(executor, job, mesh, warnings)
-                        : work<3>(executor, job, mesh, warnings);
+    const auto file = meshadapt::read_mesh_with_fields(job.mesh, &warnings);
+    file.mesh.dimension == 2 ? work<2>(executor, job, file, warnings)
+                             : work<3>(executor, job, file, warnings);
     return done;
   });
 }
@@ -349,9 +354,9 @@ const Command metric_command{
     "metric",
     "make|size|implied|intersect|scale|bound|grade MESH [FIELD...] -o OUT",
     "makes metrics from fields, and changes them",
-    "  make MESH FIELD           the metric in which linear interpolation of all that FIELD has "
-    "at\n"
-    "                            the vertices is best, for a complexity or an error\n"
+    "  make MESH [FILE] [FIELD...]  the metric in which linear interpolation of a field at the\n"
+    "                            vertices, or of several, is best, for a complexity or an error:\n"
+    "                            fields of MESH by name, or of FILE, which may have one alone\n"
     "  size MESH                 sizes by places, boundaries and regions; the finest holds\n"
     "  implied MESH              the metric that the mesh is adapted to as it is\n"
     "  intersect MESH A B ...    the finest sizes that any of the metrics asks for\n"

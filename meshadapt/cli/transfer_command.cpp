@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -46,12 +45,6 @@ struct Job {
 
 bool is_field_file(const fs::path& path) {
   return path.extension() == ".sol" || path.extension() == ".solb";
-}
-
-/// Whether a word stands for a file of fields, not for one field by name.
-bool is_file(const std::string& word) {
-  std::error_code ignored;
-  return is_field_file(word) || holds_fields(word) || fs::exists(word, ignored);
 }
 
 /// NEW with fields where its own format holds them, or else that of the file which they are in;
@@ -143,7 +136,8 @@ std::vector<NamedField> chosen_fields(const Job& job, const MeshWithFields& file
   return fields;
 }
 
-/// A metric by its values: so it stays positive definite.
+/// A metric goes by its values, so that it stays positive definite, and so do whole numbers on
+/// elements, which are marks: a new element gets that of the old one in which its centroid lies.
 std::vector<Carrying> ways(const Job& job, const std::vector<NamedField>& fields) {
   for (const std::string& name : job.by_value)
     if (std::none_of(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; }))
@@ -152,7 +146,7 @@ std::vector<Carrying> ways(const Job& job, const std::vector<NamedField>& fields
   std::vector<Carrying> carrying;
   for (const NamedField& field : fields) {
     const bool by_value =
-        job.interpolate || field.name == "metric" ||
+        job.interpolate || field.name == "metric" || (field.whole && !is_at_vertices(field)) ||
         std::find(job.by_value.begin(), job.by_value.end(), field.name) != job.by_value.end();
     carrying.push_back(by_value ? Carrying::by_value : Carrying::conservatively);
   }
@@ -215,13 +209,13 @@ std::string summary(const Job& job, const std::vector<NamedField>& carried,
     (is_at_vertices(field) ? at_vertices : on_elements).push_back({field.name, field.type, {}, {}});
   std::string text;
   if (!at_vertices.empty())
-    text += "at " + with_commas(mesh.vertex_count()) +
-            " vertices: " + meshadapt::printable(names_of(at_vertices)) + "\n";
+    text += "at " + counted(mesh.vertex_count(), "vertex", "vertices") + ": " +
+            meshadapt::printable(names_of(at_vertices)) + "\n";
   if (!on_elements.empty())
     text += "on " +
-            (mesh.dimension == 2 ? with_commas(mesh.triangles.size()) + " triangles: "
-                                 : with_commas(mesh.tetrahedra.size()) + " tetrahedra: ") +
-            meshadapt::printable(names_of(on_elements)) + "\n";
+            (mesh.dimension == 2 ? counted(mesh.triangles.size(), "triangle", "triangles")
+                                 : counted(mesh.tetrahedra.size(), "tetrahedron", "tetrahedra")) +
+            ": " + meshadapt::printable(names_of(on_elements)) + "\n";
   return text + "written: " + meshadapt::printable(place_of(job.output).string()) + "\n";
 }
 
@@ -273,7 +267,7 @@ const Command transfer_command{
     "a field in OLD; without any, all that OLD has are carried. Fields at vertices and on "
     "elements\n"
     "keep their integrals and bounds, or their values where that is asked for; one that is called\n"
-    "metric goes by its values.",
+    "metric, and whole numbers on elements, go by their values.",
     options,
     run};
 

@@ -29,6 +29,10 @@ using gmf::Target;
 
 void read_version(AsciiCursor& in) {
   const std::string_view first = in.word();
+  if (first == "View")
+    in.fail(
+        "expected a mesh, found a view of Gmsh's (.pos), which has values but no mesh; give "
+        "a .msh with the field in it, as Gmsh, meshio and ductile write it");
   if (gmf::keyword_named(first) != Keyword::version)
     in.fail(
         "expected MeshVersionFormatted, the beginning of a Medit file, found something else; "

@@ -103,7 +103,7 @@ void take_field(MeshWithFields& to, const SpatialField& field, const SpatialMesh
   if (layout.from.empty())
     return warn(warnings, begin + "it has " + std::to_string(field.components) +
                               " components, not those of a scalar, vector or tensor");
-  NamedField taken{field.name, layout.type, {}, field.place};
+  NamedField taken{field.name, layout.type, {}, field.place, field.whole};
   taken.values.reserve(places.size() * layout.from.size());
   for (const std::size_t place : places)
     for (const std::size_t component : layout.from)
@@ -171,9 +171,9 @@ MeshWithFields finish(SpatialMesh&& spatial, Warnings* warnings) {
 
 SpatialField in_space(const NamedField& field, const AnyMesh& mesh) {
   const auto stride = static_cast<std::size_t>(component_count(field.type, mesh.dimension));
-  if (field.type == Type::scalar) return {field.name, field.place, 1, field.values};
+  if (field.type == Type::scalar) return {field.name, field.place, 1, field.values, field.whole};
   const int rows = field.type == Type::vector ? 1 : 3;
-  SpatialField wide{field.name, field.place, static_cast<std::size_t>(3 * rows), {}};
+  SpatialField wide{field.name, field.place, static_cast<std::size_t>(3 * rows), {}, field.whole};
   wide.values.reserve(field.values.size() / stride * wide.components);
   for (std::size_t first = 0; first < field.values.size(); first += stride)
     for (int row = 0; row < rows; ++row)
@@ -185,8 +185,20 @@ SpatialField in_space(const NamedField& field, const AnyMesh& mesh) {
   return wide;
 }
 
+std::optional<std::vector<std::int64_t>> whole_values(const SpatialField& field,
+                                                      std::size_t count) {
+  constexpr double most = 9007199254740992;  // 2^53
+  const auto is_whole = [](double x) { return std::abs(x) <= most && x == std::floor(x); };
+  if (!field.whole || !std::all_of(field.values.begin(), field.values.end(), is_whole))
+    return std::nullopt;
+  std::vector<std::int64_t> values(count);
+  std::transform(field.values.begin(), field.values.end(), values.begin(),
+                 [](double x) { return static_cast<std::int64_t>(x); });
+  return values;
+}
+
 std::vector<double> points_in_space(const AnyMesh& mesh) {
-  return in_space({"", Type::vector, mesh.coordinates}, mesh).values;
+  return in_space({.type = Type::vector, .values = mesh.coordinates}, mesh).values;
 }
 
 void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields) {
@@ -195,7 +207,7 @@ void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields
   expect_all_vertices(mesh);
   expect_finite_coordinates(runtime::Executor({.threads = 1}), mesh);
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto& [name, type, values, at] = fields[i];
+    const auto& [name, type, values, at, whole] = fields[i];
     const std::string place = "fields[" + std::to_string(i) + "]";
     const int number = static_cast<int>(type);
     if (number < 1 || number > 4)

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +22,7 @@ struct SpatialField {
   NamedField::Place place = NamedField::Place::vertices;
   std::size_t components = 1;
   std::vector<double> values;  ///< [vertex or number of a cell in the file, component]
+  bool whole = false;          ///< whole numbers
 };
 
 struct SpatialMesh {
@@ -36,6 +39,10 @@ MeshWithFields finish(SpatialMesh&& spatial, Warnings* warnings);
 /// How fields go into a file with three coordinates: scalars as they are, vectors with three
 /// components, tensors with nine, row by row; those that the plane lacks are 0.
 SpatialField in_space(const NamedField& field, const AnyMesh& mesh);
+
+/// The values of a field of whole numbers, `count` of them, with 0 for those that it lacks; nothing
+/// unless all are whole and a double counts them.
+std::optional<std::vector<std::int64_t>> whole_values(const SpatialField& field, std::size_t count);
 
 /// Three coordinates of each vertex.
 std::vector<double> points_in_space(const AnyMesh& mesh);

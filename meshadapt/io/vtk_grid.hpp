@@ -17,6 +17,7 @@ struct VtkArray {
   std::string name;
   std::size_t components = 1;
   std::vector<double> values;
+  bool whole = false;  ///< the file holds whole numbers
 };
 
 struct VtkGrid {

@@ -104,6 +104,7 @@ class VtkReader {
   Data data_ = Data::none;
   std::uint64_t data_count_ = 0;
   std::map<std::string, Part> parts_;
+  bool whole_ = false;  // the last numbers that were read
   gmf::LeftOut left_out_;
 };
 
@@ -251,6 +252,7 @@ std::vector<double> VtkReader::values(std::uint64_t how_many, const std::string&
                                   ? 8
                                   : 4;
   in_.expect_room(how_many, 1, bytes, "numbers");
+  whole_ = type != "double" && type != "float";
   std::vector<double> result(static_cast<std::size_t>(how_many));
   for (double& value : result) value = number_of(type);
   in_.set_text();
@@ -277,7 +279,8 @@ void VtkReader::skip_texts(std::uint64_t how_many) {
 void VtkReader::keep(std::string name, std::uint64_t components, std::vector<double> found) {
   if (data_ == Data::none || found.size() != components * data_count_) return;
   auto& arrays = data_ == Data::points ? grid_.point_data : grid_.cell_data;
-  arrays.push_back({std::move(name), static_cast<std::size_t>(components), std::move(found)});
+  arrays.push_back({std::move(name), static_cast<std::size_t>(components), std::move(found),
+                    whole_});
 }
 
 void VtkReader::read_scalars() {

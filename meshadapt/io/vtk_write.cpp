@@ -124,6 +124,10 @@ void put_data(VtkSink& sink, const AnyMesh& mesh, std::span<const NamedField> fi
     for (const NamedField& field : fields) {
       if (field.place != place) continue;
       SpatialField wide = in_space(field, mesh);
+      if (const auto whole = whole_values(wide, count * wide.components)) {
+        sink.array(field.name, wide.components, "vtktypeint64", *whole);
+        continue;
+      }
       // VTK reads no "nan" in text.
       wide.values.resize(count * wide.components,
                          sink.is_binary() ? std::numeric_limits<double>::quiet_NaN() : 0.0);

@@ -176,8 +176,10 @@ class VtuReader {
   std::vector<VtkArray> arrays_of(pugi::xml_node data, std::size_t count) {
     std::vector<VtkArray> arrays;
     for (const pugi::xml_node node : data.children("DataArray")) {
-      if (vtk_number(node.attribute("type").value()).bytes == 0) continue;  // texts
+      const VtkNumber number = vtk_number(node.attribute("type").value());
+      if (number.bytes == 0) continue;  // texts
       VtkArray array;
+      array.whole = !number.is_real;
       array.name = node.attribute("Name").value();
       array.components = node.attribute("NumberOfComponents").as_ullong(1);
       array.values = numbers_of(node);

@@ -89,11 +89,17 @@ void add_cells(pugi::xml_node piece, const AnyMesh& mesh) {
   add_array(cells, "types", 1, types);
 }
 
-/// Values in elements, which are the first cells; other cells get a value that is not a number.
-void add_cell_field(pugi::xml_node cell_data, const NamedField& field, const AnyMesh& mesh) {
+/// Values at vertices, or in elements, which are the first cells; other cells get a value that is
+/// not a number, and 0 where numbers are whole.
+void add_field(pugi::xml_node data, const NamedField& field, const AnyMesh& mesh) {
   SpatialField wide = in_space(field, mesh);
-  wide.values.resize(cell_count(mesh) * wide.components, std::numeric_limits<double>::quiet_NaN());
-  add_array(cell_data, unused_name(cell_data, field.name), wide.components, wide.values);
+  const std::size_t places =
+      field.place == NamedField::Place::elements ? cell_count(mesh) : mesh.vertex_count();
+  const std::string name = unused_name(data, field.name);
+  if (const auto whole = whole_values(wide, places * wide.components))
+    return add_array(data, name, wide.components, *whole);
+  wide.values.resize(places * wide.components, std::numeric_limits<double>::quiet_NaN());
+  add_array(data, name, wide.components, wide.values);
 }
 
 void add_data(pugi::xml_node piece, const AnyMesh& mesh, std::span<const NamedField> fields) {
@@ -103,14 +109,8 @@ void add_data(pugi::xml_node piece, const AnyMesh& mesh, std::span<const NamedFi
   const CellReferences references = cell_references(mesh);
   add_array(cell_data, "region", 1, references.region);
   add_array(cell_data, "boundary", 1, references.boundary);
-  for (const NamedField& field : fields) {
-    if (field.place == NamedField::Place::elements) {
-      add_cell_field(cell_data, field, mesh);
-      continue;
-    }
-    const SpatialField wide = in_space(field, mesh);
-    add_array(point_data, unused_name(point_data, field.name), wide.components, wide.values);
-  }
+  for (const NamedField& field : fields)
+    add_field(field.place == NamedField::Place::elements ? cell_data : point_data, field, mesh);
 }
 
 /// Names of references as one text, a line for each, in an array of its bytes: some readers stop at

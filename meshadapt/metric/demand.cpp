@@ -1,8 +1,10 @@
 #include "metric/demand.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "core/first_bad.hpp"
@@ -75,17 +77,86 @@ double share_of_steep(const runtime::Executor& executor, const Mesh<Dim>& mesh) 
   return sum.of_steep / sum.all;
 }
 
-void expect_countable(const std::string& name, double complexity) {
-  if (complexity > none)
-    refuse(name + ": asks for more than " + number(complexity) +
-           " elements on this mesh, and 32-bit numbers cannot count them; expected larger sizes (" +
+namespace {
+
+/// The metric length of an edge by the metric that gives the smaller one.
+template <int Dim>
+double least_length(const Metric<Dim>& a, const Metric<Dim>& b, const Vector<Dim>& along) {
+  return std::sqrt(std::min(squared_length(a, along), squared_length(b, along)));
+}
+
+/// The metric length of the edge in 2D, the area of the triangle in 3D, by the smallest of its
+/// corners' metrics, in unit edges or unit triangles.
+template <int Dim>
+double unit_facets(const Mesh<Dim>& mesh, const std::vector<Metric<Dim>>& metric_of,
+                   const Facet<Dim>& facet) {
+  const auto at = [&](std::size_t i) { return mesh.site_of[facet[i]].position; };
+  const Vector<Dim> u = at(1) - at(0);
+  if constexpr (Dim == 2) {
+    return least_length(metric_of[facet[0]], metric_of[facet[1]], u);
+  } else {
+    const Vector<Dim> v = at(2) - at(0);
+    double least = std::numeric_limits<double>::infinity();
+    for (const VertexId corner : facet) {
+      const Metric<Dim>& metric = metric_of[corner];
+      const double uu = squared_length(metric, u), vv = squared_length(metric, v),
+                   uv = (squared_length(metric, u + v) - uu - vv) / 2;
+      least = std::min(least, std::sqrt(std::max(uu * vv - uv * uv, 0.0)) / 2);
+    }
+    return least / (std::sqrt(3.0) / 4);
+  }
+}
+
+template <int Dim>
+bool requires_something(const Mesh<Dim>& mesh) {
+  const auto required = [](const auto& part) { return part.required; };
+  return std::any_of(mesh.patches.begin(), mesh.patches.end(), required) ||
+         std::any_of(mesh.regions.begin(), mesh.regions.end(), required);
+}
+
+}  // namespace
+
+template <int Dim>
+double least_elements(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                      const std::vector<Metric<Dim>>& metric_of) {
+  if (requires_something(mesh)) return 0;
+  struct Least {
+    double edge = 0, facets = 0;
+  };
+  const auto of_element = [&](std::size_t e) {
+    Least least;
+    const Corners<Dim>& corners = mesh.corners_of[e];
+    for (std::size_t i = 0; i <= Dim; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        least.edge = std::max(least.edge, least_length(metric_of[corners[i]], metric_of[corners[j]],
+                                                       mesh.site_of[corners[i]].position -
+                                                           mesh.site_of[corners[j]].position));
+    for (std::size_t i = 0; i <= Dim; ++i)
+      if (mesh.patches_of[e][i] != 0)
+        least.facets +=
+            unit_facets<Dim>(mesh, metric_of, facet_of<Dim>(corners, static_cast<int>(i)));
+    return least;
+  };
+  const Least all = runtime::parallel_reduce(
+      executor, mesh.element_slots(), Least{}, of_element, [](const Least& a, const Least& b) {
+        return Least{std::max(a.edge, b.edge), a.facets + b.facets};
+      });
+  return std::max(all.edge / 2, all.facets / (2 * (Dim + 1)));
+}
+
+void expect_countable(const std::string& name, int dimension, double elements) {
+  constexpr double certain_share = 0.8;
+  if (elements * certain_share > none)
+    refuse(name + ": asks for about " + with_commas(std::min(elements, 1e18)) +
+           (dimension == 2 ? " triangles" : " tetrahedra") +
+           " on this mesh, and 32-bit numbers count at most 4,294,967,294; expected larger sizes"
+           " (" +
            Wording("smallest_size bounds them", "-hmin sets the smallest") + ")");
 }
 
-void expect_room(const std::string& name, int dimension, double complexity, std::size_t limit) {
+void expect_room(const std::string& name, int dimension, double elements, std::size_t limit) {
   constexpr double certain_share = 0.8, certain_memory = 0.85;
   const double bytes_of_each = dimension == 2 ? 150 : 200;  // at the peak, docs/performance.md
-  const double elements = complexity / complexity_of_elements(dimension, 1);
   const double bytes = elements * bytes_of_each;
   if (bytes * certain_share * certain_memory <= static_cast<double>(limit)) return;
   constexpr double megabyte = 1 << 20U;
@@ -100,6 +171,11 @@ template double complexity_of_demand(const runtime::Executor&, const Mesh<2>&,
                                      const std::vector<Metric<2>>&);
 template double complexity_of_demand(const runtime::Executor&, const Mesh<3>&,
                                      const std::vector<Metric<3>>&);
+
+template double least_elements(const runtime::Executor&, const Mesh<2>&,
+                               const std::vector<Metric<2>>&);
+template double least_elements(const runtime::Executor&, const Mesh<3>&,
+                               const std::vector<Metric<3>>&);
 
 template double share_of_steep(const runtime::Executor&, const Mesh<2>&);
 template double share_of_steep(const runtime::Executor&, const Mesh<3>&);

@@ -23,17 +23,28 @@ double complexity_of_demand(const runtime::Executor& executor, const Mesh<Dim>& 
 template <int Dim>
 double share_of_steep(const runtime::Executor& executor, const Mesh<Dim>& mesh);
 
-/// Throws InputError if there would be more elements than 32 bits count.
-void expect_countable(const std::string& name, double complexity);
+/// A lower bound on the elements of a mesh with unit edges, which the integral above misses where
+/// the mesh is thin: elements cover the longest edge, and have the boundary's facets. 0 if
+/// something is required, which may stay as coarse as it is. Thread safety: as above.
+template <int Dim>
+double least_elements(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                      const std::vector<Metric<Dim>>& metric_of);
 
-/// Throws Error if elements for so much complexity would certainly take more bytes than `limit`, by
-/// a margin: it is 0.8 of their number, and 0.85 of their memory, that are too many.
-void expect_room(const std::string& name, int dimension, double complexity, std::size_t limit);
+/// Throws InputError if there would certainly be more elements than 32 bits count.
+void expect_countable(const std::string& name, int dimension, double elements);
+
+/// Throws Error if so many elements would certainly take more bytes than `limit`, by a margin: it
+/// is 0.8 of their number, and 0.85 of their memory, that are too many.
+void expect_room(const std::string& name, int dimension, double elements, std::size_t limit);
 
 extern template double complexity_of_demand(const runtime::Executor&, const Mesh<2>&,
                                             const std::vector<Metric<2>>&);
 extern template double complexity_of_demand(const runtime::Executor&, const Mesh<3>&,
                                             const std::vector<Metric<3>>&);
+extern template double least_elements(const runtime::Executor&, const Mesh<2>&,
+                                      const std::vector<Metric<2>>&);
+extern template double least_elements(const runtime::Executor&, const Mesh<3>&,
+                                      const std::vector<Metric<3>>&);
 extern template double share_of_steep(const runtime::Executor&, const Mesh<2>&);
 extern template double share_of_steep(const runtime::Executor&, const Mesh<3>&);
 

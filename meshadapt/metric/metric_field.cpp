@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/first_bad.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -201,14 +202,29 @@ void append_tensor(AnyField& result, const AnyField& field, std::size_t vertex,
   result.values.insert(result.values.end(), metric.m.begin(), metric.m.end());
 }
 
+/// [vertex] Where its value is read: at the vertex itself, or, if no element has the vertex, at the
+/// first that one has, because such a value does not matter.
+template <int Dim>
+std::vector<std::size_t> places_of_values(const AnyMesh& mesh) {
+  std::vector<std::size_t> place_of(mesh.vertex_count(), no_index);
+  for (const auto& corners : elements_in<Dim>(mesh).vertices)
+    for (const std::uint32_t v : corners)
+      if (v < place_of.size()) place_of[v] = v;
+  const auto first = std::find_if(place_of.begin(), place_of.end(),
+                                  [](std::size_t place) { return place != no_index; });
+  for (std::size_t v = 0; v < place_of.size(); ++v)
+    if (place_of[v] == no_index) place_of[v] = first == place_of.end() ? v : *first;
+  return place_of;
+}
+
 template <int Dim>
 void append_metrics(AnyField& result, const AnyField& field, const SizeBounds& bounds,
-                    int dropped_axis) {
-  for (std::size_t vertex = 0; vertex < field.vertex_count; ++vertex)
+                    const AnyMesh& mesh) {
+  for (const std::size_t vertex : places_of_values<Dim>(mesh))
     if (field.types[0] == Type::scalar)
       append_isotropic<Dim>(result, field, vertex, bounds);
     else
-      append_tensor<Dim>(result, field, vertex, bounds, dropped_axis);
+      append_tensor<Dim>(result, field, vertex, bounds, mesh.dropped_axis);
 }
 
 }  // namespace
@@ -222,8 +238,8 @@ AnyField metric_of(const AnyField& field, const AnyMesh& mesh, const SizeBounds&
   result.vertex_count = field.vertex_count;
   result.types = {Type::symmetric};
   result.values.reserve(field.vertex_count * stride_of(result));
-  mesh.dimension == 2 ? append_metrics<2>(result, field, bounds, mesh.dropped_axis)
-                      : append_metrics<3>(result, field, bounds, mesh.dropped_axis);
+  mesh.dimension == 2 ? append_metrics<2>(result, field, bounds, mesh)
+                      : append_metrics<3>(result, field, bounds, mesh);
   return result;
 }
 

@@ -89,6 +89,8 @@ class FieldCarrier {
     for (const std::size_t f : which) stride += components(fields_[f], Dim);
     const std::vector<double> values = side_by_side(which, stride);
     split(which, stride, carried({values, stride}, place, carrying));
+    if (place == Where::elements && carrying == Carrying::by_value)
+      for (const std::size_t f : which) result_.fields[f].whole = fields_[f].whole;
   }
 
   TransferredFields take_result() { return std::move(result_); }
@@ -141,8 +143,10 @@ class FieldCarrier {
     for (const std::size_t f : which) {
       const std::size_t each = components(fields_[f], Dim);
       NamedField& field = result_.fields[f];
-      field = {fields_[f].name, fields_[f].type, std::vector<double>(count * each),
-               fields_[f].place};
+      field = {.name = fields_[f].name,
+               .type = fields_[f].type,
+               .values = std::vector<double>(count * each),
+               .place = fields_[f].place};
       runtime::parallel_for(executor_, count, [&](std::size_t i) {
         std::copy_n(&values[i * stride + first], each, &field.values[i * each]);
       });

@@ -3,9 +3,10 @@ another layout, and refused by array and index if they are wrong."""
 
 from __future__ import annotations
 
+import os
 import re
 from contextlib import contextmanager
-from typing import Any, Iterator, Sequence
+from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -18,8 +19,9 @@ def converted(values: Any, name: str) -> Array:
     """The values as an array of whatever type."""
     try:
         return np.asarray(values)
-    except (ValueError, TypeError) as error:
-        raise InputError(f"{name}: expected an array of numbers, found {error}") from None
+    except (ValueError, TypeError, OverflowError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{name}: expected an array of numbers, found {reason}") from None
 
 
 def floats(values: Any, name: str) -> Array:
@@ -113,26 +115,77 @@ def points(values: Any, name: str) -> Array:
     return np.column_stack([array, np.zeros(len(array))])
 
 
+def shown(value: Any) -> str:
+    """A value in a message: on one line, and short."""
+    words = " ".join(repr(value).split())
+    return words if len(words) <= 80 else words[:77] + "..."
+
+
 def number(value: Any, name: str) -> float:
     """A float; what is None or no number is refused."""
     try:
+        if isinstance(value, (str, bytes)) or np.ndim(value) != 0:
+            raise TypeError
         return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name}: expected a number, found {shown(value)}") from None
+
+
+def whole(value: Any, name: str, least: int, most: int) -> int:
+    """An int within bounds."""
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and least <= value <= most:
+        return int(value)
+    raise InputError(f"{name}: expected a whole number from {least} to {most}, found {shown(value)}")
+
+
+def flag(value: Any, name: str) -> bool:
+    """True or False."""
+    if isinstance(value, (bool, np.bool_)) or (isinstance(value, int) and value in (0, 1)):
+        return bool(value)
+    raise InputError(f"{name}: expected True or False, found {shown(value)}")
+
+
+def text(value: Any, name: str) -> str:
+    """A text that C++ can have: without control characters, and in UTF-8."""
+    if not isinstance(value, str):
+        raise InputError(f"{name}: expected a text, found {shown(value)}")
+    if any(ord(letter) < 32 or ord(letter) == 127 or 0xD800 <= ord(letter) < 0xE000
+           for letter in value):
+        raise InputError(f"{name}: expected a text without control characters, found {shown(value)}")
+    return value
+
+
+def path_text(path: Any, name: str = "path") -> bytes:
+    """The name of a file, for C++."""
+    try:
+        encoded = os.fsencode(path)
+        encoded.decode("utf-8")
     except (TypeError, ValueError):
-        raise InputError(f"{name}: expected a number, found {value!r}") from None
+        raise InputError(f"{name}: expected the name of a file, found {shown(path)}") from None
+    if b"\0" in encoded or not encoded:
+        raise InputError(f"{name}: expected the name of a file, found {shown(path)}")
+    return encoded
 
 
-def executor(threads: Any, deterministic: Any = True) -> Executor:
+def mapping(values: Any, name: str) -> Mapping[str, Any]:
+    """A dict, or what is like one, with texts for keys."""
+    if not isinstance(values, Mapping):
+        raise InputError(f"{name}: expected a dict, found {shown(values)}")
+    for key in values:
+        text(key, f"{name}: a key")
+    return values
+
+
+def executor(threads: Any) -> Executor:
     """What runs the work: so many threads, 0 for as many as there are cores."""
-    if isinstance(threads, (int, np.integer)) and 0 <= threads <= 4096:
-        return Executor(int(threads), bool(deterministic))
-    raise InputError(f"threads: expected a whole number from 0 to 4096, found {threads!r}")
+    return Executor(whole(threads, "threads", 0, 4096))
 
 
 def megabytes(value: Any) -> int:
     """The bytes of a limit on memory."""
     limit = number(value, "memory")
     if not 0 <= limit <= 2**30:
-        raise InputError(f"memory: expected megabytes from 0 to {2**30}, found {value!r}")
+        raise InputError(f"memory: expected megabytes from 0 to {2**30}, found {shown(value)}")
     return int(limit) << 20
 
 

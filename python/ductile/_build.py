@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _ductile
 from ._arrays import (chosen, component_count, converted, field_type, finite, floats, indices,
-                      references)
+                      references, shown, text)
 from ._ductile import FieldType, InputError
 
 KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
@@ -17,6 +17,14 @@ KINDS = ("vertices", "facets", "cells", "edges", "ridges", "corners")
 
 class InputWarning(UserWarning):
     """What a file has and a mesh has no place for, or looks doubtful."""
+
+
+def mesh_data(mesh: Any, name: str) -> _ductile.MeshData:
+    """What C++ has of a `Mesh`."""
+    data = getattr(mesh, "_data", None)
+    if not isinstance(data, _ductile.MeshData):
+        raise InputError(f"{name}: expected a ductile.Mesh, found {shown(mesh)}")
+    return data
 
 
 def warn(lines: Sequence[str]) -> None:
@@ -49,9 +57,12 @@ def data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
         points, references(state["vertex_refs"], "vertex_refs", count),
         (cells, references(state["refs"], "refs", len(cells))),
         (facets, references(state["facet_refs"], "facet_refs", len(facets))))
-    if len(state.get("edges", ())):
-        edges = indices(state["edges"], "edges", 2, count).astype(np.int32)
-        data.set_edges(edges, references(state["edge_refs"], "edge_refs", len(edges)))
+    edges = state.get("edges")
+    if edges is not None and np.size(converted(edges, "edges")):
+        edges = indices(edges, "edges", 2, count).astype(np.int32)
+        refs = state.get("edge_refs")
+        data.set_edges(edges, references(np.zeros(len(edges), np.int32) if refs is None else refs,
+                                         "edge_refs", len(edges)))
     for kind, entities in state.get("required", {}).items():
         if dim == 3 or kind != "edges":
             data.require(kind, entities)
@@ -61,18 +72,20 @@ def data_of(state: Mapping[str, Any]) -> _ductile.MeshData:
 
 def _names_of(names: Any) -> list[tuple[str, int, int]]:
     """Names of references as C++ has them: name, dimension, reference."""
-    if isinstance(names, Mapping):
-        names = [(name, where) for name, where in names.items()]
-    else:
-        names = [(name, where) for name, *where in names]
-    for name, where in names:
-        if not isinstance(name, str):
-            raise InputError(f"names: expected texts, found {name!r}")
-        if not (np.shape(where) == (2,) and np.asarray(where).dtype.kind in "iu"
-                and 0 <= where[0] <= 3 and -2**31 <= where[1] < 2**31):
+    try:
+        pairs = list(names.items()) if isinstance(names, Mapping) else \
+            [(name, where) for name, *where in names]
+    except (TypeError, ValueError):
+        raise InputError(f"names: expected a dict, or rows of a name, a dimension and a reference, "
+                         f"found {shown(names)}") from None
+    for name, where in pairs:
+        text(name, "names")
+        array = converted(where, f"names[{name!r}]")
+        if not (array.shape == (2,) and array.dtype.kind in "iu"
+                and 0 <= array[0] <= 3 and -2**31 <= array[1] < 2**31):
             raise InputError(f"names[{name!r}]: expected a dimension from 0 to 3 and a reference of "
-                             f"32 bits, found {where!r}")
-    return [(name, int(where[0]), int(where[1])) for name, where in names]
+                             f"32 bits, found {shown(where)}")
+    return [(name, int(where[0]), int(where[1])) for name, where in pairs]
 
 
 def with_required(data: _ductile.MeshData, **given: Any) -> _ductile.MeshData:
@@ -94,15 +107,15 @@ def options_of(**values: Any) -> _ductile.Options:
         try:
             setattr(options, name, value)
         except TypeError:
-            raise InputError(f"remesh: expected a number for {name}, found {value!r}") from None
+            raise InputError(f"remesh: expected a number for {name}, found {shown(value)}") from None
     return options
 
 
 def place_of(array: np.ndarray, data: _ductile.MeshData, on: Optional[str],
              name: str = "u") -> str:
     counts = {"vertices": len(data.points), "cells": len(data.cells)}
-    if on is not None and on not in counts:
-        raise InputError(f"on: expected 'vertices' or 'cells', found {on!r}")
+    if on is not None and not (isinstance(on, str) and on in counts):
+        raise InputError(f"on: expected 'vertices' or 'cells', found {shown(on)}")
     length = len(array) if array.ndim > 0 else -1
     places = [place for place, count in counts.items() if count == length and on in (None, place)]
     if len(places) == 1:
@@ -117,6 +130,7 @@ def place_of(array: np.ndarray, data: _ductile.MeshData, on: Optional[str],
 def field(name: str, values: Any, data: _ductile.MeshData,
           on: Optional[str]) -> tuple[str, FieldType, bool, np.ndarray]:
     """A field as files have it."""
+    text(name, "fields: a name")
     array = floats(values, name)
     place = place_of(array, data, on, name)
     columns = component_count(array.shape)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from ._arrays import finite, floats
+from ._arrays import finite, floats, path_text, shown, whole
+from ._build import mesh_data
 from ._ductile import InputError
 
 if TYPE_CHECKING:
@@ -48,8 +49,10 @@ def draw(mesh: Mesh, path: Optional[Union[str, os.PathLike[str]]] = None, by: An
     >>> ductile.draw(out, "mesh.svg")
     >>> ductile.draw(out, "quality.svg", by=out.quality())
     """
-    if path is not None and not os.fspath(path).endswith(".svg"):
-        raise InputError(f"path: expected a name that ends in .svg, found {os.fspath(path)!r}")
+    mesh_data(mesh, "mesh")
+    if path is not None and not path_text(path).endswith(b".svg"):
+        raise InputError(f"path: expected a name that ends in .svg, found {shown(path)}")
+    width, most = whole(width, "width", 50, 100_000), whole(most, "most", 0, 2**62)
     values = None if by is None else _on_cells(mesh, by)
     svg = _flat(mesh, values, width, most) if mesh.dim == 2 else _solid(mesh, values, width)
     if path is not None:

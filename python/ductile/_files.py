@@ -6,8 +6,8 @@ import os
 from typing import Any, Sequence, Union
 
 from . import _ductile
-from ._arrays import number
-from ._build import field, warn
+from ._arrays import converted, number, path_text, shown, whole
+from ._build import field, mesh_data, warn
 from ._ductile import InputError
 from ._mesh import Mesh
 
@@ -18,7 +18,7 @@ def read(path: Union[str, os.PathLike[str]]) -> Mesh:
     Fields in the file are in `fields` and `cell_fields`. What has no place in a `Mesh` is left out with
     an `InputWarning`. Raises `InputError`, naming file and line, for what is no mesh.
     """
-    data, fields, lines = _ductile.read(os.fspath(path))
+    data, fields, lines = _ductile.read(path_text(path))
     warn(lines)
     mesh = Mesh._of(data)
     for name, on_cells, values in fields:
@@ -28,15 +28,15 @@ def read(path: Union[str, os.PathLike[str]]) -> Mesh:
 
 def read_field(path: Union[str, os.PathLike[str]]) -> Any:
     """Reads a .sol or .solb: the array at the vertices, or a list of them if there are several."""
-    arrays, lines = _ductile.read_field(os.fspath(path))
+    arrays, lines = _ductile.read_field(path_text(path))
     warn(lines)
     return arrays[0] if len(arrays) == 1 else arrays
 
 
 def save_field(path: Union[str, os.PathLike[str]], mesh: Mesh, values: Any) -> None:
     """Writes values at the vertices of a mesh, such as a metric, as a .sol or .solb."""
-    _, kind, _, rows = field("values", values, mesh._data, "vertices")
-    _ductile.save_field(os.fspath(path), rows, kind, mesh.dim)
+    _, kind, _, rows = field("values", values, mesh_data(mesh, "mesh"), "vertices")
+    _ductile.save_field(path_text(path), rows, kind, mesh.dim)
 
 
 def box(extent: Sequence[float], cells: Sequence[int]) -> Mesh:
@@ -48,12 +48,23 @@ def box(extent: Sequence[float], cells: Sequence[int]) -> Mesh:
     --------
     >>> mesh = ductile.box((1, 1, 1), (10, 10, 10))
     """
-    if len(extent) not in (2, 3) or len(cells) != len(extent):
+    sides = [number(x, "extent") for x in _listed(extent, "extent")]
+    counts = [whole(n, "cells", 1, 2**31 - 1) for n in _listed(cells, "cells")]
+    if len(sides) not in (2, 3) or len(counts) != len(sides):
         raise InputError(f"box: expected 2 or 3 extents and as many numbers of cells, found "
-                         f"{len(extent)} and {len(cells)}")
-    return Mesh._of(_ductile.box([number(x, "extent") for x in extent], [int(n) for n in cells]))
+                         f"{len(sides)} and {len(counts)}")
+    return Mesh._of(_ductile.box(sides, counts))
+
+
+def _listed(values: Any, name: str) -> list[Any]:
+    array = converted(values, name)
+    if array.ndim != 1:
+        raise InputError(f"{name}: expected 2 or 3 numbers, found {shown(values)}")
+    return list(array)
 
 
 def transfer(before: Mesh, u: Any, after: Mesh, **options: Any) -> Any:
     """Values on one mesh, on another; see `Mesh.transfer`."""
+    mesh_data(after, "after")
+    mesh_data(before, "before")
     return after.transfer(u, source=before, **options)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, 
 import numpy as np
 
 from . import _ductile
-from ._arrays import executor, finite, floats, named, number
+from ._arrays import executor, finite, floats, named, number, shown, whole
+from ._build import mesh_data
 from ._ductile import InputError
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ class Closest(NamedTuple):
 def _refs(mesh: Mesh, key: Union[int, str]) -> list[int]:
     """The references of facets that a key of `surfaces` stands for."""
     if not isinstance(key, str):
-        return [int(key)]
+        return [whole(key, "surfaces: a key", -2**31, 2**31 - 1)]
     refs = [ref for name, dim, ref in mesh.names if name == key and dim == mesh.dim - 1]
     if not refs:
         raise InputError(f"surfaces: no facets have the name {key!r}")
@@ -38,7 +39,7 @@ def _refs(mesh: Mesh, key: Union[int, str]) -> list[int]:
 def _checked(surface: Callable, ref: int, dim: int) -> Callable:
     """The function with three coordinates, of which C++ knows."""
     if not callable(surface):
-        raise InputError(f"surfaces[{ref}]: expected a function, found {surface!r}")
+        raise InputError(f"surfaces[{ref}]: expected a function, found {shown(surface)}")
 
     def closest(point: list[float]) -> list[float]:
         result = floats(surface(np.array(point[:dim])), f"surfaces[{ref}]")
@@ -81,10 +82,13 @@ class Geometry:
 
     def __init__(self, mesh: Mesh, hausd: float, *, ar: float = 45,
                  surfaces: Optional[Mapping[Union[int, str], Callable]] = None, threads: int = 0) -> None:
+        data = mesh_data(mesh, "mesh")
+        if not isinstance(surfaces, (Mapping, type(None))):
+            raise InputError(f"surfaces: expected a dict, found {shown(surfaces)}")
         functions = [(ref, _checked(surface, ref, mesh.dim))
                      for key, surface in (surfaces or {}).items() for ref in _refs(mesh, key)]
         with named(mesh.dim):
-            self._data = _ductile.GeometryData(mesh._data, number(hausd, "hausd"),
+            self._data = _ductile.GeometryData(data, number(hausd, "hausd"),
                                                number(ar, "ar"), functions, executor(threads))
 
     def __repr__(self) -> str:
@@ -117,6 +121,6 @@ class Geometry:
         if given.ndim != 2 or given.shape[1] != self.dim:
             raise InputError(f"points: expected an array of shape (n, {self.dim}), found "
                              f"{given.shape}")
-        if not reach > 0:
-            raise InputError(f"reach: expected a distance above 0, found {reach!r}")
+        if not number(reach, "reach") > 0:
+            raise InputError(f"reach: expected a distance above 0, found {shown(reach)}")
         return Closest(*self._data.closest(given, reach, executor(threads)))

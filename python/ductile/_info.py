@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Optional
 
 from . import _ductile
+from ._build import mesh_data
 from ._metric import MetricLike
 
 if TYPE_CHECKING:
@@ -42,7 +43,8 @@ class Info:
 
     def __str__(self) -> str:
         cells, facets = cell_names(self.dim)
-        lines = [f"{self.vertices:,} vertices, {self.cells:,} {cells}, {self.facets:,} {facets}",
+        lines = [", ".join((_counted(self.vertices, "vertices"), _counted(self.cells, cells),
+                            _counted(self.facets, facets))),
                  _figures("edge length" if self.in_metric else "edge, plain", self.edge_length),
                  _figures("quality", self.quality)]
         if self.in_metric:
@@ -52,6 +54,13 @@ class Info:
         return "\n".join(lines)
 
     __repr__ = __str__
+
+
+_ONE = {"vertices": "vertex", "triangles": "triangle", "tetrahedra": "tetrahedron", "edges": "edge"}
+
+
+def _counted(count: int, many: str) -> str:
+    return f"{count:,} {_ONE[many] if count == 1 else many}"
 
 
 def cell_names(dimension: int) -> tuple[str, str]:
@@ -78,12 +87,13 @@ def info(mesh: Mesh, M: Optional[MetricLike] = None) -> Info:
     -------
     Info
     """
-    return Info(mesh, _ductile.measure(mesh._data, mesh._tensors(M)))
+    data = mesh_data(mesh, "mesh")
+    return Info(mesh, _ductile.measure(data, mesh._tensors(M)))
 
 
 def _report_text(report: _ductile.Report) -> str:
     lines = [f"{'converged' if report.converged else 'not converged'} after {report.iterations} "
-             f"rounds in {report.total_seconds:.3g} s"]
+             f"{'round' if report.iterations == 1 else 'rounds'} in {report.total_seconds:.3g} s"]
     for name in report.kernels:
         kernel = getattr(report, name)
         lines.append(f"  {name:8} {kernel.seconds:8.3f} s  {kernel.applied:,} times")

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional
 
 import numpy as np
 
+from ._arrays import component_count, converted, mapping, shown
 from ._build import place_of
 from ._ductile import InputError
+from ._metric import full
 
 if TYPE_CHECKING:
     from ._mesh import Mesh
@@ -21,8 +23,8 @@ def _apart(mesh: Mesh, fields: Optional[Mapping[str, Any]]) -> tuple[dict, dict]
     if fields is None:
         return dict(mesh.fields), dict(mesh.cell_fields)
     at: tuple[dict, dict] = ({}, {})
-    for name, values in fields.items():
-        array = np.asarray(values)
+    for name, values in mapping(fields, "fields").items():
+        array = converted(values, name)
         at[place_of(array, mesh._data, None, name) == "cells"][name] = array
     return at
 
@@ -37,13 +39,29 @@ def to_meshio(mesh: Mesh, fields: Optional[Mapping[str, Any]]) -> dict[str, Any]
         cells.append(("line", mesh.edges))
         refs.append(mesh.edge_refs)
     at_points, on_cells = _apart(mesh, fields)
+    at_points = {name: _as_written(np.asarray(values), mesh.dim) for name, values in at_points.items()}
     cell_data: dict[str, list[np.ndarray]] = {"gmsh:physical": refs, "gmsh:geometrical": refs}
     for name, values in on_cells.items():
-        array = np.asarray(values, float)
+        array = _as_written(np.asarray(values, float), mesh.dim)
         cell_data[name] = [array] + [np.full((len(c), *array.shape[1:]), np.nan)
                                      for _, c in cells[1:]]
     return {"points": mesh.points, "cells": cells, "point_data": at_points, "cell_data": cell_data,
             "field_data": {name: np.array([ref, dim]) for name, dim, ref in mesh.names}}
+
+
+def _as_written(values: np.ndarray, dim: int) -> np.ndarray:
+    """Values with 1, 3 or 9 components, which all formats hold: as they are, or in space."""
+    count = component_count(values.shape)
+    if values.ndim < 2 or count in (1, 3, 9):
+        return values.reshape(len(values), -1) if values.ndim > 2 else values
+    rows = values.reshape(len(values), count)
+    if count == 2:
+        return np.column_stack([rows, np.zeros(len(rows))])
+    if count == 4 and dim == 2:
+        wide = np.zeros((len(rows), 3, 3))
+        wide[:, :2, :2] = rows.reshape(-1, 2, 2)
+        return wide.reshape(-1, 9)
+    return full(rows).reshape(-1, 9) if count == 6 else values
 
 
 def from_meshio(m: Any) -> Mesh:
@@ -53,6 +71,8 @@ def from_meshio(m: Any) -> Mesh:
     from point_data and, of cells, cell_data. Other cells raise `InputError`.
     """
     from ._mesh import Mesh
+    if not (hasattr(m, "cells") and hasattr(m, "cell_data")):
+        raise InputError(f"m: expected a meshio.Mesh, found {shown(m)}")
     blocks: dict[str, list[int]] = {}
     for i, block in enumerate(m.cells):
         blocks.setdefault(block.type, []).append(i)
@@ -145,6 +165,8 @@ def from_vtk(data: Any) -> Mesh:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     from ._mesh import Mesh
+    if not hasattr(data, "GetPoints") or data.GetPoints() is None:
+        raise InputError(f"data: expected a grid of VTK with points, found {shown(data)}")
     points = vtk_to_numpy(data.GetPoints().GetData()).astype(float)
     arrays = data.GetPolys() if hasattr(data, "GetPolys") else data.GetCells()
     offsets = vtk_to_numpy(arrays.GetOffsetsArray())

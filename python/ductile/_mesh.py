@@ -8,9 +8,9 @@ from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Union
 import numpy as np
 
 from . import _ductile, _html, _interop
-from ._arrays import (component_count, executor, field_type, finite, floats, megabytes, named,
-                      number)
-from ._build import KINDS, data_of, field, options_of, place_of, warn, with_required
+from ._arrays import (component_count, converted, executor, field_type, finite, flag, floats, mapping,
+                      megabytes, named, number, path_text, shown, text, whole)
+from ._build import KINDS, data_of, field, mesh_data, options_of, place_of, warn, with_required
 from ._ductile import InputError
 from ._geometry import Geometry
 from ._metric import MetricLike, as_rows, as_tensors, full, packed
@@ -126,7 +126,7 @@ class Mesh:
 
     def _require_source(self, source: Optional[Mesh] = None) -> _ductile.MeshData:
         if source is not None:
-            return source._data
+            return mesh_data(source, "source")
         if self._source is None:
             raise InputError("this mesh was not made by remesh (and after pickling it does not know "
                              "of what): pass the other mesh as source=")
@@ -208,6 +208,7 @@ class Mesh:
         return np.isin(self.refs, self._references_of(name, self.dim))
 
     def _references_of(self, name: str, dimension: int) -> list[int]:
+        text(name, "name")
         found = [ref for named, dim, ref in self.names if named == name and dim == dimension]
         if not found:
             known = sorted({named for named, dim, _ in self.names if dim == dimension})
@@ -230,7 +231,7 @@ class Mesh:
                nomove: bool = False, noswap: bool = False, noinsert: bool = False,
                nosurf: bool = False, required_vertices: Any = None, required_facets: Any = None,
                required_cells: Any = None, memory: int = 0, threads: int = 0,
-               deterministic: bool = True, progress: Optional[ProgressFunction] = None) -> Mesh:
+               progress: Optional[ProgressFunction] = None) -> Mesh:
         """The mesh adapted so that edges have the lengths that are asked for.
 
         Parameters
@@ -278,9 +279,7 @@ class Mesh:
         memory : int, optional
             At most so many megabytes; 0: no limit.
         threads : int, optional
-            0: as many as there are cores.
-        deterministic : bool, optional
-            The same mesh, bit for bit, on any number of threads. False is somewhat faster.
+            0: as many as there are cores. The mesh is the same, bit for bit, for any number.
         progress : callable, optional
             ``progress(step, iteration, changes)`` is called after each step, on the thread that called
             `remesh`. If it returns False, `Cancelled` is raised; what it raises itself comes through.
@@ -294,7 +293,8 @@ class Mesh:
         Raises
         ------
         InputError
-            For arrays and options that are wrong, by name and index.
+            For arrays and options that are wrong, by name and index. What looks doubtful is an
+            `InputWarning`, and in `report.warnings`.
         Cancelled
             If `progress` returned False. Ctrl-C raises KeyboardInterrupt.
         MemoryError, Error
@@ -309,20 +309,24 @@ class Mesh:
             if metric is not None:
                 raise InputError("remesh: expected one of metric and hsiz, found both")
             metric = number(hsiz, "hsiz")
+        if progress is not None and not callable(progress):
+            raise InputError(f"progress: expected a function, found {shown(progress)}")
         if not isinstance(geometry, (Geometry, type(None))):
-            raise InputError(f"geometry: expected a ductile.Geometry, found {geometry!r}")
+            raise InputError(f"geometry: expected a ductile.Geometry, found {shown(geometry)}")
         data = with_required(self._data, vertices=required_vertices, facets=required_facets,
                               cells=required_cells)
         options = options_of(smallest_size=number(hmin, "hmin"), largest_size=number(hmax, "hmax"),
                            gradation=number(hgrad, "hgrad"),
-                           curved_sizes=curved_sizes,
+                           curved_sizes=flag(curved_sizes, "curved_sizes"),
                            required_gradation=number(hgradreq, "hgradreq"),
                            hausdorff_tolerance=number(hausd, "hausd") or (geometry.hausd if geometry else 0),
                            geometry=geometry and geometry._data, ridge_angle=number(ar, "ar"),
-                           iterations=iterations, thorough=thorough, move=not nomove,
-                           swap=not noswap, insert=not noinsert, lock_boundary=nosurf,
+                           iterations=whole(iterations, "iterations", 0, 1000),
+                           thorough=flag(thorough, "thorough"), move=not flag(nomove, "nomove"),
+                           swap=not flag(noswap, "noswap"), insert=not flag(noinsert, "noinsert"),
+                           lock_boundary=flag(nosurf, "nosurf"),
                            memory_limit=megabytes(memory))
-        runs = executor(threads, deterministic)
+        runs = executor(threads)
         if isinstance(metric, Size):
             with named(self.dim), metric._said_of_places():
                 result = _ductile.remesh_to_sizes(data, metric._sizes, options, runs, progress)
@@ -333,6 +337,7 @@ class Mesh:
         out = Mesh._of(result[0])
         out.metric, out.report = result[1:]
         out._source, out._tolerance = data, options.hausdorff_tolerance
+        warn(out.report.warnings)
         return out
 
     @property
@@ -343,8 +348,7 @@ class Mesh:
         return self._origin
 
     def transfer(self, u: Any, *, conservative: bool = False, on: Optional[str] = None,
-                 source: Optional[Mesh] = None, threads: int = 0,
-                 deterministic: bool = True) -> Any:
+                 source: Optional[Mesh] = None, threads: int = 0) -> Any:
         """Values on the mesh that this one was made from, on this one.
 
         Parameters
@@ -371,12 +375,12 @@ class Mesh:
         >>> u = new.transfer(u, conservative=True)
         """
         how: dict[str, Any] = {"conservative": conservative, "on": on, "source": source,
-                               "threads": threads,
-                               "deterministic": deterministic}
+                               "threads": threads}
         if isinstance(u, Mapping):
             return {name: self.transfer(values, **how) for name, values in u.items()}
         before = self._require_source(source)
-        array = np.asarray(u)
+        conservative = flag(conservative, "conservative")
+        array = converted(u, "u")
         if array.dtype.kind == "c":
             return (self.transfer(array.real, **how) + 1j * self.transfer(array.imag, **how))
         on_cells = place_of(array, before, on) == "cells"
@@ -385,7 +389,7 @@ class Mesh:
             finite(values, "u")
         columns = component_count(values.shape)
         rows = values.reshape(len(values), columns)
-        runs = executor(threads, deterministic)
+        runs = executor(threads)
         kind = field_type(columns, before.dimension)
         parts = [(rows, kind)] if kind is not None else \
             [(np.ascontiguousarray(rows[:, [i]]), _ductile.FieldType.scalar)
@@ -441,10 +445,11 @@ class Mesh:
             A row for each vertex or each cell. By default `fields` and `cell_fields` of the mesh and
             its metric, as far as the format holds them.
         """
-        name = os.fspath(path)
+        name = path_text(path)
         given = []
         if fields is not None:
-            given = [field(key, values, self._data, None) for key, values in fields.items()]
+            given = [field(key, values, self._data, None)
+                     for key, values in mapping(fields, "fields").items()]
         elif _ductile.holds_fields(name):
             own = dict(self.fields)
             if self.metric is not None:
@@ -453,6 +458,19 @@ class Mesh:
             given += [field(key, values, self._data, "cells")
                       for key, values in self.cell_fields.items()]
         warn(_ductile.save(self._data, name, given))
+
+    def joined(self, tolerance: float = 0) -> Mesh:
+        """The mesh in which vertices that are at most `tolerance` from each other are one.
+
+        Facets that become the same are one, too. `fields` keep the values of the vertices that stay.
+        What is not connected because vertices are there twice, without being meant as a crack, is so
+        afterwards.
+        """
+        data, kept = _ductile.join_vertices(self._data, number(tolerance, "tolerance"))
+        mesh = Mesh._of(data)
+        mesh.fields = {name: np.asarray(values)[kept] for name, values in self.fields.items()}
+        mesh.cell_fields = dict(self.cell_fields)
+        return mesh
 
     def to_meshio(self, fields: Optional[Mapping[str, Any]] = None) -> dict[str, Any]:
         """Arguments of ``meshio.Mesh``; references are in "gmsh:physical", names in field_data."""
@@ -480,7 +498,7 @@ class Mesh:
         >>> moved = mesh.replace(points=mesh.points + displacement)
         """
         state = self._state()
-        unknown = set(arrays) - set(state) - {"edges", "edge_refs"}
+        unknown = set(arrays) - (set(state) - {"required"}) - {"edges", "edge_refs"}
         if unknown:
             raise InputError(f"replace: expected names of arrays, found {sorted(unknown)[0]!r}")
         return Mesh._of(data_of({**state, **arrays}))

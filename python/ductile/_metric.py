@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _ductile
 from ._arrays import component_count, executor, finite, floats, named, number
+from ._build import mesh_data, warn
 from ._ductile import FieldType, InputError
 from ._size import Size
 
@@ -29,7 +30,7 @@ def full(M: np.ndarray) -> np.ndarray:
     >>> eigenvalues = np.linalg.eigvalsh(ductile.full(M))
     """
     rows = floats(M, "M")
-    if rows.ndim == 3:
+    if rows.ndim == 3 and rows.shape[1:] in ((2, 2), (3, 3)):
         return rows
     dimension = _dimension_of(rows, "M")
     matrices = np.empty((len(rows), dimension, dimension))
@@ -97,8 +98,7 @@ def as_tensors(mesh: Mesh, metric: MetricLike) -> np.ndarray:
 
 def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: float | None = None,
            error: float | None = None, norm: float = 2, hmin: float = 0, hmax: float = 0,
-           anisotropy: float = 0, hgrad: float = 0, threads: int = 0,
-           deterministic: bool = True) -> np.ndarray:
+           anisotropy: float = 0, hgrad: float = 0, threads: int = 0) -> np.ndarray:
     """The metric in which linear interpolation of a solution has the smallest error.
 
     Parameters
@@ -118,8 +118,6 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
         Sizes grow by at most this factor per unit of metric length; Mmg's default is 1.3. 0: no limit.
     threads : int, optional
         0: as many as there are cores.
-    deterministic : bool, optional
-        The result does not depend on threads or timing.
 
     Returns
     -------
@@ -136,6 +134,7 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
     >>> M = ductile.metric(mesh, u, elements=4000, hgrad=1.5)
     >>> new = mesh.remesh(M)
     """
+    mesh_data(mesh, "mesh")
     goals = {"elements": elements, "complexity": complexity, "error": error}
     given = {name: number(value, name) for name, value in goals.items() if value is not None}
     if len(given) != 1:
@@ -159,18 +158,26 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
         gradation=number(hgrad, "hgrad"))
     rows = values.reshape(len(values), component_count(values.shape))
     with named(mesh.dim):
-        return _ductile.solution_metric(mesh._data, rows, options,
-                                        executor(threads, deterministic))[0]
+        tensors, fit = _ductile.solution_metric(mesh._data, rows, options, executor(threads))
+    if not fit.reached:
+        warn(["no metric within the bounds is what was asked for; the nearest found has the complexity "
+              f"{fit.complexity:.6g}"])
+    return tensors
 
 
 def implied(mesh: Mesh) -> np.ndarray:
     """The metric that a mesh is adapted to already, stretched as it is, ``(n, 3)`` or ``(n, 6)``."""
-    return _ductile.implied(mesh._data)
+    return _ductile.implied(mesh_data(mesh, "mesh"))
 
 
 def sizes(M: np.ndarray) -> np.ndarray:
     """The sizes that a metric asks for at each vertex, ``(n, d)``, the smallest first."""
-    return 1 / np.sqrt(np.linalg.eigvalsh(full(M))[:, ::-1])
+    values = np.linalg.eigvalsh(finite(full(M), "M"))[:, ::-1]
+    if not (values > 0).all():
+        at = int(np.argmin((values > 0).all(axis=1)))
+        raise InputError(f"M[{at}]: expected a positive definite tensor, found the eigenvalues "
+                         f"{values[at].tolist()}")
+    return 1 / np.sqrt(values)
 
 
 # ---- What is done to them ----
@@ -188,7 +195,16 @@ def intersect(A: MetricLike, B: MetricLike, *more: MetricLike) -> np.ndarray:
     ndarray
         Tensors; sizes ``(n,)`` if all are sizes.
     """
+    if len(more) > 24:
+        raise InputError(f"intersect: expected at most 26 metrics, found {len(more) + 2}")
     arrays = [floats(a, name) for a, name in zip((A, B, *more), "ABCDEFGHIJKLMNOPQRSTUVWXYZ")]
+    for name, array in zip("ABCDEFGHIJKLMNOPQRSTUVWXYZ", arrays):
+        if array.ndim not in (1, 2, 3):
+            raise InputError(f"{name}: expected sizes or tensors in rows, found shape {array.shape}")
+        finite(array, name)
+        if array.ndim == 1 and not (array > 0).all():
+            at = int(np.argmin(array > 0))
+            raise InputError(f"{name}[{at}]: expected a size above 0, found {array[at]}")
     for name, array in zip("BCDEFGHIJKLMNOPQRSTUVWXYZ", arrays[1:]):
         if len(array) != len(arrays[0]):
             raise InputError(f"{name}: expected {len(arrays[0])} rows, as A has, found {len(array)}")
@@ -214,15 +230,17 @@ def bound(M: np.ndarray, *, hmin: float = 0, hmax: float = 0, anisotropy: float 
     """
     bounds = _ductile.SizeBounds(number(hmin, "hmin"), number(hmax, "hmax"),
                                  number(anisotropy, "anisotropy"))
-    return _ductile.bound(packed(M), bounds)
+    return _ductile.bound(finite(packed(M), "M"), bounds)
 
 
 def grade(mesh: Mesh, M: MetricLike, factor: float = 1.3) -> np.ndarray:
     """The metric made finer where sizes grow by more than `factor` per unit of metric length."""
-    return _ductile.grade(mesh._data, as_tensors(mesh, M), number(factor, "factor"))
+    data = mesh_data(mesh, "mesh")
+    return _ductile.grade(data, as_tensors(mesh, M), number(factor, "factor"))
 
 
 def complexity(mesh: Mesh, M: MetricLike) -> float:
     """The integral of sqrt(det M); a mesh adapted to M has about 2.35 triangles or 11 tetrahedra
     for each unit of it."""
-    return _ductile.measure(mesh._data, as_tensors(mesh, M)).complexity
+    data = mesh_data(mesh, "mesh")
+    return _ductile.measure(data, as_tensors(mesh, M)).complexity

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Iterator
 import numpy as np
 
 from . import _ductile
-from ._arrays import executor, finite, floats, indices, number, point, points
+from ._arrays import executor, finite, floats, indices, number, point, points, shown, text, whole
+from ._build import mesh_data
 from ._ductile import InputError
 
 if TYPE_CHECKING:
@@ -105,10 +106,10 @@ class Size:
         return self._add_reference(region, _ductile.of_cells, number(h, "h"),
                                    self._growth(grow, hmax, distance), "inside")
 
-    def at(self, mesh: Mesh, *, threads: int = 0, deterministic: bool = True) -> np.ndarray:
+    def at(self, mesh: Mesh, *, threads: int = 0) -> np.ndarray:
         """The size at each vertex of a mesh, ``(n,)``."""
         with self._said_of_places():
-            return self._sizes.at(mesh._data, executor(threads, deterministic))
+            return self._sizes.at(mesh_data(mesh, "mesh"), executor(threads))
 
     @contextmanager
     def _said_of_places(self) -> Iterator[None]:
@@ -152,11 +153,11 @@ class Size:
     def _add_reference(self, place: str | int, dimension: int, h: float,
                        growth: _ductile.SizeGrowth, call: str) -> Size:
         if isinstance(place, str):
-            self._sizes.named(place, h, growth)
+            self._sizes.named(text(place, call), h, growth)
         elif isinstance(place, (int, np.integer)) and not isinstance(place, bool):
-            self._sizes.referenced(dimension, int(place), h, growth)
+            self._sizes.referenced(dimension, whole(place, call, -2**31, 2**31 - 1), h, growth)
         else:
-            raise InputError(f"{call}: expected a name or a reference, found {place!r}")
+            raise InputError(f"{call}: expected a name or a reference, found {shown(place)}")
         self._said.append(f".{call}({place!r}, h={h:g})")
         return self
 
@@ -165,5 +166,5 @@ def _pair(place: Any, name: str, expected: str) -> tuple[Any, Any]:
     try:
         first, second = place
     except (TypeError, ValueError):
-        raise InputError(f"{name}: expected {expected}, found {place!r}") from None
+        raise InputError(f"{name}: expected {expected}, found {shown(place)}") from None
     return first, second

@@ -3,12 +3,14 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
 
 #include "bindings.hpp"
 
 #include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/sizes.hpp"
@@ -63,12 +65,18 @@ using GivenMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
 
 /// What adapt(executor, options) gives, with Python's function as its progress.
 template <class Adapt>
-py::tuple adapted_by(Adapt&& adapt, AdaptOptions options, const runtime::ExecutorOptions& threads,
-                     const py::object& progress) {
+py::tuple adapted_by(const AnyMesh& mesh, Adapt&& adapt, AdaptOptions options,
+                     const runtime::ExecutorOptions& threads, const py::object& progress) {
   Progress asked(progress);
   options.progress = [&asked](const AdaptProgress& now) { return asked(now); };
-  AdaptedMesh adapted =
-      work(threads, [&](const runtime::Executor& executor) { return adapt(executor, options); });
+  AdaptedMesh adapted = work(threads, [&](const runtime::Executor& executor) {
+    AdaptedMesh result = adapt(executor, options);
+    for (const std::string& loose : meshadapt::check_conformity(executor, mesh))
+      result.report.warnings.push_back(loose +
+                                       "; the mesh is not connected there (joined() makes one of"
+                                       " doubled vertices)");
+    return result;
+  });
   const Shape shape{signed_size(adapted.mesh.vertex_count()),
                     signed_size(stride_of(adapted.metric))};
   return py::make_tuple(std::make_shared<AnyMesh>(std::move(adapted.mesh)),
@@ -87,7 +95,7 @@ py::tuple remesh(const AnyMesh& mesh, const GivenMetric& metric, const AdaptOpti
                                : meshadapt::default_metric(executor, mesh);
     return meshadapt::adapt(executor, mesh, wanted, options);
   };
-  return adapted_by(adapt, given_options, threads, progress);
+  return adapted_by(mesh, adapt, given_options, threads, progress);
 }
 
 py::tuple remesh_to_sizes(const AnyMesh& mesh, const meshadapt::Sizes& given,
@@ -97,7 +105,7 @@ py::tuple remesh_to_sizes(const AnyMesh& mesh, const meshadapt::Sizes& given,
   const auto adapt = [&](const runtime::Executor& executor, const AdaptOptions& options) {
     return meshadapt::adapt_to_sizes(executor, mesh, sizes, options);
   };
-  return adapted_by(adapt, given_options, threads, progress);
+  return adapted_by(mesh, adapt, given_options, threads, progress);
 }
 
 void bind_options(py::module_& module) {

@@ -261,6 +261,11 @@ void bind_checks(py::module_& module) {
       return meshadapt::check_mesh(executor, mesh);
     });
   });
+  module.def("join_vertices", [](const AnyMesh& mesh, double tolerance) {
+    auto joined = meshadapt::join_vertices(mesh, tolerance);
+    return py::make_tuple(std::make_shared<AnyMesh>(std::move(joined.mesh)),
+                          take(std::move(joined.kept)));
+  });
   module.def("check_adapted", [](const AnyMesh& before, const AnyMesh& after, double tolerance) {
     return work({}, [&](const runtime::Executor& executor) {
       return meshadapt::check_adapted(executor, before, after, tolerance);

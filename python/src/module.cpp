@@ -25,12 +25,9 @@ void bind_errors(py::module_& module) {
 void bind_executor(py::module_& module) {
   using runtime::ExecutorOptions;
   py::class_<ExecutorOptions>(module, "Executor")
-      .def(py::init([](int threads, bool deterministic) {
-             return ExecutorOptions{.threads = threads, .deterministic = deterministic};
-           }),
-           py::arg("threads") = 0, py::arg("deterministic") = true)
-      .def_readonly("threads", &ExecutorOptions::threads)
-      .def_readonly("deterministic", &ExecutorOptions::deterministic);
+      .def(py::init([](int threads) { return ExecutorOptions{.threads = threads}; }),
+           py::arg("threads") = 0)
+      .def_readonly("threads", &ExecutorOptions::threads);
 }
 
 }  // namespace

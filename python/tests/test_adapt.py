@@ -30,8 +30,6 @@ def test_all_forms_of_a_metric_give_the_same_mesh(mesh):
     asfortran = np.asfortranarray(forms[-2])
     assert same(mesh.remesh(asfortran), first)
     assert same(mesh.remesh(0.25, threads=1), mesh.remesh(0.25, threads=3))
-    racing = mesh.remesh(0.25, deterministic=False)
-    assert racing.check() == []
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -341,3 +339,17 @@ def test_curved_boundaries_are_followed(dim):
         ball.remesh(0.15, hausd=0.02, geometry=geometry)
     exact = ball.remesh(0.15)  # without hausd the facets stay
     assert volumes(exact).sum() == pytest.approx(np.abs(volumes(ball)).sum(), rel=1e-9)
+
+
+def test_vertices_that_are_not_connected_are_warned_of_and_joined(dim):
+    box = ductile.box((1,) * dim, (3,) * dim)
+    other = box.points + np.eye(dim)[0]
+    twice = ductile.Mesh(np.vstack([box.points, other]), np.vstack([box.cells, box.cells + len(other)]))
+    with pytest.warns(ductile.InputWarning, match="is at the place of vertex"):
+        out = twice.remesh(0.3)
+    assert any("joined()" in line for line in out.report.warnings)
+    joined = twice.joined()
+    assert len(joined.points) == 2 * len(other) - 4**(dim - 1)
+    assert joined.remesh(0.3).check() == []
+    with pytest.raises(ductile.InputError, match="no farther apart than the tolerance"):
+        twice.joined(0.9)

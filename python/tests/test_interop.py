@@ -169,3 +169,17 @@ def test_the_guide_runs_as_it_is_written(tmp_path, monkeypatch):
     assert len(blocks) >= 4 and len(ductile.read("part.vtu").cells) > 1000
     for picture in ("sizes.svg", "front.svg"):
         assert "<svg" in (tmp_path / picture).read_text()
+
+
+@pytest.mark.parametrize("components", [(), (1,), (2,), (3,), (4,), (6,), (9,), (2, 2), (3, 3)])
+def test_meshio_writes_all_fields_of_an_adapted_mesh_as_msh_2(dim, components, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    if dim == 3 and np.prod(components) == 4:
+        pytest.skip("neither a vector nor a tensor in space")
+    out = ductile.box((1,) * dim, (4,) * dim).remesh(0.3)
+    out.fields = {"metric": out.metric, "u": np.ones((len(out.points), *components))}
+    out.cell_fields = {"q": np.ones((len(out.cells), *components))}
+    meshio.Mesh(**out.to_meshio()).write(tmp_path / "out.msh", file_format="gmsh22")
+    read = ductile.read(tmp_path / "out.msh")
+    np.testing.assert_array_equal(read.cells, out.cells)
+    assert set(read.fields) >= {"u"}

@@ -7,23 +7,23 @@ set -euo pipefail
 build=$1 source=$2 work=$3 cc=$4 fc=${5:-}
 rm -rf "$work"
 mkdir -p "$work"
-cmake --install "$build" --component c --prefix "$work/prefix" >"$work/install.log"
+# The prefix is another one than that of the build, and is moved afterwards: ductile.pc goes along.
+cmake --install "$build" --component c --prefix "$work/first" >"$work/install.log"
+mv "$work/first" "$work/prefix"
 pc=$(find "$work/prefix" -name ductile.pc)
 library=$(find "$work/prefix" -name libductile.so)
 export PKG_CONFIG_PATH=${pc%/*} LD_LIBRARY_PATH=${library%/*}
-flags="--define-variable=prefix=$work/prefix --define-variable=libdir=${library%/*}
-  --define-variable=includedir=$work/prefix/include"
 run() { echo "$*"; "$@"; }
 
-# shellcheck disable=SC2086,SC2046
-run "$cc" -std=c99 -Wall -Wextra -Wpedantic -Werror $(pkg-config $flags --cflags ductile) \
-  "$source/c/examples/adapt.c" -o "$work/adapt_c" $(pkg-config $flags --libs ductile)
+# shellcheck disable=SC2046
+run "$cc" -std=c99 -Wall -Wextra -Wpedantic -Werror $(pkg-config --cflags ductile) \
+  "$source/c/examples/adapt.c" -o "$work/adapt_c" $(pkg-config --libs ductile)
 "$work/adapt_c"
 if [ -n "$fc" ]; then
   cd "$work"  # where modules go
-  # shellcheck disable=SC2046,SC2086
+  # shellcheck disable=SC2046
   run "$fc" -Wall -Werror "$work/prefix/include/ductile.f90" "$source/c/examples/adapt.f90" \
-    -o adapt_f $(pkg-config $flags --libs ductile)
+    -o adapt_f $(pkg-config --libs ductile)
   ./adapt_f
 fi
 

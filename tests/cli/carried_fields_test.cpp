@@ -81,8 +81,8 @@ TEST(CarriedFields, KeepTheirNamesAndLeaveTheMetricOut) {
   EXPECT_EQ(names, (std::vector<std::string>{"metric", "heat", "flow", "b_heat", "b_flow"}));
   for (const char* file : {"a", "b"})
     ASSERT_EQ(folder
-                  .run(std::string("metric make b.vtu ") + file + ".vtu --elements 200 -o " + file +
-                       ".sol")
+                  .run(std::string("metric make b.vtu ") + file +
+                       ".vtu heat flow --elements 200 -o " + file + ".sol")
                   .status,
               0);
   EXPECT_EQ(folder.read("a.sol"), folder.read("b.sol"));

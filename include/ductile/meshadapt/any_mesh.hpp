@@ -133,6 +133,7 @@ struct NamedField {
   AnyField::Type type = AnyField::Type::scalar;
   std::vector<double> values;  ///< [entity * component_count + component], order as in AnyField
   Place place = Place::vertices;
+  bool whole = false;  ///< whole numbers, such as marks, which files of VTK hold as such
 };
 
 // ---- A mesh to start from ----

@@ -41,6 +41,13 @@ std::vector<std::string> check_domain(const runtime::Executor& executor, const A
 /// ones. Takes n log n in the facets. Thread safety: one caller; runs on the executor.
 std::vector<std::string> check_boundary(const runtime::Executor& executor, const AnyMesh& mesh);
 
+/// Places where a mesh is not connected although its facets meet: one line for each kind, naming
+/// the first vertex. Hanging vertices lie on a listed facet of which they are no corner; doubled
+/// ones lie at the place of another, as along a crack. "On" means within 2e-10 of the extent plus
+/// the rounding of coordinates. Empty if there are none. Throws as check_boundary() does. Takes n
+/// log n in the facets. Thread safety: one caller; runs on the executor.
+std::vector<std::string> check_conformity(const runtime::Executor& executor, const AnyMesh& mesh);
+
 /// Differences between the topologies of `after` and `before`, one line each; empty if there are
 /// none. For the whole, and for the elements of each reference that both have, it compares the
 /// number of connected parts, of connected parts of the boundary around them, and the boundary's

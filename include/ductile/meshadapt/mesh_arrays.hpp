@@ -59,6 +59,20 @@ AnyField scalar_field(int dimension, std::vector<double> value_of, const std::st
 template <int Dim>
 AnyField vector_field(const std::vector<Vector<Dim>>& vector_of, const std::string& name = "");
 
+/// A mesh, and the vertices of another one that it has kept, in their order.
+struct JoinedVertices {
+  AnyMesh mesh;
+  std::vector<std::uint32_t> kept;
+};
+
+/// Joins vertices that are within a distance of each other, and facets and edges that become the
+/// same: the first of them stays where it is, with its reference. Throws InputError
+/// if two corners of an element or a facet are within that distance, or arrays do not fit together.
+JoinedVertices join_vertices(AnyMesh mesh, double tolerance);
+
+/// The values at vertices that were kept.
+AnyField at_kept(const AnyField& field, const std::vector<std::uint32_t>& kept);
+
 /// All fields of both, those of `first` first. Throws InputError unless they have the same
 /// dimension and number of vertices.
 AnyField joined(const AnyField& first, const AnyField& second);

@@ -76,6 +76,23 @@ void draw_scale(cairo_t* pen, const Legend& legend, const LegendPlace& place) {
   }
 }
 
+/// One line that fits, of letters that there are.
+std::string fitting(cairo_t* pen, const std::string& title, double width) {
+  std::string text = as_utf8(meshadapt::printable(title));
+  if (text_width(pen, text) <= width) return text;
+  while (!text.empty() && text_width(pen, text + "...") > width) {
+    while ((static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80) text.pop_back();
+    text.pop_back();
+  }
+  return text + "...";
+}
+
+/// Its name, or else its number.
+std::string label_of(const Legend& legend, std::size_t i) {
+  return i < legend.names.size() && !legend.names[i].empty() ? legend.names[i]
+                                                             : std::to_string(legend.references[i]);
+}
+
 void draw_swatches(cairo_t* pen, const Legend& legend, const LegendPlace& place) {
   const auto [left, y, width, text, room] = place;
   const double end = left + width;
@@ -88,22 +105,12 @@ void draw_swatches(cairo_t* pen, const Legend& legend, const LegendPlace& place)
       cairo_fill(pen);
     }
     cairo_set_source_rgb(pen, 0, 0, 0);
-    const std::string label = more ? "..." : std::to_string(legend.references[i]);
+    const double left_over = std::max(end - x - 1.3 * text, 4 * text);
+    const std::string label = more ? "..." : fitting(pen, label_of(legend, i), left_over);
     write(pen, x + (more ? 0.0 : 1.3 * text), y + 0.85 * text, label);
     if (more) return;
     x += 2.2 * text + text_width(pen, label);
   }
-}
-
-/// One line that fits, of letters that there are.
-std::string fitting(cairo_t* pen, const std::string& title, double width) {
-  std::string text = as_utf8(meshadapt::printable(title));
-  if (text_width(pen, text) <= width) return text;
-  while (!text.empty() && text_width(pen, text + "...") > width) {
-    while ((static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80) text.pop_back();
-    text.pop_back();
-  }
-  return text + "...";
 }
 
 }  // namespace

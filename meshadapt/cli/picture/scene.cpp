@@ -72,13 +72,25 @@ struct Look {
   int axis;                ///< of the cut
 };
 
+/// What entities of a dimension with these references are called; empty where they have no name.
+std::vector<std::string> names_of_references(const AnyMesh& mesh, int dimension,
+                                             const std::vector<std::int32_t>& references) {
+  std::vector<std::string> names(references.size());
+  for (std::size_t i = 0; i < references.size(); ++i)
+    for (const meshadapt::ReferenceName& name : mesh.names)
+      if (name.dimension == dimension && name.reference == references[i]) names[i] = name.name;
+  return names;
+}
+
 void add_solid(Scene& scene, const AnyMesh& mesh, const Look& look) {
   const Camera camera = camera_along(look.axis);
   scene.panels.push_back(surface_panel(mesh, camera, look.tinting.facet_colour));
   const std::vector<std::int32_t> references = distinct(mesh.triangles.reference);
   if (references.size() > 1 && !look.tinting.facet_colour)
-    scene.legends.push_back(
-        {.title = "surface", .tint = Tint::reference, .references = references});
+    scene.legends.push_back({.title = "surface",
+                             .tint = Tint::reference,
+                             .references = references,
+                             .names = names_of_references(mesh, 2, references)});
   if (mesh.tetrahedra.size() > 0)
     scene.panels.push_back(cut_panel(mesh, look.tinting.colour_of, camera, look.axis));
   else if (!look.tinting.facet_colour)
@@ -132,6 +144,7 @@ Tinting tint_elements(const runtime::Executor& executor, const AnyMesh& mesh,
   if (tint == Tint::reference) {
     result.legend.title = "elements";
     result.legend.references = distinct(references);
+    result.legend.names = names_of_references(mesh, mesh.dimension, result.legend.references);
     for (const std::int32_t reference : references)
       result.colour_of.push_back(reference_colour(reference));
   } else {

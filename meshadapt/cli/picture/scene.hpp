@@ -55,6 +55,7 @@ struct Legend {
   Tint tint = Tint::quality;
   double from = 0, to = 1;
   std::vector<std::int32_t> references{};
+  std::vector<std::string> names{};  ///< [index into references], empty: it has none
 };
 
 struct Scene {
