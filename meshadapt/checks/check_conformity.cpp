@@ -9,7 +9,7 @@
 #include "ductile/meshadapt/check_mesh.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/box_index.hpp"
+#include "mesh/box_hierarchy.hpp"
 #include "mesh/distance.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/scale.hpp"
@@ -69,7 +69,7 @@ class LooseVertices {
 
   const AnyMesh& mesh_;
   double slack_;
-  BoxIndex<Dim> index_;
+  BoxHierarchy<Dim> index_;
   std::vector<std::uint32_t> vertices_;  // of facets, each once
 };
 

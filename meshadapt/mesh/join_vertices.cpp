@@ -9,7 +9,7 @@
 
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/box_index.hpp"
+#include "mesh/box_hierarchy.hpp"
 #include "mesh/indices.hpp"
 #include "mesh/wording.hpp"
 
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> first_of_each(const AnyMesh& mesh, double tolerance) 
     const auto at = position_in<Dim>(mesh, v);
     return Box<Dim>{at, at};
   };
-  const BoxIndex<Dim> index(mesh.vertex_count(), box_of);
+  const BoxHierarchy<Dim> index(mesh.vertex_count(), box_of);
   std::vector<std::uint32_t> first(mesh.vertex_count());
   std::iota(first.begin(), first.end(), 0U);
   const auto root = [&](std::uint32_t v) {
