@@ -73,7 +73,9 @@ meshadapt::SolutionMetricOptions goal_of(const AnyMesh& mesh, const ductile_opti
                .complexity = meshadapt::complexity_of_elements(mesh.dimension, options.elements),
                .bounds = {.smallest = options.adapt.smallest_size,
                           .largest = options.adapt.largest_size}},
-      .gradation = options.adapt.gradation};
+      .gradation = options.adapt.gradation,
+      .recovery = options.projection ? meshadapt::Recovery::double_projection
+                                     : meshadapt::Recovery::least_squares};
 }
 
 /// Of the C library's indices, which are signed.
