@@ -245,7 +245,7 @@ def grade(mesh: Mesh, M: MetricLike, factor: float = 1.3) -> np.ndarray:
 
 
 def complexity(mesh: Mesh, M: MetricLike) -> float:
-    """The integral of sqrt(det M); a mesh adapted to M has about 2.35 triangles or 9.2 tetrahedra
+    """The integral of sqrt(det M); a mesh adapted to M has about 2.25 triangles or 9.5 tetrahedra
     for each unit of it."""
     data = mesh_data(mesh, "mesh")
     return _ductile.measure(data, as_tensors(mesh, M)).complexity

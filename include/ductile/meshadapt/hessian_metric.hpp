@@ -74,8 +74,8 @@ template <int Dim>
 double complexity(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,
                   const std::vector<Metric<Dim>>& metric_of);
 
-/// The complexity of a metric to which an adapted mesh has about this many elements: 2.35 triangles
-/// or 11 tetrahedra per unit of complexity, give or take 10 %, as measured on metrics that vary.
+/// The complexity of a metric to which an adapted mesh has about this many elements: 2.25 triangles
+/// or 9.5 tetrahedra per unit of complexity, give or take 10 %, as measured on metrics that vary.
 /// Regular elements with edges of length 1, which fill no space in 3D, would be 2.31 and 8.49.
 double complexity_of_elements(int dimension, double elements);
 
@@ -120,7 +120,7 @@ struct HessianMetricOptions {
   double norm = 2;  ///< p, at least 1; infinity is one too. Small p resolve weak features, too
   double complexity = 0;   ///< see complexity_of_elements
   double error = 0;        ///< the interpolation error in this norm, estimated as below
-  SizeBounds bounds = {};  ///< largest size, if not given: the mesh's extent; anisotropy: 1e6
+  SizeBounds bounds = {};  ///< largest size, if not given: the mesh's extent; anisotropy: 30
 };
 
 /// A metric at each vertex, and how near it came to what was asked for. The error is the L^p norm
