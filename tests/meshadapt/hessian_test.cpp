@@ -186,6 +186,7 @@ AnyMesh corner_on_axes(Random& random, int layers, double off) {
       for (std::size_t i = 0; i < Dim; ++i)
         any.coordinates.push_back(i == axis ? at[axis] : uniform(random, -off, off));
     }
+  any.vertex_reference.assign(any.coordinates.size() / Dim, 0);
   auto& elements = elements_in<Dim>(any).vertices;
   const auto add = [&](const auto& vertex) {
     std::array<std::uint32_t, Dim + 1> corners{};
@@ -196,7 +197,6 @@ AnyMesh corner_on_axes(Random& random, int layers, double off) {
   for (std::size_t first = 1; first + 2 * Dim <= any.vertex_count(); first += Dim)
     for (std::size_t skip = 0; skip < Dim; ++skip)  // corners of one layer, then of the next
       add([&](std::size_t i) { return i < Dim - skip ? first + i : first + i + Dim - 1; });
-  any.vertex_reference.assign(any.vertex_count(), 0);
   elements_in<Dim>(any).reference.assign(elements.size(), 0);
   return any;
 }
