@@ -73,7 +73,9 @@ meshadapt::SolutionMetricOptions goal_of(const AnyMesh& mesh, const ductile_opti
                .complexity = meshadapt::complexity_of_elements(mesh.dimension, options.elements),
                .bounds = {.smallest = options.adapt.smallest_size,
                           .largest = options.adapt.largest_size}},
-      .gradation = options.adapt.gradation};
+      .gradation = options.adapt.gradation,
+      .recovery = options.projection ? meshadapt::Recovery::double_projection
+                                     : meshadapt::Recovery::least_squares};
 }
 
 /// Throws unless entities can be counted by the C library's signed indices.

@@ -121,8 +121,8 @@ int ductile_options_create(ductile_options** options);
 void ductile_options_destroy(ductile_options* options);
 
 /** Sets an option by its name. Names are those of the program: "hmin", "hmax", "hgrad", "hgradreq",
- * "hausd", "ar", "iterations", "threads", "memory" in megabytes, "elements", "norm"; "nomove",
- * "noswap", "noinsert", "nosurf", "A", "thorough" and "racing", which are 0 or 1. */
+ * "hausd", "ar", "iterations", "threads", "memory" in megabytes, "elements", "norm"; "projection",
+ * "nomove", "noswap", "noinsert", "nosurf", "A", "thorough" and "racing", which are 0 or 1. */
 int ductile_options_set(ductile_options* options, const char* name, double value);
 
 /** Called after each step of the adaptation, on the thread that called ductile_adapt(): the step's
@@ -201,7 +201,8 @@ int ductile_sizes_at(const ductile_sizes* sizes, const ductile_mesh* mesh, doubl
 
 /** Computes the metric, in the order of ductile_mesh_metric(), in which linear interpolation of a
  * solution has the smallest error for about "elements" elements, an option that must be set, in the
- * norm L^"norm" (2 by default); within "hmin", "hmax" and "hgrad". values[vertex * components +
+ * norm L^"norm" (2 by default); within "hmin", "hmax" and "hgrad". Second derivatives
+ * are those of fitted quadratics, or with "projection" of double projection. values[vertex * components +
  * component]: the metric suits all components. */
 int ductile_solution_metric(const ductile_mesh* mesh, int components, const double* values,
                             const ductile_options* options, double* metric);

@@ -24,6 +24,7 @@ struct ductile_options {
   ductile::meshadapt::AdaptOptions adapt;
   ductile::runtime::ExecutorOptions executor;
   double elements = 0, norm = 2;  // of the metric of a solution
+  bool projection = false;        // how that gets second derivatives
 };
 
 struct ductile_sizes {

@@ -41,7 +41,7 @@ struct Named {
 using Options = ductile_options;
 using Text = std::string;
 
-constexpr std::array<Named, 18> all_options{{
+constexpr std::array<Named, 19> all_options{{
     {"hmin", [](Options& o, const Text&, double x) { o.adapt.smallest_size = x; }},
     {"hmax", [](Options& o, const Text&, double x) { o.adapt.largest_size = x; }},
     {"hgrad", [](Options& o, const Text&, double x) { o.adapt.gradation = x; }},
@@ -53,6 +53,7 @@ constexpr std::array<Named, 18> all_options{{
      [](Options& o, const Text& n, double x) { o.adapt.iterations = whole(n, x, 0, 1000); }},
     {"elements", [](Options& o, const Text&, double x) { o.elements = x; }},
     {"norm", [](Options& o, const Text&, double x) { o.norm = x; }},
+    {"projection", [](Options& o, const Text& n, double x) { o.projection = flag(n, x); }},
     {"threads",
      [](Options& o, const Text& n, double x) { o.executor.threads = whole(n, x, 0, 4096); }},
     {"memory", [](Options& o, const Text& n, double x) { o.adapt.memory_limit = megabytes(n, x); }},

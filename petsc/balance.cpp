@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/metric.hpp"
 
 namespace ductile::petsc {
@@ -88,7 +89,7 @@ bool leaves_one_empty(const Communicator& comm, const std::vector<int>& part_of)
 template <int Dim>
 std::vector<double> predicted_elements(const Part& part) {
   if (part.element_count() == 0) return {};
-  constexpr double elements_of_one = Dim == 2 ? 2.35 : 11;  // see complexity_of_elements()
+  const double elements_of_one = 1 / meshadapt::complexity_of_elements(Dim, 1);
   constexpr double at_least = 0.1;
   const auto& elements = meshadapt::elements_in<Dim>(part.mesh).vertices;
   std::vector<double> density_of(part.mesh.vertex_count());

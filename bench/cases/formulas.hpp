@@ -1,6 +1,6 @@
 /// @file
-/// Metrics as formulas on the unit square and cube, each scaled to a complexity: about 2.35
-/// triangles or 11 tetrahedra of an adapted mesh per unit of it.
+/// Metrics as formulas on the unit square and cube, each scaled to a complexity: about 2.25
+/// triangles or 9.5 tetrahedra of an adapted mesh per unit of it.
 #pragma once
 
 #include <functional>

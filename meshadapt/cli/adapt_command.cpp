@@ -25,6 +25,7 @@
 #include "io/atomic_file.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
+#include "recovery_option.hpp"
 #include "run_in_team.hpp"
 #include "size_options.hpp"
 #include "system.hpp"
@@ -42,7 +43,7 @@ using meshadapt::MakeMeshOptions;
 using runtime::Executor;
 using Job = AdaptJob;
 
-constexpr std::array<Option, 35> own_options{{
+constexpr std::array<Option, 36> own_options{{
     {"-sol", "METRIC", "the metric or the sizes wanted (default: NAME.sol, then NAME.solb)",
      "-met"},
     {"-o", "OUT", "where the adapted mesh goes (default: NAME.o.mesh, or as the input is)",
@@ -51,6 +52,8 @@ constexpr std::array<Option, 35> own_options{{
     {"--solution", "FIELD",
      "the metric in which this field of MESH, or of a file, is resolved by --elements elements"},
     {"--elements", "N", "with --solution: about how many elements to have"},
+    {"--recovery", "least-squares|projection",
+     "with --solution: how to get second derivatives (default: least-squares)"},
     {"--near", "PLACE:H[:GROW]",
      "asks for H near a place (ductile help metric), -hsiz elsewhere; may be given again"},
     {"--on", "BOUNDARY:H[:GROW]", "asks for H on a boundary, by its reference or name; likewise"},
@@ -151,6 +154,9 @@ void set_sizes(Job& job, const Arguments& arguments) {
   job.elements = arguments.positive("--elements").value_or(0);
   if (job.solution.empty() != (job.elements == 0))
     throw UsageError("options --solution and --elements: expected both or none, found one");
+  job.recovery = recovery_in(arguments);
+  if (job.solution.empty() && arguments.has("--recovery"))
+    throw UsageError("option --recovery: expected --solution as well, found none");
   if (!given.empty()) return;
   job.metric_in = metric_beside(job.input);
   job.metric_found = job.metric_in.has_value();

@@ -16,6 +16,7 @@
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
 #include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "size_options.hpp"
@@ -30,7 +31,8 @@ struct AdaptJob {
   std::optional<double> size;
   std::vector<std::string> solution;  // a field of the mesh's file, or a file; empty: none
   double elements = 0;                // that a solution is to be resolved by
-  std::optional<double> join;         // the distance of vertices that become one
+  meshadapt::Recovery recovery = meshadapt::Recovery::least_squares;
+  std::optional<double> join;  // the distance of vertices that become one
   SizeOptions places;
   std::optional<std::size_t> memory;  // bytes
   meshadapt::AdaptOptions adapt;

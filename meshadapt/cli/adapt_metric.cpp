@@ -27,6 +27,7 @@ AnyField metric_of_solution(const Executor& executor, const AdaptJob& job,
   options.goal.complexity = meshadapt::complexity_of_elements(mesh.dimension, job.elements);
   options.goal.bounds = {job.adapt.smallest_size, job.adapt.largest_size};
   options.gradation = std::max(job.adapt.gradation, 0.0);
+  options.recovery = job.recovery;
   const auto made = meshadapt::solution_metric(executor, mesh, field, options);
   if (!made.fit.reached)
     warnings.push_back(

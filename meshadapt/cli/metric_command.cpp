@@ -15,6 +15,7 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "files.hpp"
+#include "recovery_option.hpp"
 #include "run_in_team.hpp"
 #include "size_options.hpp"
 
@@ -134,11 +135,7 @@ void set_goal(Job& job, const Arguments& arguments) {
   if ((makes || scales) && (goal.complexity > 0) + (goal.error > 0) + (job.elements > 0) != 1)
     throw UsageError(job.operation + ": expected one of --complexity, --elements" +
                      (makes ? " and --error" : ""));
-  const std::string recovery = arguments.text("--recovery").value_or("least-squares");
-  if (recovery != "least-squares" && recovery != "projection")
-    throw UsageError("option --recovery: expected least-squares or projection, found '" + recovery +
-                     "'");
-  if (recovery == "projection") job.fit.recovery = meshadapt::Recovery::double_projection;
+  job.fit.recovery = recovery_in(arguments);
 }
 
 void set_sizes(Job& job, const Arguments& arguments) {

@@ -32,12 +32,17 @@ class SmallSystem {
     for (std::size_t i = 0; i < N; ++i) matrix_[i][i] += amount * (largest > 0 ? largest : 1);
   }
 
-  /// Solves in place; false if a pivot falls below `least_pivot` times its diagonal entry.
+  /// Solves in place; false if a pivot falls below `least_pivot` times its diagonal entry, or that
+  /// falls below `least_pivot` squared of the largest: then equations that are all but void, such
+  /// as those for xy of points on the axes, are the only ones to hold the unknown.
   bool solve(double least_pivot) {
+    double largest = 0;
+    for (std::size_t i = 0; i < N; ++i) largest = std::max(largest, matrix_[i][i]);
+    const double least = least_pivot * least_pivot * largest;
     for (std::size_t j = 0; j < N; ++j) {
       const double diagonal = matrix_[j][j];
       for (std::size_t k = 0; k < j; ++k) matrix_[j][j] -= matrix_[j][k] * matrix_[j][k];
-      if (!(matrix_[j][j] > least_pivot * diagonal)) return false;
+      if (!(matrix_[j][j] > least_pivot * diagonal) || diagonal < least) return false;
       matrix_[j][j] = std::sqrt(matrix_[j][j]);
       for (std::size_t i = j + 1; i < N; ++i) {
         for (std::size_t k = 0; k < j; ++k) matrix_[i][j] -= matrix_[i][k] * matrix_[j][k];

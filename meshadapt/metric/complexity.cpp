@@ -68,7 +68,7 @@ MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, 
 double complexity_of_elements(int dimension, double elements) {
   if (dimension != 2 && dimension != 3)
     throw InputError("dimension: expected 2 or 3, found " + std::to_string(dimension));
-  return elements / (dimension == 2 ? 2.35 : 11);
+  return elements / (dimension == 2 ? 2.25 : 9.5);
 }
 
 template <int Dim>

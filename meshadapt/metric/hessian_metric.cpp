@@ -23,7 +23,8 @@ namespace {
 /// Eigenvalues below this share of the largest anywhere count as this share.
 constexpr double least_curvature = 1e-12;
 
-constexpr double default_anisotropy = 1e6;
+/// More lets the error of a solver grow from one mesh to the next (docs/decisions/0052-*).
+constexpr double default_anisotropy = 30;
 
 double largest_of(double a, double b) { return std::max(a, b); }
 

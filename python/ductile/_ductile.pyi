@@ -151,7 +151,7 @@ class TransferReport:
 
 class SolutionMetricOptions:
     def __init__(self, *, norm: float, complexity: float, error: float, bounds: SizeBounds,
-                 gradation: float) -> None: ...
+                 gradation: float, projection: bool) -> None: ...
 
 class Sizes:
     count: int

@@ -98,7 +98,8 @@ def as_tensors(mesh: Mesh, metric: MetricLike) -> np.ndarray:
 
 def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: float | None = None,
            error: float | None = None, norm: float = 2, hmin: float = 0, hmax: float = 0,
-           anisotropy: float = 0, hgrad: float = 0, threads: int = 0) -> np.ndarray:
+           anisotropy: float = 0, hgrad: float = 0, recovery: str = "least-squares",
+           threads: int = 0) -> np.ndarray:
     """The metric in which linear interpolation of a solution has the smallest error.
 
     Parameters
@@ -116,6 +117,8 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
         Bounds on sizes, and on how much the longest size at a vertex exceeds the shortest.
     hgrad : float, optional
         Sizes grow by at most this factor per unit of metric length; Mmg's default is 1.3. 0: no limit.
+    recovery : "least-squares" or "projection", optional
+        How to get second derivatives: fits of quadratics, or double projection, which is smoother.
     threads : int, optional
         0: as many as there are cores.
 
@@ -145,6 +148,8 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
         raise InputError(f"{name}: expected a number above 0, found {value:g}")
     if elements is not None:
         given["complexity"] = _ductile.complexity_of_elements(mesh.dim, given["elements"])
+    if recovery not in ("least-squares", "projection"):
+        raise InputError(f"recovery: expected 'least-squares' or 'projection', found {recovery!r}")
     values = floats(u, "u")
     if values.ndim == 0 or len(values) != len(mesh.points):
         raise InputError(f"u: expected {len(mesh.points)} rows, one for each vertex, found shape "
@@ -155,7 +160,7 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
         error=given.get("error", 0.0),
         bounds=_ductile.SizeBounds(number(hmin, "hmin"), number(hmax, "hmax"),
                                    number(anisotropy, "anisotropy")),
-        gradation=number(hgrad, "hgrad"))
+        gradation=number(hgrad, "hgrad"), projection=recovery == "projection")
     rows = values.reshape(len(values), component_count(values.shape))
     with named(mesh.dim):
         tensors, fit = _ductile.solution_metric(mesh._data, rows, options, executor(threads))
@@ -240,7 +245,7 @@ def grade(mesh: Mesh, M: MetricLike, factor: float = 1.3) -> np.ndarray:
 
 
 def complexity(mesh: Mesh, M: MetricLike) -> float:
-    """The integral of sqrt(det M); a mesh adapted to M has about 2.35 triangles or 11 tetrahedra
+    """The integral of sqrt(det M); a mesh adapted to M has about 2.25 triangles or 9.5 tetrahedra
     for each unit of it."""
     data = mesh_data(mesh, "mesh")
     return _ductile.measure(data, as_tensors(mesh, M)).complexity

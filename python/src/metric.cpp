@@ -56,12 +56,15 @@ void bind_solution_metric(py::module_& module) {
            py::arg("anisotropy") = 0.);
   py::class_<SolutionMetricOptions>(module, "SolutionMetricOptions")
       .def(py::init([](double norm, double complexity, double error, const SizeBounds& bounds,
-                       double gradation) {
+                       double gradation, bool projection) {
              return SolutionMetricOptions{.goal = {norm, complexity, error, bounds},
-                                          .gradation = gradation};
+                                          .gradation = gradation,
+                                          .recovery = projection
+                                                          ? meshadapt::Recovery::double_projection
+                                                          : meshadapt::Recovery::least_squares};
            }),
            py::kw_only(), py::arg("norm"), py::arg("complexity"), py::arg("error"),
-           py::arg("bounds"), py::arg("gradation"));
+           py::arg("bounds"), py::arg("gradation"), py::arg("projection"));
   module.def("solution_metric", &solution_metric);
   module.def("complexity_of_elements", &meshadapt::complexity_of_elements);
   module.def("implied", [](const AnyMesh& mesh) {

@@ -68,7 +68,7 @@ def calls(dim):
                  keyword(lambda **k: out.transfer(u, **k), "conservative on source threads"),
                  keyword(lambda **k: ductile.metric(mesh, u, **k), "elements complexity error"),
                  keyword(lambda **k: ductile.metric(mesh, u, elements=100, **k),
-                         "norm hmin hmax anisotropy hgrad threads"),
+                         "norm hmin hmax anisotropy hgrad recovery threads"),
                  keyword(lambda **k: ductile.bound(tensors, **k), "hmin hmax anisotropy"),
                  keyword(lambda **k: ductile.Geometry(mesh, 0.01, **k), "ar surfaces threads"),
                  keyword(lambda **k: ductile.Size(0.3, **k).at(mesh), "hmin hmax"),

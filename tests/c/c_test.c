@@ -242,6 +242,12 @@ static void test_solution_metric(void) {
   EXPECT(ductile_adapt(fine, 3, metric, options, &adapted) == DUCTILE_OK);
   const int64_t elements = ductile_mesh_count(adapted, DUCTILE_ELEMENTS);
   EXPECT(elements > 350 && elements < 700);
+  double* projected = (double*)malloc((size_t)(3 * n) * sizeof *projected);
+  EXPECT(ductile_options_set(options, "projection", 2) == DUCTILE_WRONG_INPUT);
+  EXPECT(ductile_options_set(options, "projection", 1) == DUCTILE_OK);
+  EXPECT(ductile_solution_metric(fine, 1, values, options, projected) == DUCTILE_OK);
+  EXPECT(memcmp(projected, metric, (size_t)(3 * n) * sizeof *metric) != 0);
+  free(projected);
   free(values), free(metric);
   ductile_options_destroy(options);
   ductile_mesh_destroy(adapted);

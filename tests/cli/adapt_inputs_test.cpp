@@ -139,6 +139,15 @@ TEST_P(AdaptInputs, MakesTheMetricOfAFieldInOneCommand) {
   EXPECT_EQ(one.status, 0) << one.err;
   EXPECT_EQ(folder_.read("one.mesh").substr(30), folder_.read("two.mesh").substr(30));
   EXPECT_TRUE(folder_.has("one.part.sol"));
+  EXPECT_EQ(
+      folder_.run("metric make part.vtu u --elements 800 --recovery projection -o u.sol").status,
+      0);
+  const std::string projected = "adapt part.vtu --solution u --elements 800 --recovery ";
+  EXPECT_EQ(folder_.run("adapt part.vtu -sol u.sol -o two.mesh").status, 0);
+  EXPECT_EQ(folder_.run(projected + "projection -o one.mesh").status, 0);
+  EXPECT_EQ(folder_.read("one.mesh").substr(30), folder_.read("two.mesh").substr(30));
+  EXPECT_EQ(folder_.run(projected + "guess -o no.mesh").status, 2);
+  EXPECT_EQ(folder_.run("adapt part.vtu --recovery projection -o no.mesh").status, 2);
   for (const std::string words : {"metric make part.vtu part.vtu --elements 800 -o no.sol",
                                   "adapt part.vtu --solution part.vtu --elements 800 -o no.mesh"}) {
     const Outcome several = folder_.run(words);

@@ -81,7 +81,8 @@ template <int Dim>
 double elements_asked_for(const AnyMesh& mesh, const AnyField& metric) {
   const auto tensors = meshadapt::tensors_of<Dim>(executor(), metric);
   const auto fixed = meshadapt::make_fixed_mesh<Dim>(executor(), mesh);
-  return meshadapt::complexity<Dim>(executor(), fixed, tensors) * (Dim == 2 ? 2.35 : 11);
+  return meshadapt::complexity<Dim>(executor(), fixed, tensors) /
+         meshadapt::complexity_of_elements(Dim, 1);
 }
 
 /// Bounds and gradation as numbers say; what they leave must be a metric still.

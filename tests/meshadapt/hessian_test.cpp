@@ -172,6 +172,48 @@ TYPED_TEST(HessianIn, CopesWithMeshesTooCoarseForAQuadratic) {
     }
 }
 
+/// A corner whose vertices all lie on the axes, up to `off`, except for those of the last layer:
+/// what a flat field leaves there. Each layer has a vertex on each axis, and is a prism.
+template <int Dim>
+AnyMesh corner_on_axes(Random& random, int layers, double off) {
+  AnyMesh any;
+  any.dimension = Dim;
+  any.coordinates.assign(Dim, 0);
+  std::vector<double> at(Dim);
+  for (int layer = 0; layer < layers; ++layer)
+    for (std::size_t axis = 0; axis < Dim; ++axis) {
+      at[axis] += uniform(random, 0.5, 1.5) / layers;
+      for (std::size_t i = 0; i < Dim; ++i)
+        any.coordinates.push_back(i == axis ? at[axis] : uniform(random, -off, off));
+    }
+  any.vertex_reference.assign(any.coordinates.size() / Dim, 0);
+  auto& elements = elements_in<Dim>(any).vertices;
+  const auto add = [&](const auto& vertex) {
+    std::array<std::uint32_t, Dim + 1> corners{};
+    for (std::size_t i = 0; i <= Dim; ++i) corners[i] = static_cast<std::uint32_t>(vertex(i));
+    elements.push_back(corners);
+  };
+  add([](std::size_t i) { return i; });
+  for (std::size_t first = 1; first + 2 * Dim <= any.vertex_count(); first += Dim)
+    for (std::size_t skip = 0; skip < Dim; ++skip)  // corners of one layer, then of the next
+      add([&](std::size_t i) { return i < Dim - skip ? first + i : first + i + Dim - 1; });
+  elements_in<Dim>(any).reference.assign(elements.size(), 0);
+  return any;
+}
+
+TYPED_TEST(HessianIn, StaysBoundedWhereVerticesLieOnTheAxes) {
+  constexpr int Dim = TypeParam::value;
+  Random random(17);
+  for (int run = 0; run < 200; ++run) {
+    const double off = std::pow(10, uniform(random, -40, -6));
+    const int layers = 2 + static_cast<int>(test::below(random, 8));
+    const auto mesh = make_fixed_mesh<Dim>(executor, corner_on_axes<Dim>(random, layers, off));
+    for (const Metric<Dim>& hessian :
+         recover_hessian<Dim>(executor, mesh, sampled<Dim>(mesh, wave<Dim>)))
+      for (const double component : hessian.m) EXPECT_LT(std::abs(component), 100) << off;
+  }
+}
+
 TYPED_TEST(HessianIn, TakesEveryComponentOfAField) {
   constexpr int Dim = TypeParam::value;
   AnyMesh any = test::make_grid(test::unit_grid(Dim, 4));

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "ductile/meshadapt/adapt.hpp"
@@ -105,6 +107,87 @@ TEST(InterpolationError, FallsAtTheOptimalRate) {
     EXPECT_GT(order(results[1], results[2]), 0.95);
     EXPECT_GT(uniform, 20 * results[2].error);
   }
+}
+
+// ---- Loops of calls ----
+
+/// A random function: a plane or bent layer, a wave, a bump or a ball.
+template <int Dim>
+class RandomField {
+ public:
+  explicit RandomField(test::Random& random)
+      : kind_(test::below(random, 5)), steep_(std::exp(test::uniform(random, 1.6, 4.3))) {
+    for (double& x : across_.x) x = test::uniform(random, -1, 1);
+    across_ *= 1 / norm(across_);
+    for (double& x : centre_.x) x = test::uniform(random, 0, 1);
+  }
+  double operator()(const Vector<Dim>& p) const {
+    const Vector<Dim> d = p - centre_;
+    const double along = d[0] * across_[1] - d[1] * across_[0];
+    if (kind_ == 0) return std::tanh(steep_ * dot(across_, d));
+    if (kind_ == 1) return std::tanh(steep_ * (dot(across_, d) + 0.1 * std::sin(5 * along)));
+    if (kind_ == 2) return std::sin((3 + steep_ / 8) * dot(across_, d)) * std::cos(4 * along);
+    if (kind_ == 3) return std::exp(-steep_ * dot(d, d));
+    return std::tanh(steep_ * (norm(d) - 0.4));
+  }
+
+ private:
+  std::size_t kind_;
+  double steep_;
+  Vector<Dim> across_, centre_;
+};
+
+/// The root of the mean square at the middles of edges: what linear interpolation misses there.
+template <int Dim>
+double missed(const FixedMesh<Dim>& mesh, const RandomField<Dim>& f) {
+  double sum = 0;
+  for (ElementId e = 0; e < mesh.element_count(); ++e) {
+    const auto p = mesh.points(e);
+    for (std::size_t i = 0; i <= Dim; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        sum += mesh.volume_of[e] * std::pow(f(0.5 * (p[i] + p[j])) - 0.5 * (f(p[i]) + f(p[j])), 2) /
+               Simplex<Dim>::edges;
+  }
+  return std::sqrt(sum);
+}
+
+struct Loop {
+  double elements = 0, grown = 1.1, count = 0.15;
+  int calls = 0, settled = 0;  ///< from which call on counts are to be met
+};
+
+template <int Dim>
+void expect_steady(std::uint64_t seed, const Loop& loop) {
+  test::Random random(seed);
+  const RandomField<Dim> field(random);
+  AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 20 : 10));
+  double least = std::numeric_limits<double>::infinity();
+  for (int call = 0; call < loop.calls; ++call) {
+    std::vector<double> value_of;
+    for (const auto& p : make_fixed_mesh<Dim>(executor, any).position_of)
+      value_of.push_back(field(p));
+    const auto metric = solution_metric(
+        executor, any, {Dim, any.vertex_count(), {AnyField::Type::scalar}, value_of, "f"},
+        {.goal = {.complexity = complexity_of_elements(Dim, loop.elements)}});
+    any = adapt(executor, any, metric.metric).mesh;
+    const auto mesh = make_fixed_mesh<Dim>(executor, any);
+    const double count = static_cast<double>(mesh.element_count()), error = missed(mesh, field);
+    if (call >= loop.settled) {
+      EXPECT_NEAR(count / loop.elements, 1, loop.count) << "seed " << seed << ", call " << call;
+      EXPECT_LT(error, loop.grown * least) << "seed " << seed << ", call " << call;
+    }
+    least = std::min(least, error);
+  }
+}
+
+TEST(InterpolationError, NeverGrowsInALoopAndCountsAreMet) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed)
+    expect_steady<2>(seed, {.elements = 2000, .calls = 6, .settled = 3});
+}
+
+TEST(InterpolationError, NeverGrowsInALoopInSpaceEither) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed)
+    expect_steady<3>(seed, {.elements = 6000, .count = 0.35, .calls = 4, .settled = 2});
 }
 
 }  // namespace

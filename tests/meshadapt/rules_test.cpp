@@ -188,11 +188,11 @@ TYPED_TEST(RulesIn, NoVertexGetsAMetricWithoutAVolume) {
 
 TYPED_TEST(RulesIn, ASplitGivesItsVertexTheReferenceOfBothEnds) {
   constexpr int Dim = TypeParam::value;
-  AnyMesh any = pair_of<Dim>(2, 4);
-  any.vertex_reference[0] = any.vertex_reference[1] = 5;
-  any.vertex_reference[2] = 7;
+  const AnyMesh any = pair_of<Dim>(2, 4);
   Neighbours<Dim> neighbours;
   auto mesh = made<Dim>(any, &neighbours);
+  mesh.reference_of[0] = mesh.reference_of[1] = 5;  // set here, so that they mark no points
+  mesh.reference_of[2] = 7;
   const Background<Dim> background(executor, mesh, std::move(neighbours));
   const VertexId first = mesh.vertex_slots();
   Refine<Dim> op(executor, mesh, background, {});

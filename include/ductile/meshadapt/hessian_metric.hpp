@@ -75,10 +75,10 @@ template <int Dim>
 double complexity(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,
                   const std::vector<Metric<Dim>>& metric_of);
 
-/// The complexity of a metric for which an adapted mesh has about this many elements: 2.35
-/// triangles or 11 tetrahedra per unit of complexity, within 10 %, measured on varying metrics.
-/// Regular elements with edges of length 1, which cannot fill space in 3D, would give 2.31 and
-/// 8.49.
+/// The complexity of a metric for which an adapted mesh has about this many elements: 2.25
+/// triangles or 9.5 tetrahedra per unit of complexity, within 10 %, measured on varying metrics.
+/// Regular elements with edges of length 1, which cannot fill space in 3D, would give 2.31
+/// and 8.49.
 double complexity_of_elements(int dimension, double elements);
 
 /// The complexity to reach, and the bounds on sizes.
@@ -121,14 +121,12 @@ struct HessianMetricOptions {
   double norm = 2;         ///< p, at least 1, or infinity. A small p also resolves weak features
   double complexity = 0;   ///< see complexity_of_elements
   double error = 0;        ///< the interpolation error in this norm, estimated as below
-  SizeBounds bounds = {};  ///< largest size, if not given: the mesh's extent; anisotropy: 1e6
+  SizeBounds bounds = {};  ///< largest size, if not given: the mesh's extent; anisotropy: 30
 };
 
 /// A metric at each vertex, and how close it is to the goal. The error is the L^p norm of
-/// trace(M^-1
-/// H
-/// ) / (4 (d + 2)), which for a mesh of unit elements is the mean over each element of its
-/// interpolation error.
+/// trace(M^-1 |H|) / (4 (d + 2)), which for a mesh of unit elements is the mean over each element
+/// of its interpolation error.
 template <int Dim>
 struct FittedMetric {
   std::vector<Metric<Dim>> metric_of;  // [vertex]
