@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "core/first_bad.hpp"
@@ -24,43 +23,57 @@ struct Scaling {
   const ComplexityGoal& goal;
 };
 
-/// The metrics of the spectrum times a factor, graded; returns their complexity.
+/// Grades the metrics until squared lengths exceed what they may be by this at most; returns the
+/// complexity over the goal.
 template <int Dim>
-double take_graded(const Executor& executor, const Spectrum<Dim>& spectrum, double factor,
-                   const Scaling<Dim>& scaling) {
-  scaling.metric_of = spectrum.metrics(executor, factor);
-  limit_gradation(executor, scaling.metric_of, scaling.mesh, {.factor = scaling.goal.gradation});
-  return complexity(executor, scaling.mesh, scaling.metric_of);
+double take_graded(const Executor& executor, double tolerance, const Scaling<Dim>& scaling) {
+  limit_gradation(executor, scaling.metric_of, scaling.mesh,
+                  {.factor = scaling.goal.gradation, .tolerance = tolerance});
+  return complexity(executor, scaling.mesh, scaling.metric_of) / scaling.goal.complexity;
+}
+
+/// Multiplies graded metrics by one factor of 1 or more, so that they have the complexity. Sizes
+/// grow by the less per unit of metric length, so that they stay graded.
+template <int Dim>
+double take_finer(const Executor& executor, double share, const Scaling<Dim>& scaling) {
+  const double factor = std::max(1.0, std::pow(1 / share, 2.0 / Dim));
+  runtime::parallel_for(executor, scaling.metric_of.size(),
+                        [&](std::size_t v) { scaling.metric_of[v] *= factor; });
+  bound_sizes(executor, scaling.metric_of, {.smallest = scaling.goal.bounds.smallest});
+  return complexity(executor, scaling.mesh, scaling.metric_of) / scaling.goal.complexity;
 }
 
 /// Looks for the factor by a secant of logarithms: grading adds the less, in proportion, the finer
-/// the metric is, so the complexity grows with the factor at most to the power d / 2.
+/// the metric is, so the complexity grows with the factor at most to the power d / 2. Near the goal
+/// is enough, and less than it is best: what is missing then takes no more grading.
 template <int Dim>
 MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, double start,
                        const Scaling<Dim>& scaling) {
   constexpr int most_passes = 20;
-  constexpr double tolerance = 0.02, least_slope = 0.1, most_slope = 0.5 * Dim;
-  const double goal = std::log(scaling.goal.complexity);
-  double at = std::log(start), slope = most_slope, last_at = 0, last = 0;
-  double best_at = at, least_miss = std::numeric_limits<double>::infinity();
-  MetricFit fit;
-  for (int pass = 0; pass < most_passes && !fit.reached; ++pass) {
-    fit.complexity = take_graded(executor, spectrum, std::exp(at), scaling);
-    fit.reached = std::abs(fit.complexity / scaling.goal.complexity - 1) < tolerance;
-    const double found = std::log(fit.complexity);
+  constexpr double near = 0.85, aim = 0.93, tolerance = 0.02, roughly = 0.05;
+  constexpr double least_slope = 0.1, first_slope = Dim / 3.0, most_slope = 0.5 * Dim;
+  double at = std::log(start), slope = first_slope, last_at = 0, last = 0;
+  MetricFit best;
+  for (int pass = 0; pass < most_passes && !best.reached; ++pass) {
+    scaling.metric_of = spectrum.metrics(executor, std::exp(at));
+    double share = take_graded(executor, roughly, scaling);
+    const double found = std::log(share);
+    if (share > near && share < 1 + tolerance) {
+      share = take_graded(executor, GradationOptions{}.tolerance, scaling);
+      share = take_finer(executor, share, scaling);
+      best.reached = std::abs(share - 1) < tolerance;
+    }
+    best.complexity = share * scaling.goal.complexity;
     if (pass > 0 && at != last_at)
       slope = std::clamp((found - last) / (at - last_at), least_slope, most_slope);
     last_at = at;
     last = found;
-    if (std::abs(goal - found) < least_miss) {
-      least_miss = std::abs(goal - found);
-      best_at = at;
-    }
-    at += (goal - found) / slope;
+    at += (std::log(aim) - found) / slope;
   }
-  if (best_at != last_at)
-    fit.complexity = take_graded(executor, spectrum, std::exp(best_at), scaling);
-  return fit;
+  if (!best.reached)
+    best.complexity =
+        scaling.goal.complexity * take_graded(executor, GradationOptions{}.tolerance, scaling);
+  return best;
 }
 
 }  // namespace

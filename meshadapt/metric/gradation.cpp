@@ -53,18 +53,22 @@ class Gradation {
         finest_of_(metric_of.size()),
         neighbours_(executor, mesh) {
     std::iota(changed_.begin(), changed_.end(), VertexId{0});
+    neighbours_.keep(metric_of.size());
   }
 
   GradationReport run() {
     GradationReport report;
-    runtime::UnsetVector<VertexId> active(changed_.begin(), changed_.end());
-    while (!active.empty() && report.sweeps < options_.sweeps) {
-      sweep(active);
+    const std::vector<VertexId> all = changed_;
+    while (!changed_.empty() && report.sweeps < options_.sweeps) {
+      // Where many have changed, it takes less to look at all vertices than to sort those to wake.
+      if (changed_.size() > all.size() / 32)
+        sweep(all);
+      else
+        sweep(neighbours_.of_all(changed_));
       ++report.sweeps;
       report.raised += changed_.size();
-      active = neighbours_.of_all(changed_);
     }
-    report.converged = active.empty();
+    report.converged = changed_.empty();
     if (report.raised > 0)
       runtime::parallel_for(executor_, metric_of_.size(), [&](std::size_t v) {
         metric_of_[v] = brought_into_range(metric_of_[v]);
@@ -112,7 +116,13 @@ class Gradation {
     bool raised = false;
     for (const VertexId from : neighbours_.of(at.vertex)) {
       if (!has_changed_[from]) continue;
-      const auto [vertex, reaching, finest] = grown(from, at.vertex);
+      const Vector<Dim> edge = place_of(mesh_, at.vertex) - place_of(mesh_, from);
+      const double growth =
+          1 + rate_ * std::sqrt(std::max(0.0, squared_length(metric_of_[from], edge)));
+      // No size grows by less than g^(7/8), which is seen without the axes.
+      const double least = growth * growth / std::sqrt(std::sqrt(growth));
+      if (raising::surely_finer(least * at.metric, metric_of_[from], options_.tolerance)) continue;
+      const auto [vertex, reaching, finest] = grown(from, norm(edge) * rate_, growth);
       if (raising::surely_finer(at.metric, reaching, options_.tolerance)) continue;
       at.finest = std::max(at.finest, finest);
       raised = raising::raise_up_to(at.finest, at.metric, reaching, options_.tolerance) || raised;
@@ -120,12 +130,10 @@ class Gradation {
     return raised;
   }
 
-  /// The metric at `from` as it may be at `to` at most: a size h grows by g^(7/8) g_h^(1/8), where
-  /// g is the growth over the edge's length in the metric and g_h that over its length in h.
-  Raised grown(VertexId from, VertexId to) const {
-    const Vector<Dim> edge = place_of(mesh_, to) - place_of(mesh_, from);
-    const double length = std::sqrt(std::max(0.0, squared_length(metric_of_[from], edge)));
-    const double in_metric = 1 + length * rate_, in_space = norm(edge) * rate_;
+  /// The metric at `from` as it may be at most where an edge leads: a size h grows by
+  /// g^(7/8) g_h^(1/8), where g is the growth over the edge's length in the metric and g_h that
+  /// over its length in h.
+  Raised grown(VertexId from, double in_space, double in_metric) const {
     const auto grow = [&](double value) {
       const double in_size = 1 + in_space * std::sqrt(std::max(0.0, value));
       const double growth = in_metric * std::sqrt(std::sqrt(std::sqrt(in_size / in_metric)));
@@ -133,7 +141,7 @@ class Gradation {
     };
     PrincipalAxes<Dim> axes = axes_of_[from];
     for (double& value : axes.value) value = grow(value);
-    return {to, compose(axes), grow(finest_of_[from])};
+    return {from, compose(axes), grow(finest_of_[from])};
   }
 
   /// By how much eigenvalues may exceed the largest that spreads to a vertex: at 1 the direction of

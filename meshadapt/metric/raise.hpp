@@ -117,13 +117,16 @@ Metric<Dim> back_from(double most, const Metric<Dim>& excess) {
 template <int Dim>
 bool surely_finer(const Metric<Dim>& fine, const Metric<Dim>& coarse, double tolerance) {
   Matrix<Dim> rest;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j <= i; ++j)
-      rest[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
-          (1 + tolerance) * fine(i, j) - coarse(i, j);
+#pragma GCC unroll 3
+  for (std::size_t i = 0, at = 0; i < Dim; ++i)
+#pragma GCC unroll 3
+    for (std::size_t j = 0; j <= i; ++j, ++at)
+      rest[i][j] = (1 + tolerance) * fine.m[at] - coarse.m[at];
+#pragma GCC unroll 3
   for (std::size_t j = 0; j < Dim; ++j) {
-    const int at = static_cast<int>(j);
-    if (!(rest[j][j] > rounding * (fine(at, at) + coarse(at, at)))) return false;
+    const std::size_t at = j * (j + 3) / 2;
+    if (!(rest[j][j] > rounding * (fine.m[at] + coarse.m[at]))) return false;
+#pragma GCC unroll 3
     for (std::size_t i = j + 1; i < Dim; ++i) {
       const double multiple = rest[i][j] / rest[j][j];
       for (std::size_t k = j + 1; k <= i; ++k) rest[i][k] -= multiple * rest[k][j];

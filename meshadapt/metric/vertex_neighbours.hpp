@@ -35,6 +35,8 @@ class VertexNeighbours {
   /// In the order of their numbers; valid until the thread asks again. Thread safety: threads of
   /// the executor.
   std::span<const VertexId> of(VertexId vertex) {
+    if (!first_kept_.empty())
+      return {kept_.data() + first_kept_[vertex], kept_.data() + first_kept_[vertex + 1]};
     std::vector<VertexId>& found = found_.mine();
     found.clear();
     for (const ElementId element : elements_around(mesh_, vertex))
@@ -42,6 +44,20 @@ class VertexNeighbours {
         if (corner != vertex) found.push_back(corner);
     std::sort(found.begin(), found.end());
     return {found.begin(), std::unique(found.begin(), found.end())};
+  }
+
+  /// Keeps the neighbours of all vertices, for whoever asks for them again and again.
+  /// Thread safety: one caller; runs on the executor.
+  void keep(std::size_t vertices) {
+    std::vector<std::size_t> count_of(vertices + 1, 0);
+    kept_ =
+        runtime::parallel_collect<VertexId>(executor_, vertices, [&](std::size_t v, auto&& append) {
+          const auto found = of(static_cast<VertexId>(v));
+          count_of[v] = found.size();
+          for (const VertexId neighbour : found) append(neighbour);
+        });
+    runtime::exclusive_scan(executor_, std::span(count_of));
+    first_kept_ = std::move(count_of);
   }
 
   /// Those of any of these, each once. Thread safety: one caller; runs on the executor.
@@ -60,6 +76,8 @@ class VertexNeighbours {
   const AMesh& mesh_;
   runtime::PerThread<std::vector<VertexId>> found_;
   runtime::Worklist<VertexId> wake_;
+  std::vector<std::size_t> first_kept_;  // [vertex], and the end; empty if none are kept
+  runtime::UnsetVector<VertexId> kept_;
 };
 
 }  // namespace ductile::meshadapt

@@ -301,6 +301,37 @@ TYPED_TEST(HessianMetricIn, ReachesAComplexityWithGradation) {
   }
 }
 
+/// Whatever the field and the growth: the complexity is met, no size is below its bound, and
+/// grading again finds nothing to do, at any number of threads.
+TYPED_TEST(HessianMetricIn, ReachesAComplexityWithAnyGradationOfAnyField) {
+  constexpr int Dim = TypeParam::value;
+  const AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 20 : 7));
+  const auto mesh = make_fixed_mesh<Dim>(executor, any);
+  for (int trial = 0; trial < 24; ++trial) {
+    AnyField field{Dim, any.vertex_count(), {AnyField::Type::scalar}, {}, "field"};
+    const double place = 0.1 + 0.03 * trial, sharp = 3 << (trial % 6);
+    for (std::size_t v = 0; v < any.vertex_count(); ++v) {
+      const auto p = position_in<Dim>(any, v);
+      field.values.push_back(trial % 2 == 0 ? std::tanh(sharp * (p[0] + 0.3 * p[1] - place))
+                                            : std::exp(-sharp * dot(p, p)) * std::cos(3 * p[1]));
+    }
+    const double factor = 1.1 + 0.1 * (trial % 5), goal = 300 << (trial % 4);
+    const SolutionMetricOptions options{.goal = {.complexity = goal, .bounds = {.smallest = 1e-3}},
+                                        .gradation = factor};
+    const auto graded = solution_metric(executor, any, field, options);
+    auto metric_of = tensors_of<Dim>(executor, graded.metric);
+    EXPECT_TRUE(graded.fit.reached) << trial;
+    EXPECT_NEAR(complexity<Dim>(executor, mesh, metric_of), goal, 0.02 * goal) << trial;
+    for (const Metric<Dim>& metric : metric_of)
+      for (const double value : principal_axes(metric).value) EXPECT_LT(value, 1.000001e6);
+    const auto report =
+        limit_gradation(executor, metric_of, mesh, {.factor = factor, .tolerance = 2e-3});
+    EXPECT_EQ(report.raised, 0U) << trial;
+    const auto again = solution_metric(Executor({.threads = 3}), any, field, options);
+    EXPECT_EQ(again.metric.values, graded.metric.values) << trial;
+  }
+}
+
 TYPED_TEST(HessianMetricIn, DoesNotDependOnThreads) {
   constexpr int Dim = TypeParam::value;
   const AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 50 : 14));

@@ -127,6 +127,24 @@ void compare_vertices(Lines& lines, const AnyMesh& before, const AnyMesh& after,
   if (all(before) != all(after)) lines.push_back(std::string(name) + " changed");
 }
 
+/// All corners stay. Vertices with references may become corners: see marked_points().
+template <int Dim>
+void compare_corners(Lines& lines, const AnyMesh& before, const AnyMesh& after) {
+  using Corner = std::pair<std::vector<Place<Dim>>, std::int32_t>;
+  const auto at = [](const AnyMesh& mesh, std::uint32_t v) {
+    return Corner{by_place<Dim>(mesh, std::array{v}, mesh.vertex_reference[v])};
+  };
+  std::set<Corner> missing, allowed, found;
+  for (const std::uint32_t v : before.corners) missing.insert(at(before, v));
+  for (std::uint32_t v = 0; v < before.vertex_count(); ++v)
+    if (before.vertex_reference[v] != 0) allowed.insert(at(before, v));
+  allowed.insert(missing.begin(), missing.end());
+  for (const std::uint32_t v : after.corners) found.insert(at(after, v));
+  if (!std::includes(found.begin(), found.end(), missing.begin(), missing.end()) ||
+      !std::includes(allowed.begin(), allowed.end(), found.begin(), found.end()))
+    lines.emplace_back("corners changed");
+}
+
 /// Boundaries of a mesh far from the origin are flat, and measures known, up to rounding only.
 template <int Dim>
 Tolerance tolerance(const AnyMesh& mesh) {
@@ -142,7 +160,7 @@ template <int Dim>
 Lines changes_in(const AnyMesh& before, const AnyMesh& after) {
   Lines lines;
   compare(lines, measures<Dim>(before), measures<Dim>(after), tolerance<Dim>(before));
-  compare_vertices<Dim>(lines, before, after, &AnyMesh::corners, "corners");
+  compare_corners<Dim>(lines, before, after);
   compare_vertices<Dim>(lines, before, after, &AnyMesh::required_vertices, "required vertices");
   compare_required<Dim>(lines, {before, after}, &AnyMesh::edges, &AnyMesh::required_edges, "edges");
   compare_required<Dim>(lines, {before, after}, &AnyMesh::triangles, &AnyMesh::required_triangles,

@@ -61,9 +61,8 @@ struct GradationReport {
 
 /// Refines metrics until, along each edge pq, sizes grow by at most about `factor` per unit of
 /// metric length. Each size h of M_p, along one of its axes, may become h g^(7/8) g_h^(1/8) in M_q,
-/// where g = 1 + l ln(factor) with the length l of pq in M_p, and g_h = 1 +
-/// pq
-/// /h ln(factor). M_q then measures no length less than that metric does. This is the mixed law of
+/// where g = 1 + l ln(factor) with the length l of pq in M_p, and
+/// g_h = 1 + |pq| / h ln(factor). M_q then measures no length less than that metric does. This is the mixed law of
 /// Alauzet, "Size gradation control of anisotropic meshes", Finite Elem. Anal. Des. 46 (2010): with
 /// g alone, metrics spread with all of their anisotropy, so that differing directions cause short
 /// edges in many directions over long distances. Isotropic metrics grow by g, because g_h is the
