@@ -148,8 +148,9 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
         raise InputError(f"{name}: expected a number above 0, found {value:g}")
     if elements is not None:
         given["complexity"] = _ductile.complexity_of_elements(mesh.dim, given["elements"])
-    if recovery not in ("least-squares", "projection"):
-        raise InputError(f"recovery: expected 'least-squares' or 'projection', found {recovery!r}")
+    if not isinstance(recovery, str) or recovery not in ("least-squares", "projection"):
+        said = repr(recovery) if isinstance(recovery, str) else type(recovery).__name__
+        raise InputError(f"recovery: expected 'least-squares' or 'projection', found {said}")
     values = floats(u, "u")
     if values.ndim == 0 or len(values) != len(mesh.points):
         raise InputError(f"u: expected {len(mesh.points)} rows, one for each vertex, found shape "
