@@ -278,8 +278,9 @@ TYPED_TEST(HessianMetricIn, ReachesAComplexityWithGradation) {
   AnyField layer{Dim, any.vertex_count(), {AnyField::Type::scalar}, {}, "layer"};
   for (std::size_t v = 0; v < any.vertex_count(); ++v)
     layer.values.push_back(std::exp(-100 * position_in<Dim>(any, v)[0]));
-  const SolutionMetricOptions options{.goal = {.complexity = 1500, .bounds = {.smallest = 1e-4}},
-                                      .gradation = 1.5};
+  const SolutionMetricOptions options{
+      .goal = {.complexity = 1500, .bounds = {.smallest = 1e-4, .anisotropy = 1e6}},
+      .gradation = 1.5};
   const auto graded = solution_metric(executor, any, layer, options);
   auto metric_of = tensors_of<Dim>(executor, graded.metric);
   EXPECT_TRUE(graded.fit.reached);
