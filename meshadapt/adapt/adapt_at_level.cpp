@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <optional>
 #include <string>
@@ -23,7 +24,9 @@
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/process.hpp"
 #include "geometry/curvature.hpp"
+#include "geometry/flat_noise.hpp"
 #include "geometry/make_mesh.hpp"
+#include "mesh/wording.hpp"
 #include "metric/demand.hpp"
 #include "metric/mesh_gradation.hpp"
 #include "metric/required_sizes.hpp"
@@ -176,6 +179,7 @@ void count_curved_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh
 struct Attempt {
   AdaptedMesh adapted;
   bool may_meet;
+  bool has_short;  ///< see has_short_facets()
 };
 
 template <int Dim>
@@ -268,11 +272,28 @@ Attempt adapt_once(const runtime::Executor& executor, const AnyMesh& any, const 
   round_boundary(mesh);
   count_curved_edges(executor, mesh, adapter->report());
   count_held_edges(executor, mesh, options.rules, adapter->report());
+  const bool has_short = has_short_facets(executor, mesh, options.rules);
   auto [adapted, metric_on_it] = take_apart(executor, std::move(mesh));
-  Attempt result{{std::move(adapted), std::move(metric_on_it), adapter->report()}, may_meet};
+  Attempt result{
+      {std::move(adapted), std::move(metric_on_it), adapter->report()}, may_meet, has_short};
   result.adapted.report.warnings = std::move(warnings);
   result.adapted.report.fixed_vertices = fixed;
   return result;
+}
+
+/// Warns where faces that are flat except for noise keep all their vertices.
+template <int Dim>
+void warn_of_noise(const runtime::Executor& executor, const AnyMesh& any, AdaptedMesh& adapted) {
+  constexpr double margin = 2;  // since the surface that is approximated has noise, too
+  // The input has more facets to judge by, unless it leaves them out.
+  const AnyMesh& judged = facets_in<Dim>(any).size() > 0 ? any : adapted.mesh;
+  const double noise = noise_in_flat_faces<Dim>(executor, judged);
+  if (!(noise > 0)) return;
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.2g", margin * noise);
+  adapted.report.warnings.push_back(name_of(any) + ": boundary faces are flat up to " +
+                                    text.data() + ", probably by rounding; -hausd " + text.data() +
+                                    " (hausdorff_tolerance) lets them be coarsened");
 }
 
 template <int Dim>
@@ -282,7 +303,9 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
   Rescue<Dim> rescue(executor, any, options.make);
   AdaptOptions again = options;
   while (true) {
-    auto [result, may_meet] = adapt_once<Dim>(executor, any, metric, again);
+    auto [result, may_meet, has_short] = adapt_once<Dim>(executor, any, metric, again);
+    if (has_short && !(options.make.hausdorff_tolerance > 0))
+      warn_of_noise<Dim>(executor, any, result);
     if (!may_meet && rescue.attempts() == 0) {
       result.report.total_seconds = watch.seconds();
       return std::move(result);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -125,6 +126,37 @@ void count_held_edges(const runtime::Executor& executor, const Mesh<Dim>& mesh, 
       [](const Count& a, const Count& b) { return a + b; });
   report.held_long_edges = total.longer;
   report.held_short_edges = total.shorter;
+}
+
+/// Are many edges of facets shorter than asked for between vertices that may not move? Thread
+/// safety: one caller; runs on the executor.
+template <int Dim>
+bool has_short_facets(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                      const Rules& rules) {
+  constexpr std::size_t least = 32, part = 10;
+  using Count = std::array<std::size_t, 2>;  // of sides, and of those that are short
+  const auto count_in = [&](std::size_t at) {
+    const auto e = static_cast<ElementId>(at);
+    Count count{};
+    if (!mesh.alive(e)) return count;
+    for (int i = 0; i <= Dim; ++i) {
+      if (mesh.patches_of[e][static_cast<std::size_t>(i)] == 0) continue;
+      const Facet<Dim> facet = facet_of<Dim>(mesh.corners_of[e], i);
+      for (std::size_t a = 0; a < Dim; ++a)
+        for (std::size_t b = 0; b < a; ++b) {
+          const VertexId v = facet[a], w = facet[b];
+          ++count[0];
+          count[1] += mesh.kind_of[v].class_dimension == 0 &&
+                      mesh.kind_of[w].class_dimension == 0 && mesh.length(v, w) < rules.short_edge;
+        }
+    }
+    return count;
+  };
+  const auto [all, shorter] = runtime::parallel_reduce(
+      executor, mesh.element_slots(), Count{}, count_in, [](const Count& a, const Count& b) {
+        return Count{a[0] + b[0], a[1] + b[1]};
+      });
+  return shorter >= least && shorter * part >= all;
 }
 
 }  // namespace ductile::meshadapt

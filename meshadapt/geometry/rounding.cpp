@@ -51,13 +51,19 @@ double rounding_tolerance(const Precision& precision) {
 }
 
 template <int Dim>
-std::optional<Flat<Dim>> plane_near(std::span<const Vector<Dim>> points, double distance) {
+Flat<Dim> best_plane(std::span<const Vector<Dim>> points) {
   const Spread<Dim> spread = spread_of_points(points);
+  return {spread.centre, spread.axis[0]};
+}
+
+template <int Dim>
+std::optional<Flat<Dim>> plane_near(std::span<const Vector<Dim>> points, double distance) {
+  const Flat<Dim> plane = best_plane(points);
   const bool near = std::all_of(points.begin(), points.end(), [&](const Vector<Dim>& p) {
-    return std::abs(dot(p - spread.centre, spread.axis[0])) <= distance;
+    return std::abs(dot(p - plane.origin, plane.direction)) <= distance;
   });
   if (!near) return {};
-  return Flat<Dim>{spread.centre, spread.axis[0]};
+  return plane;
 }
 
 std::optional<Flat<3>> line_near(std::span<const Vector<3>> points, double distance) {
@@ -116,6 +122,8 @@ Vector<Dim> Rounding<Dim>::rounded(Vector<Dim> position, int class_dimension,
 
 template double rounding_tolerance<2>(const Precision&);
 template double rounding_tolerance<3>(const Precision&);
+template Flat<2> best_plane(std::span<const Vector<2>>);
+template Flat<3> best_plane(std::span<const Vector<3>>);
 template std::optional<Flat<2>> plane_near(std::span<const Vector<2>>, double);
 template std::optional<Flat<3>> plane_near(std::span<const Vector<3>>, double);
 template bool explains<2>(const std::array<Vector<2>, 2>&, const Vector<2>&, double);

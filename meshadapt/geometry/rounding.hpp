@@ -36,7 +36,10 @@ struct Rounding {
 template <int Dim>
 double rounding_tolerance(const Precision& precision);
 
-/// The plane that fits the points best, if all are within a distance of it.
+/// The plane that fits the points best.
+template <int Dim>
+Flat<Dim> best_plane(std::span<const Vector<Dim>> points);
+/// The same, if all are within a distance of it.
 template <int Dim>
 std::optional<Flat<Dim>> plane_near(std::span<const Vector<Dim>> points, double distance);
 /// The same for a line in space.
