@@ -81,8 +81,8 @@ std::vector<meshadapt::NamedField> read_solutions(const std::filesystem::path& p
 bool is_file(const std::string& word);
 
 /// The fields that a metric is made of: `words` are names of fields at the vertices of this mesh,
-/// or a file and names of fields in it. Without names there must be one alone, beside a metric; of a
-/// .sol, which has no names, all are taken, with a warning. Throws InputError with the names that
+/// or a file and names of fields in it. Without names there must be one alone, beside a metric; of
+/// a .sol, which has no names, all are taken, with a warning. Throws InputError with the names that
 /// there are.
 std::vector<meshadapt::NamedField> chosen_solutions(const std::vector<std::string>& words,
                                                     const meshadapt::MeshWithFields& mesh,

@@ -158,7 +158,8 @@ void take_cells(SpatialMesh& to, const VtkGrid& grid, const CellReferences& of) 
 
 void take_fields(SpatialMesh& to, std::vector<VtkArray>&& arrays, NamedField::Place place) {
   for (VtkArray& array : arrays)
-    to.fields.push_back({std::move(array.name), place, array.components, std::move(array.values), array.whole});
+    to.fields.push_back(
+        {std::move(array.name), place, array.components, std::move(array.values), array.whole});
 }
 
 void expect_lengths(const VtkGrid& grid) {

@@ -279,8 +279,8 @@ void VtkReader::skip_texts(std::uint64_t how_many) {
 void VtkReader::keep(std::string name, std::uint64_t components, std::vector<double> found) {
   if (data_ == Data::none || found.size() != components * data_count_) return;
   auto& arrays = data_ == Data::points ? grid_.point_data : grid_.cell_data;
-  arrays.push_back({std::move(name), static_cast<std::size_t>(components), std::move(found),
-                    whole_});
+  arrays.push_back(
+      {std::move(name), static_cast<std::size_t>(components), std::move(found), whole_});
 }
 
 void VtkReader::read_scalars() {

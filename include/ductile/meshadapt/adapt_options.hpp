@@ -56,7 +56,7 @@ struct SurfaceFunction {
 struct MakeMeshOptions {
   bool complete_boundary = false;  ///< give unlisted boundary facets reference 0 instead of
                                    ///< refusing them
-  bool lock_boundary = false;  ///< treat every boundary and interface facet as required
+  bool lock_boundary = false;      ///< treat every boundary and interface facet as required
   /// Hausdorff tolerance: the largest distance of curved boundaries, interfaces and the curves
   /// between them from a smooth model of the input, a length. 0: they keep their facets.
   double hausdorff_tolerance = 0;

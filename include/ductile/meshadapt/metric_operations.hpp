@@ -62,17 +62,17 @@ struct GradationReport {
 /// Refines metrics until, along each edge pq, sizes grow by at most about `factor` per unit of
 /// metric length. Each size h of M_p, along one of its axes, may become h g^(7/8) g_h^(1/8) in M_q,
 /// where g = 1 + l ln(factor) with the length l of pq in M_p, and
-/// g_h = 1 + |pq| / h ln(factor). M_q then measures no length less than that metric does. This is the mixed law of
-/// Alauzet, "Size gradation control of anisotropic meshes", Finite Elem. Anal. Des. 46 (2010): with
-/// g alone, metrics spread with all of their anisotropy, so that differing directions cause short
-/// edges in many directions over long distances. Isotropic metrics grow by g, because g_h is the
-/// same. No size ends more than a tenth below the smallest of those that spread to it. In each
-/// sweep a vertex intersects its metric with its neighbours' from before the sweep, in the order of
-/// their numbers, so the result does not depend on threads or timing. metric_of is indexed by the
-/// vertices of the mesh, whose own metrics are not read. Throws InputError if the factor is below 1
-/// or not finite, the tolerance or the sweeps are negative, or there is not a metric (see
-/// metric_of) for each vertex; std::bad_alloc if memory runs out. Thread safety: one caller; runs
-/// on the executor.
+/// g_h = 1 + |pq| / h ln(factor). M_q then measures no length less than that metric does. This is
+/// the mixed law of Alauzet, "Size gradation control of anisotropic meshes", Finite Elem. Anal.
+/// Des. 46 (2010): with g alone, metrics spread with all of their anisotropy, so that differing
+/// directions cause short edges in many directions over long distances. Isotropic metrics grow by
+/// g, because g_h is the same. No size ends more than a tenth below the smallest of those that
+/// spread to it. In each sweep a vertex intersects its metric with its neighbours' from before the
+/// sweep, in the order of their numbers, so the result does not depend on threads or timing.
+/// metric_of is indexed by the vertices of the mesh, whose own metrics are not read. Throws
+/// InputError if the factor is below 1 or not finite, the tolerance or the sweeps are negative, or
+/// there is not a metric (see metric_of) for each vertex; std::bad_alloc if memory runs out. Thread
+/// safety: one caller; runs on the executor.
 template <int Dim>
 GradationReport limit_gradation(const runtime::Executor& executor,
                                 std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,
