@@ -242,6 +242,19 @@ bool has_field(const meshadapt::MeshWithFields& mesh, const std::string& name) {
                      [&](const auto& field) { return field.name == name; });
 }
 
+/// The field of this name. Throws InputError if there is none.
+const meshadapt::NamedField& field_called(const std::string& name,
+                                          const std::vector<meshadapt::NamedField>& fields,
+                                          const std::string& source) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&](const auto& field) { return field.name == name; });
+  if (found == fields.end())
+    throw meshadapt::InputError(source + ": expected a field '" + name +
+                                "' at its vertices, found " + names_of(fields) +
+                                "; give one of these, or a file that is there");
+  return *found;
+}
+
 }  // namespace
 
 std::vector<meshadapt::NamedField> read_solutions(const fs::path& path,
@@ -277,15 +290,7 @@ std::vector<meshadapt::NamedField> chosen_solutions(const std::vector<std::strin
         source + ": expected the name of a field after it, because it has " +
         std::to_string(fields.size()) + ": " + names_of(fields) + "; name one of them, or several");
   std::vector<meshadapt::NamedField> chosen;
-  for (const std::string& name : names) {
-    const auto found = std::find_if(fields.begin(), fields.end(),
-                                    [&](const auto& field) { return field.name == name; });
-    if (found == fields.end())
-      throw meshadapt::InputError(source + ": expected a field '" + name +
-                                  "' at its vertices, found " + names_of(fields) +
-                                  "; give one of these, or a file that is there");
-    chosen.push_back(*found);
-  }
+  for (const std::string& name : names) chosen.push_back(field_called(name, fields, source));
   return names.empty() ? fields : chosen;
 }
 

@@ -59,6 +59,12 @@ bool is_number(const std::string& name) {
   return error == std::errc{} && after == name.data() + name.size();
 }
 
+std::string renamed(const std::string& name, std::int32_t reference, const std::string& other) {
+  return printable("the boundary '" + name + "' of reference " + std::to_string(reference) +
+                   " is called '" + other +
+                   "', because its name is that of another marker or a number");
+}
+
 /// [reference] a name of its own for each. Names that are as in the mesh come before altered ones;
 /// what is called by a number would be read as that reference.
 std::map<std::int32_t, std::string> marker_names(const AnyMesh& mesh,
@@ -88,10 +94,7 @@ std::map<std::int32_t, std::string> marker_names(const AnyMesh& mesh,
       if (exact) continue;
       std::string other = name + "_" + std::to_string(reference);
       while (!give(reference, other)) other += "_";
-      if (warnings)
-        warnings->push_back(printable("the boundary '" + name + "' of reference " +
-                                      std::to_string(reference) + " is called '" + other +
-                                      "', because its name is that of another marker or a number"));
+      if (warnings) warnings->push_back(renamed(name, reference, other));
     }
   return name_of;
 }
