@@ -290,6 +290,7 @@ std::vector<meshadapt::NamedField> chosen_solutions(const std::vector<std::strin
         source + ": expected the name of a field after it, because it has " +
         std::to_string(fields.size()) + ": " + names_of(fields) + "; name one of them, or several");
   std::vector<meshadapt::NamedField> chosen;
+  chosen.reserve(names.size());
   for (const std::string& name : names) chosen.push_back(field_called(name, fields, source));
   return names.empty() ? fields : chosen;
 }
