@@ -52,13 +52,13 @@ def test_random_meshes_stay_valid_and_good(dim, seed):
         assert len(text) > 20
 
 
-@pytest.mark.parametrize("recovery", ("least-squares", "projection"))
-def test_a_loop_with_a_layer_keeps_its_elements(recovery):
+@pytest.mark.parametrize("recovery, within", (("least-squares", 0.1), ("projection", 0.2)))
+def test_a_loop_with_a_layer_keeps_its_elements(recovery, within):
     mesh = ductile.box((1, 1), (20, 20))
     for call in range(10):
         u = np.tanh(20 * (mesh.points.sum(axis=1) - 0.3))
         mesh = mesh.remesh(ductile.metric(mesh, u, elements=3000, recovery=recovery))
-        assert call == 0 or len(mesh.cells) == pytest.approx(3000, rel=0.1), call
+        assert call == 0 or len(mesh.cells) == pytest.approx(3000, rel=within), call
 
 
 def test_options_do_what_they_say(mesh):
