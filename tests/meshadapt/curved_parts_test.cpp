@@ -196,7 +196,8 @@ TEST_P(CurvedPart, StaysWhatItIsInTenCalls) {
     }
     if (call == 0) first = volume_of(mesh);
   }
-  EXPECT_NEAR(volume_of(mesh) / first, 1, fine() ? 0.003 : 0.01);
+  // The blade's nose has a radius of 1.6 X.
+  EXPECT_NEAR(volume_of(mesh) / first, 1, fine() ? 0.003 : 0.012);
 }
 
 /// Facets of one reference are required; they have to be there afterwards, to the bit.
