@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "geometry/divided.hpp"
 #include "geometry/projection.hpp"
 #include "geometry/sheets_parts.hpp"
 #include "mesh/box_hierarchy.hpp"
@@ -33,7 +36,12 @@ class SurfaceMaker {
   std::shared_ptr<const Surface<Dim>> make(const runtime::Executor& executor) const {
     ModelInput<Dim> input = model_input();
     SmoothModel<Dim> model(executor, input);
-    if (hold_facing(model, input)) model = SmoothModel<Dim>(executor, input);
+    const std::vector<Vector<Dim>> bends = bends_of(model);
+    constexpr int rounds = 4;
+    for (int round = 1; round <= rounds; ++round) {
+      if (!hold_facing(model, bends, round == rounds, input)) break;
+      model = SmoothModel<Dim>(executor, input);
+    }
     std::vector<typename Sheets<Dim, Dim>::Part> facet_parts;
     facet_parts.reserve(facets_.size());
     for (std::size_t f = 0; f < facets_.size(); ++f)
@@ -155,24 +163,28 @@ class SurfaceMaker {
   }
 
   /// Holds facets of which the model might come close to what they face, across a gap or a thin
-  /// part of the domain: at least half of the way there is shall remain. Does it hold any?
-  bool hold_facing(const SmoothModel<Dim>& model, ModelInput<Dim>& input) const {
+  /// part of the domain: at least half of the way there is shall remain. Walls whose two sides,
+  /// not joined smoothly at a nose, bend the same way keep it. A facet that is held takes the bend
+  /// of those around it away, so this is asked again; the last time walls do not count. Does it
+  /// hold any?
+  bool hold_facing(const SmoothModel<Dim>& model, const std::vector<Vector<Dim>>& bends,
+                   bool is_last, ModelInput<Dim>& input) const {
     const auto box_of = [&](std::size_t f) { return box_around(points(corners(facets_[f]))); };
     const BoxHierarchy<Dim> index(facets_.size(), box_of);
-    std::vector<std::uint8_t> held(facets_.size());
+    bool any = false;
     for (std::size_t f = 0; f < facets_.size(); ++f) {
       if (!model.facets[f] || facets_[f].other != none) continue;
       const double reach = 4 * bend(*model.facets[f]);
-      Box<Dim> box = box_of(f);
-      for (int i = 0; i < Dim; ++i) {
-        box.low[i] -= reach;
-        box.high[i] += reach;
-      }
-      index.each_meeting(
-          box, [&](std::uint32_t g) { held[f] = held[f] != 0 || is_facing(f, g, reach); });
+      bool& held = input.facets[f].held;
+      index.each_meeting(box_around(points(corners(facets_[f])), reach), [&](std::uint32_t g) {
+        const auto is_wall = [&] {
+          return !is_last && facets_[f].patch != facets_[g].patch && dot(bends[f], bends[g]) > 0;
+        };
+        held = held || (is_facing(f, g, reach) && (!is_wall() || comes_closer(model, f, g)));
+      });
+      any = any || held;
     }
-    for (std::size_t f = 0; f < held.size(); ++f) input.facets[f].held = held[f] != 0;
-    return std::any_of(held.begin(), held.end(), [](std::uint8_t is) { return is != 0; });
+    return any;
   }
 
   /// The model is no farther than that from the facet.
@@ -190,23 +202,60 @@ class SurfaceMaker {
     for (const VertexId v : own)
       if (contains(others, v)) return false;
     const auto p = points(own), q = points(others);
-    const bool is_turned = dot(direction(facet), direction(other)) < -0.01;
-    return is_turned && (comes_near(p, q, reach) || comes_near(q, p, reach));
+    return dot(direction(facet), direction(other)) < -0.01 && gap(p, q) <= reach;
   }
 
-  /// Are corners, the middle of a side, or the centre of a facet within reach of another?
-  static bool comes_near(const std::array<Vector<Dim>, Dim>& from,
-                         const std::array<Vector<Dim>, Dim>& to, double reach) {
-    const auto is_near = [&](const Vector<Dim>& p) {
-      return norm(closest_point(to, p) - p) <= reach;
+  /// Is there less than half of the way between the models of two facets that is between the
+  /// facets?
+  bool comes_closer(const SmoothModel<Dim>& model, std::size_t facet, std::uint32_t other) const {
+    const auto parts_of = [&](std::size_t f) {
+      const auto flat = points(corners(facets_[f]));
+      if (!model.facets[f]) return std::vector{flat};
+      std::vector<std::array<Vector<Dim>, Dim>> parts;
+      Divider<Dim, Dim>(*model.facets[f], options_.tolerance / 8).each([&](const auto& part) {
+        parts.push_back(part.corner);
+      });
+      return parts;
     };
+    const double least =
+        0.5 * gap(points(corners(facets_[facet])), points(corners(facets_[other])));
+    if (!(least > 1e-6 * options_.tolerance)) return true;
+    const auto own = parts_of(facet), others = parts_of(other);
+    return std::any_of(own.begin(), own.end(), [&](const auto& p) {
+      return std::any_of(others.begin(), others.end(), [&](const auto& q) {
+        return meet(box_around(p, least), box_around(q)) && gap(p, q) < least;
+      });
+    });
+  }
+
+  /// [facet], which way its model bends.
+  std::vector<Vector<Dim>> bends_of(const SmoothModel<Dim>& model) const {
+    std::vector<Vector<Dim>> bends(facets_.size());
+    for (std::size_t f = 0; f < facets_.size(); ++f) {
+      if (!model.facets[f]) continue;
+      const CurvedSimplex<Dim, Dim>& piece = *model.facets[f];
+      for (std::size_t i = 0; i < Dim; ++i)
+        for (std::size_t j = 0; j < Dim; ++j)
+          if (i != j)
+            bends[f] += piece.control[i][j] - piece.even(piece.corner(i), piece.corner(j));
+    }
+    return bends;
+  }
+
+  /// How far corners, middles of sides, and the centre of each of two facets are from the other.
+  static double gap(const std::array<Vector<Dim>, Dim>& p, const std::array<Vector<Dim>, Dim>& q) {
+    return std::min(least_distance(p, q), least_distance(q, p));
+  }
+  static double least_distance(const std::array<Vector<Dim>, Dim>& from,
+                               const std::array<Vector<Dim>, Dim>& to) {
+    const auto distance = [&](const Vector<Dim>& p) { return norm(closest_point(to, p) - p); };
     Vector<Dim> centre;
-    bool near = false;
+    double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < Dim; ++i) {
       centre += (1.0 / Dim) * from[i];
-      near = near || is_near(from[i]) || is_near(0.5 * (from[i] + from[(i + 1) % Dim]));
+      least = std::min({least, distance(from[i]), distance(0.5 * (from[i] + from[(i + 1) % Dim]))});
     }
-    return near || is_near(centre);
+    return std::min(least, distance(centre));
   }
 
   const Mesh<Dim>& mesh_;

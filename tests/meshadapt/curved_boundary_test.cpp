@@ -323,6 +323,61 @@ TEST(CurvedBoundaries, AreSmoothForTheNextCallIfTheyWere) {
   }
 }
 
+double volume_of(const AnyMesh& mesh) {
+  double volume = 0;
+  for (const auto& corners : mesh.tetrahedra.vertices) {
+    std::array<Vector<3>, 4> p;
+    for (std::size_t i = 0; i < 4; ++i) p[i] = test::point<3>(mesh, corners[i]);
+    volume += dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) / 6;
+  }
+  return volume;
+}
+
+/// A part of a shell, one cell thick, whose outside has a radius of 1: between two angles from its
+/// axis, or around it up to an angle.
+AnyMesh shell(int n, double thickness, bool is_bowl) {
+  test::Grid grid = test::unit_grid(3, n);
+  grid.lines[2] = {0, 1};
+  AnyMesh mesh = test::make_grid(grid);
+  for (std::size_t at = 0; at < mesh.coordinates.size(); at += 3) {
+    double* p = &mesh.coordinates[at];
+    const double radius = 1 - thickness * (1 - p[2]), x = 2 * p[0] - 1, y = 2 * p[1] - 1;
+    const double turn = is_bowl ? std::atan2(y, x) : 2.1 * p[1];
+    const double angle = is_bowl ? 1.4 * std::max(std::abs(x), std::abs(y)) : 0.5 + 2.1 * p[0];
+    p[0] = radius * std::sin(angle) * std::cos(turn);
+    p[1] = radius * std::sin(angle) * std::sin(turn);
+    p[2] = radius * std::cos(angle);
+  }
+  return mesh;
+}
+
+/// Thinner than a few times the tolerance, in facets whose chords are about as far off as that.
+TEST(CurvedBoundaries, OfThinShellsLoseNothingInManyCalls) {
+  test::Random random(55);
+  const Executor executor({.threads = 2});
+  for (int trial = 0; trial < 6; ++trial) {
+    const int n = 7 + static_cast<int>(test::below(random, 4));
+    const bool is_bowl = trial % 2 == 1;
+    const double edge = (is_bowl ? 2.8 : 2.1) / n, sag = edge * edge / 8;
+    const double thickness = test::uniform(random, 2, 5) * sag;
+    AdaptOptions options;
+    options.curved_sizes = true;
+    options.make.hausdorff_tolerance = test::uniform(random, 0.5, 1) * sag;
+    SCOPED_TRACE("trial " + std::to_string(trial) + ", " + std::to_string(n) +
+                 " cells, thickness " + std::to_string(thickness) + ", tolerance " +
+                 std::to_string(options.make.hausdorff_tolerance));
+    AnyMesh mesh = shell(n, thickness, is_bowl);
+    const double first = volume_of(mesh);
+    const std::size_t elements = mesh.tetrahedra.size();
+    for (int call = 0; call < 3; ++call) {
+      mesh = adapt(executor, mesh, coarsest_metric(mesh, 2), options).mesh;
+      EXPECT_GT(volume_of(mesh), 0.995 * first) << "call " << call;
+      EXPECT_LT(mesh.tetrahedra.size(), 2.5 * static_cast<double>(elements));
+    }
+    EXPECT_EQ(test::joined(check_mesh(executor, mesh)), "");
+  }
+}
+
 TEST(CurvedBoundaries, ALidSmallerThanTheToleranceStays) {
   const Executor executor({.threads = 2});
   for (const double lid : {0.5, 0.02, 1e-4}) {
