@@ -84,8 +84,8 @@ inline bool crowd_a_cache_set(const DigitCounts& place_of, std::size_t bytes) {
 }
 
 /// Turns each block's counts into the positions of its values: those of a digit are consecutive,
-/// block by block. Threads take slices of digits and go through the blocks in order, as the counts
-/// are stored. Returns the beginnings of the digits.
+/// block by block. Each thread takes a slice of the digits and goes through the blocks in the
+/// order in which the counts are stored. Returns the beginnings of the digits.
 inline DigitCounts counts_to_places(const Executor& executor, std::span<DigitCounts> counts_of) {
   constexpr std::size_t slice = 128, slices = digit_count / slice, few_blocks = 16;
   DigitCounts begin_of{};

@@ -76,7 +76,7 @@ void add_tetrahedra(AnyMesh& mesh, const std::array<int, 3>& cells) {
       }
 }
 
-/// Adds both sides across an axis, cut along the diagonal from the first corner, as the cells are.
+/// Adds both sides across an axis, cut along the same diagonals as the cells.
 void add_sides(AnyMesh& mesh, const std::array<int, 3>& cells, std::size_t axis) {
   const GridNumbers number{cells};
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -125,7 +125,7 @@ struct Mesh {
   bool alive(ElementId element) const { return corners_of[element][0] != none; }
   bool vertex_alive(VertexId vertex) const { return !elements_of.empty(vertex); }
 
-  /// Pointers to the sites of an element's corners, as the quality functions take them.
+  /// Pointers to the sites of an element's corners, for the quality functions.
   std::array<const Site<Dim>*, Dim + 1> sites(const Corners<Dim>& corners) const {
     std::array<const Site<Dim>*, Dim + 1> result;
     for (std::size_t i = 0; i < corners.size(); ++i) result[i] = &site_of[corners[i]];
