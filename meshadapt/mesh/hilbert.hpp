@@ -113,14 +113,16 @@ inline constexpr unsigned hilbert_bits = Dim == 2 ? 48 : 60;
 static_assert(hilbert_bits<2> / 2 % HilbertTable<2>::step == 0);
 static_assert(hilbert_bits<3> / 3 % HilbertTable<3>::step == 0);
 
-/// hilbert_key() of a point in the box.
+/// hilbert_key() of a point in the box. A point outside counts as the nearest point of the box, and
+/// a coordinate that is not a number as the lowest: the checks sort the facets of broken meshes,
+/// too.
 template <int Dim>
 std::uint64_t hilbert_key(const Vector<Dim>& point, const Box<Dim>& box) {
   constexpr int bits = hilbert_bits<Dim> / Dim;
   std::array<std::uint32_t, Dim> cell{};
   for (int i = 0; i < Dim; ++i) {
     const double width = std::max(box.high[i] - box.low[i], std::numeric_limits<double>::min());
-    const double at = (point[i] - box.low[i]) / width;
+    const double at = std::min(1., std::max(0., (point[i] - box.low[i]) / width));
     cell[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(at * ((1U << bits) - 1));
   }
   return hilbert_key_by_table<Dim>(cell, bits);

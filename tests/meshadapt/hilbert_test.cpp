@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "support/meshes.hpp"
@@ -44,6 +45,31 @@ TYPED_TEST(Hilbert, GoesFromNeighbourToNeighbour) {
     for (std::size_t axis = 0; axis < Dim; ++axis)
       apart += std::max(at[i][axis], at[i - 1][axis]) - std::min(at[i][axis], at[i - 1][axis]);
     EXPECT_EQ(apart, 1U);
+  }
+}
+
+/// The sanitizers see whether such a coordinate is converted to a whole number.
+TYPED_TEST(Hilbert, EveryPointHasAKey) {
+  constexpr int Dim = TypeParam::value;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Box<Dim> unit, narrow;  // narrow has no width at all
+  for (Vector<Dim>* corner : {&unit.low, &narrow.low, &narrow.high}) corner->x.fill(0);
+  unit.high.x.fill(1);
+  const auto key = [](const Box<Dim>& box, double coordinate) {
+    Vector<Dim> point;
+    point.x.fill(coordinate);
+    return hilbert_key<Dim>(point, box);
+  };
+  for (const double below : {nan, -infinite, -1e300, -1.})
+    EXPECT_EQ(key(unit, below), key(unit, 0)) << below;
+  for (const double above : {infinite, 1e300, 2.})
+    EXPECT_EQ(key(unit, above), key(unit, 1)) << above;
+  for (const double any : {nan, infinite, -infinite, 0., 1.})
+    EXPECT_EQ(key(narrow, any), key(unit, any > 0 ? 1 : 0)) << any;
+  for (const double bound : {nan, infinite, -infinite}) {
+    unit.low.x[0] = bound;
+    for (const double any : {nan, infinite, -infinite, 0., 1.}) key(unit, any);
   }
 }
 
