@@ -42,21 +42,12 @@ TYPED_TEST(Strategies, SplitTheSameAtAnyNumberOfThreads) {
     }
 }
 
-TYPED_TEST(Strategies, RaceByLocks) {
-  for (const int threads : thread_counts) {
-    SplitIntervals<TypeParam::value> op(3000, 2e-5);
-    run_rounds(Executor({.threads = threads, .deterministic = false}), op, op.all_items());
-    ASSERT_TRUE(op.is_whole()) << threads;
-  }
-}
-
 /// Plans demand three points and take one.
 TEST(Strategies, LeaveNoHoles) {
-  for (const Strategy strategy : {Strategy::regions, Strategy::reservations, Strategy::locks})
+  for (const Strategy strategy : {Strategy::regions, Strategy::reservations})
     for (const std::size_t count : {10, 40000}) {
       SplitIntervals<2> op(count, 2e-5, {.demanded = 3});
-      run_rounds(Executor({.threads = 3, .deterministic = strategy != Strategy::locks}), op,
-                 op.all_items(), {.strategy = strategy});
+      run_rounds(Executor({.threads = 3}), op, op.all_items(), {.strategy = strategy});
       EXPECT_TRUE(op.is_whole()) << static_cast<int>(strategy) << ", " << count;
     }
 }
@@ -80,13 +71,10 @@ TEST(Strategies, StopWhereRoundsAreLimited) {
 }
 
 TEST(Strategies, EndIfPlansDemandMoreNumbersThanPartsGet) {
-  for (const bool deterministic : {true, false}) {
-    SplitIntervals<2> op(50000, 1.5e-5, {.demanded = 200000});
-    const RoundsReport report =
-        run_rounds(Executor({.threads = 2, .deterministic = deterministic}), op, op.all_items());
-    EXPECT_TRUE(op.is_whole());
-    EXPECT_TRUE(!deterministic || report.rounds < 10U);
-  }
+  SplitIntervals<2> op(50000, 1.5e-5, {.demanded = 200000});
+  const RoundsReport report = run_rounds(Executor({.threads = 2}), op, op.all_items());
+  EXPECT_TRUE(op.is_whole());
+  EXPECT_LT(report.rounds, 10U);
 }
 
 TEST(Strategies, RunInsideALoopAndWithoutWork) {
@@ -298,10 +286,9 @@ TEST(InOrder, GivesWhatAPlainLoopGivesWithoutConflicts) {
 TEST(Strategies, SayWhatAnOperatorLacks) {
   const Executor executor({.threads = 2});
   Pairing pairing(10, 10);
-  EXPECT_THROW(run_rounds(executor, pairing, all_items(10), {.strategy = Strategy::regions}),
-               std::invalid_argument);
-  EXPECT_THROW(run_rounds(executor, pairing, all_items(10), {.strategy = Strategy::locks}),
-               std::invalid_argument);
+  for (const Strategy strategy : {Strategy::tiles, Strategy::colours})
+    EXPECT_THROW(run_rounds(executor, pairing, all_items(10), {.strategy = strategy}),
+                 std::invalid_argument);
   SplitIntervals<2> split(10, 1e-2);
   EXPECT_THROW(run_rounds(executor, split, split.all_items(), {.strategy = Strategy::in_order}),
                std::invalid_argument);
@@ -322,17 +309,13 @@ TEST(Strategies, PassOnWhatOperatorsThrow) {
     Pairing ordered(5000, 20000);
     ordered.throws_at = 15000;
     EXPECT_THROW(run_at_once(executor, ordered, work, 20000), std::runtime_error);
-    for (const Strategy strategy : {Strategy::in_order, Strategy::reservations}) {
+    for (const Strategy strategy :
+         {Strategy::automatic, Strategy::in_order, Strategy::reservations}) {
       Pairing pairing(5000, 20000);
       pairing.throws_at = 15000;
       EXPECT_THROW(run_rounds(executor, pairing, all_items(20000), {.strategy = strategy}),
                    std::runtime_error);
     }
-    Pairing racing(5000, 20000);
-    racing.throws_at = 15000;
-    EXPECT_THROW(run_rounds(Executor({.threads = threads, .deterministic = false}), racing,
-                            all_items(20000)),
-                 std::runtime_error);
   }
 }
 
