@@ -1,4 +1,4 @@
-#include "transfer/projection.hpp"
+#include "transfer/conservative_transfer.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -15,9 +15,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 template <int Dim>
-Projection<Dim>::Projection(const Executor& executor, const Locator<Dim>& from,
-                            const Components& field, const FixedMesh<Dim>& to,
-                            const JoinParts& join)
+ConservativeTransfer<Dim>::ConservativeTransfer(const Executor& executor, const Locator<Dim>& from,
+                                                const Components& field, const FixedMesh<Dim>& to,
+                                                const JoinParts& join)
     : executor_(executor),
       from_(from),
       field_(field),
@@ -29,7 +29,7 @@ Projection<Dim>::Projection(const Executor& executor, const Locator<Dim>& from,
       covered_(to.element_count()) {}
 
 template <int Dim>
-std::vector<double> Projection<Dim>::run(const ProjectionOptions& options) {
+std::vector<double> ConservativeTransfer<Dim>::run(const ProjectionOptions& options) {
   integrate();
   coverage_ = meshadapt::coverage(executor_, from_.mesh(), to_, covered_);
   const std::vector<double> integrals = gather();
@@ -44,7 +44,7 @@ std::vector<double> Projection<Dim>::run(const ProjectionOptions& options) {
 // ---- Integrals over the supermesh ----
 
 template <int Dim>
-void Projection<Dim>::integrate() {
+void ConservativeTransfer<Dim>::integrate() {
   runtime::PerThread<OverlapFinder<Dim>> finder(executor_);
   walk_in_blocks(executor_, to_.element_count(), [&](std::size_t e, ElementId near) {
     const Place<Dim> centre = from_.find(centroid_of(to_, static_cast<ElementId>(e)), near);
@@ -54,8 +54,8 @@ void Projection<Dim>::integrate() {
 }
 
 template <int Dim>
-void Projection<Dim>::integrate(std::size_t element, const Place<Dim>& centre,
-                                OverlapFinder<Dim>& finder) {
+void ConservativeTransfer<Dim>::integrate(std::size_t element, const Place<Dim>& centre,
+                                          OverlapFinder<Dim>& finder) {
   const auto& old = from_.mesh();
   const auto add = [&](ElementId other, const Overlap<Dim>& overlap) {
     for (std::size_t j = 0; j <= Dim; ++j) {
@@ -73,8 +73,8 @@ void Projection<Dim>::integrate(std::size_t element, const Place<Dim>& centre,
 
 /// Uses the interpolated field where no old element covers the new one.
 template <int Dim>
-void Projection<Dim>::fill(std::size_t element, const Place<Dim>& centre,
-                           OverlapFinder<Dim>& finder) {
+void ConservativeTransfer<Dim>::fill(std::size_t element, const Place<Dim>& centre,
+                                     OverlapFinder<Dim>& finder) {
   const auto mass = mass_outside(element, centre, finder);
   std::vector<double> value(stride());
   for (std::size_t j = 0; j <= Dim; ++j) {
@@ -90,8 +90,8 @@ void Projection<Dim>::fill(std::size_t element, const Place<Dim>& centre,
 /// The mass matrix of the uncovered part of a new element: the whole minus the covered part, where
 /// the new hat functions are linear in each old element.
 template <int Dim>
-auto Projection<Dim>::mass_outside(std::size_t element, const Place<Dim>& centre,
-                                   OverlapFinder<Dim>& finder) const -> Square {
+auto ConservativeTransfer<Dim>::mass_outside(std::size_t element, const Place<Dim>& centre,
+                                             OverlapFinder<Dim>& finder) const -> Square {
   const auto corner = to_.points(static_cast<ElementId>(element));
   Square mass;
   for (std::size_t i = 0; i <= Dim; ++i)
@@ -111,7 +111,7 @@ auto Projection<Dim>::mass_outside(std::size_t element, const Place<Dim>& centre
 }
 
 template <int Dim>
-void Projection<Dim>::widen(std::size_t element, const double* values) {
+void ConservativeTransfer<Dim>::widen(std::size_t element, const double* values) {
   for (std::size_t k = 0; k < stride(); ++k) {
     Range& range = seen_[element * stride() + k];
     range = {std::min(range.low, values[k]), std::max(range.high, values[k])};
@@ -119,7 +119,7 @@ void Projection<Dim>::widen(std::size_t element, const double* values) {
 }
 
 template <int Dim>
-std::vector<double> Projection<Dim>::gather() const {
+std::vector<double> ConservativeTransfer<Dim>::gather() const {
   std::vector<double> result(to_.vertex_count() * stride());
   parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
     for (const ElementId e : to_.elements_of(static_cast<VertexId>(v))) {
@@ -137,7 +137,7 @@ std::vector<double> Projection<Dim>::gather() const {
 
 /// The range of old values that each new vertex may take.
 template <int Dim>
-auto Projection<Dim>::ranges() const -> std::vector<Range> {
+auto ConservativeTransfer<Dim>::ranges() const -> std::vector<Range> {
   std::vector<Range> range_of(to_.vertex_count() * stride(), {infinity, -infinity});
   parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
     for (const ElementId e : to_.elements_of(static_cast<VertexId>(v)))
@@ -153,7 +153,7 @@ auto Projection<Dim>::ranges() const -> std::vector<Range> {
 
 /// Combines ranges over all parts: lowest and highest, or sums of both.
 template <int Dim>
-void Projection<Dim>::join_ranges(std::vector<Range>& range_of, Joining how) const {
+void ConservativeTransfer<Dim>::join_ranges(std::vector<Range>& range_of, Joining how) const {
   const double sign = how == Joining::least ? -1 : 1;
   std::vector<double> values(2 * range_of.size());
   parallel_for(executor_, range_of.size(), [&](std::size_t i) {
@@ -169,9 +169,9 @@ void Projection<Dim>::join_ranges(std::vector<Range>& range_of, Joining how) con
 /// The shares of the flow out of and into a vertex that keep it in its range: Zalesak's ratios, as
 /// {outflow, inflow}.
 template <int Dim>
-auto Projection<Dim>::permitted_shares(const std::vector<double>& lumped,
-                                       const std::vector<double>& closest,
-                                       const std::vector<Range>& range_of) const
+auto ConservativeTransfer<Dim>::permitted_shares(const std::vector<double>& lumped,
+                                                 const std::vector<double>& closest,
+                                                 const std::vector<Range>& range_of) const
     -> std::vector<Range> {
   std::vector<Range> flow_of(lumped.size());
   parallel_for(executor_, to_.vertex_count(), [&](std::size_t v) {
@@ -195,9 +195,9 @@ auto Projection<Dim>::permitted_shares(const std::vector<double>& lumped,
 }
 
 template <int Dim>
-std::vector<double> Projection<Dim>::blend(const std::vector<double>& lumped,
-                                           const std::vector<double>& closest,
-                                           bool keep_bounds) const {
+std::vector<double> ConservativeTransfer<Dim>::blend(const std::vector<double>& lumped,
+                                                     const std::vector<double>& closest,
+                                                     bool keep_bounds) const {
   std::vector<Range> range_of, permitted_of;
   if (keep_bounds) {
     range_of = ranges();
@@ -232,7 +232,7 @@ std::vector<double> Projection<Dim>::blend(const std::vector<double>& lumped,
   return result;
 }
 
-template class Projection<2>;
-template class Projection<3>;
+template class ConservativeTransfer<2>;
+template class ConservativeTransfer<3>;
 
 }  // namespace ductile::meshadapt

@@ -1,8 +1,8 @@
 /// @file
-/// Projection<Dim>: transfers a field by exact integrals over the intersections of elements of both
-/// meshes. Steps: integrals of the old field times the new hat functions; the lumped projection,
-/// which keeps bounds; the consistent one, which is closer; and a blend of both that keeps bounds
-/// and only exchanges between neighbours, which keeps the integral.
+/// ConservativeTransfer<Dim>: transfers a field by exact integrals over the intersections of
+/// elements of both meshes. Steps: integrals of the old field times the new hat functions; the
+/// lumped projection, which keeps bounds; the consistent one, which is closer; and a blend of both
+/// that keeps bounds and only exchanges between neighbours, which keeps the integral.
 #pragma once
 
 #include <vector>
@@ -16,11 +16,11 @@
 namespace ductile::meshadapt {
 
 template <int Dim>
-class Projection {
+class ConservativeTransfer {
  public:
   /// Refers to all arguments; `join` is given if the new mesh is part of a larger one.
-  Projection(const runtime::Executor& executor, const Locator<Dim>& from, const Components& field,
-             const FixedMesh<Dim>& to, const JoinParts& join);
+  ConservativeTransfer(const runtime::Executor& executor, const Locator<Dim>& from,
+                       const Components& field, const FixedMesh<Dim>& to, const JoinParts& join);
 
   std::vector<double> run(const ProjectionOptions& options);
 
@@ -62,7 +62,7 @@ class Projection {
   Coverage coverage_;
 };
 
-extern template class Projection<2>;
-extern template class Projection<3>;
+extern template class ConservativeTransfer<2>;
+extern template class ConservativeTransfer<3>;
 
 }  // namespace ductile::meshadapt
