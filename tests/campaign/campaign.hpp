@@ -1,5 +1,5 @@
 /// @file
-/// A campaign: trials one after the other on all cores until time is over, with a summary.
+/// A campaign: runs trials on all cores until time is over, and prints a summary.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct Campaign {
   double restless_allowed = 0.05;    ///< share of those adapted three times
 };
 
-/// Runs it and prints what was found. Returns whether all was right.
+/// Runs the campaign and prints the result. Returns true if no trial failed.
 bool run_campaign(const Campaign& campaign);
 
 }  // namespace ductile::campaign

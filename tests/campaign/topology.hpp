@@ -1,6 +1,6 @@
 /// @file
-/// Topology of a mesh in numbers that adaptation may not change: Euler characteristics, connected
-/// parts of regions and of the boundary, and where the boundary meets itself.
+/// Topology of a mesh as numbers that adaptation must not change: Euler characteristics, connected
+/// parts of regions and of the boundary, and where the boundary touches itself.
 #pragma once
 
 #include <map>
@@ -29,7 +29,7 @@ struct Topology {
 
 Topology topology_of(const Mesh& mesh);
 
-/// What differs, a line each.
+/// The differences, one line each.
 std::vector<std::string> differences(const Topology& before, const Topology& after);
 
 }  // namespace ductile::campaign

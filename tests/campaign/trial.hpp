@@ -1,5 +1,5 @@
 /// @file
-/// One trial: a case is written to files, the program adapts it, and what it wrote is checked.
+/// One trial: writes a case to files, runs the program on it, and checks the output.
 #pragma once
 
 #include <filesystem>
@@ -26,7 +26,7 @@ struct Outcome {
 };
 
 /// Runs the case in `folder`, which keeps all files and a script `run.sh` that repeats the calls.
-/// `seed` decides what is checked beyond the first call.
+/// `seed` decides which checks follow the first call.
 Outcome try_case(const Case& tried, std::uint64_t seed, const std::filesystem::path& folder,
                  const Settings& settings);
 

@@ -1,5 +1,6 @@
-// Any bytes as a file of fields: read or refused in words; what is read is written and read again
-// to the same thing; as a metric it is refused, or positive definite and accepted again.
+// Any bytes as a file of fields: the file is read, or refused by a message. Fields that are read
+// must survive writing and reading; as a metric they are refused, or positive definite and accepted
+// again.
 
 #include <cmath>
 #include <cstring>
@@ -39,7 +40,7 @@ void expect_round_trip(const AnyField& field, std::size_t choice) {
          "other values after writing and reading");
 }
 
-/// Vertices of the field's dimension, as many as it has values for.
+/// A mesh of the field's dimension with as many vertices as the field has values for.
 AnyMesh mesh_of(const AnyField& field) {
   AnyMesh mesh;
   mesh.dimension = field.dimension;

@@ -39,7 +39,7 @@ MemoryFile::MemoryFile() : file_(memfd_create("input", 0)) {
 MemoryFile::~MemoryFile() { close(file_); }
 
 void MemoryFile::set(const std::uint8_t* bytes, std::size_t size) {
-  // Who writes to the path goes on where this file stands.
+  // A writer to the path continues at this file's position, so that must be the beginning.
   if (ftruncate(file_, 0) != 0 || lseek(file_, 0, SEEK_SET) != 0 ||
       pwrite(file_, bytes, size, 0) != static_cast<ssize_t>(size))
     fail("no memory for the input");

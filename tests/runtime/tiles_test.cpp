@@ -106,7 +106,7 @@ TEST(Tiles, RunByTheirRanksAndPostponeWhomAnEqualOneComesBefore) {
     }
 }
 
-/// More than fit at once into what collects the tiles that an item meets.
+/// The last vertex touches more tiles than the buffer for an item's tiles holds.
 TEST(Tiles, MeetAnyNumberOfTiles) {
   constexpr Vertex side = 150;
   Contract expected(side), contract(side);

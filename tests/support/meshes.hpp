@@ -1,6 +1,6 @@
 /// @file
-/// Meshes to test with: grids with holes and regions over the unit square and cube, and what makes
-/// them less tame: moved vertices, slivers, other places, sizes and directions in space.
+/// Meshes to test with: grids with holes and regions over the unit square and cube, and ways to
+/// make them harder: moved vertices, slivers, other places, sizes and directions in space.
 #pragma once
 
 #include <array>
@@ -74,8 +74,8 @@ void make_slivers(AnyMesh& mesh, Random& random, std::size_t count, double thick
 /// the inside of the arc, 2 the outside, 3 and 4 its ends.
 void bend(AnyMesh& mesh, double angle);
 
-/// Of height 1, with n cells along each axis; its base has radius 1, its lid this one. References
-/// are 1 around it, 5 underneath and 6 above.
+/// A truncated cone of height 1 with n cells along each axis; its base has radius 1, its lid radius
+/// `lid`. The mantle has reference 1, the base 5, the lid 6.
 AnyMesh truncated_cone(int n, double lid);
 
 /// Turns the mesh by a random rotation, scales it and moves it.

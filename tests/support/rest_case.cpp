@@ -12,7 +12,7 @@ namespace ductile::meshadapt::test {
 
 namespace {
 
-/// Sizes along an axis and across it, as functions of where it is.
+/// A metric with sizes along an axis and across it that depend on the position.
 template <int Dim>
 struct Formula {
   enum class Kind { constant, growing, plane, shell } kind;
