@@ -165,7 +165,7 @@ TEST(AtomicOutputs, RefuseNamesThatLeadNowhere) {
   EXPECT_NO_THROW(check_writable(folder / std::string(255, 'n')));
 }
 
-/// As in /tmp, with a file of another user's.
+/// The folder is sticky, as /tmp is, and has a file of another user.
 TEST(AtomicOutputs, RefuseToReplaceWhatOnlyItsOwnerMay) {
   if (geteuid() != 0) GTEST_SKIP() << "only root may be two users";
   const test::TemporaryFolder folder;
@@ -185,7 +185,7 @@ TEST(AtomicOutputs, RefuseToReplaceWhatOnlyItsOwnerMay) {
   EXPECT_NO_THROW(check_writable(folder / "a"));
 }
 
-/// To the system the folder above is that of where the link leads.
+/// The system resolves ".." from the target of a link.
 TEST(AtomicOutputs, GoUpFromWhereALinkLeads) {
   const test::TemporaryFolder folder;
   fs::create_directories(folder / "deep" / "down");
@@ -228,7 +228,7 @@ TEST(AtomicOutputs, ReportAFullDisk) {
   EXPECT_FALSE(fs::is_regular_file("/dev/null"));
 }
 
-/// Files cannot grow beyond `bytes` while it lives: the process ends if it tries.
+/// Limits the size of files to `bytes` during its lifetime; exceeding it ends the process.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {

@@ -37,7 +37,8 @@ TYPED_TEST(MetricIn, TheExponentialUndoesTheLogarithm) {
     }
 }
 
-/// By the definition: of the eigenvalues. Turned by little or much, nearly or quite isotropic.
+/// Compares with the definition by eigenvalues, for tensors rotated a little or a lot, isotropic or
+/// nearly so.
 TYPED_TEST(MetricIn, TheExponentialIsThatOfTheEigenvalues) {
   constexpr int Dim = TypeParam::value;
   Random random(5);
@@ -54,8 +55,8 @@ TYPED_TEST(MetricIn, TheExponentialIsThatOfTheEigenvalues) {
   EXPECT_EQ(exponential(Metric<Dim>{}), isotropic<Dim>(1));
 }
 
-/// At 1e8 the entries of a turned metric cannot hold its smallest eigenvalue any more; along the
-/// axes they can.
+/// At an anisotropy of 1e8 the entries of a rotated metric no longer determine its smallest
+/// eigenvalue; those of an axis-parallel one do.
 TYPED_TEST(MetricIn, TheLogarithmIsFiniteUpToTheLargestAnisotropy) {
   constexpr int Dim = TypeParam::value;
   Random random(2);

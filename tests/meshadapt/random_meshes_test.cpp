@@ -1,7 +1,7 @@
 /// @file
-/// Adapts random meshes to random metrics; every result must be a valid mesh that has kept what it
-/// had to. DUCTILE_TRIALS says how many (default 60), DUCTILE_FIRST_TRIAL where to start, and
-/// DUCTILE_TRIAL_FOLDER where to write inputs and outputs, if anywhere.
+/// Adapts random meshes to random metrics; every result must be a valid mesh that keeps what it
+/// must. DUCTILE_TRIALS is the number of cases (default 60), DUCTILE_FIRST_TRIAL the first one, and
+/// DUCTILE_TRIAL_FOLDER a folder for inputs and outputs, if wanted.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -26,7 +26,7 @@ Mesh<3> random_grid(test::Random& random) {
   return mesh;
 }
 
-/// How many elements around an edge each vertex is in.
+/// Number of elements around an edge that each vertex belongs to.
 std::map<VertexId, int> counts_around(const Mesh<3>& mesh, const Shell& shell) {
   std::map<VertexId, int> counts;
   for (const ElementId e : shell)

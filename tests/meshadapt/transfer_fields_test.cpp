@@ -44,7 +44,7 @@ NamedField random_field(Random& random, const std::string& name, Type type, Plac
   return field;
 }
 
-/// A mesh of some shape, and another of the same domain that was made of it.
+/// A mesh of some shape, and another one of the same domain made from it.
 struct Pair {
   AnyMesh before, after;
 };
@@ -74,7 +74,7 @@ double integral_of(const FixedMesh<Dim>& mesh, const NamedField& field, std::siz
   return sum;
 }
 
-/// The element in which a point lies deepest, by looking at all.
+/// The element in which a point lies deepest, found by testing all.
 template <int Dim>
 ElementId element_at(const FixedMesh<Dim>& mesh, const Vector<Dim>& point, double& depth) {
   ElementId best = none;
@@ -137,7 +137,7 @@ TYPED_TEST(TransferFieldsIn, KeepIntegralsOnElementsAndTakeValuesAtCentroids) {
     EXPECT_EQ(result.report.vertices_outside, 0U);
     for (const std::size_t f : {0, 2, 4}) expect_conserved<Dim>(pair, fields[f], result.fields[f]);
     for (const double value : result.fields[4].values) EXPECT_EQ(value, 0.1);
-    // By value: of the element in which the centroid lies, unless it is on its side.
+    // By value: the value of the element that contains the centroid, unless it is close to a side.
     const auto old_mesh = make_fixed_mesh<Dim>(Executor(), pair.before);
     const auto mesh = make_fixed_mesh<Dim>(Executor(), pair.after);
     for (ElementId e = 0; e < mesh.element_count(); e += 5) {
@@ -149,7 +149,7 @@ TYPED_TEST(TransferFieldsIn, KeepIntegralsOnElementsAndTakeValuesAtCentroids) {
         EXPECT_EQ(result.fields[1].values[e], fields[1].values[host]) << e;
       }
     }
-    // At vertices: what the functions for one field give.
+    // At vertices: the same as the functions for one field.
     const AnyField u{Dim, pair.before.vertex_count(), {Type::vector}, fields[3].values, "u"};
     const AnyField t{Dim, pair.before.vertex_count(), {Type::scalar}, fields[5].values, "T"};
     EXPECT_EQ(result.fields[3].values,
@@ -159,7 +159,7 @@ TYPED_TEST(TransferFieldsIn, KeepIntegralsOnElementsAndTakeValuesAtCentroids) {
   }
 }
 
-/// Half of the new box is beyond the old one, a third of which it leaves out.
+/// The new box is the old one, shifted by half its length.
 TYPED_TEST(TransferFieldsIn, TakeTheClosestValueBeyondTheOldMesh) {
   constexpr int Dim = TypeParam::value;
   std::array<double, Dim> extent;

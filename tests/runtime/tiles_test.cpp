@@ -32,7 +32,7 @@ struct Turn {
   auto operator<=>(const Turn&) const = default;
 };
 
-/// What a test's own run of Contract hands to apply().
+/// The commit argument of apply() in this test's own run of Contract.
 struct Woken {
   std::map<Vertex, Turn> turn_of;
   std::set<Vertex> items, postponed;
