@@ -15,12 +15,12 @@
 
 namespace ductile::bench {
 
-/// Of the graphs: 2^scale vertices, about; more than one in the full extent.
+/// Sizes of graphs, as powers of 2; more than one in the full extent.
 inline std::vector<unsigned> graph_scales() {
   return by_extent<std::vector<unsigned>>({14}, {20}, {17, 20, 22});
 }
 
-/// `make(rows, threads)` returns a function that colours these rows and returns a
+/// Adds a candidate: `make(rows, threads)` returns a function that colours these rows and returns a
 /// runtime::Colouring. Counter: colours.
 template <class Make>
 void add_colourings(const std::string& candidate, const std::vector<int>& threads_of, Make make) {

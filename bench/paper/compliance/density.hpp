@@ -28,7 +28,7 @@ struct VolumeGoal {
 Projection projection_of_volume(std::span<const double> density_of,
                                 std::span<const double> share_of, const VolumeGoal& goal);
 
-/// What a little more density at each vertex brings and costs.
+/// Gain and cost of a small increase of the density at each vertex.
 struct Derivatives {
   std::vector<double> gain_of{};  ///< [vertex], of compliance that goes away, per volume
   std::vector<double> cost_of{};  ///< [vertex], of volume, per volume
@@ -39,7 +39,7 @@ struct DesignStep {
   double added_volume = 0;  ///< to be gained by the step, to first order
 };
 
-/// The densities that a design never leaves: at 0 it could not grow again.
+/// The range of densities in a design; a density of 0 could not grow again.
 inline constexpr double least_density = 1e-3;
 
 /// Multiplies each density by the square root of gain over cost (Bendsoe, Structural Optimization

@@ -1,5 +1,5 @@
 /// @file
-/// What is optimised and how: the problem, the path to its solution, and the meshes on the way.
+/// Settings of an optimisation: the problem, the path to its solution, and the meshes on the way.
 /// Lengths are in units of the cantilever's length, stiffness in units of the solid's.
 #pragma once
 

@@ -15,7 +15,7 @@
 
 namespace ductile::paper {
 
-/// What meshes are asked for.
+/// Requirements on meshes.
 struct MeshGoal {
   double elements = 0;       ///< about as many
   double smallest = 1e-5;    ///< size; the jump would ask for 0
@@ -45,11 +45,11 @@ struct March {
   int until = 50;              ///< the last one to be taken
   int timed = 10;              ///< of those taken, how many are timed, evenly spread
   std::vector<int> threads{};  ///< on which they are timed, besides those of the executor
-  /// Called with what each step left.
+  /// Called with the result of each step.
   std::function<void(int step, double phase, const meshadapt::AnyMesh& mesh)> look{};
 };
 
-/// Steps on one number of threads.
+/// Times of steps on one number of threads.
 struct TimedSteps {
   int threads = 0;
   int steps = 0;
@@ -63,9 +63,9 @@ struct MarchReport {
   bool identical = true;            ///< their meshes and metrics, byte for byte
 };
 
-/// The mesh adapted to the solution at one phase after the other. From one to the next, the goal
-/// changes until meshes have as many elements as wanted: where psi jumps, the metric varies too
-/// much for complexity_of_elements() to know.
+/// Adapts the mesh to the solution at each phase in order. The goal is adjusted from phase to phase
+/// until meshes have the wanted number of elements: at the jump of psi the metric varies too much
+/// for complexity_of_elements() to predict it.
 meshadapt::AnyMesh fitted_mesh(const runtime::Executor& executor, meshadapt::AnyMesh mesh,
                                MeshGoal& goal, const std::vector<double>& phases);
 
@@ -73,12 +73,12 @@ meshadapt::AnyMesh fitted_mesh(const runtime::Executor& executor, meshadapt::Any
 /// and are not counted.
 MarchReport march(const runtime::Executor& executor, meshadapt::AnyMesh mesh, const March& march);
 
-/// Triangles or tetrahedra.
+/// Number of triangles, or of tetrahedra in 3D.
 std::size_t element_count(const meshadapt::AnyMesh& mesh);
 
-/// The unit square or cube to start from, with so many cells along each axis.
+/// The start mesh of the unit square or cube, with this many cells along each axis.
 meshadapt::AnyMesh start_mesh_of(int dimension, int cells);
-/// The same with about as many elements.
+/// The start mesh with about this many elements.
 meshadapt::AnyMesh start_mesh(int dimension, double elements);
 
 }  // namespace ductile::paper

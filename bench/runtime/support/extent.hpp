@@ -26,11 +26,11 @@ T by_extent(T quick, T standard, T full) {
   return e == Extent::quick ? quick : e == Extent::standard ? standard : full;
 }
 
-/// Ascending, from 1 unless the environment says otherwise. Throws std::runtime_error if that is
-/// not a list of positive numbers. Thread safety: as extent().
+/// Ascending numbers of threads, from 1 unless the environment says otherwise. Throws
+/// std::runtime_error if that has no list of positive numbers. Thread safety: as extent().
 std::vector<int> thread_counts();
 
-/// Those above 1; 1 itself if there are no others.
+/// The numbers of threads above 1; 1 if there are none.
 std::vector<int> team_sizes();
 
 /// The main function of a program that registers its benchmarks in `add_all`: Google Benchmark's

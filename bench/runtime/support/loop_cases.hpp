@@ -33,10 +33,10 @@ struct LoopCase {
   double mean_units;  ///< of work(), nominal nanoseconds
 };
 
-/// Those of the extent of this run; made once. Thread safety: one thread.
+/// The cases of this run's extent; made once. Thread safety: one thread.
 const std::vector<LoopCase>& loop_cases();
 
-/// Of each iteration; made at the first call and kept. Thread safety: one thread.
+/// Cost of each iteration; made at the first call and kept. Thread safety: one thread.
 std::span<const std::uint32_t> units_of(const LoopCase& loop_case);
 
 /// Adds a candidate for all cases. `make(threads)` returns what runs a loop: a function of the
