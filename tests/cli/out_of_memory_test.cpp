@@ -75,7 +75,7 @@ TEST_P(OutOfMemory, EndsWithALineOrTheRightOutput) {
   ASSERT_EQ(run("once", 0), 0) << errors_of(folder_);
   const Contents right = contents_of(folder_);
   const long count = std::atol(folder_.read(count_file()).c_str());
-  ASSERT_GT(count, 20) << "nothing was counted";
+  ASSERT_GT(count, 20) << "no request was counted";
   long refused = 0;
   for (const char* how : {"once", "on"})
     for (const long at : chosen(count)) {

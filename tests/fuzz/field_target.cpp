@@ -18,8 +18,9 @@ using meshadapt::AnyMesh;
 using meshadapt::WriteOptions;
 
 void expect_whole(const AnyField& field) {
-  expect(field.dimension == 2 || field.dimension == 3, "the dimension");
-  expect(field.values.size() == field.vertex_count * stride_of(field), "the number of values");
+  expect(field.dimension == 2 || field.dimension == 3, "the dimension is neither 2 nor 3");
+  expect(field.values.size() == field.vertex_count * stride_of(field),
+         "the number of values does not fit the vertices");
   for (const double value : field.values) expect(std::isfinite(value), "a value is not finite");
 }
 

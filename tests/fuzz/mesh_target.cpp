@@ -35,7 +35,7 @@ void expect_list(const std::vector<std::uint32_t>& list, std::size_t limit) {
 
 void expect_whole(const AnyMesh& mesh, std::size_t bytes, bool compressed) {
   const std::size_t vertices = mesh.vertex_count();
-  expect(mesh.dimension == 2 || mesh.dimension == 3, "the dimension");
+  expect(mesh.dimension == 2 || mesh.dimension == 3, "the dimension is neither 2 nor 3");
   expect(vertices > 0, "no vertices");
   expect(mesh.coordinates.size() == vertices * static_cast<std::size_t>(mesh.dimension),
          "the number of coordinates");
@@ -61,10 +61,10 @@ void expect_same(const AnyMesh& mesh, const MemoryFile& file) {
   expect(again.coordinates.size() == mesh.coordinates.size() &&
              std::memcmp(again.coordinates.data(), mesh.coordinates.data(),
                          8 * mesh.coordinates.size()) == 0,
-         "other coordinates after writing and reading");
+         "coordinates differ after writing and reading");
   again.name = mesh.name;
   again.coordinates = mesh.coordinates;  // compared bit by bit above; -0 == 0 here
-  expect(again == mesh, "another mesh after writing and reading");
+  expect(again == mesh, "the mesh differs after writing and reading");
 }
 
 /// Writes and reads in a form that the input chooses.
@@ -133,7 +133,8 @@ void use(const AnyMesh& mesh) {
   expect_messages(faults);
   if (faults.empty()) {
     const auto domain = meshadapt::check_domain(executor(), mesh, mesh);
-    expect(domain.empty() || !is_in_scale(mesh), "a mesh whose domain is not its own");
+    expect(domain.empty() || !is_in_scale(mesh),
+           "check_domain() finds that a mesh differs from itself");
     expect_messages(meshadapt::check_boundary(executor(), mesh));
   }
   meshadapt::measure(executor(), mesh, nullptr);

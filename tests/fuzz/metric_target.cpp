@@ -126,7 +126,7 @@ void adapt(Numbers& numbers, const AnyMesh& mesh, const AnyField& metric) {
     if (options.largest_size > 0 && options.largest_size < 0.2) return;
     if (options.gradation >= 1 && options.gradation < 1.2) return;
     const auto adapted = meshadapt::adapt(executor(), mesh, metric, options);
-    expect(meshadapt::check_mesh(executor(), adapted.mesh).empty(), "an adapted mesh is no mesh");
+    expect(meshadapt::check_mesh(executor(), adapted.mesh).empty(), "an adapted mesh is not valid");
     expect(meshadapt::check_domain(executor(), mesh, adapted.mesh, options.make.hausdorff_tolerance)
                .empty(),
            "an adapted mesh has another domain");

@@ -14,7 +14,7 @@ void fail(const std::string& why) {
 }
 
 void expect_message(const std::string& text) {
-  expect(!text.empty(), "a message without words");
+  expect(!text.empty(), "an empty message");
   if (text.size() > 2000) fail("a message without end: " + text.substr(0, 200));
   for (const unsigned char c : text)
     if (c < ' ' || c == 0x7f) fail("a control character in a message: " + text);

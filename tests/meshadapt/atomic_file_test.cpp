@@ -167,7 +167,7 @@ TEST(AtomicOutputs, RefuseNamesThatLeadNowhere) {
 
 /// The folder is sticky, as /tmp is, and has a file of another user.
 TEST(AtomicOutputs, RefuseToReplaceWhatOnlyItsOwnerMay) {
-  if (geteuid() != 0) GTEST_SKIP() << "only root may be two users";
+  if (geteuid() != 0) GTEST_SKIP() << "only root can act as two users";
   const test::TemporaryFolder folder;
   fs::permissions(folder / "", fs::perms::all | fs::perms::sticky_bit);
   test::put_bytes(folder / "a", "old");
@@ -218,7 +218,7 @@ TEST(AtomicOutputs, ReportAFullDisk) {
   const AnyMesh mesh = test::random_mesh(2, 100, 1);
   try {
     write_mesh("/dev/full", mesh, {.form = WriteOptions::Form::ascii});
-    FAIL() << "nothing thrown";
+    FAIL() << "expected an exception";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("/dev/full: cannot write, No space left"),
               std::string::npos)

@@ -49,9 +49,10 @@ TEST(Callers, MayCancelAfterAnyStep) {
   for (wanted = 0; wanted < all; wanted += 3) {
     steps = 0;
     EXPECT_THROW(adapt(executor, mesh, metric, options), Cancelled) << wanted;
-    EXPECT_EQ(steps, wanted + 1) << "it is not asked again";
+    EXPECT_EQ(steps, wanted + 1) << "progress was called after it had cancelled";
   }
-  EXPECT_EQ(adapt(executor, mesh, metric).mesh, expected) << "nothing is left behind";
+  EXPECT_EQ(adapt(executor, mesh, metric).mesh, expected)
+      << "a cancelled run has changed the next one";
 }
 
 TEST(Callers, GetWhatTheirProgressThrows) {
@@ -182,7 +183,7 @@ TEST(Callers, GetToKnowHowManyShortEdgesRequiredEntitiesHold) {
   const Executor executor({.threads = 2});
   AnyMesh mesh = box_mesh<2>({1, 1}, {40, 40});
   const AnyField metric = sizes(mesh, 0.2);
-  EXPECT_EQ(adapt(executor, mesh, metric).report.held_short_edges, 0U) << "nothing is required";
+  EXPECT_EQ(adapt(executor, mesh, metric).report.held_short_edges, 0U) << "no edge is required yet";
   for (std::uint32_t e = 0; e < mesh.edges.size(); ++e)
     if (mesh.edges.reference[e] == Side::left) mesh.required_edges.push_back(e);
   const AdaptReport report = adapt(executor, mesh, metric).report;
@@ -275,7 +276,7 @@ TEST(Callers, MeetSizesThatACoarseMeshDidNotShow) {
     missed += longest_edge_near(adapt(two, mesh, seen).mesh, at) > near * size ? 1 : 0;
   }
   if (test::trials(16) >= 24) {
-    EXPECT_GT(missed, 3U) << "that there is something to meet";
+    EXPECT_GT(missed, 3U) << "a single adapt() finds the sizes, too, so the test proves nothing";
   }
 }
 
@@ -293,7 +294,7 @@ TEST(Callers, GetWarningsOfEachTimeAndMayCancelAnyTime) {
   }};
   const AdaptReport report = adapt_to_sizes(executor, mesh, sizes, options).report;
   EXPECT_EQ(report.warnings.size(), 1U);
-  EXPECT_GE(falls, 1) << "it is told of more than one time";
+  EXPECT_GE(falls, 1) << "progress was reported for one adaptation only";
   int steps = 0;
   options.progress = [&](const AdaptProgress&) { return ++steps < 40; };
   EXPECT_THROW(adapt_to_sizes(executor, mesh, sizes, options), Cancelled);

@@ -71,7 +71,8 @@ void takes_sizes_from_arcs(int n) {
     ++count;
   });
   const auto left = std::count(metric_of.begin(), metric_of.end(), isotropic<Dim>(asked));
-  EXPECT_EQ(static_cast<std::size_t>(left) + count, any.vertex_count()) << "all else is as it was";
+  EXPECT_EQ(static_cast<std::size_t>(left) + count, any.vertex_count())
+      << "sizes elsewhere have changed";
   EXPECT_GT(count, 20U);
 }
 

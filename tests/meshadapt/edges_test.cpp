@@ -38,7 +38,7 @@ std::set<Edge> edges_changed(const Mesh<Dim>& mesh, std::uint32_t after) {
 std::set<Edge> ends_of(std::span<const LongEdge> edges) {
   std::set<Edge> ends;
   for (const LongEdge& edge : edges) ends.emplace(edge.a, edge.b);
-  EXPECT_EQ(ends.size(), edges.size()) << "some were found twice";
+  EXPECT_EQ(ends.size(), edges.size()) << "some edges were found twice";
   return ends;
 }
 

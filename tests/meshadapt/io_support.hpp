@@ -64,7 +64,7 @@ std::string complaint(const Call& call) {
     ADD_FAILURE() << "not an InputError: " << error.what();
     return {};
   }
-  ADD_FAILURE() << "nothing thrown";
+  ADD_FAILURE() << "expected an InputError, nothing was thrown";
   return {};
 }
 

@@ -373,7 +373,7 @@ TYPED_TEST(MetricOperations, GradationOfStretchedSizesFollowsTheMixedLaw) {
           1 / std::sqrt(metric_of[i](1, 1));  // may be less, if it spread along another path
       EXPECT_LT(found, along * (1 + 1e-9)) << factor << ' ' << i;
       EXPECT_GT(found, i == 0 ? 0.099 : 1.2 * across)
-          << factor << ' ' << i << ": what spreads stays stretched";
+          << factor << ' ' << i << ": the sizes along have lost their stretch";
       const double g = 1 + edge / across * rate, g_along = 1 + edge / along * rate;
       across *= g;
       along *= std::pow(g, 7.0 / 8) * std::pow(g_along, 1.0 / 8);

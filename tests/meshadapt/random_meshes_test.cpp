@@ -46,7 +46,7 @@ void try_case(std::uint64_t seed) {
   EXPECT_TRUE(faults.empty()) << test::joined(faults);
   EXPECT_LT(seconds.count(), 60) << "it took too long";
   const std::size_t size = result.mesh.triangles.size() + result.mesh.tetrahedra.size();
-  EXPECT_LT(size, 150000U) << "there are far more elements than asked for";
+  EXPECT_LT(size, 150000U) << "there are far more elements than the metric asks for";
   if (std::getenv("DUCTILE_TRIAL_FOLDER") != nullptr)
     std::printf("%llu %zu %.2fs %s\n", static_cast<unsigned long long>(seed), size, seconds.count(),
                 random.what.c_str());

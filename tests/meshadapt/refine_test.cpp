@@ -197,7 +197,7 @@ TYPED_TEST(RefineIn, MakesNoShortEdgeExceptAcrossLayers) {
   }
   EXPECT_GT(applied, 500U);
   EXPECT_GT(refused, 50U);
-  EXPECT_GT(rounds, 2U) << "none was refused because others were not";
+  EXPECT_GT(rounds, 2U) << "no split was refused because of another one";
 }
 
 /// An edge that could be split alone is not left because of another one that is left.

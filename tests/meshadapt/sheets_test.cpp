@@ -174,8 +174,8 @@ TEST(Sheets, CoverNoFacetThatMightMeetWhatFacesIt) {
     };
     EXPECT_TRUE(covered(0.012, 0));
     EXPECT_EQ(covered(0.012, 0.0095), two_sided);
-    EXPECT_TRUE(covered(0.05, 0)) << "no closer than before";
-    EXPECT_TRUE(covered(0.05, 0.005)) << "half as far as there is left, at most";
+    EXPECT_TRUE(covered(0.05, 0)) << "the other wall is no closer than before";
+    EXPECT_TRUE(covered(0.05, 0.005)) << "at most half the remaining distance";
     EXPECT_EQ(covered(0.05, 0.008), two_sided);
   }
 }
@@ -192,12 +192,14 @@ TEST(Sheets, CoverNoFacetThatMightMeetATip) {
     return Sheets<2, 2>(parts, tolerance).cover({right + up, left + up}, 7);
   };
   const Vector<2> tip{{0.9, 0.02}}, a{{0.88, 0.6}}, b{{0.92, 0.6}};
-  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.01, 0.008)) << "farther than the tolerance";
+  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.01, 0.008))
+      << "the tip is farther than the tolerance";
   EXPECT_FALSE(covered({{a, tip}, {tip, b}}, 0.03, 0.008));
   EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.03, 0.006));
   EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.03, 0));
   const Vector<2> under_left{{0, -0.02}};
-  EXPECT_TRUE(covered({{under_left, right}}, 0.1, 0)) << "of a wedge, joined at its tip";
+  EXPECT_TRUE(covered({{under_left, right}}, 0.1, 0))
+      << "the walls of a wedge are joined at its tip";
 }
 
 /// The other side of a ridge is no gap, however many facets it is divided into; the other side of a

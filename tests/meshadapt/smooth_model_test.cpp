@@ -101,7 +101,7 @@ TEST(SmoothModel, ComesCloseToEllipsoids) {
     };
     const double coarse = error(6), fine = error(12);
     EXPECT_LT(coarse, 0.02);
-    EXPECT_LT(fine, coarse / 5) << "a chord's is a quarter";
+    EXPECT_LT(fine, coarse / 5) << "the error of chords would fall to a quarter";
   }
 }
 
@@ -138,7 +138,7 @@ TEST(SmoothModel, SeamsInsideLeaveItSmooth) {
     };
     const double plain = error(input);
     EXPECT_LT(error(with_seams(input, false)), 1.5 * plain);
-    EXPECT_GT(error(with_seams(input, true)), 3 * plain) << "a ridge is none of it";
+    EXPECT_GT(error(with_seams(input, true)), 3 * plain) << "ridges must not be smoothed";
   }
 }
 
@@ -322,7 +322,7 @@ TEST(Divider, LeavesNoGapsBesideWhatIsDividedLess) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto& weight = part.weight[i];
       if (weight[1] == 0 || weight[0] == 0) {
-        EXPECT_EQ(part.corner[i][2], 0) << "on a straight side";
+        EXPECT_EQ(part.corner[i][2], 0) << "the point leaves a straight side";
       }
     }
   });

@@ -266,7 +266,7 @@ TEST(SurfaceFunctionErrors, AreForFunctionsThatMeanNothing) {
   EXPECT_THROW(adapt(executor, mesh, metric, options), InputError) << "no tolerance";
   options = options_with(executor, mesh, {});
   options.make.functions = {{1, on_ball}};
-  EXPECT_THROW(adapt(executor, mesh, metric, options), InputError) << "a geometry as well";
+  EXPECT_THROW(adapt(executor, mesh, metric, options), InputError) << "functions and a geometry";
 }
 
 }  // namespace

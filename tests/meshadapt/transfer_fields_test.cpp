@@ -130,7 +130,7 @@ TYPED_TEST(TransferFieldsIn, KeepIntegralsOnElementsAndTakeValuesAtCentroids) {
       EXPECT_EQ(result.fields[f].name, fields[f].name);
       EXPECT_EQ(result.fields[f].type, fields[f].type);
       EXPECT_EQ(result.fields[f].place, fields[f].place);
-      EXPECT_EQ(result.fields[f].values, again.fields[f].values) << "on one thread";
+      EXPECT_EQ(result.fields[f].values, again.fields[f].values) << "differs on one thread";
     }
     EXPECT_EQ(result.report.volume_outside, 0);
     EXPECT_EQ(result.report.volume_left_out, 0);
@@ -183,7 +183,7 @@ TYPED_TEST(TransferFieldsIn, TakeTheClosestValueBeyondTheOldMesh) {
   const auto sampled = transfer_fields(Executor({.threads = 2}), {before, fields}, after);
   EXPECT_NEAR(mean.report.volume_outside, 0.5, 1e-12);
   EXPECT_NEAR(mean.report.volume_left_out, 0.5, 1e-12);
-  EXPECT_EQ(sampled.report.volume_outside, 0) << "volumes are not looked at";
+  EXPECT_EQ(sampled.report.volume_outside, 0) << "transfer by value measures no volumes";
   for (std::size_t e = 0; e < mean.fields[0].values.size(); ++e) {
     double x = 0;
     for (const VertexId v : elements_in<Dim>(after).vertices[e])

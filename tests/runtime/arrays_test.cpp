@@ -59,7 +59,7 @@ bool system_can() {
 }
 
 TEST(FreshMemory, GetsThePagesOfAllThatWasAddedAndNoOthers) {
-  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  if (!system_can()) GTEST_SKIP() << "this system cannot provide pages before they are written";
   constexpr std::size_t page_count = 300;
   for (const int threads : {1, 2, 3, 8}) {
     const Mapping memory(page_count);
@@ -75,7 +75,7 @@ TEST(FreshMemory, GetsThePagesOfAllThatWasAddedAndNoOthers) {
 }
 
 TEST(FreshMemory, GetsThePagesOfZerosBeforeTheyAreRead) {
-  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  if (!system_can()) GTEST_SKIP() << "this system cannot provide pages before they are written";
   GrowingArray<std::uint64_t> without, with;
   without.resize(1000000);
   FreshMemory fresh;
@@ -99,7 +99,7 @@ TEST(FreshMemory, KeepsWhatIsThere) {
 }
 
 TEST(TouchPages, AsksForManyOfWhichTheLastIsNotThere) {
-  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  if (!system_can()) GTEST_SKIP() << "this system cannot provide pages before they are written";
   const Executor executor({.threads = 2});
   const std::size_t page = Mapping::page;
   const Mapping fresh(1000), few(1000), reused(1000);

@@ -90,7 +90,7 @@ TEST(OperatorCheck, FindsEachFaultOfAnOperatorInOrder) {
   Sums checked, run;
   run_rounds_checked(Executor({.threads = 2}), checked, work);
   run_rounds(Executor({.threads = 1}), run, work);
-  EXPECT_EQ(checked.value, run.value) << "in the order of the work";
+  EXPECT_EQ(checked.value, run.value) << "the order differs from that of the work";
 }
 
 /// Each vertex of a line adds 1 to both neighbours, once. Vertices with a common neighbour have no
@@ -208,7 +208,7 @@ TEST(OperatorCheck, NamesTheItemThatReachesForWhatIsNot) {
   Countdown op;
   try {
     run_rounds_checked(Executor(), op, {0, 4000000000U});
-    ADD_FAILURE() << "nothing was caught";
+    ADD_FAILURE() << "expected ContractBroken, nothing was thrown";
   } catch (const ContractBroken& broken) {
     EXPECT_EQ(broken.item(), "4000000000");
     EXPECT_EQ(broken.rule(), ContractRule::numbers_in_range);

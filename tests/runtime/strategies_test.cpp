@@ -373,7 +373,7 @@ TYPED_TEST(Strategies, MapRegionsOfEqualSizes) {
                 1.2 * static_cast<double>(*std::min_element(size.begin(), size.end())));
       cuts.insert(owner_of);
     }
-  EXPECT_EQ(cuts.size(), 3U) << "a cut for each turn, the same at any number of threads";
+  EXPECT_EQ(cuts.size(), 3U) << "expected one cut per turn, the same at any number of threads";
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ bool are_addresses_counted() {
 }
 
 TEST(ThreadsToBeHad, AreNoneWhereTheyCannotBeMade) {
-  if (!are_addresses_counted()) GTEST_SKIP() << "sanitizers take all addresses";
+  if (!are_addresses_counted()) GTEST_SKIP() << "sanitizers reserve all addresses";
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto limited = [] {
     limit_addresses_to_what_is_there();
