@@ -18,9 +18,9 @@ namespace ductile::bench {
 struct CaseInfo {
   std::string_view name;
   int dimension = 0;
-  double complexity = 0;   ///< at factor 1
-  int calls = 1;           ///< of adapt, each to the formula on the mesh that the last one left
-  bool has_peers = false;  ///< others can be run on it in reasonable time: one call, not too large
+  double complexity = 0;  ///< at factor 1
+  int calls = 1;  ///< calls of adapt(), each with the formula evaluated on the previous result
+  bool has_peers = false;  ///< Mmg can run it in reasonable time: one call, not too large
   std::string_view what;   ///< one line
 };
 

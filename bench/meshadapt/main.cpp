@@ -91,7 +91,7 @@ int run(const Plan& plan) {
   Results results;
   fs::create_directories(plan.folder);
   const fs::path file = plan.folder / "results.json";
-  fs::remove(file);  // of an earlier run
+  fs::remove(file);  // left by an earlier run
   for (const std::string& name : plan.cases) {
     const AdaptCase made = make_case(ductile::runtime::Executor(), name);
     measure_case(results, plan, made);
@@ -126,7 +126,7 @@ int main(int word_count, char** word) {
       return 0;
     }
     const Plan plan = plan_from(arguments);
-    ductile::cli::reuse_memory(plan.most_threads);  // as the program does
+    ductile::cli::reuse_memory(plan.most_threads);  // as the program ductile does
     return run(plan);
   } catch (const ductile::cli::UsageError& error) {
     std::fprintf(stderr, "adapt_bench: %s\n", error.what());

@@ -27,9 +27,9 @@ struct Pair {
 };
 
 struct PairSettings {
-  std::filesystem::path folder;  ///< where the files go
+  std::filesystem::path folder;  ///< folder for the files
   int most_pairs = 3;
-  double seconds = 60;  ///< no further pair is begun after so long
+  double seconds = 60;  ///< no further pair begins after this time
 };
 
 /// Mmg for this dimension (mmg2d_O3, mmg3d_O3), if it is on the PATH.

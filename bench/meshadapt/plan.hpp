@@ -18,7 +18,7 @@ struct Plan {
   int most_threads = 1;
   int repetitions = 5;
   int pairs = 3;
-  double seconds = 120;  ///< no further repetition of a case, or pair, is begun after so long
+  double seconds = 120;  ///< no further repetition of a case, or pair, begins after this time
   bool peers = true;
 };
 

@@ -30,7 +30,7 @@ inline const char* name_of(Mode mode) { return mode == Mode::tiles ? "tiles" : "
 /// the formula's.
 struct MeshFigures {
   double share_in_range = 0, mean_quality = 0, least_quality = 0;
-  bool valid = false;  ///< it is a mesh, and one of the unit square or cube
+  bool valid = false;  ///< the mesh is valid and covers the domain
 };
 
 /// Parts of the time of adapt(), in the order of all tables: the kernels are the first ones.
@@ -53,12 +53,12 @@ struct Sample {
   std::string case_name;
   RunSettings settings;
   int repetition = 0;
-  double wall_seconds = 0, processor_seconds = 0;  ///< of all calls of adapt()
+  double wall_seconds = 0, processor_seconds = 0;  ///< all calls of adapt() together
   PartSeconds part_seconds{};
   std::array<PhaseSeconds, kernel_count> phase_seconds{};
   std::size_t start_elements = 0, elements = 0;
   std::size_t peak_memory = 0;    ///< bytes, with the case in memory
-  std::uint64_t fingerprint = 0;  ///< of all bytes of the result
+  std::uint64_t fingerprint = 0;  ///< hash of all bytes of the result
   std::string_view instructions;  ///< see AdaptReport
   MeshFigures figures;
   CoreDistance before, after;

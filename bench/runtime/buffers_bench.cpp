@@ -35,8 +35,8 @@ struct Update {
 
 struct Case {
   std::string name;
-  std::uint32_t count;  // of updates, and of owners
-  std::uint32_t reach;  // owners are so near by
+  std::uint32_t count;  // number of updates, and of owners
+  std::uint32_t reach;  // largest distance from an item to its owner
 
   Update update(std::size_t i) const {
     const auto item = static_cast<std::uint32_t>(i);
@@ -70,7 +70,7 @@ void add_buffers(const std::string& subject, const std::string& candidate, Make 
           carry_out(sums);  // its memory is there from now on, as the floor's is
           std::fill(sums.begin(), sums.end(), 0U);
           for (auto _ : state) carry_out(sums);
-          const auto sum = std::accumulate(sums.begin(), sums.end(), 0U);  // all of these wrap
+          const auto sum = std::accumulate(sums.begin(), sums.end(), 0U);  // all sums wrap
           const std::uint32_t once =
               c.count % 2 == 0 ? c.count / 2 * (c.count - 1) : (c.count - 1) / 2 * c.count;
           if (sum != once * static_cast<std::uint32_t>(state.iterations()))
@@ -152,7 +152,7 @@ class ArraysForThreads {
 
   const Executor* executor_;
   const Case* case_;
-  unsigned shift_;  // of an owner, to its thread
+  unsigned shift_;  // maps an owner to its thread
   runtime::PerThread<Lane> lanes_;
 };
 

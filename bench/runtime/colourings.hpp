@@ -38,7 +38,8 @@ void add_colourings(const std::string& candidate, const std::vector<int>& thread
           });
 }
 
-/// Candidates of Kokkos Kernels; in a file of its own, as it is there only where it is installed.
+/// Adds the candidates of Kokkos Kernels. They have a file of their own, because it is built only
+/// where that is installed.
 void add_kokkos_colourings();
 
 }  // namespace ductile::bench

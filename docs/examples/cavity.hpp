@@ -27,12 +27,12 @@ struct CavitySide {
 enum class Dug {
   closed,   ///< the cavity is complete
   stopped,  ///< at a boundary edge
-  denied    ///< reach() said no
+  denied    ///< reach() returned false
 };
 
 struct Cavity {
   Point point{};
-  std::vector<TriangleId> triangles{};  ///< those that go; after fill() those that came
+  std::vector<TriangleId> triangles{};  ///< the removed triangles; after fill() the new ones
   std::vector<CavitySide> sides{};
 
   /// Finds the cavity of `point`, starting from triangle `start`, which has been reached; reaches

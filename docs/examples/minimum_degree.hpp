@@ -22,7 +22,7 @@ namespace runtime = ductile::runtime;
 
 struct Ordering {
   std::vector<Vertex> order;  ///< all vertices
-  std::uint64_t fill = 0;     ///< entries of the factor L, its diagonal included
+  std::uint64_t fill = 0;     ///< number of entries of the factor L, including its diagonal
   friend bool operator==(const Ordering&, const Ordering&) = default;
 };
 

@@ -15,8 +15,8 @@ namespace ductile::campaign {
 
 struct Grid {
   int dimension = 2;
-  std::array<std::vector<double>, 3> lines;  ///< where grid lines cross each axis, ascending
-  bool closed = false;                       ///< along the first axis: its last line is its first
+  std::array<std::vector<double>, 3> lines;  ///< positions of grid lines on each axis, ascending
+  bool closed = false;                       ///< the last line of the first axis is its first
   /// Decides which cells exist, by their index along each axis; if empty, all do.
   std::function<bool(const std::array<int, 3>&)> keep;
 };
@@ -45,7 +45,7 @@ void hollow(Mesh& mesh, std::size_t element, double share, Random* random = null
 void split_edge(Mesh& mesh, const std::array<int, 2>& edge, double share);
 
 struct Jitter {
-  double amount = 0;  ///< of the shortest edge of each vertex
+  double amount = 0;  ///< relative to the shortest edge of each vertex
   /// Vertices of the boundary from this number on move as well.
   std::size_t boundary_from = SIZE_MAX;
 };

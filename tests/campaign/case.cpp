@@ -18,7 +18,7 @@ struct Kind {
   const char* name;
   Shape (*shape)(Random&);
   Asks asks = Asks::anything;
-  double tolerant = 0.3;  ///< the share with -hausd, of bodies that are curved
+  double tolerant = 0.3;  ///< share of cases with -hausd, if the body is curved
 };
 
 const std::array<Kind, 17> kinds = {{{"random", random_body},

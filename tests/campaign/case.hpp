@@ -23,8 +23,8 @@ struct Case {
   std::vector<std::string> refusals;
   /// The mesh before rounding; it must lead to about the same number of elements.
   std::optional<Mesh> unrounded;
-  bool deterministic = true;  ///< the same bytes are expected at any number of threads
-  bool rests = true;          ///< adapting the result again is expected to change little
+  bool deterministic = true;  ///< the result must have the same bytes at any number of threads
+  bool rests = true;          ///< adapting the result again must change little
 };
 
 /// The names of all kinds of cases.

@@ -14,13 +14,13 @@ namespace ductile::campaign {
 
 /// Requirements on the adapted mesh. Lengths are in units of the mesh.
 struct Promise {
-  double tolerance = 0;  ///< how far curved boundaries may move (-hausd); 0: not at all
-  double rounding = 0;   ///< by how much the input's coordinates were rounded when it was written
-  bool unlisted_boundary = false;  ///< boundary facets that are not listed count as of reference 0
+  double tolerance = 0;  ///< largest distance that curved boundaries may move (-hausd); 0: fixed
+  double rounding = 0;   ///< largest rounding error of the input's coordinates
+  bool unlisted_boundary = false;  ///< unlisted boundary facets count as reference 0
   bool touching = false;           ///< vertices of the input may coincide
   double shortest_size = 0;        ///< bounds of the metric that is written; 0: none
   double largest_size = 0;
-  double longest_edge = 0;  ///< in the metric, of edges that are not required; 0: not checked
+  double longest_edge = 0;  ///< metric length, of edges that are not required; 0: not checked
 };
 
 using Faults = std::vector<std::string>;

@@ -11,7 +11,7 @@ namespace {
 
 // The sides of a crack may overlap by rounding, and by twice the tolerance of the program's own
 // check.
-constexpr double depth_allowed = 5e-10;  // of the extent
+constexpr double depth_allowed = 5e-10;  // as a share of the extent
 
 struct Boxed {
   Cell corners;

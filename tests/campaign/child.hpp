@@ -12,7 +12,7 @@ struct Ending {
   enum class How { exited, crashed, timed_out } how = How::exited;
   int status = 0;       ///< exit status, or the signal that ended it
   double seconds = 0;   ///< wall time
-  std::string message;  ///< what it wrote to standard error, its first 4,000 bytes
+  std::string message;  ///< the first 4,000 bytes of its standard error
 };
 
 /// Runs the program words[0] in `folder` and discards its standard output. Times out after

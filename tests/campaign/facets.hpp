@@ -18,7 +18,7 @@ Key key_of(const Cell& cell);
 
 struct Facet {
   Key key;
-  Cell corners;               ///< as one of its elements has them, seen from outside
+  Cell corners;               ///< in outward order of one of its elements
   std::vector<int> elements;  ///< usually one or two
   std::vector<int> listed;    ///< indices among the facets of the file
   bool on_boundary() const { return elements.size() == 1; }

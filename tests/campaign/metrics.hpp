@@ -14,11 +14,11 @@ namespace ductile::campaign {
 struct MetricCase {
   Field field;
   bool smooth = true;  ///< sizes grow slowly enough for any -hgrad
-  double size = 1;     ///< about what edges are asked for, the geometric mean over the mesh
+  double size = 1;     ///< about the edge length asked for: the geometric mean over the mesh
   /// The smallest size along an axis; -hmin may be close to it.
   double smallest = 1;
-  bool unlimited = false;             ///< some sizes have no limit: -hmax has to give one
-  std::vector<std::string> refusals;  ///< what the program may say instead of adapting
+  bool unlimited = false;             ///< some sizes are infinite, so -hmax must be given
+  std::vector<std::string> refusals;  ///< words of accepted refusals
 };
 
 /// A metric of any kind: sizes or tensors; constant, graded, turning, in layers, with jumps, noise.

@@ -11,7 +11,7 @@ namespace ductile::campaign {
 
 struct Shape {
   Mesh mesh;
-  double length = 0.01;   ///< near which a tolerance (-hausd) is most demanding
+  double length = 0.01;   ///< the length at which a tolerance (-hausd) is most demanding
   bool curved = false;    ///< a tolerance makes a difference
   bool touching = false;  ///< vertices coincide, or nearly
   /// Only robust bodies get extreme sizes and places.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double moved_at_rest = 0.02;  // share of the elements
 constexpr double growth_allowed =
-    1.5;  // of the number of elements, from the first to the last call
+    1.5;  // ratio of the numbers of elements after the last and the first call
 constexpr std::size_t few_elements = 50;
 
 std::string contents(const std::filesystem::path& path) {

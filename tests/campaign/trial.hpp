@@ -22,7 +22,7 @@ struct Outcome {
   Faults faults;        ///< a line each; what was wrong, or the message of a refusal
   double seconds = 0;   ///< of the longest run
   bool rested = true;   ///< the third call changed less than 2 % of elements
-  bool closed = false;  ///< was adapted again, so that `rested` says something
+  bool closed = false;  ///< was adapted again, so `rested` is valid
 };
 
 /// Runs the case in `folder`, which keeps all files and a script `run.sh` that repeats the calls.

@@ -118,7 +118,7 @@ TEST_P(CurvedBoundary, IsReportedByItsEdges) {
   AdaptOptions options;
   for (const double tolerance : {0.0, 1e-4}) {
     options.make.hausdorff_tolerance = tolerance;
-    for (const double size : {1e-9, 1e9}) {  // in which all edges are long, or short
+    for (const double size : {1e-9, 1e9}) {  // all edges are long, or short
       options.iterations = 1;
       options.insert = false;
       const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, size), options);

@@ -153,7 +153,7 @@ double missed(const FixedMesh<Dim>& mesh, const RandomField<Dim>& f) {
 
 struct Loop {
   double elements = 0, grown = 1.1, count = 0.15;
-  int calls = 0, settled = 0;  ///< from which call on counts are to be met
+  int calls = 0, settled = 0;  ///< counts must be met from call `settled` on
 };
 
 template <int Dim>

@@ -54,7 +54,7 @@ Metric<Dim> random_singular(Random& random) {
   const std::size_t zeros = 1 + random() % Dim;
   const double next_to_zero = chance(random, 0.5) ? 0 : std::pow(10, uniform(random, -300, -20));
   for (std::size_t i = 0; i < zeros; ++i) axes.value[i] = next_to_zero;
-  if (chance(random, 0.3))  // in the axes of space
+  if (chance(random, 0.3))  // axis-parallel
     for (std::size_t i = 0; i < Dim; ++i) {
       axes.vector[i] = {};
       axes.vector[i].x[i] = 1;

@@ -158,7 +158,7 @@ Case random_case(std::uint64_t seed) {
 }
 
 struct Share {
-  double in_range;       ///< of the edges
+  double in_range;       ///< share of the edges
   std::size_t vertices;  ///< of the mesh
 };
 

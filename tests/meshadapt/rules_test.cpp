@@ -368,7 +368,7 @@ TEST(RulesOfSwap, NoEdgeOrFaceBetweenRegionsIsSwapped) {
     auto flat = made<3>(test::listed_mesh<3>(
         {{{1, 0, 0}}, {{-0.5, 0.9, 0}}, {{-0.5, -0.9, 0}}, {{0, 0, 0.3}}, {{0, 0, -0.3}}},
         {{0, 1, 2, 3}, {0, 2, 1, 4}}, {1, second}));
-    for (auto& patches : flat.patches_of) patches[3] = 0;  // of the face 0-1-2
+    for (auto& patches : flat.patches_of) patches[3] = 0;  // the face 0-1-2
     Replacement<3> pierced;
     EXPECT_EQ(Swap<3>(executor, flat).decide({0, 1, 2}, Shell{0, 1}, pierced), second == 1);
   }

@@ -14,20 +14,22 @@ namespace ductile::meshadapt::test {
 /// A continuous function that is negative inside.
 using Level = std::function<double(const Vector<3>&)>;
 
-double sphere_level(const Vector<3>& p);  ///< of radius 1; the distance to it
-double torus_level(const Vector<3>& p);   ///< around the z axis, radii 1 and 0.4; the distance
-double gyroid_level(const Vector<3>& p);  ///< a sheet of some thickness, of period 1
-double cube_level(const Vector<3>& p);    ///< from -1 to 1, with sharp edges
-double plate_level(const Vector<3>& p);   ///< of radius 1 and thickness 0.02, rounded at its rim
+double sphere_level(const Vector<3>& p);  ///< distance from a sphere of radius 1
+double torus_level(
+    const Vector<3>& p);  ///< distance from a torus around the z axis, radii 1 and 0.4
+double gyroid_level(const Vector<3>& p);  ///< a gyroid sheet of some thickness, with period 1
+double cube_level(const Vector<3>& p);    ///< a cube from -1 to 1, with sharp edges
+double plate_level(
+    const Vector<3>& p);  ///< a disc of radius 1 and thickness 0.02, with a rounded rim
 
 /// n^3 cells of six tetrahedra over a cube from -extent to extent, rotated, and shifted by less
 /// than a cell.
 struct LevelGrid {
   int n = 10;
   double extent = 1.4;
-  std::uint64_t seed = 0;  ///< of how it is turned and moved, and of the noise; 0: it is not moved
-  double least = 0;        ///< of an edge, closer to whose ends no zero is put, wherever it is
-  double noise = 0;        ///< of an edge, by which zeros are off at random
+  std::uint64_t seed = 0;  ///< for rotation, shift and noise; 0: the grid is not moved
+  double least = 0;  ///< least distance of a zero from the ends of its edge, as a share of the edge
+  double noise = 0;  ///< amplitude of random errors of zeros, as a share of the edge
 };
 
 /// Returns the tetrahedra inside. Triangles at the zero have reference 1, those on the grid's

@@ -26,7 +26,7 @@ struct Grid {
   int dimension = 2;
   std::array<std::vector<double>, 3> lines;  ///< [axis], ascending
   std::function<int(const Cell&)> region;    ///< reference of a cell's elements, 0: no cell there
-  std::uint64_t seed = 0;                    ///< 2D: of the directions of diagonals; 0: all alike
+  std::uint64_t seed = 0;  ///< 2D: for random directions of diagonals; 0: all equal
 };
 
 /// n equal cells along each axis of the unit square or cube, one region.

@@ -63,8 +63,8 @@ Measures measures(const AnyMesh& mesh) {
 }
 
 struct Tolerance {
-  double of_each;  ///< relative to what is compared
-  double of_all;   ///< relative to the sum of all: what rounding of the coordinates allows
+  double of_each;  ///< relative to each measure
+  double of_all;   ///< relative to the sum of all, for rounding of the coordinates
 };
 
 void compare(Lines& lines, const Measures& before, const Measures& after,

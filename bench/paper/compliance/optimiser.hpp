@@ -25,7 +25,7 @@ struct Iteration {
   double length = 0;  ///< of the filter
   double compliance = 0;
   double volume_fraction = 0;
-  double change = 0;  ///< largest of a density
+  double change = 0;  ///< largest change of a density
   double adapt_seconds = 0, solve_seconds = 0, seconds = 0;
 };
 

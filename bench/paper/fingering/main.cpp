@@ -25,7 +25,7 @@ using namespace ductile::paper;
 
 /// The default settings, and those of the test.
 struct Plan {
-  int reference_cells;  ///< of the uniform meshes, from bottom to top
+  int reference_cells;  ///< from bottom to top in the reference's uniform mesh
   std::vector<int> uniform_cells;
   std::vector<double> adapted_errors;  ///< see AdaptGoal
   double show_error;

@@ -26,7 +26,7 @@ struct AdaptGoal {
   double pressure_error = 0.002;
   double smallest_size = 0.001;
   double largest_size = 0.1;
-  double ahead = 0;  ///< time from now for which the mesh is to do
+  double ahead = 0;  ///< time from now that the metric must cover
 };
 
 /// Seconds: of the clock on the wall, and of all processors together.

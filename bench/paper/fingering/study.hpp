@@ -14,9 +14,9 @@ namespace ductile::paper {
 
 /// Options of one run.
 struct RunOptions {
-  int cells = 32;            ///< of the uniform mesh to start with, from bottom to top
+  int cells = 32;            ///< from bottom to top in the uniform start mesh
   double end = 1;            ///< time
-  double interval = 0.0025;  ///< between two pressures
+  double interval = 0.0025;  ///< time between two pressure solves
   int adapt_every = 0;       ///< intervals; 0: never
   AdaptGoal goal = {};       ///< `ahead` becomes the time between adaptations
 };
@@ -33,8 +33,8 @@ struct Outcome {
   bool adapted = false;
   double triangles = 0;  ///< mean over time
   double error = 0;      ///< integral of the difference of saturations at the end
-  Seconds seconds = {};  ///< without output
-  Seconds solving = {};  ///< of these, for pressure and transport
+  Seconds seconds = {};  ///< excludes output
+  Seconds solving = {};  ///< the part for pressure and transport
   int steps = 0;
 };
 

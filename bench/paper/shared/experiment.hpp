@@ -56,8 +56,8 @@ class Experiment {
 struct ExperimentEntry {
   const char* title;  ///< one line for help
   void (*run)(Experiment&);
-  const char* plots;  ///< the script of gnuplot that draws its figures from its tables
-  std::span<const cli::Option> options = {};  ///< beside those that all experiments have
+  const char* plots;  ///< the gnuplot script that draws its figures from its tables
+  std::span<const cli::Option> options = {};  ///< in addition to those of all experiments
 };
 
 /// Returns the exit status: 0 if the experiment ran to its end and all its claims held.

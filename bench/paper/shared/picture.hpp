@@ -32,7 +32,7 @@ struct FieldPanel {
 
 /// A bar of colours below the panels, with the values at its ends.
 struct ColourBar {
-  std::string label = {};  ///< what the colours mean; none: no bar
+  std::string label = {};  ///< meaning of the colours; none: no bar
   double from = 0, to = 1;
   cli::Colour (*colour)(double fraction) = cli::size_colour;
 };

@@ -33,7 +33,7 @@ constexpr std::array<cli::Option, 5> options{{
 struct Size {
   double elements = 0;
   int steps = 0;
-  int start_cells = 0;  ///< along each axis of the mesh to start from; 0: of as many elements
+  int start_cells = 0;  ///< along each axis of the start mesh; 0: chosen for as many elements
 };
 
 Size size_of_march(const Experiment& experiment, int dimension) {

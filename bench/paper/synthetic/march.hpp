@@ -17,7 +17,7 @@ namespace ductile::paper {
 
 /// Requirements on meshes.
 struct MeshGoal {
-  double elements = 0;       ///< about as many
+  double elements = 0;       ///< approximate number
   double smallest = 1e-5;    ///< size; the jump would ask for 0
   double largest = 0.2;      ///< size
   double anisotropy = 1000;  ///< the longest size over the shortest
@@ -34,17 +34,17 @@ FollowedMesh follow(const runtime::Executor& executor, const meshadapt::AnyMesh&
 /// Seconds, summed over time steps.
 struct KernelSeconds {
   std::array<double, meshadapt::kernels.size()> kernels{};
-  double other = 0;   ///< of adapt(): set-up, renumbering
+  double other = 0;   ///< set-up and renumbering in adapt()
   double metric = 0;  ///< sampling, recovery of the Hessian, scaling
   double adapt() const { return std::accumulate(kernels.begin(), kernels.end(), other); }
 };
 
 struct March {
   MeshGoal goal;
-  int steps = 50;              ///< that the period is divided into
-  int until = 50;              ///< the last one to be taken
-  int timed = 10;              ///< of those taken, how many are timed, evenly spread
-  std::vector<int> threads{};  ///< on which they are timed, besides those of the executor
+  int steps = 50;              ///< number of steps in a period
+  int until = 50;              ///< the last step to take
+  int timed = 10;              ///< number of timed steps, spread evenly
+  std::vector<int> threads{};  ///< numbers of threads for timed steps, besides the executor's
   /// Called with the result of each step.
   std::function<void(int step, double phase, const meshadapt::AnyMesh& mesh)> look{};
 };
@@ -60,7 +60,8 @@ struct MarchReport {
   double mean_elements = 0;
   TimedSteps all;                   ///< every step, on the executor's threads
   std::vector<TimedSteps> timed{};  ///< the same steps on each number of threads, fewest first
-  bool identical = true;            ///< their meshes and metrics, byte for byte
+  bool identical =
+      true;  ///< meshes and metrics were the same on all numbers of threads, byte for byte
 };
 
 /// Adapts the mesh to the solution at each phase in order. The goal is adjusted from phase to phase

@@ -53,7 +53,7 @@ class PingPong {
   alignas(128) std::atomic<bool> late_{false};
   std::chrono::steady_clock::time_point deadline_ =
       std::chrono::steady_clock::now() + std::chrono::milliseconds(20);
-  double best_ns_ = never;  // of side 0
+  double best_ns_ = never;  // of side 0's batches
 };
 
 /// Nanoseconds of a round trip between two threads, 0 if they did not run at once.

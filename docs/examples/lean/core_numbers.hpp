@@ -18,7 +18,7 @@ namespace lean {
 /// Returns the core numbers, [vertex].
 inline std::vector<std::uint32_t> core_numbers(ductile::runtime::CsrGraph<> graph) {
   using example::Vertex;
-  std::vector<std::uint32_t> degree_of(graph.vertex_count());  // in the end the core numbers
+  std::vector<std::uint32_t> degree_of(graph.vertex_count());  // becomes the core numbers
   for (Vertex v = 0; v < degree_of.size(); ++v)
     degree_of[v] = graph.offset[v + 1] - graph.offset[v];
   std::vector<Vertex> left(degree_of.size()), shell;

@@ -36,7 +36,7 @@ inline std::uint32_t hilbert_place(std::uint32_t x, std::uint32_t y, unsigned bi
 
 /// The vertices from `first` on, in the order in which to insert them.
 inline std::vector<VertexId> insertion_order(std::span<const Point> points, VertexId first) {
-  constexpr unsigned bits = 24, kept = 12;  // of coordinates; the curve is that fine
+  constexpr unsigned bits = 24, kept = 12;  // of coordinates, and those that the curve uses
   constexpr int last_round = 6;
   std::vector<std::uint64_t> keys;
   keys.reserve(points.size());

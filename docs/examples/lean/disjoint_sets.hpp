@@ -23,7 +23,7 @@ class DisjointSets {
     while (parent_of_[a] != parent_of_[b]) {
       if (parent_of_[a] > parent_of_[b]) std::swap(a, b);
       const example::Vertex above = std::exchange(parent_of_[b], parent_of_[a]);
-      if (above == b) return true;  // it was a root
+      if (above == b) return true;  // b was a root
       b = above;
     }
     return false;

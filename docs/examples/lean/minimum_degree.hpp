@@ -18,8 +18,8 @@ namespace lean {
 
 struct Ordering {
   std::vector<example::Vertex> order;
-  std::vector<std::uint32_t> steps;  ///< where in `order` vertices begin that go in one step
-  std::uint64_t fill = 0;            ///< entries of the factor L, its diagonal included
+  std::vector<std::uint32_t> steps;  ///< indices in `order` at which steps begin
+  std::uint64_t fill = 0;            ///< number of entries of the factor L, including its diagonal
 };
 
 class MinimumDegree {
