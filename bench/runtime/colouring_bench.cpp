@@ -1,7 +1,7 @@
 /// @file
-/// Colourings of graphs by every method of the runtime and by others; floor: a bare sweep that
-/// reads a byte of every neighbour and writes one. And recolouring after a change, beside colouring
-/// anew.
+/// Colourings of graphs by every method of the runtime and by other libraries. Floor: a bare sweep
+/// that reads a byte of every neighbour and writes one. Also recolouring after a change, compared
+/// with colouring anew.
 
 #include <cstdint>
 #include <utility>

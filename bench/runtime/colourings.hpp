@@ -1,5 +1,5 @@
 /// @file
-/// add_colourings: adds a candidate that colours graphs, for all graphs, and checks what it does.
+/// add_colourings: adds a candidate that colours graphs, for all graphs, and checks its colourings.
 #pragma once
 
 #include <benchmark/benchmark.h>

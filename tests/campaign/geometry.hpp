@@ -72,7 +72,7 @@ inline const Point& corner(const Mesh& mesh, const Cell& cell, std::size_t i) {
   return mesh.points[static_cast<std::size_t>(cell[i])];
 }
 
-/// Length, area or volume of a cell of 2, 3 or 4 corners; negative for turned tetrahedra.
+/// Length, area or volume of a cell of 2, 3 or 4 corners; negative for inverted tetrahedra.
 inline double measure(const Mesh& mesh, const Cell& cell) {
   const Point a = corner(mesh, cell, 1) - corner(mesh, cell, 0);
   if (cell[2] < 0) return norm(a);

@@ -111,7 +111,7 @@ TYPED_TEST(BallOf, KnowsTheQualitiesThatThereAre) {
   }
 }
 
-/// A mesh squeezed along its last axis and turned, so that determinants lose digits.
+/// A mesh compressed along its last axis and rotated, so that determinants lose digits.
 template <int Dim>
 Mesh<Dim> squeezed(Mesh<Dim> mesh, double factor) {
   for (Site<Dim>& site : mesh.site_of) {

@@ -443,7 +443,7 @@ TYPED_TEST(MetricOperations, SayWhatIsWrong) {
   EXPECT_THROW(limit_gradation(executor, metric_of, mesh), InputError);
 }
 
-/// The fastest growth of sizes per unit of metric length along an edge of what adapt() made.
+/// Fastest growth of sizes per unit of metric length along an edge of an adapted mesh.
 double fastest_growth(const AdaptedMesh& adapted) {
   const auto size = [&](std::uint32_t v) { return 1 / std::sqrt(adapted.metric.values[3 * v]); };
   double fastest = 0;

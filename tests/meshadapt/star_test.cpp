@@ -13,7 +13,7 @@ namespace {
 
 const runtime::Executor executor({.threads = 1});
 
-/// A grid whose elements have qualities and epochs at random.
+/// A grid whose elements have random qualities and epochs.
 Mesh<3> random_grid(test::Random& random) {
   const AnyMesh any = test::make_grid(test::unit_grid(3, 4));
   Neighbours<3> neighbours;

@@ -27,8 +27,8 @@ using test::thread_counts;
 using test::Vertex;
 using test::works;
 
-/// Vertices of a grid whose rows are numbered one after the other; each takes on the mean of its
-/// neighbours, so that the order of any two neighbours shows in the last bit.
+/// Vertices of a grid, numbered row by row. Each takes the mean of its neighbours, so that the
+/// order of any two neighbours affects the last bit.
 class Mean {
  public:
   using Item = Vertex;

@@ -1,6 +1,6 @@
 /// @file
-/// SplitIntervals: an Operator for tests, whose faults can be switched on. A row of
-/// intervals covers [0, 1); each is halved until it is short enough. Makes intervals and points.
+/// SplitIntervals: an Operator for tests, with faults that can be switched on. A row of intervals
+/// covers [0, 1); each is halved until it is short enough. Makes intervals and points.
 #pragma once
 
 #include <array>
@@ -120,7 +120,7 @@ class SplitIntervals {
     }
   }
 
-  /// Every interval once, one beside the other, none too long.
+  /// Does the row contain every interval once, each next to the previous one, and none too long?
   bool is_whole() const {
     std::size_t seen = 0;
     std::uint32_t left = none, last_point = none;

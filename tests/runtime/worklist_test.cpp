@@ -17,7 +17,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/hash.hpp"
 
-// The thread sanitizer has these functions itself and lets nobody replace them.
+// The thread sanitizer has its own versions of these functions, which cannot be replaced.
 #if !defined(__has_feature)
 #define DUCTILE_REPLACES_NEW
 #elif !__has_feature(thread_sanitizer)

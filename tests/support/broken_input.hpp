@@ -24,13 +24,13 @@ namespace ductile::meshadapt::test {
 /// Suites of tests in both dimensions.
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 
-/// Expects the call to throw an InputError whose message says nothing of files or options.
+/// Expects the call to throw an InputError whose message mentions no files or options.
 template <class Call>
 void expect_refused(const Call& call, const std::string& what) {
   SCOPED_TRACE(what);
   try {
     call();
-    ADD_FAILURE() << "taken";
+    ADD_FAILURE() << "expected an InputError, nothing was thrown";
   } catch (const InputError& error) {
     const std::string text = error.what();
     for (const char* word : {"option", " file", "--", " -h", ".mesh:"})

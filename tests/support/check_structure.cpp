@@ -248,7 +248,8 @@ class StructureChecker {
       return dot(cross(side(1), side(2)), normal);
   }
 
-  /// All elements of a region lie on one side of a patch, unless the patch is inside that region.
+  /// Checks that all elements of a region lie on one side of a patch, unless it is inside that
+  /// region.
   void check_folds() {
     const auto inside_region = [&](ElementId e, int i) {
       const Ids others = across(e, i);
@@ -390,7 +391,8 @@ class StructureChecker {
     return kind.class_dimension != 1 || misjudged_on_curve(v, around.patches);
   }
 
-  /// A vertex that moves along a curve: the curve goes on straight, between the same patches.
+  /// Is a vertex of a curve classified wrongly? The curve must continue straight, between the same
+  /// patches.
   bool misjudged_on_curve(VertexId v, const Ids& patches) const {
     if constexpr (Dim == 3) {
       const auto links = mesh_.links_of.of(v);

@@ -1,6 +1,6 @@
 /// @file
-/// counted_topology: what adaptation must not change, counted from the cells alone. Shares no code
-/// with the library's check_topology().
+/// counted_topology: the topology that adaptation must keep, counted from the cells alone. Shares
+/// no code with the library's check_topology().
 #pragma once
 
 #include <cstddef>

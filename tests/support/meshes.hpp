@@ -32,9 +32,9 @@ struct Grid {
 /// n equal cells along each axis of the unit square or cube, one region.
 Grid unit_grid(int dimension, int n);
 
-/// Cuts the cells into 2 triangles or 6 tetrahedra (Kuhn), lists boundary facets and, unless told
-/// otherwise, interfaces. A facet's reference says which way it faces: 1 to 6 for -x +x -y +y -z
-/// +z, 10 more on interfaces. No vertex is unused.
+/// Cuts the cells into 2 triangles or 6 tetrahedra (Kuhn), lists boundary facets and, by default,
+/// interfaces. A facet's reference is the direction it faces: 1 to 6 for -x +x -y +y -z +z, plus 10
+/// on interfaces. No vertex is unused.
 AnyMesh make_grid(const Grid& grid, bool list_interfaces = true);
 
 /// Shapes, by the region of a cell of an n x n (x n) grid; see Grid::region.
@@ -65,13 +65,13 @@ void list_ridges(AnyMesh& mesh);
 /// surroundings, unless that would invert an element.
 void jiggle(AnyMesh& mesh, Random& random, double amount);
 
-/// Moves `count` inner vertices to almost onto a facet of an element around them: `thickness` is
-/// what is left of the distance. Every element keeps an exactly positive volume.
+/// Moves `count` inner vertices almost onto a facet of an element around them; the distance shrinks
+/// by the factor `thickness`. Every element keeps an exactly positive volume.
 void make_slivers(AnyMesh& mesh, Random& random, std::size_t count, double thickness);
 
-/// Bends the unit square or cube into an arc around the origin, from the x axis on: x becomes the
-/// distance from its axis, from 0.5 to 1.5, and y the angle, up to this one. References stay: 1 is
-/// the inside of the arc, 2 the outside, 3 and 4 its ends.
+/// Bends the unit square or cube into an arc around the origin, starting at the x axis: x becomes
+/// the radius, from 0.5 to 1.5, and y the angle, from 0 to `angle`. References stay: 1 is the
+/// inside of the arc, 2 the outside, 3 and 4 its ends.
 void bend(AnyMesh& mesh, double angle);
 
 /// A truncated cone of height 1 with n cells along each axis; its base has radius 1, its lid radius

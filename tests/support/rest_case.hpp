@@ -20,8 +20,8 @@ struct RestCase {
 };
 
 /// The case of this seed: even seeds are 2D, odd ones 3D. Shapes, regions, required entities,
-/// curved boundaries, kinds of metric and options vary; metrics are isotropic or not, the same
-/// everywhere or not, and scaled so that some 50 to 3,000 elements are asked for.
+/// curved boundaries, kinds of metric and options vary; metrics are isotropic or not, uniform or
+/// not, and scaled to ask for about 50 to 3,000 elements.
 RestCase rest_case(std::uint64_t seed);
 
 }  // namespace ductile::meshadapt::test

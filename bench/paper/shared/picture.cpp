@@ -34,7 +34,7 @@ Surface new_surface(int width, int height) {
   return surface;
 }
 
-// ---- Where a panel shows what ----
+// ---- Layout of panels ----
 
 void expect_plane_field(const FieldPanel& panel) {
   if (panel.mesh.dimension != 2 || panel.mesh.triangles.size() == 0)

@@ -25,7 +25,7 @@ void say_kernels(Experiment& experiment, const std::string& name, const MarchRep
 /// Prints the errors and the rates between rows; writes them to NAME, for plots.
 void say_errors(Experiment& experiment, const std::string& name, const std::vector<ErrorRow>& rows);
 
-/// The exponent r of error = constant * elements^-r from the first row to the last, beside the
+/// The exponent r of error = constant * elements^-r from the first row to the last, away from the
 /// jump.
 double convergence_rate(const std::vector<ErrorRow>& rows);
 

@@ -1,8 +1,8 @@
 /// @file
-/// How much a run measures: its extent, its numbers of threads, and the main function of every
-/// benchmark program. The environment decides, so that one command drives many programs:
-/// DUCTILE_BENCH is `quick`, `standard` (if unset) or `full`; DUCTILE_BENCH_THREADS lists numbers
-/// of threads, "1 2 4"; without it they double up to the cores of the machine.
+/// The extent of a run, its numbers of threads, and the main function of every benchmark program.
+/// Environment variables set them, so that one command can drive many programs: DUCTILE_BENCH is
+/// `quick`, `standard` (the default) or `full`; DUCTILE_BENCH_THREADS lists numbers of threads, "1
+/// 2 4"; by default they double up to the cores of the machine.
 #pragma once
 
 #include <vector>

@@ -28,7 +28,7 @@ Rows rows(const EdgeList& list);
 /// A box of side^dim vertices in rows; every cell is cut into simplices along its main diagonal
 /// (Kuhn). dim is 2 or 3.
 EdgeList mesh(std::uint32_t side, int dim);
-/// Vertices renamed at random.
+/// The graph with its vertices renamed at random.
 EdgeList in_random_order(EdgeList list);
 /// The vertices of mesh(side, dim) renamed along a Hilbert curve, which keeps neighbours near each
 /// other in memory: the cache-friendly order.

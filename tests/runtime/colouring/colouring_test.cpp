@@ -55,7 +55,7 @@ TEST(Colouring, IsTheSameAtAnyThreadCountUnlessItSpeculates) {
 }
 
 TEST(Colouring, LetsNeighboursBeRepeatedOnOneSideOnly) {
-  // A ring with chords, whose even vertices name each neighbour thrice and whose odd ones once.
+  // A ring with chords; even vertices visit each neighbour three times, odd ones once.
   const std::uint32_t n = 4000;
   const auto graph = CallbackGraph(n, [](std::uint32_t v, auto&& visit) {
     for (int repetition = 0; repetition < (v % 2 == 0 ? 3 : 1); ++repetition)
