@@ -119,9 +119,8 @@ class MinimumDegree {
  private:
   QuotientGraph graph_;
   std::vector<std::uint32_t> version_of_;  // [vertex], how often its neighbours have changed
-  std::vector<std::uint32_t>
-      step_of_;  // [vertex], greater than those of all that had to precede it
-  std::vector<std::uint8_t> is_pivot_;  // [vertex], was eliminated by an item of its own
+  std::vector<std::uint32_t> step_of_;     // [vertex], greater than those of all before it
+  std::vector<std::uint8_t> is_pivot_;     // [vertex], was eliminated by an item of its own
 };
 
 /// Returns the ordering; fills in a report if there is one.

@@ -19,8 +19,7 @@ struct Campaign {
   std::string kind;                  ///< only cases of this kind; all if empty
   std::filesystem::path folder;      ///< failing cases stay here
   int workers = 1;                   ///< processes side by side
-  double restless_allowed =
-      0.05;  ///< allowed share of restless cases among those adapted three times
+  double restless_allowed = 0.05;    ///< share of the cases adapted three times
 };
 
 /// Runs the campaign and prints the result. Returns true if no trial failed.

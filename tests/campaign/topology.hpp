@@ -23,8 +23,7 @@ struct PartTopology {
 struct Topology {
   PartTopology whole;
   std::map<int, PartTopology> by_region;
-  int non_manifold_vertices =
-      0;  ///< their elements are not connected by facets; without vertices of those lines
+  int non_manifold_vertices = 0;  ///< elements not connected by facets; off those lines
   int non_manifold_lines = 0;  ///< connected parts of edges with more than two boundary facets (3D)
 };
 

@@ -174,8 +174,7 @@ TYPED_TEST(HessianMetricIn, OfSeveralFieldsSuitsAll) {
   const auto error =
       solution_metric(executor, scene.any, fronts<Dim>(scene.any), {.goal = {.error = 0.01}});
   EXPECT_TRUE(error.fit.reached);
-  EXPECT_LE(error.fit.error,
-            0.01 * (1 + 1e-6));  // smaller, where the other field asks for finer sizes
+  EXPECT_LE(error.fit.error, 0.01 * (1 + 1e-6));  // smaller where the other field rules
   EXPECT_GT(error.fit.error, 0.005);
   AnyField other = fronts<Dim>(scene.any);
   other.values.pop_back();

@@ -314,8 +314,7 @@ TEST(LevelSet, ASlopeOfVoxelsHasAlmostStraightRims) {
       return at(2) < 0.3 * at(0) + 0.17 * at(1) ? 1 : 0;
     };
     const AnyMesh result = adapted(in_one_piece(grid), 0.15, 2.0 / n).mesh;
-    EXPECT_LT(sharp_length(result),
-              1.32 * 10.12);  // 1.36 and 1.40 if sides are chosen across a gap
+    EXPECT_LT(sharp_length(result), 1.32 * 10.12);  // 1.36, 1.40 with sides across a gap
   }
 }
 

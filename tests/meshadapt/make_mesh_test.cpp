@@ -139,8 +139,7 @@ TEST(MakeMesh, JoinsFacetsThatTurnLittleIfCurvedBoundariesMayChange) {
 }
 
 TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
-  for (const double angle :
-       {1.5 * 0.78, 1.5 * 0.79})  // an angle over two cells: 45 degrees are 0.785
+  for (const double angle : {1.5 * 0.78, 1.5 * 0.79})  // of two cells; 45 degrees: 0.785
     for (const int dimension : {2, 3}) {
       const AnyMesh any = bent(dimension, 2, 2 * angle / 1.5);
       const auto fixed =
@@ -153,8 +152,7 @@ TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
 }
 
 TEST(MakeMesh, TellsRidgesByTheAngleGiven) {
-  const AnyMesh flat = bent(2, 4, 1.3),
-                solid = bent(3, 4, 1.3);  // the boundary turns by 18.6 degrees per cell
+  const AnyMesh flat = bent(2, 4, 1.3), solid = bent(3, 4, 1.3);  // 18.6 degrees per cell
   for (const double angle : {18.0, 19.0, 89.0}) {
     const MakeMeshOptions options{.hausdorff_tolerance = 0.01, .ridge_angle = angle};
     const bool joined = angle > 18.6;

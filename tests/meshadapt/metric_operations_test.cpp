@@ -369,8 +369,7 @@ TYPED_TEST(MetricOperations, GradationOfStretchedSizesFollowsTheMixedLaw) {
     const double edge = 1.0 / cells<Dim>, rate = std::log(factor);
     for (std::uint32_t i = 0; i <= cells<Dim>; ++i) {
       EXPECT_NEAR(1 / std::sqrt(metric_of[i](0, 0)), across, 1e-9) << factor << ' ' << i;
-      const double found =
-          1 / std::sqrt(metric_of[i](1, 1));  // may be less, if it spread along another path
+      const double found = 1 / std::sqrt(metric_of[i](1, 1));  // less if from another path
       EXPECT_LT(found, along * (1 + 1e-9)) << factor << ' ' << i;
       EXPECT_GT(found, i == 0 ? 0.099 : 1.2 * across)
           << factor << ' ' << i << ": the sizes along have lost their stretch";

@@ -43,8 +43,7 @@ TYPED_TEST(MetricIn, TheExponentialIsThatOfTheEigenvalues) {
   constexpr int Dim = TypeParam::value;
   Random random(5);
   for (int trial = 0; trial < 2000; ++trial) {
-    const double lowest =
-        test::chance(random, 0.2) ? -170 : -18;  // squares of the lowest ones are subnormal
+    const double lowest = test::chance(random, 0.2) ? -170 : -18;  // subnormal squares
     const double spread = std::pow(10.0, uniform(random, lowest, 1));
     Metric<Dim> log_metric = uniform(random, -20, 20) * isotropic<Dim>(1);
     for (double& entry : log_metric.m)

@@ -191,8 +191,7 @@ TYPED_TEST(RulesIn, ASplitGivesItsVertexTheReferenceOfBothEnds) {
   const AnyMesh any = pair_of<Dim>(2, 4);
   Neighbours<Dim> neighbours;
   auto mesh = made<Dim>(any, &neighbours);
-  mesh.reference_of[0] = mesh.reference_of[1] =
-      5;  // set after the mesh is made, so that they mark no points
+  mesh.reference_of[0] = mesh.reference_of[1] = 5;  // set late: marks no points
   mesh.reference_of[2] = 7;
   const Background<Dim> background(executor, mesh, std::move(neighbours));
   const VertexId first = mesh.vertex_slots();

@@ -229,8 +229,7 @@ TEST(Distribution, IsThatOfTheSortedValues) {
       if (kind == 4) value = (value - 0.5) * 1e308 * 1.9;  // a range that overflows
       if (kind == 5) value = value < 0.1 ? -1 - value : value;
       if (kind == 6)
-        value =
-            value < 0.9 ? 1 + value * 1e-12 : 1e-300 + value;  // a narrow range, and a few far away
+        value = value < 0.9 ? 1 + value * 1e-12 : 1e-300 + value;  // narrow, few outliers
     }
     const Distribution d =
         distribution(Executor({.threads = 1 + static_cast<int>(random() % 4)}), values, 0, 1);

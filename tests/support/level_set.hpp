@@ -15,12 +15,10 @@ namespace ductile::meshadapt::test {
 using Level = std::function<double(const Vector<3>&)>;
 
 double sphere_level(const Vector<3>& p);  ///< distance from a sphere of radius 1
-double torus_level(
-    const Vector<3>& p);  ///< distance from a torus around the z axis, radii 1 and 0.4
+double torus_level(const Vector<3>& p);   ///< distance from a torus around z, radii 1 and 0.4
 double gyroid_level(const Vector<3>& p);  ///< a gyroid sheet of some thickness, with period 1
 double cube_level(const Vector<3>& p);    ///< a cube from -1 to 1, with sharp edges
-double plate_level(
-    const Vector<3>& p);  ///< a disc of radius 1 and thickness 0.02, with a rounded rim
+double plate_level(const Vector<3>& p);   ///< a disc of radius 1, thickness 0.02, with a round rim
 
 /// n^3 cells of six tetrahedra over a cube from -extent to extent, rotated, and shifted by less
 /// than a cell.

@@ -13,8 +13,7 @@ namespace ductile::meshadapt::test {
 
 struct RestCase {
   AnyMesh mesh;
-  std::function<AnyField(const AnyMesh&)>
-      metric_on;  ///< evaluates the formula at the vertices of a mesh
+  std::function<AnyField(const AnyMesh&)> metric_on;  ///< evaluates the formula on a mesh
   AdaptOptions options;
   std::string what;  ///< in words
 };

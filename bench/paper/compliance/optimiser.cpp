@@ -65,8 +65,7 @@ double weighted_sum(const std::vector<double>& value_of, const std::vector<doubl
 
 double sharpness_at(const Path& path, int iteration) {
   const double doublings = std::log2(path.last_sharpness);
-  const double done =
-      1.5 * iteration / path.iterations;  // share of the iterations in which it doubles
+  const double done = 1.5 * iteration / path.iterations;  // share of the doubling phase
   return std::exp2(std::min(doublings, std::floor((doublings + 1) * done)));
 }
 

@@ -20,11 +20,9 @@ inline constexpr double width = 0.25;
 
 struct Path {
   int iterations = 120;
-  double move_limit = 0.2;  ///< largest change of a density in an iteration
-  double last_sharpness =
-      16;  ///< final sharpness of the projection; doubles from 1 on, see sharpness_at
-  double first_length =
-      0;  ///< initial length of the filter, if above the minimum length; see length_at
+  double move_limit = 0.2;     ///< largest change of a density in an iteration
+  double last_sharpness = 16;  ///< final sharpness; doubles from 1 on, see sharpness_at
+  double first_length = 0;     ///< initial filter length if above minimum_length, see length_at
 };
 
 /// Sharpness doubles in equal steps; the last third of the iterations has the last one.

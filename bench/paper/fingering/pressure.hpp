@@ -15,8 +15,7 @@ namespace ductile::paper {
 /// Viscosity e^(R (1 - saturation)): 1 for the injected fluid, e^R for the displaced one.
 struct Fluids {
   double log_viscosity_ratio = 2;  ///< R
-  double diffusivity =
-      0.0004;  ///< diffusivity of the fluids in each other; width and speed of inflow are 1
+  double diffusivity = 0.0004;     ///< for width and speed of the inflow of 1
 };
 
 /// 1 / viscosity.

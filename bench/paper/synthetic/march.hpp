@@ -60,8 +60,7 @@ struct MarchReport {
   double mean_elements = 0;
   TimedSteps all;                   ///< every step, on the executor's threads
   std::vector<TimedSteps> timed{};  ///< the same steps on each number of threads, fewest first
-  bool identical =
-      true;  ///< meshes and metrics were the same on all numbers of threads, byte for byte
+  bool identical = true;            ///< meshes and metrics did not depend on threads
 };
 
 /// Adapts the mesh to the solution at each phase in order. The goal is adjusted from phase to phase
