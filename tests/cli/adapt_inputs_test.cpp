@@ -1,6 +1,6 @@
 /// @file
-/// What `ductile adapt` takes and says of it: which metric is in force, metrics of solutions, sizes
-/// on elements, meshes that are not connected, requests that are too large.
+/// Inputs of `ductile adapt` and messages about them: the metric in force, metrics of solutions,
+/// sizes on elements, meshes that are not connected, requests that are too large.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ NamedField field_of(const AnyMesh& mesh, const std::string& name, Place place, a
   return field;
 }
 
-/// The mesh and another one behind its right side, which do not share vertices.
+/// Returns the mesh together with another one at its right side; the two share no vertices.
 AnyMesh beside(AnyMesh mesh, const AnyMesh& other) {
   const auto shift = static_cast<std::uint32_t>(mesh.vertex_count());
   const auto d = static_cast<std::size_t>(mesh.dimension);
@@ -184,7 +184,7 @@ TEST_P(AdaptInputs, SizesOnElementsAreUsed) {
 }
 
 TEST_P(AdaptInputs, RequestsThatCannotBeNumberedAreRefusedInOneLine) {
-  // Needles: long, so thin that the integral of the density says nothing.
+  // Needles so thin that the integral of the density is no estimate of the number of elements.
   for (const double thin : {1e-3, 1e-9, 1e-12}) {
     AnyMesh mesh = grid(dimension_, 1);
     for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)

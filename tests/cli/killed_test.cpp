@@ -1,6 +1,6 @@
 /// @file
-/// Kills the program at each step of giving names to its outputs, and at random moments: what is
-/// there afterwards is of one run, and a reader notices where something is missing.
+/// Kills the program at each step of renaming its outputs, and at random moments: the remaining
+/// files belong to one run, and a reader notices if some are missing.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace {
 
 using Contents = std::map<std::string, std::string>;
 
-/// A folder with the outputs of a first run, of which a second one writes others.
+/// A folder with the outputs of a first run, which a second run overwrites.
 class Killed : public testing::Test {
  protected:
   Killed() {
@@ -38,13 +38,14 @@ class Killed : public testing::Test {
     for (const auto& [name, bytes] : old_) folder_.write(name, bytes);
   }
 
-  /// All old or all new.
+  /// Expects that all files are old or all are new.
   void expect_a_unit(const std::string& where) const {
     const Contents now = contents_of(folder_);
     EXPECT_TRUE(now == old_ || now == new_) << where << ": " << now.size() << " files";
   }
 
-  /// All that is there is of the run that the mesh is of, and what is not can be found.
+  /// Expects that all files are of the same run as the mesh, and that `adapt` refuses the mesh if
+  /// its metric is missing.
   void expect_no_mixture(const std::string& where) const {
     const Contents now = contents_of(folder_);
     ASSERT_TRUE(now.contains("o.mesh")) << where;

@@ -63,8 +63,8 @@ TEST(Adapter, EachKernelLeavesTheMeshSound) {
   }
 }
 
-/// A random arc of one region or two, rippled, with listed ridges or none, and random metrics; what
-/// is curved may change.
+/// A random arc of one or two regions, rippled, with or without listed ridges, and a random metric;
+/// curved parts may change.
 test::RandomCase random_arc(std::uint64_t seed) {
   test::Random random(seed);
   const int dimension = seed % 2 == 0 ? 2 : 3, n = dimension == 2 ? 16 : 6;

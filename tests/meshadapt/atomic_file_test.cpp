@@ -165,9 +165,9 @@ TEST(AtomicOutputs, RefuseNamesThatLeadNowhere) {
   EXPECT_NO_THROW(check_writable(folder / std::string(255, 'n')));
 }
 
-/// As in /tmp, with a file of another user's.
+/// The folder is sticky, as /tmp is, and has a file of another user.
 TEST(AtomicOutputs, RefuseToReplaceWhatOnlyItsOwnerMay) {
-  if (geteuid() != 0) GTEST_SKIP() << "only root may be two users";
+  if (geteuid() != 0) GTEST_SKIP() << "only root can act as two users";
   const test::TemporaryFolder folder;
   fs::permissions(folder / "", fs::perms::all | fs::perms::sticky_bit);
   test::put_bytes(folder / "a", "old");
@@ -185,7 +185,7 @@ TEST(AtomicOutputs, RefuseToReplaceWhatOnlyItsOwnerMay) {
   EXPECT_NO_THROW(check_writable(folder / "a"));
 }
 
-/// To the system the folder above is that of where the link leads.
+/// The system resolves ".." from the target of a link.
 TEST(AtomicOutputs, GoUpFromWhereALinkLeads) {
   const test::TemporaryFolder folder;
   fs::create_directories(folder / "deep" / "down");
@@ -218,7 +218,7 @@ TEST(AtomicOutputs, ReportAFullDisk) {
   const AnyMesh mesh = test::random_mesh(2, 100, 1);
   try {
     write_mesh("/dev/full", mesh, {.form = WriteOptions::Form::ascii});
-    FAIL() << "nothing thrown";
+    FAIL() << "expected an exception";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("/dev/full: cannot write, No space left"),
               std::string::npos)
@@ -228,7 +228,7 @@ TEST(AtomicOutputs, ReportAFullDisk) {
   EXPECT_FALSE(fs::is_regular_file("/dev/null"));
 }
 
-/// Files cannot grow beyond `bytes` while it lives: the process ends if it tries.
+/// Limits the size of files to `bytes` during its lifetime; exceeding it ends the process.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {

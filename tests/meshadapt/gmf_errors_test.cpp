@@ -1,5 +1,5 @@
-// Files that are wrong: each kind of fault gives an InputError that names file, place and fault,
-// and no sequence of bytes does anything worse.
+// Invalid files: each kind of fault gives an InputError that names file, place and fault, and no
+// sequence of bytes does anything worse.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ std::string replaced(std::string text, const std::string& part, const std::strin
 
 class GmfErrors : public testing::Test {
  protected:
-  /// What read_mesh says about this content, without the folder's name.
+  /// The error of read_mesh for this content, without the folder's name.
   std::string mesh_complaint(const std::string& bytes) {
     test::put_bytes(folder_ / "bad.mesh", bytes);
     return base_name(test::complaint([&] { read_mesh(folder_ / "bad.mesh"); }));
@@ -63,14 +63,14 @@ class GmfErrors : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-/// The complaint begins with the place and contains the fault.
+/// Expects that the complaint begins with the place and contains the fault.
 void expect_says(const std::string& complaint, const std::string& place, const std::string& fault) {
   EXPECT_TRUE(complaint.starts_with(place)) << complaint;
   EXPECT_NE(complaint.find(fault), std::string::npos) << complaint;
   EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
 }
 
-// ---- Files as such ----
+// ---- Missing, empty and special files ----
 
 TEST_F(GmfErrors, NameWhatCannotBeRead) {
   const auto complaint = [&](const std::string& name) {
@@ -215,7 +215,7 @@ TEST_F(GmfErrors, TakeNoSignForANumber) {
   }
 }
 
-// ---- What is odd but understood ----
+// ---- Unusual but valid ----
 
 TEST_F(GmfErrors, AcceptFreeFormText) {
   const std::string text =

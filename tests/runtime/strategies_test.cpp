@@ -22,7 +22,7 @@ using Dims =
     testing::Types<std::integral_constant<std::size_t, 2>, std::integral_constant<std::size_t, 3>>;
 TYPED_TEST_SUITE(Strategies, Dims);
 
-/// From few and from many, to few and to many: one by one, in regions, and both.
+/// Few and many intervals become few and many: run one by one, in regions, and both.
 TYPED_TEST(Strategies, SplitTheSameAtAnyNumberOfThreads) {
   for (const auto& [count, length] :
        {std::pair<std::size_t, double>{1, 1e-3}, {7, 0.4}, {50, 2.5e-5}, {40000, 3e-5}})
@@ -92,7 +92,7 @@ TEST(Strategies, RunInsideALoopAndWithoutWork) {
 
 // ---- In order ----
 
-/// The lowest colour that no neighbour before it in the work has.
+/// Each vertex takes the lowest colour that no neighbour before it in the work has.
 class GreedyColours {
  public:
   using Item = Vertex;
@@ -131,7 +131,7 @@ class GreedyColours {
   const CsrRows& rows_;
 };
 
-/// Of n vertices, edges (a(i), b(i)) for i below m.
+/// A graph of n vertices with the edges (a(i), b(i)) for i below m.
 CsrRows graph_of(std::size_t n, std::size_t m, auto&& a, auto&& b) {
   std::vector<std::set<Vertex>> row(n);
   for (std::size_t i = 0; i < m; ++i) {
@@ -148,8 +148,8 @@ CsrRows graph_of(std::size_t n, std::size_t m, auto&& a, auto&& b) {
   return rows;
 }
 
-/// More vertices than may be begun ahead of the first that waits: a path and random edges. Fewer:
-/// no edge, a star, neighbours near in the order.
+/// Graphs with more vertices than may be begun ahead of the first waiting one: a path and random
+/// edges. Graphs with fewer: no edges, a star, neighbours close in the order.
 std::vector<CsrRows> graphs() {
   constexpr std::size_t n = 6000, many = 40000;
   const auto self = [](std::size_t i) { return i; };
@@ -167,8 +167,8 @@ std::vector<CsrRows> graphs() {
   return all;
 }
 
-/// Runs the work in parts of this size, each at once, which a whole run does only where that was
-/// faster so far. Returns what was applied.
+/// Runs the work in parts of this size, each on several threads; a whole run does that only where
+/// it was faster so far. Returns the applied items.
 template <class Op, class Work>
 std::vector<Vertex> run_at_once(const Executor& executor, Op& op, const Work& work,
                                 std::size_t part) {
@@ -226,7 +226,7 @@ TEST(InOrder, GivesWhatAPlainLoopGives) {
   }
 }
 
-/// Joins pairs of numbers that are both free; tells no conflicts.
+/// Joins pairs of free numbers; has no conflicts().
 class Pairing {
  public:
   using Item = std::uint32_t;
@@ -373,7 +373,7 @@ TYPED_TEST(Strategies, MapRegionsOfEqualSizes) {
                 1.2 * static_cast<double>(*std::min_element(size.begin(), size.end())));
       cuts.insert(owner_of);
     }
-  EXPECT_EQ(cuts.size(), 3U) << "a cut for each turn, the same at any number of threads";
+  EXPECT_EQ(cuts.size(), 3U) << "expected one cut per turn, the same at any number of threads";
 }
 
 }  // namespace

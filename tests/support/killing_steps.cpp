@@ -1,6 +1,6 @@
 /// @file
-/// A library to be loaded before a program (LD_PRELOAD): it sends the program a signal before its
-/// n-th step of giving names to files. The environment says which and with what:
+/// A library to be loaded before a program (LD_PRELOAD): sends the program a signal before its n-th
+/// step of renaming files. The environment gives n and the signal:
 ///   DUCTILE_KILL_AT=n  DUCTILE_KILL_WITH=signal  DUCTILE_KILL_COUNT=file (the number of steps)
 ///   DUCTILE_NAMED=1: as if the file system had no files without names
 #include <dlfcn.h>
