@@ -14,7 +14,7 @@ std::string_view name_of(ProcessorLevel level) {
   return "as built";
 }
 
-// What is asked for are the instructions that DuctileLevels.cmake has the compiler use.
+// Asks for the instructions that DuctileLevels.cmake has the compiler use.
 std::vector<ProcessorLevel> usable_levels() {
   std::vector<ProcessorLevel> levels;
 #if defined(DUCTILE_LEVEL_v3) || defined(DUCTILE_LEVEL_v4)
@@ -35,16 +35,16 @@ std::vector<ProcessorLevel> usable_levels() {
 }
 
 AdaptedMesh adapt_at([[maybe_unused]] ProcessorLevel level, const runtime::Executor& executor,
-                     const AnyMesh& mesh, const AnyField& metric, const AdaptOptions& options) {
+                     const AnyMesh& mesh, MetricSource& source, const AdaptOptions& options) {
 #ifdef DUCTILE_LEVEL_v4
   if (level == ProcessorLevel::v4)
-    return adapt_at_level<ProcessorLevel::v4>(executor, mesh, metric, options);
+    return adapt_at_level<ProcessorLevel::v4>(executor, mesh, source, options);
 #endif
 #ifdef DUCTILE_LEVEL_v3
   if (level == ProcessorLevel::v3)
-    return adapt_at_level<ProcessorLevel::v3>(executor, mesh, metric, options);
+    return adapt_at_level<ProcessorLevel::v3>(executor, mesh, source, options);
 #endif
-  return adapt_at_level<ProcessorLevel::as_built>(executor, mesh, metric, options);
+  return adapt_at_level<ProcessorLevel::as_built>(executor, mesh, source, options);
 }
 
 }  // namespace ductile::meshadapt

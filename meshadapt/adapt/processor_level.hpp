@@ -22,13 +22,13 @@ std::string_view name_of(ProcessorLevel level);
 /// Thread safety: any thread.
 std::vector<ProcessorLevel> usable_levels();
 
-/// adapt() at one of the usable levels, and what it takes for granted of its input.
+/// adapt_in() at one of the usable levels.
 AdaptedMesh adapt_at(ProcessorLevel level, const runtime::Executor& executor, const AnyMesh& mesh,
-                     const AnyField& metric, const AdaptOptions& options);
+                     MetricSource& source, const AdaptOptions& options);
 
 /// The same, where all that it calls is compiled for the level.
 template <ProcessorLevel level>
 AdaptedMesh adapt_at_level(const runtime::Executor& executor, const AnyMesh& mesh,
-                           const AnyField& metric, const AdaptOptions& options);
+                           MetricSource& source, const AdaptOptions& options);
 
 }  // namespace ductile::meshadapt

@@ -16,6 +16,19 @@ namespace {
 using runtime::Executor;
 using test::bits;
 
+/// adapt() to this metric at a level.
+AdaptedMesh adapt_to(ProcessorLevel level, const Executor& executor, const AnyMesh& mesh,
+                     const AnyField& metric, const AdaptOptions& options) {
+  struct Source : MetricSource {
+    explicit Source(const AnyField& given) : metric(given) {}
+    const AnyField* next(const AdaptState& state) override {
+      return state.pass == 0 ? &metric : nullptr;
+    }
+    const AnyField& metric;
+  } source(metric);
+  return adapt_at(level, executor, mesh, source, options);
+}
+
 TEST(ProcessorLevel, BestComesFirstAndAsBuiltIsAlwaysThere) {
   const std::vector<ProcessorLevel> levels = usable_levels();
   ASSERT_FALSE(levels.empty());
@@ -39,11 +52,11 @@ TEST_P(ProcessorLevelOf, AllGiveTheSameBytes) {
   test::scale_to(metric, mesh, dimension == 2 ? 1500 : 700);
   const Executor executor({.threads = 2});
   const AdaptOptions options{.smallest_size = 0.01, .largest_size = 0.3, .gradation = 1.5};
-  const AdaptedMesh expected = adapt_at(ProcessorLevel::as_built, executor, mesh, metric, options);
+  const AdaptedMesh expected = adapt_to(ProcessorLevel::as_built, executor, mesh, metric, options);
   EXPECT_EQ(expected.report.instructions, "as built");
   for (const ProcessorLevel level : usable_levels()) {
     SCOPED_TRACE(name_of(level));
-    const AdaptedMesh result = adapt_at(level, executor, mesh, metric, options);
+    const AdaptedMesh result = adapt_to(level, executor, mesh, metric, options);
     EXPECT_EQ(result.report.instructions, name_of(level));
     EXPECT_EQ(bits(result.mesh.coordinates), bits(expected.mesh.coordinates));
     EXPECT_TRUE(result.mesh == expected.mesh);
@@ -56,7 +69,7 @@ TEST_P(ProcessorLevelOf, WhatTheyThrowIsCaughtByItsType) {
   const AnyField metric = constant_metric(mesh, 0.3);
   (GetParam() == 2 ? mesh.triangles.vertices[1][0] : mesh.tetrahedra.vertices[1][0]) = 1000;
   for (const ProcessorLevel level : usable_levels())
-    EXPECT_THROW(adapt_at(level, Executor({.threads = 2}), mesh, metric, {}), InputError)
+    EXPECT_THROW(adapt_to(level, Executor({.threads = 2}), mesh, metric, {}), InputError)
         << name_of(level);
 }
 
