@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "adapt/processor_level.hpp"
+#include "adapt/adapt_mesh.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/geometry.hpp"
@@ -92,7 +92,7 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const 
     const AnyField& judged = bounded ? *bounded : metric;
     mesh.dimension == 2 ? expect_metric_field<2>(executor, judged)
                         : expect_metric_field<3>(executor, judged);
-    adapted = adapt_at(usable_levels().front(), executor, mesh, judged, options);
+    adapted = adapt_mesh(executor, mesh, judged, options);
   });
   adapted.mesh.names = mesh.names;
   return adapted;

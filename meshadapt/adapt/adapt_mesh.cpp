@@ -1,6 +1,5 @@
 /// @file
-/// The whole of adapt() but the choice of its level: from an AnyMesh by way of an Adapter to
-/// another.
+/// adapt() after its arguments are checked: makes a mesh, runs an Adapter on it, takes it apart.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -12,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "adapt/adapt_mesh.hpp"
 #include "adapt/adapter.hpp"
 #include "adapt/held_edges.hpp"
-#include "adapt/processor_level.hpp"
 #include "adapt/rescue.hpp"
 #include "adapt/take_apart.hpp"
 #include "ductile/meshadapt/error.hpp"
@@ -32,10 +31,6 @@
 #include "metric/required_sizes.hpp"
 #include "operators/round_boundary.hpp"
 
-#ifndef DUCTILE_LEVEL  // which is only given where this is compiled once more
-#define DUCTILE_LEVEL as_built
-#endif
-
 namespace ductile::meshadapt {
 
 namespace {
@@ -50,14 +45,14 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// What limits metrics, and what is to be said about it.
+/// The limits of a metric, and the warnings about it.
 struct SizeLimits {
   const AdaptOptions& options;
   const std::string& name;  ///< of the metric
   std::vector<std::string>& warnings;
 };
 
-/// By how much sizes may grow; 0 for as much as is asked for.
+/// The factor by which sizes may grow; 0 if there is no limit.
 double growth_of(const AdaptOptions& options) {
   constexpr double from_curves = 1.3;
   return options.curved_sizes && options.gradation == 0 ? from_curves
@@ -188,7 +183,7 @@ bool has_crack_sides(const Mesh<Dim>& mesh) {
                      [](const Patch<Dim>& patch) { return patch.crack_side; });
 }
 
-/// Adapts; a mesh that came adapted, and is better than what came out, is set up again and kept.
+/// Adapts. If the result is worse than the input, restores the input.
 template <int Dim>
 void run(std::optional<Adapter<Dim>>& adapter, const auto& set_up) {
   using Outcome = typename Adapter<Dim>::Outcome;
@@ -323,17 +318,12 @@ AdaptedMesh adapt_in(const runtime::Executor& executor, const AnyMesh& any, cons
 
 }  // namespace
 
-template <ProcessorLevel level>
-AdaptedMesh adapt_at_level(const runtime::Executor& executor, const AnyMesh& mesh,
-                           const AnyField& metric, const AdaptOptions& options) {
+AdaptedMesh adapt_mesh(const runtime::Executor& executor, const AnyMesh& mesh,
+                       const AnyField& metric, const AdaptOptions& options) {
   AdaptedMesh result = mesh.dimension == 2 ? adapt_in<2>(executor, mesh, metric, options)
                                            : adapt_in<3>(executor, mesh, metric, options);
-  result.report.instructions = name_of(level);
+  result.report.instructions = name_of(best_instructions());
   return result;
 }
-
-template AdaptedMesh adapt_at_level<ProcessorLevel::DUCTILE_LEVEL>(const runtime::Executor&,
-                                                                   const AnyMesh&, const AnyField&,
-                                                                   const AdaptOptions&);
 
 }  // namespace ductile::meshadapt
