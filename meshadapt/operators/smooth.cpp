@@ -82,11 +82,6 @@ runtime::UnsetVector<VertexId> Smooth<Dim>::vertices_on_surface(const runtime::E
 
 template <int Dim>
 bool Smooth<Dim>::decide(VertexId vertex, Plan& plan) const {
-  return run_with(mesh_.instructions, [&] { return find_move(vertex, plan); });
-}
-
-template <int Dim>
-bool Smooth<Dim>::find_move(VertexId vertex, Plan& plan) const {
   const auto elements = mesh_.elements_of.of(vertex);
   if (elements.empty() || elements.size() > mesh_.largest_ball) return false;
   if (options_.to_surface) {

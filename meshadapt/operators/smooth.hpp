@@ -96,7 +96,6 @@ class Smooth {
     BallQualities<Dim> qualities{};
   };
   void move(VertexId vertex, const Plan& plan);
-  bool find_move(VertexId vertex, Plan& plan) const;
   bool follow(VertexId vertex, const Place& best, Plan& plan) const;
   bool place(const VertexBall<Dim>& ball, const Vector<Dim>& position, const Place& near,
              const Score& bar, Place& result) const;
