@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "adapt/processor_level.hpp"
+#include "adapt/outer_loop.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/geometry.hpp"
@@ -61,7 +61,8 @@ AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, Metric
   expect_coordinates(mesh);
   AdaptedMesh adapted;
   runtime::with_team(executor, [&] {
-    adapted = adapt_at(usable_levels().front(), executor, mesh, source, options);
+    adapted = mesh.dimension == 2 ? adapt_in<2>(executor, mesh, source, options)
+                                  : adapt_in<3>(executor, mesh, source, options);
   });
   adapted.mesh.names = mesh.names;
   return adapted;

@@ -14,6 +14,7 @@
 #include "adapt/rescue.hpp"
 #include "adapt/size_limits.hpp"
 #include "adapt/take_apart.hpp"
+#include "core/instructions.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
@@ -235,6 +236,7 @@ AdaptedMesh adapt_in(const Executor& executor, const AnyMesh& input, MetricSourc
     }
   }
   adapted.report.total_seconds = seconds;
+  adapted.report.instructions = name_of(best_instructions());
   return adapted;
 }
 

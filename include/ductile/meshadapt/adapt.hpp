@@ -51,8 +51,8 @@ struct AdaptReport {
   int attempts = 1;
   bool checked = false;  ///< check_adapted() ran and found no fault
   std::vector<std::string> warnings;
-  /// Processor level of the kernels used: "as built", "x86-64-v3" or "x86-64-v4". The library may
-  /// contain several and uses the best that this processor can run.
+  /// Instructions of the functions that take most of the time: "as built", or "x86-64-v4" if the
+  /// library also contains them for AVX-512 and this processor has it.
   std::string_view instructions = "as built";
 };
 
