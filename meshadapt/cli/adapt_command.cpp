@@ -22,7 +22,6 @@
 #include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
-#include "io/atomic_file.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "recovery_option.hpp"

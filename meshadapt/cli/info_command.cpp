@@ -10,7 +10,6 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "files.hpp"
-#include "io/atomic_file.hpp"
 #include "report.hpp"
 #include "run_in_team.hpp"
 

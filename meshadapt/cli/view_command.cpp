@@ -9,7 +9,6 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
-#include "io/atomic_file.hpp"
 #include "picture/draw.hpp"
 #include "run_in_team.hpp"
 #include "shown_field.hpp"

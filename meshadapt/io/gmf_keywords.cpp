@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "number_reader.hpp"
+
 namespace ductile::meshadapt::gmf {
 namespace {
 
@@ -98,13 +100,6 @@ bool names_other_cells(std::string_view name) {
     if (order.find_first_not_of("0123456789") == std::string_view::npos) return true;
   }
   return false;
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
 }
 
 /// Whether one letter more, less or other makes the two equal.

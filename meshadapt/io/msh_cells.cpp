@@ -6,44 +6,15 @@
 #include <string>
 #include <utility>
 
+#include "cell_shapes.hpp"
+
 namespace ductile::meshadapt {
-namespace {
-
-struct MshShape {
-  int type;
-  int corners;  ///< 0: not taken
-  const char* name;
-};
-constexpr std::array<MshShape, 17> msh_shapes{{{15, 1, "a point"},
-                                               {1, 2, "a line"},
-                                               {2, 3, "a triangle"},
-                                               {4, 4, "a tetrahedron"},
-                                               {3, 0, "a quadrangle"},
-                                               {5, 0, "a hexahedron"},
-                                               {6, 0, "a prism"},
-                                               {7, 0, "a pyramid"},
-                                               {8, 0, "a line of second order"},
-                                               {9, 0, "a triangle of second order"},
-                                               {10, 0, "a quadrangle of second order"},
-                                               {11, 0, "a tetrahedron of second order"},
-                                               {12, 0, "a hexahedron of second order"},
-                                               {13, 0, "a prism of second order"},
-                                               {14, 0, "a pyramid of second order"},
-                                               {16, 0, "a quadrangle of second order"},
-                                               {17, 0, "a hexahedron of second order"}}};
-
-}  // namespace
-
-int msh_corners(const NumberCursor& in, std::int64_t type) {
-  const char* name = "another element";
-  for (const MshShape& shape : msh_shapes) {
-    if (shape.type != type) continue;
-    if (shape.corners > 0) return shape.corners;
-    name = shape.name;
-  }
+int msh_corners(const NumberReader& in, std::int64_t type) {
+  const CellShape shape = shape_of(&CellShape::gmsh, type);
+  if (shape.corners > 0) return shape.corners;
   const bool of_first_order = type == 3 || (type >= 5 && type <= 7);
   in.fail(std::string("expected points, lines, triangles and tetrahedra of first order, found ") +
-          name + " (type " + std::to_string(type) + "); " +
+          shape.name + " (type " + std::to_string(type) + "); " +
           (of_first_order ? "split such elements into simplices first, in Gmsh do not recombine"
                           : "write the mesh in first order, as with gmsh -order 1"));
 }

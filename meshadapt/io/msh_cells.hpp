@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "msh_groups.hpp"
-#include "number_cursor.hpp"
 #include "number_index.hpp"
+#include "number_reader.hpp"
 #include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
 
 /// The shape of Gmsh's elements of a type; throws InputError unless it is a point, line, triangle
 /// or tetrahedron of first order. 1 to 4 corners.
-int msh_corners(const NumberCursor& in, std::int64_t type);
+int msh_corners(const NumberReader& in, std::int64_t type);
 
 /// What Gmsh says about an element, or a block of them.
 struct MshGroup {
@@ -29,7 +29,7 @@ struct MshGroup {
 class MshCells {
  public:
   /// `index_of` finds the nodes of the mesh, whose references are there and 0.
-  MshCells(const NumberCursor& in, SpatialMesh& to, const NumberIndex& index_of)
+  MshCells(const NumberReader& in, SpatialMesh& to, const NumberIndex& index_of)
       : in_(in), to_(to), index_of_(index_of) {}
 
   /// `nodes` are numbers of `corners` nodes.
@@ -54,7 +54,7 @@ class MshCells {
   void put_in_order(Cells<Corners>& cells);
   void append_number(std::vector<std::size_t>& places, std::size_t corners, std::uint64_t number);
 
-  const NumberCursor& in_;
+  const NumberReader& in_;
   SpatialMesh& to_;
   const NumberIndex& index_of_;
   // [corners][cell of that shape]

@@ -17,7 +17,8 @@ struct VtkEncoding {
   std::size_t head_bytes = 4;  ///< of the numbers in front of an array, 4 or 8
 };
 
-/// A kind of number, by its name: "Float64", "UInt8"; 0 bytes if there is none of that name.
+/// A kind of number by its name in XML, "Float64", or in legacy files, "double", where vtkIdType
+/// has 4 bytes; 0 bytes if there is none of that name.
 struct VtkNumber {
   std::size_t bytes = 0;
   bool is_real = false, is_signed = false;

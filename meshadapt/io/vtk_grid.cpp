@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string_view>
 #include <utility>
 
+#include "cell_shapes.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "number_cursor.hpp"
+#include "number_reader.hpp"
 #include "vtk_cells.hpp"
 
 namespace ductile::meshadapt {
@@ -19,40 +19,12 @@ namespace {
   throw InputError(grid.name + ": " + text);
 }
 
-struct VtkShape {
-  std::int64_t type;
-  std::size_t corners;  ///< 0: not taken
-  const char* name;
-};
-constexpr std::array<VtkShape, 18> vtk_shapes{{{vtk_vertex, 1, "a vertex"},
-                                               {vtk_line, 2, "a line"},
-                                               {vtk_triangle, 3, "a triangle"},
-                                               {vtk_tetrahedron, 4, "a tetrahedron"},
-                                               {2, 0, "a poly-vertex"},
-                                               {4, 0, "a poly-line"},
-                                               {6, 0, "a triangle strip"},
-                                               {7, 0, "a polygon"},
-                                               {8, 0, "a pixel"},
-                                               {9, 0, "a quadrangle"},
-                                               {11, 0, "a voxel"},
-                                               {12, 0, "a hexahedron"},
-                                               {13, 0, "a wedge"},
-                                               {14, 0, "a pyramid"},
-                                               {21, 0, "a quadratic edge"},
-                                               {22, 0, "a quadratic triangle"},
-                                               {24, 0, "a quadratic tetrahedron"},
-                                               {42, 0, "a polyhedron"}}};
-
 std::size_t vtk_corners(const VtkGrid& grid, std::size_t cell) {
-  const char* name = "another cell";
-  for (const VtkShape& shape : vtk_shapes) {
-    if (shape.type != grid.types[cell]) continue;
-    if (shape.corners > 0) return shape.corners;
-    name = shape.name;
-  }
-  fail(grid, "expected vertices, lines, triangles and tetrahedra, found " + std::string(name) +
-                 " (type " + std::to_string(grid.types[cell]) + ") in cell " +
-                 std::to_string(cell + 1) +
+  const CellShape shape = shape_of(&CellShape::vtk, grid.types[cell]);
+  if (shape.corners > 0) return static_cast<std::size_t>(shape.corners);
+  fail(grid, "expected vertices, lines, triangles and tetrahedra, found " +
+                 std::string(shape.name) + " (type " + std::to_string(grid.types[cell]) +
+                 ") in cell " + std::to_string(cell + 1) +
                  "; split such cells into linear simplices first, as ParaView's Tetrahedralize "
                  "does");
 }
@@ -173,15 +145,14 @@ void expect_lengths(const VtkGrid& grid) {
                    "; the file is damaged, write it again");
 }
 
-/// "2 10 steel" as a name; what is not like that is no name of a reference.
+/// Takes "2 10 steel" as a name; other lines are no names of references.
 void take_name(AnyMesh& mesh, std::string_view line) {
   ReferenceName name;
-  const char* const end = line.data() + line.size();
-  const auto [after, error] = std::from_chars(line.data(), end, name.dimension);
-  if (error != std::errc{} || after == end || name.dimension < 0 || name.dimension > 3) return;
-  const auto [behind, second] = std::from_chars(after + 1, end, name.reference);
-  if (second != std::errc{} || behind == end) return;
-  name.name.assign(behind + 1, end);
+  NumberReader in(line, "");
+  if (!in.take(name.dimension) || name.dimension < 0 || name.dimension > 3 ||
+      !in.take(name.reference) || in.left() == 0)
+    return;
+  name.name.assign(in.at() + 1, in.left() - 1);
   mesh.names.push_back(std::move(name));
 }
 

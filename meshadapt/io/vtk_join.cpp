@@ -1,4 +1,4 @@
-#include "vtk_join.hpp"
+#include "vtk_grid.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "vtu_read.hpp"
+#include "formats.hpp"
 
 #include <bit>
 #include <cmath>
@@ -12,7 +12,6 @@
 #include "ductile/meshadapt/error.hpp"
 #include "vtk_decode.hpp"
 #include "vtk_grid.hpp"
-#include "vtk_join.hpp"
 
 namespace ductile::meshadapt {
 namespace {

@@ -106,14 +106,15 @@ void write_field(const std::filesystem::path& path, const AnyField& field,
 // ---- Outputs that appear whole, and together ----
 
 class OutputFile;
+class Sink;
 
 /// Several output files that belong together and appear whole or not at all. While written, each
-/// has no name or, if the file system cannot do that, a temporary one beside its place,
-/// `NAME.ductile-tmp-PID-N`; commit() names all of them once every byte is on disk. Until then, and
-/// after an error or an interrupt, the previous files are untouched. Signals that end the process
-/// remove temporary files, and are delayed during renaming (runtime/process.hpp). Files that are
-/// not regular (/dev/null, a pipe), and those behind names such as /dev/stdout or /dev/fd/3, are
-/// written directly. Thread safety: one thread.
+/// has a temporary name beside its place, `NAME.ductile-tmp-PID-N`; commit() renames all of them
+/// once every byte is on disk. Until then, and after an error or an interrupt, the previous files
+/// are untouched. Signals that end the process remove temporary files (except SIGKILL), and are
+/// delayed during renaming (runtime/process.hpp). Files that are not regular (/dev/null, a pipe),
+/// and those behind names such as /dev/stdout or /dev/fd/3, are written directly. Thread safety:
+/// one thread.
 class AtomicOutputs {
  public:
   AtomicOutputs();
@@ -124,7 +125,7 @@ class AtomicOutputs {
 
   /// Opens an output for `path`, valid until commit(). Follows symbolic links and replaces their
   /// target. Throws InputError if check_writable would, or if `path` is already staged.
-  OutputFile& stage(const std::filesystem::path& path);
+  Sink& stage(const std::filesystem::path& path);
 
   /// Brings every file to disk, then moves each to its place. The old files of all outputs except
   /// the first are set aside before: a process killed meanwhile may leave the first one, old or
