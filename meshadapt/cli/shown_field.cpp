@@ -27,7 +27,7 @@ const NamedField* find(std::string_view word, const std::vector<NamedField>& fie
   return number >= 1 && number <= fields.size() ? &fields[number - 1] : nullptr;
 }
 
-/// How often component i of a tensor stands in it.
+/// The number of times that component i occurs in a tensor.
 double weight_of(AnyField::Type type, std::size_t i) {
   const bool diagonal = i == 0 || i == 2 || i == 5;  // of a symmetric one
   return type == AnyField::Type::symmetric && !diagonal ? 2 : 1;

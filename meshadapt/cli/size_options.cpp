@@ -28,7 +28,7 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-/// "2", or "2/0.5", which only growth is said with.
+/// True for "2", and for "2/0.5", which only a growth can be.
 bool is_numeric(const std::string& text) {
   const auto parts = split(text, '/');
   return parts.size() <= 2 && std::all_of(parts.begin(), parts.end(), [](const std::string& part) {
@@ -50,7 +50,7 @@ constexpr std::array<Shape, 5> shapes{{{"point", "X,Y,Z (X,Y in 2D)"},
   throw UsageError("option " + words + ": expected " + expected);
 }
 
-/// H[:GROW[:HMAX]] or H:HMAX/DISTANCE, of which there is at least H.
+/// Reads H[:GROW[:HMAX]] or H:HMAX/DISTANCE.
 void read_growth(const std::string& all, const std::vector<std::string>& fields, double& size,
                  meshadapt::SizeGrowth& growth) {
   const auto is_size = [](double x) {
@@ -77,7 +77,7 @@ void read_growth(const std::string& all, const std::vector<std::string>& fields,
                     (parts.size() == 2 ? parts[0] : fields[2]) + "'");
 }
 
-/// The points that numbers give, all of one dimension.
+/// Points from their coordinates.
 std::vector<Vector<3>> points_of(const std::vector<double>& numbers, std::size_t dimension) {
   std::vector<Vector<3>> points(numbers.size() / dimension);
   for (std::size_t i = 0; i < points.size() * dimension; ++i)
@@ -125,7 +125,7 @@ SizeOptions::Words SizeOptions::read(const std::string& option, const std::strin
   } else {
     words.shape = option == "--on" ? "on" : "in";
   }
-  // A name, or that of a file, may have colons: what numbers there are at the end is the rest.
+  // Names may have colons, so that only numbers at the end are the size and its growth.
   std::size_t first = fields.size();
   while (first > named && fields.size() - first < 3 && is_numeric(fields[first - 1])) --first;
   if (first < named || first == fields.size() || split(fields[first], '/').size() > 1)

@@ -110,7 +110,7 @@ class Folders {
       if (descriptor >= 0) ::close(descriptor);
   }
 
-  /// Where the file system can do that.
+  /// Does nothing on file systems that cannot.
   void bring_names_to_disk() const {
     for (const int descriptor : descriptors_) ::fsync(descriptor);
   }

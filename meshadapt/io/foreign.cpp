@@ -17,6 +17,8 @@ constexpr const char* by_meshio_hdf =
     "; convert it first, as with meshio convert FILE mesh.vtu, which needs Python's h5py";
 constexpr const char* by_meshio_netcdf =
     "; convert it first, as with meshio convert FILE mesh.vtu, which needs Python's netCDF4";
+constexpr const char* by_meshio_avs =
+    "; convert it first, as with meshio convert --input-format avsucd FILE mesh.vtu";
 constexpr const char* by_gmsh = "; convert it first, as with gmsh FILE -save -o mesh.msh";
 constexpr const char* by_filling =
     ", a surface without tetrahedra; fill it first, as with Gmsh or TetGen, and give that mesh";
@@ -62,7 +64,7 @@ constexpr std::array beginnings{
 };
 
 constexpr std::array endings{
-    Foreign{".inp", "Abaqus input or AVS UCD", by_meshio},
+    Foreign{".inp", "AVS UCD", by_meshio_avs},
     Foreign{".avs", "AVS UCD", by_meshio},
     Foreign{".med", "MED (Salome)", by_meshio_hdf},
     Foreign{".rmed", "MED (Salome)", by_meshio_hdf},
@@ -101,14 +103,14 @@ constexpr std::array endings{
 };
 
 [[noreturn]] void refuse(const FileBytes& bytes, std::string_view what, std::string advice) {
-  // The name makes a command of it that can be copied.
+  // With the name, the advice is a command that can be copied.
   if (const std::size_t at = advice.find("FILE"); at != std::string::npos)
     advice.replace(at, 4, bytes.name);
   throw InputError(bytes.name + ": expected a mesh in a format that is read, found " +
                    std::string(what) + advice);
 }
 
-/// HDF5 holds MED, Exodus, CGNS and more, which names within tell apart.
+/// Names within an HDF5 file tell MED, Exodus, CGNS and others apart.
 void refuse_hdf5(const FileBytes& bytes, std::string_view text) {
   const auto holds = [&](std::string_view name) {
     return text.find(name) != std::string_view::npos;
@@ -157,6 +159,7 @@ void refuse_foreign(const FileBytes& bytes) {
     if (lower(text.substr(0, one.sign.size())) == lower(one.sign))
       refuse(bytes, one.what, one.advice);
   const std::string ending = lower(std::filesystem::path(bytes.name).extension().string());
+  if (ending == ".inp" && text.starts_with('*')) refuse(bytes, "Abaqus input", by_meshio);
   for (const Foreign& one : endings)
     if (ending == one.sign) refuse(bytes, one.what, one.advice);
 }

@@ -43,7 +43,7 @@ inline constexpr std::array<MarkedList, 6> marked_lists{
      {Keyword::required_triangles, &AnyMesh::required_triangles, Keyword::triangles},
      {Keyword::required_tetrahedra, &AnyMesh::required_tetrahedra, Keyword::tetrahedra}}};
 
-/// How many entities of a section a mesh has.
+/// The number of entities of a section in a mesh.
 inline std::size_t entity_count(const AnyMesh& mesh, Keyword keyword) {
   return keyword == Keyword::vertices    ? mesh.vertex_count()
          : keyword == Keyword::edges     ? mesh.edges.size()

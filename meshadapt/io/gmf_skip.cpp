@@ -16,14 +16,14 @@ bool is_number(std::string_view word) {
          word.find_first_not_of("+-.0123456789eEdD") == std::string_view::npos;
 }
 
-/// Numbers that are none are written as words.
+/// True for words that are written for infinite and undefined numbers.
 bool is_no_number(std::string_view word) {
   std::string lower(word.substr(0, 9));
   for (char& c : lower) c = static_cast<char>(c | 0x20);
   return lower == "nan" || lower == "inf" || lower == "infinity";
 }
 
-/// Whether the next word begins a section: nothing else is in its line, or a number or a string.
+/// True if the next word begins a section: nothing, a number or a string follows on its line.
 bool section_ahead(const NumberReader& in) {
   NumberReader ahead = in;
   if (!is_section_name(ahead.word())) return false;

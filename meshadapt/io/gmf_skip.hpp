@@ -11,8 +11,8 @@
 
 namespace ductile::meshadapt::gmf {
 
-/// Whether a word may be the name of a section that other programs know: letters, digits, '_' and
-/// '-' after a letter.
+/// True if a word may name a section of another program: letters, digits, '_' and '-' after a
+/// letter.
 bool is_section_name(std::string_view word);
 
 /// Goes past this many lines of a section of text, which may have any words in them; a keyword

@@ -206,7 +206,7 @@ void put_mesh(GmfWriter&& out, const AnyMesh& mesh) {
   out.end();
 }
 
-/// How many fields there are, and their types.
+/// The number of fields, then their types.
 std::vector<std::int32_t> head_of(const AnyField& field) {
   std::vector<std::int32_t> head{static_cast<std::int32_t>(field.types.size())};
   for (const AnyField::Type type : field.types) head.push_back(static_cast<std::int32_t>(type));
@@ -236,7 +236,7 @@ void choose_form(WriteOptions& options, const std::filesystem::path& path) {
     options.form = options.format.ends_with('b') ? Form::binary : Form::ascii;
 }
 
-/// Fields are in files of their own, so their format is no mesh format.
+/// Chooses the format of a field, which is not in the table of mesh formats.
 void expect_ending_of_field(WriteOptions& options, const std::filesystem::path& path) {
   if (options.form != Form::by_name) return;
   const std::string ending = path.extension().string();

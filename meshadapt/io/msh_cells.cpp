@@ -81,6 +81,20 @@ void MshCells::finish(int dimension, std::vector<std::int32_t>& reference) {
 }
 
 template <int Corners>
+void MshCells::select(Cells<Corners>& cells, const std::vector<std::size_t>& places) {
+  const auto take = [&](auto& list) {
+    std::decay_t<decltype(list)> taken;
+    taken.reserve(places.size());
+    for (const std::size_t place : places) taken.push_back(list[place]);
+    list = std::move(taken);
+  };
+  take(cells.vertices);
+  take(cells.reference);
+  take(elementary_of_[Corners]);
+  take(numbers_[Corners]);
+}
+
+template <int Corners>
 void MshCells::drop_repeated(Cells<Corners>& cells) {
   if (!repeated_[Corners]) return;
   std::vector<std::pair<std::array<std::uint32_t, Corners>, std::size_t>> sorted;
@@ -102,38 +116,21 @@ void MshCells::drop_repeated(Cells<Corners>& cells) {
     groups.merge(GroupSet(groups_[Corners].set_of(cells.reference[sorted[i].second])));
     set = groups_[Corners].number_of(groups);
   }
-  std::size_t kept = 0;
-  auto& numbers = numbers_[Corners];
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (goes[i]) continue;
-    cells.vertices[kept] = cells.vertices[i];
-    cells.reference[kept] = cells.reference[i];
-    elementary_of_[Corners][kept] = elementary_of_[Corners][i];
-    if (!numbers.empty()) numbers[kept] = numbers[i];
-    ++kept;
-  }
-  cells.vertices.resize(kept);
-  cells.reference.resize(kept);
-  elementary_of_[Corners].resize(kept);
-  if (!numbers.empty()) numbers.resize(kept);
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (!goes[i]) places.push_back(i);
+  select(cells, places);
 }
 
 template <int Corners>
 void MshCells::put_in_order(Cells<Corners>& cells) {
-  const std::vector<std::uint64_t> numbers = numbers_[Corners];
+  const std::vector<std::uint64_t>& numbers = numbers_[Corners];
   if (std::is_sorted(numbers.begin(), numbers.end())) return;
   std::vector<std::size_t> order(numbers.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
-  const Cells<Corners> before = cells;
-  const std::vector<std::int32_t> elementary = elementary_of_[Corners];
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    cells.vertices[i] = before.vertices[order[i]];
-    cells.reference[i] = before.reference[order[i]];
-    elementary_of_[Corners][i] = elementary[order[i]];
-    numbers_[Corners][i] = numbers[order[i]];
-  }
+  select(cells, order);
 }
 
 void MshCells::finish() {

@@ -195,7 +195,7 @@ void MshReader::read_data(NamedField::Place place, const std::string& section) {
     }
   }
   end_section(section);
-  // Of several steps, the last one is taken.
+  // The last of several steps replaces earlier ones.
   const auto [known, is_new] = field_of_.try_emplace({!at_vertices, head.name}, to_.fields.size());
   if (is_new)
     to_.fields.push_back(std::move(field));

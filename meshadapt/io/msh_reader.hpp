@@ -1,6 +1,6 @@
 /// @file
-/// MshReader: goes through a Gmsh file section by section (private to io). Versions differ in how
-/// sections hold nodes and elements; groups, fields and what surrounds sections are the same.
+/// MshReader: reads a Gmsh file section by section (private to io). Versions differ in how sections
+/// hold nodes and elements; groups, fields and the frames of sections are the same.
 #pragma once
 
 #include <cstdint>
@@ -70,7 +70,7 @@ class MshReader {
     if (binary_) in_.set_binary(swapped_);
   }
   std::int32_t number(const char* what) { return in_.integer<std::int32_t>(what); }
-  /// What the format calls a size_t.
+  /// A number that the format calls size_t.
   std::uint64_t size(const char* what) {
     if (in_.is_binary())
       return size_bytes_ == 4 ? in_.integer<std::uint32_t>(what) : in_.integer<std::uint64_t>(what);

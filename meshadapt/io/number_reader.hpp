@@ -81,7 +81,7 @@ class NumberReader {
       fail_number(what, "a whole number");
     return value;
   }
-  /// The same within a range, of a number that is text.
+  /// Takes an integer within a range, like integer().
   std::int64_t integer_within(const char* what, std::int64_t least, std::int64_t most);
   double real(const char* what) {
     double value = 0;
@@ -108,7 +108,7 @@ class NumberReader {
   void take_back() { at_ = last_; }
   /// Goes to a byte of the file, of which messages speak then.
   void go_to(std::size_t position) { at_ = last_ = begin_ + position; }
-  /// What is read from here on ends at this byte, as a section does, or the file.
+  /// Ends reading at this byte, for example where a section ends.
   void set_end(std::size_t position) { end_ = begin_ + position; }
   bool ends_within_a_line() const { return end_ != begin_ && !ends_line(end_[-1]); }
 

@@ -32,7 +32,7 @@ std::string reason(int code) { return std::generic_category().message(code); }
 
 constexpr int most_links = 40;
 
-/// Where a symbolic link leads, if `path` is one.
+/// The target of a symbolic link, if `path` is one.
 std::optional<fs::path> target_of(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return std::nullopt;
@@ -81,7 +81,7 @@ bool is_mount_point([[maybe_unused]] const fs::path& path) {
 #endif
 }
 
-/// In such a folder, as /tmp, only who owns a file or the folder may take a name away.
+/// In a sticky folder such as /tmp, only the owner of a file or of the folder may remove a name.
 bool is_others_in_sticky_folder(const struct stat& file, const fs::path& folder) {
   struct stat of_folder {};
   if (::geteuid() == 0 || ::stat(folder.c_str(), &of_folder) != 0) return false;
@@ -111,7 +111,7 @@ void expect_replaceable(const fs::path& path) {
     refuse(path, "it is mounted there and cannot be replaced", "choose another name or folder");
 }
 
-/// A long name is cut, to leave room for the rest.
+/// The common part of temporary names. A long name is cut, to leave room for the rest.
 std::string stem_of(const fs::path& path) {
   return path.filename().string().substr(0, 200) + ".ductile-";
 }

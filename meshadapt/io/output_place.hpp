@@ -11,8 +11,8 @@ namespace ductile::meshadapt {
 /// The folder of a file, "." if it is named without.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Whether an output is written as it is, because nothing may take its name: a device, a pipe, or a
-/// name such as /dev/stdout or /dev/fd/3 for what this process has open.
+/// True for outputs that no file may replace: a device, a pipe, or a name such as /dev/stdout or
+/// /dev/fd/3 for something that this process has open.
 bool is_written_directly(const std::filesystem::path& path);
 
 /// Opens such an output; null, and why in errno, if that fails.
@@ -27,7 +27,7 @@ std::filesystem::path place_of(const std::filesystem::path& path);
 /// Throws InputError unless an output may go there, as far as can be said without trying.
 void expect_usable_name(const std::filesystem::path& path);
 
-/// Two outputs have one place. Throws InputError.
+/// Throws InputError because two outputs have one place.
 [[noreturn]] void refuse_second_output(const std::filesystem::path& path);
 
 /// Makes an empty file beside `path` under a new name and returns that. Throws InputError.

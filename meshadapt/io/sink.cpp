@@ -13,7 +13,7 @@
 namespace ductile::meshadapt {
 namespace {
 
-/// Whether this process may write a file of so many bytes; one that writes more is ended.
+/// True if this process may write a file of so many bytes; the system ends one that writes more.
 bool may_have(std::size_t bytes) {
   rlimit limit{};
   return ::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||

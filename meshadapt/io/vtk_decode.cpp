@@ -25,8 +25,8 @@ constexpr auto value_of_letter = [] {
   return value;
 }();
 
-/// Bytes one after the other, out of raw ones or base64, whose groups of four letters may have been
-/// filled up in between, as VTK does behind the numbers in front.
+/// Takes bytes one after the other from raw ones or from base64. VTK pads base64 in between, behind
+/// the numbers in front.
 class ByteStream {
  public:
   ByteStream(std::string_view encoded, bool base64) : rest_(encoded), base64_(base64) {}

@@ -1,6 +1,6 @@
 /// @file
-/// The numbers of one array in a VTK XML file, however it is encoded: as text, as base64 or raw
-/// bytes, whole or in blocks that zlib compressed (private to io). Any thread.
+/// Decodes the numbers of one array in a VTK file: text, base64 or raw bytes, whole or in blocks
+/// compressed by zlib (private to io). Any thread.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace ductile::meshadapt {
 
-/// How a file encodes its arrays.
+/// The encoding of the arrays of a file.
 struct VtkEncoding {
   bool swapped = false;        ///< the other byte order
   bool compressed = false;     ///< by zlib

@@ -31,7 +31,7 @@ std::size_t vtk_corners(const VtkGrid& grid, std::size_t cell) {
 
 // ---- References ----
 
-/// How programs call the array in which they keep references.
+/// Names that programs give to the array of references.
 constexpr std::array<std::string_view, 10> reference_names{
     "reference", "medit:ref",   "gmsh:physical", "CellEntityIds", "CellEntityId",
     "cell_tags", "MaterialIDs", "MaterialIds",   "material",      "Label"};
@@ -44,7 +44,7 @@ bool are_references(const VtkArray& array) {
                      [=](double x) { return x == std::floor(x) && x >= least && x <= most; });
 }
 
-/// Takes the array of that name out, if it is one of references.
+/// Moves the array of that name out, if its values are references.
 bool take_references(std::vector<VtkArray>& arrays, std::string_view name,
                      std::vector<std::int32_t>& references) {
   const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const VtkArray& array) {
@@ -65,7 +65,7 @@ std::vector<std::int32_t> first_references(std::vector<VtkArray>& arrays, std::s
   return std::vector<std::int32_t>(count, 0);
 }
 
-/// [cell], of elements and of all others.
+/// [cell] the references of elements and of all others.
 CellReferences take_cell_references(std::vector<VtkArray>& arrays, std::size_t count) {
   CellReferences of;
   const bool apart = take_references(arrays, "region", of.region);

@@ -18,7 +18,7 @@
 namespace ductile::meshadapt {
 namespace {
 
-/// Names with spaces and the like are written as %20.
+/// Decodes a name in which spaces and the like are written as %20.
 std::string decoded_name(std::string_view text) {
   std::string name;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -51,7 +51,7 @@ class VtkReader {
 
  private:
   enum class Data { none, points, cells };
-  /// A part that a file has once at most, and how many things it says there are.
+  /// A part that a file has at most once, and the count that it gives.
   struct Part {
     std::string where;
     std::uint64_t count = 0;
@@ -80,7 +80,7 @@ class VtkReader {
       in_.fail("expected one part " + word + ", found a second; remove one, or join them");
   }
 
-  /// Parts come in any order, so what each says is compared when all have been read.
+  /// Compares the counts of parts when all have been read, because they come in any order.
   void expect_counts() const {
     const auto expect = [&](const char* word, std::size_t there, const char* what) {
       const auto part = parts_.find(word);
@@ -157,7 +157,7 @@ class VtkReader {
                std::to_string(grid_.ends.size()) + "; correct the count");
   }
 
-  /// As version 5.1 has them: where each begins, and where the last one ends; then points.
+  /// Reads cells of version 5.1: the offset of each, the end of the last one, then the points.
   void read_cells_with_offsets(std::uint64_t offsets, std::uint64_t points) {
     in_.word();
     bool wide = in_.word() == "vtktypeint64";
@@ -244,7 +244,7 @@ class VtkReader {
     values(4 * colours, binary_ ? "unsigned_char" : "float");
   }
 
-  /// Scalars, vectors and tensors, each with a word of its own.
+  /// Reads scalars, vectors or tensors, each of which has a keyword.
   void read_attribute(const std::string& word) {
     if (word == "SCALARS") return read_scalars();
     if (word == "LOOKUP_TABLE") return read_lookup_table();
@@ -286,7 +286,7 @@ class VtkReader {
     }
   }
 
-  /// Goes on to the empty line that ends it.
+  /// Goes to the empty line that ends the metadata.
   void skip_metadata() {
     in_.line();
     while (in_.left() > 0 && !in_.line().empty()) {

@@ -11,7 +11,7 @@ namespace {
 
 using meshadapt::number_in;
 
-/// Whether a word asks for an option: "-" and "-.vtu" are files and "-1" a number.
+/// True if a word asks for an option; "-" and "-.vtu" are files, "-1" is a number.
 bool looks_like_option(std::string_view word) {
   if (word.size() < 2 || word[0] != '-' || word[1] == '.') return false;
   const bool begins_as_number = word[1] >= '0' && word[1] <= '9';
@@ -26,8 +26,8 @@ const Option* find(std::span<const Option> options, std::string_view word) {
   return nullptr;
 }
 
-/// The option whose name is closest to a word, if it is so close that the word may be a slip: one
-/// letter in three, two at most.
+/// The option whose name is closest to a word that may be a typing error: at most one letter in
+/// three differs, and at most two.
 std::string_view nearest_name(std::span<const Option> options, std::string_view word) {
   std::string_view nearest;
   std::size_t least = 3;
