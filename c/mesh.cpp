@@ -252,6 +252,15 @@ int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int3
   });
 }
 
+int ductile_mesh_join_vertices(ductile_mesh* mesh, double distance, int32_t* kept) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    auto joined = meshadapt::join_vertices(mesh->mesh, distance);
+    if (kept != nullptr) std::copy(joined.kept.begin(), joined.kept.end(), kept);
+    *mesh = {std::move(joined.mesh), {}, {}};
+  });
+}
+
 int ductile_mesh_set_name(ductile_mesh* mesh, int kind, int32_t reference, const char* name) {
   return c::guarded([&] {
     c::expect_given(mesh, "mesh");

@@ -22,7 +22,6 @@
 #include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
-#include "io/atomic_file.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "recovery_option.hpp"
@@ -92,7 +91,7 @@ constexpr std::array<Option, 36> own_options{{
     {"--interpolate", "", "carries fields by their values, whatever becomes of integrals"},
 }};
 
-/// Those, and those of Mmg that are not needed.
+/// The options above, and those of Mmg that have no effect.
 constexpr auto options = [] {
   std::array<Option, own_options.size() + mmg_options.size()> all;
   const auto rest = std::copy(own_options.begin(), own_options.end(), all.begin());
@@ -109,7 +108,7 @@ fs::path only_mesh(const Arguments& arguments) {
   return input_of(meshes[0]);
 }
 
-/// Nothing is beside standard output.
+/// Sets where the mesh goes and, unless that is standard output, the metric beside it.
 void set_output(Job& job, const Arguments& arguments, const std::optional<fs::path>& given) {
   const auto out = arguments.text("-o");
   if (!given && !out && job.input == "/dev/stdin")
@@ -125,7 +124,7 @@ void set_output(Job& job, const Arguments& arguments, const std::optional<fs::pa
   if (job.with_metric && !is_standard_output(job.output)) job.metric_out = field_beside(job.output);
 }
 
-/// Sizes are said in one way, or none: then a metric beside the mesh counts, if there is one.
+/// Sizes are given in at most one way; otherwise a metric beside the mesh is used, if there is one.
 void set_sizes(Job& job, const Arguments& arguments) {
   job.size = size_option(arguments, "-hsiz");
   job.places = SizeOptions(arguments, "-hsiz");
@@ -168,9 +167,7 @@ void set_files(Job& job, const Arguments& arguments, const std::optional<fs::pat
   job.json = json_output(arguments);
   if (job.json == standard_output && is_standard_output(job.output))
     throw UsageError("option --json: expected a file, because the mesh goes to standard output");
-  job.join = arguments.number("--join");
-  if (job.join && !(*job.join >= 0 && *job.join <= meshadapt::largest_size))
-    refuse_value("--join", "a distance of 0 or more", *arguments.text("--join"));
+  job.join = join_option(arguments);
   job.vtu = arguments.text("--vtu");
   if (job.vtu && job.vtu->extension() != ".vtu")
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
@@ -184,7 +181,7 @@ void set_files(Job& job, const Arguments& arguments, const std::optional<fs::pat
   set_sizes(job, arguments);
 }
 
-/// A factor; 0 for none, which is 0 or less, as in Mmg.
+/// A factor; 0 for none, which the command line says by 0 or less, as in Mmg.
 double gradation_of(const Arguments& arguments, std::string_view option) {
   const double factor = arguments.number(option).value_or(0);
   if (factor > 0 && factor < 1)
@@ -228,7 +225,8 @@ std::vector<fs::path> outputs_of(const Job& job) {
   return paths;
 }
 
-/// A mesh may be adapted in place, with its metric; else what was read stays as it is.
+/// Throws UsageError if an output would replace an input. A mesh may be adapted in place, with its
+/// metric.
 void expect_inputs_to_stay(const Job& job) {
   std::vector<fs::path> inputs = {job.input}, fields = job.fields.inputs();
   if (job.metric_in) fields.push_back(*job.metric_in);
@@ -289,7 +287,8 @@ class ProgressLine {
   bool shown_;
 };
 
-/// Of what may be held, which is the machine's memory unless less is given; 0 if that is not known.
+/// Bytes that may still be allocated: the given limit, or the machine's memory, minus what is in
+/// use; 0 if unknown.
 std::size_t memory_left(std::optional<std::size_t> given) {
   const std::size_t most = given ? *given : runtime::most_memory(), held = runtime::held_memory();
   return most == 0 ? 0 : most - std::min(held, most - 1);
@@ -322,8 +321,7 @@ struct Carried {
   std::vector<std::string> names;
 };
 
-/// Says what was warned of, and what does not go into the files, before they have their names: no
-/// memory is taken after that.
+/// Prints warnings before the files get their names, because no memory is taken after that.
 void write_outputs(const Job& job, const AdaptedMesh& adapted, const Carried& carried,
                    const std::string& json, meshadapt::Warnings& warnings) {
   meshadapt::AtomicOutputs outputs;
@@ -347,17 +345,13 @@ void write_outputs(const Job& job, const AdaptedMesh& adapted, const Carried& ca
   outputs.commit();
 }
 
-/// Makes one of vertices that lie together, where that is asked for, in all that is known of them.
-void join(const Job& job, AnyMesh& mesh, AnyField& metric, AnyField& fields,
-          meshadapt::Warnings& warnings) {
+/// With --join, joins vertices that lie together, in the mesh, its metric and its fields.
+void join_all(const Job& job, AnyMesh& mesh, AnyField& metric, AnyField& fields,
+              meshadapt::Warnings& warnings) {
   if (!job.join) return;
-  auto joined = meshadapt::join_vertices(std::move(mesh), *job.join);
-  const std::size_t gone = metric.vertex_count - joined.kept.size();
-  mesh = std::move(joined.mesh);
-  warnings.push_back(mesh.name + ": " + counted(gone, "vertex was", "vertices were") +
-                     " joined with others");
-  metric = meshadapt::at_kept(metric, joined.kept);
-  if (!fields.types.empty()) fields = meshadapt::at_kept(fields, joined.kept);
+  const auto kept = join(mesh, *job.join, warnings);
+  metric = meshadapt::at_kept(metric, kept);
+  if (!fields.types.empty()) fields = meshadapt::at_kept(fields, kept);
 }
 
 std::string what_was_done(const Job& job, const AdaptSummary& summary) {
@@ -378,7 +372,7 @@ void warn_of_fields_left(const Job& job, const meshadapt::MeshWithFields& file,
         "; --field takes those at the vertices of a file along, ductile transfer all");
 }
 
-/// Of a mesh that only says what boundaries are like.
+/// The geometry from the mesh of -geometry; null without that option.
 std::shared_ptr<const meshadapt::Geometry> read_geometry(const Executor& executor, const Job& job,
                                                          meshadapt::Warnings& warnings) {
   if (!job.geometry) return nullptr;
@@ -391,7 +385,7 @@ std::shared_ptr<const meshadapt::Geometry> read_geometry(const Executor& executo
 }
 
 int work(const Executor& executor, Job job) {
-  if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
+  if (job.memory) limit_memory(*job.memory);  // after OpenMP has started its threads
   meshadapt::Warnings warnings;
   if (!job.unneeded.empty()) warnings.push_back(job.unneeded);
   meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
@@ -401,7 +395,7 @@ int work(const Executor& executor, Job job) {
   AnyField metric = choose_metric(executor, job, file, sizes, warnings);
   CarriedFields::Values fields = job.fields.read(mesh, warnings, {"metric"});
   const MetricInForce in_force{metric_said(job, file), values_in_force(job)};
-  join(job, file.mesh, metric, fields.all, warnings);
+  join_all(job, file.mesh, metric, fields.all, warnings);
   warn_of_loose_vertices(executor, mesh, warnings);
   if (!job.places.any())
     bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings),
@@ -424,7 +418,7 @@ int work(const Executor& executor, Job job) {
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   const std::string said = job.verbosity > 0 ? what_was_done(job, summary) : std::string();
   write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string(), warnings);
-  // No memory is taken now that the outputs are there.
+  // From here on no memory is taken, because the outputs are there.
   const bool taken = is_standard_output(job.output) || job.json == standard_output;
   std::fputs(said.c_str(), taken ? stderr : stdout);
   return done;

@@ -1,6 +1,6 @@
 /// @file
-/// AdaptJob: all that the command line of `adapt` says, checked before any file is read; for the
-/// programs that adapt.
+/// AdaptJob: the command line of `adapt`, checked before any file is read; for the programs that
+/// adapt.
 #pragma once
 
 #include <cstddef>
@@ -44,12 +44,12 @@ struct AdaptJob {
   bool keep_sizes = false;    // whatever metric there is with the mesh
 };
 
-/// Throws UsageError, and InputError where outputs cannot be written. `output` comes before what
-/// -o says.
+/// Throws UsageError, or InputError if outputs cannot be written. `output` replaces -o.
 AdaptJob read_adapt_job(const Arguments& arguments,
                         const std::optional<std::filesystem::path>& output = {});
 
-/// What of it needs no files: options of adapt(), threads, verbosity, memory. Throws UsageError.
+/// Sets the part that needs no files: options of adapt(), threads, verbosity, memory. Throws
+/// UsageError.
 void set_options_of_work(AdaptJob& job, const Arguments& arguments);
 
 /// The metric that a job asks for, at the vertices of the input. Throws InputError.
@@ -57,10 +57,10 @@ meshadapt::AnyField choose_metric(const runtime::Executor& executor, const Adapt
                                   const meshadapt::MeshWithFields& file,
                                   const meshadapt::Sizes& sizes, meshadapt::Warnings& warnings);
 
-/// Where that metric comes from: "part.sol (found beside the mesh)".
+/// The source of that metric in words: "part.sol (found beside the mesh)".
 std::string metric_said(const AdaptJob& job, const meshadapt::MeshWithFields& file);
 
-/// The options that bear on sizes, as far as they are in force.
+/// The options about sizes that are in force.
 std::vector<ValueInForce> values_in_force(const AdaptJob& job);
 
 }  // namespace ductile::cli

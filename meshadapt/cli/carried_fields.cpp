@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using meshadapt::AnyField;
 
-/// Takes fields that stand side by side apart: those of each file, in the order of files.
+/// Splits a field into those of each file, in the order of files.
 std::vector<AnyField> apart(const AnyField& all, const std::vector<std::size_t>& field_count_of) {
   std::vector<AnyField> parts;
   std::size_t field = 0, offset = 0;
@@ -35,7 +35,7 @@ std::vector<AnyField> apart(const AnyField& all, const std::vector<std::size_t>&
   return parts;
 }
 
-/// A name that no field before has: with that of the file where there is one.
+/// A name that no field before has: with that of the file in front if the name is taken.
 std::string other_name(std::string name, const std::string& file,
                        const std::vector<std::string>& taken) {
   while (std::find(taken.begin(), taken.end(), name) != taken.end()) name.insert(0, file + "_");

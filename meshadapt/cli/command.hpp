@@ -24,14 +24,14 @@ struct Command {
 extern const Command adapt_command, info_command, metric_command, transfer_command, view_command,
     convert_command;
 
-/// Prints its options, as of a program of this name.
+/// Prints the help of a command for a program of this name.
 void print_help(const Command& command, std::string_view program = "ductile");
 
 /// All commands, in the order of help.
 std::span<const Command* const> commands();
 
-/// Runs the program on the arguments of main(): prints errors, of which memory that runs out is
-/// one, and returns the exit status.
+/// Runs the program on the arguments of main(), prints errors (also if memory runs out) and returns
+/// the exit status.
 int run_program(int argument_count, const char* const* argument) noexcept;
 
 }  // namespace ductile::cli

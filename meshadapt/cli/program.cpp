@@ -86,7 +86,7 @@ int run_help(std::span<const std::string> words) {
   return done;
 }
 
-/// Of an option of Mmg's that is refused, the error says what to do instead.
+/// Adds the alternative to the error about an option of Mmg that is refused.
 Arguments arguments_of(const Command& command, std::span<const std::string> words) {
   try {
     return Arguments(command.options, words);
@@ -114,7 +114,7 @@ int dispatch(std::span<const std::string> words) {
   return command->run(arguments_of(*command, words.subspan(1)));
 }
 
-/// Takes no memory, which there may be none of.
+/// Takes no memory, because it may have run out.
 int tell(const char* message, int status) noexcept {
   std::fprintf(stderr, "ductile: %s\n", message);
   return status;

@@ -4,8 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "adapt/sizes_again.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
 #include "first_rank.hpp"
 #include "migrate.hpp"
 #include "parts_geometry.hpp"
@@ -22,34 +20,34 @@ AdaptedParts adapt(const Communicator& comm, const Executor& executor, const Par
                                   : adapt_parts<3>(comm, executor, part, options);
 }
 
-/// The adapted mesh on the first rank, with the sizes of its places; none, on all ranks, if it
-/// already was adapted to about these.
-std::optional<Part> lacking(const Communicator& comm, const Executor& executor, const Input& input,
-                            const Part& part) {
+/// The adapted mesh on the first rank, with its next metric; none, on all ranks, if it is final.
+std::optional<Part> next(const Communicator& comm, const Executor& executor, Input& input,
+                         const Part& part, int pass) {
   Part all = gather_on_first(comm, executor, part);
-  bool has_all = false;
+  bool is_final = false;
   on_first_rank(comm, [&] {
-    AnyMesh mesh = mesh_for_file(all, input.file.kept);
-    mesh.names = input.names;
-    const meshadapt::SizeBounds bounds{input.job.adapt.smallest_size, input.job.adapt.largest_size};
-    const AnyField asked = meshadapt::size_field(executor, mesh, *input.sizes);
-    has_all = meshadapt::has_sizes(executor, all.wanted, asked.values, bounds.smallest);
-    if (!has_all) all.wanted = meshadapt::metric_of(asked, mesh, bounds);
+    meshadapt::MeshWithMetric now{mesh_for_file(all, input.file.kept), all.wanted};
+    now.mesh.names = input.names;
+    const AnyField* metric = input.places->next(
+        {executor, pass, now.mesh, [&]() -> const meshadapt::MeshWithMetric& { return now; }});
+    is_final = metric == nullptr;
+    if (!is_final) all.wanted = *metric;
   });
-  from_first_rank(comm, has_all);
-  if (has_all) return std::nullopt;
+  from_first_rank(comm, is_final);
+  if (is_final) return std::nullopt;
   return all;
 }
 
 }  // namespace
 
-AdaptedParts adapt_to_sizes(const Communicator& comm, const Executor& executor, const Input& input,
+AdaptedParts adapt_to_sizes(const Communicator& comm, const Executor& executor, Input& input,
                             AdaptPartsOptions options) {
-  AdaptedParts parts = adapt(comm, executor, input.file.part, options);
-  bool by_places = input.sizes.has_value();
+  bool by_places = input.places.has_value();
   from_first_rank(comm, by_places);
-  for (int times = 1; by_places && times < meshadapt::most_times; ++times) {
-    const auto again = lacking(comm, executor, input, parts.part);
+  if (by_places && comm.size() == 1) options.source = &*input.places;
+  AdaptedParts parts = adapt(comm, executor, input.file.part, options);
+  for (int pass = 1; by_places && comm.size() > 1; ++pass) {
+    const auto again = next(comm, executor, input, parts.part, pass);
     if (!again) break;
     auto& make = options.adapt.make;  // distances are measured from the first mesh
     if (make.hausdorff_tolerance > 0 && !make.geometry)

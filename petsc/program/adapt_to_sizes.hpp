@@ -9,10 +9,10 @@
 
 namespace ductile::petsc {
 
-/// Adapts the mesh to its metric. The first rank, which gathers the adapted mesh, evaluates sizes
-/// by places again, as meshadapt::adapt_to_sizes() does. It prints errors in them and Ended is
-/// thrown; otherwise as adapt_parts(). Collective.
+/// Adapts the mesh to its metric. The first rank, which gathers the adapted mesh, asks for the next
+/// sizes by places. It prints errors in them and Ended is thrown; otherwise as adapt_parts().
+/// Collective.
 AdaptedParts adapt_to_sizes(const Communicator& comm, const runtime::Executor& executor,
-                            const Input& input, AdaptPartsOptions options);
+                            Input& input, AdaptPartsOptions options);
 
 }  // namespace ductile::petsc

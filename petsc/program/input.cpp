@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "adapt/sizes_again.hpp"
 #include "command.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
@@ -134,7 +133,8 @@ void read_files(Input& input, const Executor& executor) {
   const meshadapt::Sizes sizes = job.places.sizes_for(file.mesh, input.warnings);
   meshadapt::AnyField metric = cli::choose_metric(executor, job, file, sizes, input.warnings);
   if (job.places.any())
-    input.sizes = meshadapt::lasting(file.mesh, sizes);
+    input.places.emplace(file.mesh, sizes,
+                         meshadapt::SizeBounds{job.adapt.smallest_size, job.adapt.largest_size});
   else
     cli::bound_locally(executor, file.mesh,
                        cli::local_parameters(job.parameters, file.mesh, job.adapt, input.warnings),

@@ -72,9 +72,9 @@ py::tuple adapted_by(const AnyMesh& mesh, Adapt&& adapt, AdaptOptions options,
   AdaptedMesh adapted = work(threads, [&](const runtime::Executor& executor) {
     AdaptedMesh result = adapt(executor, options);
     for (const std::string& loose : meshadapt::check_conformity(executor, mesh))
-      result.report.warnings.push_back(loose +
-                                       "; the mesh is not connected there (joined() makes one of"
-                                       " doubled vertices)");
+      result.report.warnings.push_back(
+          loose + "; the mesh is not connected there" +
+          (loose.find(" hangs: ") == std::string::npos ? " (joined() joins them)" : ""));
     return result;
   });
   const Shape shape{signed_size(adapted.mesh.vertex_count()),

@@ -74,24 +74,21 @@ class Killed : public testing::Test {
 
 TEST_F(Killed, AtEachStepLeavesFilesOfOneRun) {
   const std::string count_file = folder_.path().string() + ".count";
-  for (const char* named : {"", "1"}) {
-    Environment steps{{"LD_PRELOAD", DUCTILE_KILLING_STEPS}, {"DUCTILE_KILL_COUNT", count_file}};
-    if (*named != 0) steps["DUCTILE_NAMED"] = named;
-    put_old_ones_back();
-    ASSERT_EQ(wait_for(spawn(folder_, command("0.2"), steps)), 0);
-    const int count = std::stoi(folder_.read(count_file));
-    ASSERT_GT(count, 8);
-    for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT})
-      for (int at = 1; at <= count; ++at) {
-        const std::string where = "signal " + std::to_string(number) + " at step " +
-                                  std::to_string(at) + " of " + std::to_string(count) + named;
-        put_old_ones_back();
-        steps["DUCTILE_KILL_AT"] = std::to_string(at);
-        steps["DUCTILE_KILL_WITH"] = std::to_string(number);
-        EXPECT_EQ(wait_for(spawn(folder_, command("0.2"), steps)), -number) << where;
-        expect_right_after(number, where);
-      }
-  }
+  Environment steps{{"LD_PRELOAD", DUCTILE_KILLING_STEPS}, {"DUCTILE_KILL_COUNT", count_file}};
+  put_old_ones_back();
+  ASSERT_EQ(wait_for(spawn(folder_, command("0.2"), steps)), 0);
+  const int count = std::stoi(folder_.read(count_file));
+  ASSERT_GT(count, 8);
+  for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT})
+    for (int at = 1; at <= count; ++at) {
+      const std::string where = "signal " + std::to_string(number) + " at step " +
+                                std::to_string(at) + " of " + std::to_string(count);
+      put_old_ones_back();
+      steps["DUCTILE_KILL_AT"] = std::to_string(at);
+      steps["DUCTILE_KILL_WITH"] = std::to_string(number);
+      EXPECT_EQ(wait_for(spawn(folder_, command("0.2"), steps)), -number) << where;
+      expect_right_after(number, where);
+    }
 }
 
 TEST_F(Killed, AtRandomMomentsLeavesFilesOfOneRun) {
@@ -99,11 +96,10 @@ TEST_F(Killed, AtRandomMomentsLeavesFilesOfOneRun) {
   const auto start = std::chrono::steady_clock::now();
   wait_for(spawn(folder_, command("0.2")));
   const auto usual = std::chrono::steady_clock::now() - start;
-  const Environment named{{"LD_PRELOAD", DUCTILE_KILLING_STEPS}, {"DUCTILE_NAMED", "1"}};
   for (int i = 0; i < 200; ++i) {
     put_old_ones_back();
     const int number = i % 3 == 0 ? SIGKILL : i % 3 == 1 ? SIGTERM : SIGINT;
-    const pid_t child = spawn(folder_, command("0.2"), i % 2 == 0 ? named : Environment{});
+    const pid_t child = spawn(folder_, command("0.2"));
     std::this_thread::sleep_for(usual * (random() % 1000) / 1000);
     ::kill(child, number);
     const auto status = wait_for(child);

@@ -41,12 +41,14 @@ void check_after_each_kernel(const Executor& executor, const test::RandomCase& r
                        << test::joined(faults);
     return true;
   };
-  Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours), metric_of);
+  AdaptReport report;
+  Adapter<Dim> adapter(executor, options,
+                       {std::move(mesh), std::move(neighbours), std::move(metric_of)}, report);
   driver = &adapter;
   const auto faults = check_mesh(executor, adapter.mesh());
   sound = faults.empty();
   EXPECT_TRUE(sound) << "at the start" << test::joined(faults);
-  adapter.run();
+  adapter.run(Effort::as_needed);
 }
 
 TEST(Adapter, EachKernelLeavesTheMeshSound) {

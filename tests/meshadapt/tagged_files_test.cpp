@@ -411,6 +411,8 @@ TEST(TaggedFiles, AreToldByTheirFormat) {
   using std::string_literals::operator""s;
   const std::vector<std::array<std::string, 3>> files{
       {"a.inp", "*HEADING\nx\n*NODE\n1, 0, 0, 0\n", "Abaqus"},
+      {"a.inp", "*INCLUDE, INPUT=b.inp\n", "Abaqus"},
+      {"a.inp", "# made by a program\n5 8 1 0 0\n1 0 0 0\n", "--input-format avsucd"},
       {"a.txt", "** made by hand\n*Node\n1, 0., 0.\n", "Abaqus"},
       {"a.med", "\x89HDF\r\n\x1a\n....INFOS_GENERALES", "MED"},
       {"a.x", "\x89HDF\r\n\x1a\n....CGNSLibraryVersion", "CGNS"},

@@ -1,13 +1,11 @@
-#include "gmf_left_out.hpp"
+#include "left_out.hpp"
 
 #include <algorithm>
 
-namespace ductile::meshadapt::gmf {
+namespace ductile::meshadapt {
 
-constexpr std::size_t longest_name = 40, most_names = 12;
-
-void LeftOut::add(const std::string& where, std::string_view name, const std::string& note) {
-  if (names_.empty()) first_ = where;
+void LeftOut::add_name(std::string_view name, const std::string& note) {
+  constexpr std::size_t longest_name = 40, most_names = 12;
   std::string text(name.substr(0, longest_name));
   if (name.size() > longest_name) text += "...";
   text += note;
@@ -18,12 +16,13 @@ void LeftOut::add(const std::string& where, std::string_view name, const std::st
     ++more_;
 }
 
-std::string LeftOut::warning() const {
-  if (names_.empty()) return {};
+void LeftOut::tell(Warnings* warnings) const {
+  if (names_.empty() || !warnings) return;
   std::string list;
   for (const std::string& name : names_) list += (list.empty() ? "" : ", ") + name;
   if (more_ > 0) list += " and " + std::to_string(more_) + " more";
-  return first_ + "sections that Ductile does not use are left out: " + list;
+  warnings->push_back(
+      printable(first_ + "sections that Ductile does not use are left out: " + list));
 }
 
-}  // namespace ductile::meshadapt::gmf
+}  // namespace ductile::meshadapt
