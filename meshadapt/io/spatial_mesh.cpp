@@ -186,7 +186,7 @@ std::optional<std::vector<std::int64_t>> whole_values(const SpatialField& field,
 }
 
 std::vector<double> points_in_space(const AnyMesh& mesh) {
-  return in_space({.type = Type::vector, .values = mesh.coordinates}, mesh).values;
+  return in_space({.name = {}, .type = Type::vector, .values = mesh.coordinates}, mesh).values;
 }
 
 void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields) {
