@@ -141,7 +141,7 @@ TYPED_TEST(InstructionsIn, LengthsAreTheSame) {
 
 TYPED_TEST(InstructionsIn, AdaptedMeshesAreTheSame) {
   constexpr int Dim = TypeParam::value;
-  this->for_random(Dim == 2 ? 10 : 4, [&](std::uint64_t seed) {
+  this->for_random(Dim == 2 ? 6 : 3, [&](std::uint64_t seed) {
     const auto adapted_with = [&](Instructions instructions) {
       Scene<Dim> scene(this->executor_, seed);
       scene.mesh.instructions = instructions;
