@@ -150,6 +150,7 @@ class VertexBall {
     return density * std::sqrt(2.0F / 3 * side / static_cast<float>(area2));
   }
 
+  /// score() and mean_pull(), with the instructions of their caller.
   Score score_of_all(const Site<Dim>& apex, double bound, Qualities& qualities) const {
     if (!(apex.scale > 0)) return {-1, 0};
     float worst = 1;

@@ -181,36 +181,27 @@ std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappabl
   return result;
 }
 
-std::optional<Replacement<3>> plan_swap(const Mesh<3>& mesh, const Swappable& item,
-                                        const Shell& shell, const EdgeRange& range) {
-  float worst = 1;
-  for (const ElementId e : shell) worst = std::min(worst, mesh.quality_of[e]);
-  const double bar = Swap<3>::bar(worst);
-  if (item.c != none) {
-    if (shell.size() != 2) return {};
-    return plan_face_swap(mesh, item, shell, bar, range);
-  }
-  Ring ring;
-  if (!ring.close(shell.size(), item.a, item.b,
-                  [&](std::size_t i) { return mesh.corners_of[shell[i]]; }))
-    return {};
-  auto result = triangulate(mesh, item, ring, bar);
-  if (result && accept_edge_removal(mesh, item, shell, ring, *result) &&
-      keeps_lengths(mesh, *result, {item.a, item.b}, range))
-    return result;
-  if (!mesh.surface) return {};
-  return plan_cut_off(mesh, item.a, item.b, shell, ring);
-}
-
 }  // namespace
 
 template <>
 bool Swap<3>::decide(const Swappable& item, const Shell& shell, Plan& plan) const {
-  return run_with(mesh_.instructions, [&] {
-    const auto found = plan_swap(mesh_, item, shell, range_);
+  const auto take = [&](const std::optional<Replacement<3>>& found) {
     if (found) plan = *found;
     return found.has_value();
-  });
+  };
+  float worst = 1;
+  for (const ElementId e : shell) worst = std::min(worst, mesh_.quality_of[e]);
+  if (item.c != none)
+    return shell.size() == 2 && take(plan_face_swap(mesh_, item, shell, bar(worst), range_));
+  Ring ring;
+  if (!ring.close(shell.size(), item.a, item.b,
+                  [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }))
+    return false;
+  auto result = triangulate(mesh_, item, ring, bar(worst));
+  if (result && accept_edge_removal(mesh_, item, shell, ring, *result) &&
+      keeps_lengths(mesh_, *result, {item.a, item.b}, range_))
+    return take(result);
+  return mesh_.surface && take(plan_cut_off(mesh_, item.a, item.b, shell, ring));
 }
 
 namespace {
@@ -280,7 +271,7 @@ class EdgeSearch {
     return gauge.relative_square(along) > limit;
   }
 
-  /// The worst element around the edge?
+  /// Is it worth cutting off the worst element around the edge?
   bool worth_cutting_off(const Star::Edge& edge) const {
     return mesh_.surface && edge.changed && edge.ends == 0 &&
            patch_above(mesh_, ball_[edge.worst], vertex_, edge.to) != 0;
@@ -382,8 +373,7 @@ runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& e
     const auto vertex = static_cast<VertexId>(v);
     const auto ball = mesh.elements_of.of(vertex);
     if (std::any_of(ball.begin(), ball.end(), poor))
-      run_with(mesh.instructions,
-               [&] { EdgeSearch(mesh, vertex, after, good_enough, range).run(append); });
+      EdgeSearch(mesh, vertex, after, good_enough, range).run(append);
   };
   const auto find_faces = [&](std::size_t e, auto&& append) {
     const auto element = static_cast<ElementId>(e);
@@ -391,9 +381,7 @@ runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& e
     const auto is_near = [&](VertexId v) { return near_change[v] != 0; };
     const Corners<3>& corners = mesh.corners_of[e];
     if (std::count_if(corners.begin(), corners.end(), is_near) < 3) return;
-    const auto face =
-        run_with(mesh.instructions, [&] { return face_to_pierce(mesh, element, after, range); });
-    if (face) append(*face);
+    if (const auto face = face_to_pierce(mesh, element, after, range)) append(*face);
   };
   const std::size_t vertices = mesh.vertex_slots();
   const auto find = [&](std::size_t i, auto&& append) {
