@@ -53,7 +53,11 @@ class Sink {
     end_record();
   }
   void end_record() {
-    if (!binary_) write(record_end_);
+    if (!binary_) {
+      char* at = room(std::strlen(record_end_));
+      for (const char* c = record_end_; *c != '\0'; ++c) *at++ = *c;
+      advance_to(at);
+    }
     follows_ = false;
   }
 

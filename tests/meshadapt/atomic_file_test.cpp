@@ -1,4 +1,4 @@
-#include "io/sink.hpp"
+#include "ductile/meshadapt/files.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include <csignal>
 #include <string>
 
+#include "io/sink.hpp"
 #include "io_support.hpp"
 
 namespace ductile::meshadapt::atomic_file_test {
