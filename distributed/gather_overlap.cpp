@@ -6,7 +6,7 @@
 #include <numeric>
 #include <span>
 
-#include "ductile/meshadapt/simplex.hpp"
+#include "distributed/element_lists.hpp"
 
 namespace ductile::distributed {
 
@@ -161,105 +161,43 @@ struct Values {
   }
 };
 
-/// Lists of elements and vertices for each rank.
+/// On this rank: the elements of the parts `from` that intersect its boxes. Collective.
 template <int Dim>
-struct Sent {
-  PerRank<std::array<std::int64_t, Dim + 1>> corners;
-  PerRank<double> on_elements;
-  PerRank<std::int64_t> numbers;
-  PerRank<double> at_vertices;  // coordinates, then values
-
-  explicit Sent(std::size_t ranks)
-      : corners(ranks), on_elements(ranks), numbers(ranks), at_vertices(ranks) {}
-};
-
-template <int Dim>
-class Gatherer {
- public:
-  Gatherer(const Communicator& comm, const Part& from, const std::vector<NamedField>& fields)
-      : comm_(comm),
-        from_(from),
-        at_vertices_{fields, NamedField::Place::vertices, Dim},
-        on_elements_{fields, NamedField::Place::elements, Dim} {}
-
-  PartWithFields gather(const std::vector<double>& boxes) {
-    const auto ranks = static_cast<std::size_t>(comm_.size());
-    const auto all_boxes =
-        comm_.exchange(comm_.on_all([&] { return PerRank<double>(ranks, boxes); }));
-    const Sent<Dim> sent = comm_.on_all([&] {
-      Sent<Dim> lists(ranks);
-      for (int rank = 0; rank < comm_.size(); ++rank)
-        add(lists, rank, touching<Dim>(from_, boxes_in<Dim>(all_boxes.from(rank))));
-      return lists;
+PartWithFields gathered_overlap(const Communicator& comm, const Part& from,
+                                const std::vector<NamedField>& fields,
+                                const std::vector<double>& boxes) {
+  const auto ranks = static_cast<std::size_t>(comm.size());
+  const Values at_vertices{fields, NamedField::Place::vertices, Dim};
+  const Values on_elements{fields, NamedField::Place::elements, Dim};
+  const auto all_boxes = comm.exchange(comm.on_all([&] { return PerRank<double>(ranks, boxes); }));
+  PerRank<double> vertex_values(ranks), element_values(ranks);
+  const SentElements<Dim> sent = comm.on_all([&] {
+    PerRank<std::uint32_t> to;
+    for (int rank = 0; rank < comm.size(); ++rank)
+      to.push_back(touching<Dim>(from, boxes_in<Dim>(all_boxes.from(rank))));
+    for (std::size_t rank = 0; rank < ranks; ++rank)
+      for (const std::uint32_t e : to[rank]) on_elements.append(element_values[rank], e);
+    return Sender<Dim>(from, std::move(to)).lists([&](std::size_t rank, VertexId v) {
+      at_vertices.append(vertex_values[rank], v);
     });
-    const auto corners = comm_.exchange(sent.corners);
-    const auto on_elements = comm_.exchange(sent.on_elements);
-    const auto numbers = comm_.exchange(sent.numbers);
-    const auto at_vertices = comm_.exchange(sent.at_vertices);
-    return comm_.on_all([&] {
-      return assemble(corners.items, on_elements.items, numbers.items, at_vertices.items);
-    });
-  }
-
- private:
-  void add(Sent<Dim>& lists, int rank, const std::vector<std::uint32_t>& elements) const {
-    const auto to = static_cast<std::size_t>(rank);
-    std::vector<VertexId> vertices;
-    for (const std::uint32_t e : elements) {
-      const auto& corners = meshadapt::elements_in<Dim>(from_.mesh).vertices[e];
-      std::array<std::int64_t, Dim + 1> numbered;
-      for (std::size_t i = 0; i <= Dim; ++i) numbered[i] = from_.number_of[corners[i]];
-      lists.corners[to].push_back(numbered);
-      on_elements_.append(lists.on_elements[to], e);
-      vertices.insert(vertices.end(), corners.begin(), corners.end());
-    }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    for (const VertexId v : vertices) {
-      lists.numbers[to].push_back(from_.number_of[v]);
-      const auto x = meshadapt::position_in<Dim>(from_.mesh, v).x;
-      lists.at_vertices[to].insert(lists.at_vertices[to].end(), x.begin(), x.end());
-      at_vertices_.append(lists.at_vertices[to], v);
-    }
-  }
-
-  PartWithFields assemble(const std::vector<std::array<std::int64_t, Dim + 1>>& corners,
-                          const std::vector<double>& on_elements,
-                          const std::vector<std::int64_t>& numbers,
-                          const std::vector<double>& at_vertices) const {
-    PartWithFields result{empty_part(Dim).mesh, {}};
-    for (const NamedField& field : at_vertices_.fields)
+  });
+  const auto elements = comm.exchange(sent.elements);
+  const auto vertices = comm.exchange(sent.vertices);
+  const auto of_elements = comm.exchange(element_values);
+  const auto of_vertices = comm.exchange(vertex_values);
+  return comm.on_all([&] {
+    Assembly<Dim> assembly(vertices);
+    assembly.add_elements(elements);
+    PartWithFields result{assembly.part().mesh, {}};
+    for (const NamedField& field : fields)
       result.fields.push_back({field.name, field.type, {}, field.place});
-    std::vector<std::size_t> order(numbers.size());  // shared vertices come several times
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
-    const std::size_t width = Dim + at_vertices_.width();
-    std::vector<std::int64_t> kept;
-    for (const std::size_t i : order) {
-      if (!kept.empty() && kept.back() == numbers[i]) continue;
-      kept.push_back(numbers[i]);
-      const double* const at = &at_vertices[i * width];
-      result.mesh.coordinates.insert(result.mesh.coordinates.end(), at, at + Dim);
-      result.mesh.vertex_reference.push_back(0);
-      at_vertices_.take(at + Dim, result.fields);
-    }
-    const std::size_t each = on_elements_.width();
-    for (std::size_t e = 0; e < corners.size(); ++e) {
-      meshadapt::Corners<Dim> local;
-      for (std::size_t i = 0; i <= Dim; ++i)
-        local[i] = static_cast<VertexId>(std::lower_bound(kept.begin(), kept.end(), corners[e][i]) -
-                                         kept.begin());
-      meshadapt::elements_in<Dim>(result.mesh).add(local, 0);
-      on_elements_.take(on_elements.data() + e * each, result.fields);
-    }
+    for (const std::uint32_t i : assembly.taken())
+      at_vertices.take(of_vertices.items.data() + i * at_vertices.width(), result.fields);
+    for (std::size_t e = 0; e < elements.items.size(); ++e)
+      on_elements.take(of_elements.items.data() + e * on_elements.width(), result.fields);
     return result;
-  }
-
-  const Communicator& comm_;
-  const Part& from_;
-  Values at_vertices_, on_elements_;
-};
+  });
+}
 
 }  // namespace
 
@@ -270,8 +208,8 @@ std::vector<double> boxes_of(const Part& part) {
 PartWithFields gather_overlap(const Communicator& comm, const Part& from,
                               const std::vector<NamedField>& fields,
                               const std::vector<double>& boxes) {
-  return from.mesh.dimension == 2 ? Gatherer<2>(comm, from, fields).gather(boxes)
-                                  : Gatherer<3>(comm, from, fields).gather(boxes);
+  return from.mesh.dimension == 2 ? gathered_overlap<2>(comm, from, fields, boxes)
+                                  : gathered_overlap<3>(comm, from, fields, boxes);
 }
 
 }  // namespace ductile::distributed

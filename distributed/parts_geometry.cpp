@@ -6,7 +6,6 @@
 #include "distributed/adapt_part.hpp"
 #include "distributed/listed.hpp"
 #include "distributed/migrate.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
 
 namespace ductile::distributed {
 
@@ -118,7 +117,6 @@ std::shared_ptr<const meshadapt::Geometry> geometry_of_parts(
     const meshadapt::MakeMeshOptions& make) {
   Part whole = comm.on_all([&] {
     Part own = part;
-    own.wanted = meshadapt::constant_metric(own.mesh, 1);  // required by code that copies vertices
     list_boundary(executor, own);
     return own;
   });
