@@ -1,5 +1,5 @@
 /// @file
-/// Adaptation of ductile.h, and what a program does with its result.
+/// Adaptation for ductile.h, and the report of a finished one.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,7 +28,7 @@ using meshadapt::AnyMesh;
 using meshadapt::InputError;
 using Type = AnyField::Type;
 
-/// The kind of metric that has so many components.
+/// The type of a metric with this number of components.
 Type type_of(int components, int dimension) {
   for (const Type type : {Type::scalar, Type::symmetric, Type::matrix})
     if (component_count(type, dimension) == components) return type;
@@ -52,7 +52,7 @@ AnyField metric_of(const AnyMesh& mesh, int components, const double* values,
                               {options.adapt.smallest_size, options.adapt.largest_size});
 }
 
-/// A field of so many scalars.
+/// A field with one scalar per component.
 AnyField solution_of(const AnyMesh& mesh, int components, const double* values) {
   if (components < 1)
     throw InputError("components: expected 1 or more, found " + std::to_string(components));
@@ -111,7 +111,8 @@ double figure(const AdaptReport& report, std::string_view name) {
   throw InputError("figure " + std::string(name) + ": expected one of " + names);
 }
 
-/// The handle of what adapt(executor) gives, with a warning of vertices that are not connected.
+/// Returns a handle to the result of adapt(executor), with a warning for each place where the input
+/// is not connected.
 template <class Adapt>
 ductile_mesh* adapted_by(const ductile_options& options, const meshadapt::AnyMesh& mesh,
                          Adapt&& adapt) {
@@ -125,7 +126,7 @@ ductile_mesh* adapted_by(const ductile_options& options, const meshadapt::AnyMes
 }  // namespace
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: the functions for C are in no namespace
+using namespace ductile;  // NOLINT: the functions for C belong to no namespace
 
 extern "C" {
 

@@ -36,6 +36,11 @@ module ductile
       integer(c_int64_t), value :: count
       integer(c_int64_t), intent(in) :: corners(*)
     end function
+    integer(c_int) function ductile_mesh_join_vertices(mesh, distance, kept) bind(C)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: mesh, kept
+      real(c_double), value :: distance
+    end function
     integer(c_int) function ductile_mesh_create(dimension, mesh) bind(C)
       import :: c_int, c_ptr
       integer(c_int), value :: dimension

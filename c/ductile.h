@@ -87,6 +87,11 @@ const char* ductile_mesh_name(const ductile_mesh* mesh, int kind, int32_t refere
 const char* ductile_mesh_name_at(const ductile_mesh* mesh, int64_t i, int* kind,
                                  int32_t* reference);
 
+/** Joins vertices at most `distance` apart, and facets that become the same; the first of each stays,
+ * with its reference. `kept` gets the indices before of the vertices that stay, and has room for
+ * all vertices; NULL if not wanted. A mesh from an adaptation loses its metric and report. */
+int ductile_mesh_join_vertices(ductile_mesh* mesh, double distance, int32_t* kept);
+
 /** Reads a file of any format that `ductile help` lists, detected by content. */
 int ductile_mesh_read(const char* path, ductile_mesh** mesh);
 /** Writes a mesh in the format of the ending of `path`. The metric of an adapted mesh goes into

@@ -35,7 +35,7 @@ SurfaceFunction function_of(int32_t reference, ductile_surface surface, void* co
           }};
 }
 
-/// Writes points and so on of those that are closest, NaN and 0 where there is none.
+/// Writes the closest point, its normal and its reference; NaN and 0 if there is none within reach.
 struct Closest {
   const ductile_geometry& geometry;
   double reach;
@@ -60,7 +60,7 @@ struct Closest {
 }  // namespace
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: the functions for C are in no namespace
+using namespace ductile;  // NOLINT: the functions for C belong to no namespace
 
 extern "C" {
 

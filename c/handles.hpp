@@ -13,7 +13,7 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/sizes.hpp"
 
-/// A mesh; an adapted one has a metric and a report, too.
+/// A mesh. Metric and report are empty unless it is an adapted one.
 struct ductile_mesh {
   ductile::meshadapt::AnyMesh mesh;
   ductile::meshadapt::AnyField metric;
@@ -23,27 +23,27 @@ struct ductile_mesh {
 struct ductile_options {
   ductile::meshadapt::AdaptOptions adapt;
   ductile::runtime::ExecutorOptions executor;
-  double elements = 0, norm = 2;  // of the metric of a solution
-  bool projection = false;        // how that gets second derivatives
+  double elements = 0, norm = 2;  // goal of the metric of a solution
+  bool projection = false;        // recovers second derivatives by double projection
 };
 
 struct ductile_sizes {
   int dimension = 0;
   ductile::meshadapt::Sizes sizes;
-  ductile::meshadapt::SizeGrowth growth;  // of the places that are added next
+  ductile::meshadapt::SizeGrowth growth;  // of places added from now on
 };
 
 namespace ductile::c {
 
-/// Keeps the text for ductile_last_error(). What does not fit into memory is said in fewer words.
+/// Keeps the text for ductile_last_error(), or a shorter one if memory runs out.
 void keep_error(const char* text) noexcept;
-/// The same of what is wrong with the input; options have the names that they have here.
+/// The same for invalid input; options get their names in the C interface.
 void keep_wrong_input(const char* text) noexcept;
 
-/// With six digits.
+/// The number with six digits.
 std::string number(double value);
 
-/// Calls work() and turns what it throws into a code.
+/// Calls work() and turns its exceptions into a code.
 template <class Work>
 int guarded(Work&& work) noexcept {
   try {
@@ -62,14 +62,13 @@ int guarded(Work&& work) noexcept {
   return DUCTILE_FAILED;
 }
 
-/// Throws InputError if a pointer that must lead somewhere does not.
+/// Throws InputError if the pointer is null.
 inline void expect_given(const void* pointer, const char* name) {
   if (pointer == nullptr)
     throw meshadapt::InputError(std::string(name) + ": expected a pointer, found NULL");
 }
 
-/// The same of an array of `count` entries, which may be NULL if there are none. Throws InputError
-/// for counts below 0, too.
+/// Throws InputError if the count is below 0, or if the array is null although the count is not 0.
 inline void expect_array(const void* array, std::int64_t count, const char* name) {
   if (count < 0)
     throw meshadapt::InputError(std::string(name) + ": expected 0 entries or more, found " +
@@ -77,14 +76,14 @@ inline void expect_array(const void* array, std::int64_t count, const char* name
   if (count > 0) expect_given(array, name);
 }
 
-/// Throws InputError unless it is 2 or 3.
+/// Throws InputError unless the dimension is 2 or 3.
 inline void expect_dimension(int dimension) {
   if (dimension != 2 && dimension != 3)
     throw meshadapt::InputError("dimension: expected 2 or 3, found " + std::to_string(dimension));
 }
 
-/// The dimension of entities of a kind in meshes of a dimension. Throws InputError if there are
-/// none.
+/// The dimension of this kind of entities in a mesh of dimension `dimension`. Throws InputError if
+/// such a mesh has no such entities.
 inline int dimension_of(int kind, int dimension) {
   if (kind == DUCTILE_VERTICES) return 0;
   if (kind == DUCTILE_RIDGES && dimension == 3) return 1;
@@ -95,7 +94,7 @@ inline int dimension_of(int kind, int dimension) {
                               "DUCTILE_FACETS or DUCTILE_ELEMENTS, found " + std::to_string(kind));
 }
 
-/// Throws InputError unless sizes are for meshes of this dimension.
+/// Throws InputError unless the sizes are for meshes of the mesh's dimension.
 inline void expect_dimension_of(const ductile_sizes& sizes, const ductile_mesh& mesh) {
   if (sizes.dimension != mesh.mesh.dimension)
     throw meshadapt::InputError("sizes: expected those for meshes of dimension " +

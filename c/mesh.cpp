@@ -27,10 +27,10 @@ using meshadapt::MeshArrays;
 
 constexpr std::int64_t most_entities = std::numeric_limits<std::int32_t>::max();
 
-thread_local std::string last_error;  // NOLINT: what the functions of C have in place of exceptions
+thread_local std::string last_error;  // NOLINT: C functions cannot throw, so they set this
 
-/// An array as a span of so many entries with `each` numbers; of references, which may be left out,
-/// none.
+/// A span over `count` entries of `each` numbers; empty if the array is null, as omitted references
+/// are.
 template <class T>
 std::span<const T> span_of(const T* array, std::int64_t count, std::int64_t each) {
   if (array == nullptr) return {};
@@ -43,7 +43,7 @@ void expect_count(std::int64_t count, const char* name) {
                      " entries, found " + std::to_string(count));
 }
 
-/// The caller's cells, with `each` corners.
+/// The caller's cells. `corners` has the corners of one cell after the other.
 template <class Index>
 struct GivenCells {
   std::int64_t count;
@@ -51,7 +51,7 @@ struct GivenCells {
   const std::int32_t* reference;
 };
 
-/// The vertices of a mesh with elements, or facets, that are given; both are checked.
+/// Returns a mesh with the vertices of `mesh` and these elements or facets, after checking them.
 template <class Index>
 AnyMesh with_cells(const AnyMesh& mesh, const GivenCells<Index>& given, int each) {
   expect_array(given.corners, given.count, "corners");
@@ -67,7 +67,7 @@ AnyMesh with_cells(const AnyMesh& mesh, const GivenCells<Index>& given, int each
   return meshadapt::mesh_from_arrays(runtime::Executor(), arrays);
 }
 
-/// With other arrays a mesh is no adapted one any more, but keeps its names.
+/// Replaces the contents of a mesh except its names. It is no adapted mesh afterwards.
 void replace(ductile_mesh& handle, AnyMesh&& mesh) {
   mesh.names = std::move(handle.mesh.names);
   handle = {std::move(mesh), {}, {}};
@@ -100,7 +100,8 @@ int set_facets(ductile_mesh* handle, const GivenCells<Index>& given) {
   });
 }
 
-/// The list of required entities of a kind, and how many such entities there are.
+/// Returns the list of required entities of a kind; `count` becomes the number of all such
+/// entities.
 std::vector<std::uint32_t>& required_of(AnyMesh& mesh, int kind, std::size_t& count) {
   const bool flat = mesh.dimension == 2;
   switch (kind) {
@@ -120,7 +121,7 @@ std::vector<std::uint32_t>& required_of(AnyMesh& mesh, int kind, std::size_t& co
   }
 }
 
-/// Calls use(cells) with those of a kind; false if there is no such kind of cells.
+/// Calls use(cells) with the cells of this kind. Returns false if there are none of this kind.
 bool visit_cells(const AnyMesh& mesh, int kind, auto&& use) {
   const bool flat = mesh.dimension == 2;
   if (kind == DUCTILE_RIDGES && !flat) return use(mesh.edges), true;
@@ -129,7 +130,7 @@ bool visit_cells(const AnyMesh& mesh, int kind, auto&& use) {
   return false;
 }
 
-/// The kind of entities of a dimension in meshes of a dimension; -1: there are none.
+/// The kind of the entities of dimension `dimension` in a mesh; -1 if there is none.
 int kind_of(int dimension, int mesh_dimension) {
   for (const int kind : {DUCTILE_VERTICES, DUCTILE_RIDGES, DUCTILE_FACETS, DUCTILE_ELEMENTS})
     if ((kind != DUCTILE_RIDGES || mesh_dimension == 3) &&
@@ -156,7 +157,7 @@ void keep_error(const char* text) noexcept {
   try {
     last_error = text;
   } catch (...) {
-    last_error = "no memory";  // short enough to need none
+    last_error = "no memory";  // short enough to need no allocation
   }
 }
 
@@ -171,7 +172,7 @@ void keep_wrong_input(const char* text) noexcept {
   try {
     for (const auto& [theirs, ours] : names)
       if (last_error.starts_with(theirs)) return void(last_error.replace(0, theirs.size(), ours));
-  } catch (...) {  // it stays as it is
+  } catch (...) {  // the previous text stays
   }
 }
 
@@ -183,7 +184,7 @@ std::string number(double value) {
 
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: the functions for C are in no namespace
+using namespace ductile;  // NOLINT: the functions for C belong to no namespace
 
 extern "C" {
 
@@ -248,6 +249,15 @@ int ductile_mesh_require(ductile_mesh* mesh, int kind, int64_t count, const int3
             "indices[" + std::to_string(i) + "]: expected an index from 0 and below " +
             std::to_string(entities) + ", found " + std::to_string(indices[i]));
     required.assign(indices, indices + count);
+  });
+}
+
+int ductile_mesh_join_vertices(ductile_mesh* mesh, double distance, int32_t* kept) {
+  return c::guarded([&] {
+    c::expect_given(mesh, "mesh");
+    auto joined = meshadapt::join_vertices(mesh->mesh, distance);
+    if (kept != nullptr) std::copy(joined.kept.begin(), joined.kept.end(), kept);
+    *mesh = {std::move(joined.mesh), {}, {}};
   });
 }
 
@@ -335,7 +345,7 @@ const int32_t* ductile_mesh_corners(const ductile_mesh* mesh, int kind) {
   const int32_t* corners = nullptr;
   if (mesh == nullptr) return corners;
   c::visit_cells(mesh->mesh, kind, [&](const auto& cells) {
-    if (cells.size() != 0)  // the signed type of theirs, which may be looked at as that
+    if (cells.size() != 0)  // the signed type of the same size may alias the unsigned one
       corners = reinterpret_cast<const int32_t*>(cells.vertices[0].data());
   });
   return corners;

@@ -1,5 +1,5 @@
 /// @file
-/// Options of ductile.h by their names: a name that a later version adds changes no function.
+/// Options of ductile.h, set by name so that new options need no new function.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -78,7 +78,7 @@ std::string all_names() {
 }  // namespace
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: the functions for C are in no namespace
+using namespace ductile;  // NOLINT: the functions for C belong to no namespace
 
 extern "C" {
 

@@ -1,5 +1,5 @@
 /// @file
-/// Sizes of ductile.h: places that are added one after the other, numbers that are set by name.
+/// Sizes of ductile.h: places are added one by one, numbers are set by name.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -41,7 +41,7 @@ double& number_of(ductile_sizes& sizes, std::string_view name) {
   throw InputError("sizes: expected one of " + names + ", found " + std::string(name));
 }
 
-/// Points, one after the other; the third coordinate of those in the plane is 0.
+/// Points from their coordinates; in 2D the third coordinate is 0.
 std::vector<Vector<3>> points_of(const double* coordinates, std::int64_t count, int dimension) {
   std::vector<Vector<3>> points(static_cast<std::size_t>(count));
   for (Vector<3>& point : points)
@@ -49,7 +49,7 @@ std::vector<Vector<3>> points_of(const double* coordinates, std::int64_t count, 
   return points;
 }
 
-/// Adds what place(dimension) makes.
+/// Adds the place that place(dimension) returns.
 template <class Place>
 int add(ductile_sizes* sizes, double size, Place&& place) {
   return guarded([&] {
@@ -63,7 +63,7 @@ int add(ductile_sizes* sizes, double size, Place&& place) {
 }  // namespace
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: the functions for C are in no namespace
+using namespace ductile;  // NOLINT: the functions for C belong to no namespace
 
 extern "C" {
 

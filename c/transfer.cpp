@@ -1,5 +1,5 @@
 /// @file
-/// From one mesh to another, for ductile.h: origins, hosts and fields.
+/// Transfer between meshes for ductile.h: origins, hosts and fields.
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -22,7 +22,7 @@ using meshadapt::AnyMesh;
 using meshadapt::Carrying;
 using meshadapt::InputError;
 
-/// Where values are, of a kind of entities.
+/// The place, vertices or elements, that a kind of entities stands for.
 meshadapt::NamedField::Place place_of(int kind) {
   if (kind == DUCTILE_VERTICES) return meshadapt::NamedField::Place::vertices;
   if (kind == DUCTILE_ELEMENTS) return meshadapt::NamedField::Place::elements;
@@ -35,13 +35,13 @@ std::size_t entity_count(const AnyMesh& mesh, int kind) {
   return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
-/// As signed numbers, of which -1 is `none`: the signed type of theirs, which may be looked at so.
+/// The indices as signed numbers, so that `none` is -1. The signed type may alias the unsigned one.
 const std::int32_t* signed_data(const std::vector<std::uint32_t>& indices) {
   static_assert(static_cast<std::int32_t>(meshadapt::none) == -1);
   return indices.empty() ? nullptr : reinterpret_cast<const std::int32_t*>(indices.data());
 }
 
-/// A field for each component of values that come entity after entity.
+/// Splits values, entity after entity, into one field per component.
 std::vector<meshadapt::NamedField> fields_of(const double* values, std::size_t count,
                                              std::size_t components,
                                              meshadapt::NamedField::Place place) {
@@ -63,7 +63,7 @@ void copy_to(double* values, const std::vector<meshadapt::NamedField>& fields) {
 }  // namespace
 }  // namespace ductile::c
 
-using namespace ductile;  // NOLINT: the functions for C are in no namespace
+using namespace ductile;  // NOLINT: the functions for C belong to no namespace
 
 extern "C" {
 

@@ -66,6 +66,20 @@ AnyField wanted_on(const Executor& executor, const Part& part, const AnyMesh& me
   return mapped<Dim>(executor, carried.field, meshadapt::exponential<Dim>);
 }
 
+/// The target metric, and then those of another source, if there is one.
+class TargetFirst : public meshadapt::MetricSource {
+ public:
+  TargetFirst(const AnyField& target, MetricSource* others) : target_(target), others_(others) {}
+  const AnyField* next(const meshadapt::AdaptState& state) override {
+    if (state.pass == 0) return &target_;
+    return others_ == nullptr ? nullptr : others_->next(state);
+  }
+
+ private:
+  const AnyField& target_;
+  MetricSource* others_;
+};
+
 /// Restores the numbers and labels of marked vertices; the others get none.
 void restore_vertices(const Part& before, Part& after, Interfaces& interfaces) {
   std::vector<VertexId> now(before.mesh.vertex_count(), meshadapt::none);
@@ -92,8 +106,9 @@ AdaptedPart adapt_part(const Executor& executor, Part part, const Interfaces& in
     result.part = std::move(part);
     return result;
   }
+  TargetFirst source(part.wanted, options.source);
   auto [mesh, metric, report] = meshadapt::adapt(
-      executor, with_required<Dim>(part, interfaces, options), part.wanted, options.adapt);
+      executor, with_required<Dim>(part, interfaces, options), source, options.adapt);
   result.report = std::move(report);
   result.part.mesh = std::move(mesh);
   AnyMesh& after = result.part.mesh;

@@ -16,6 +16,8 @@ struct AdaptPartOptions {
   meshadapt::AdaptOptions adapt = {};  ///< required_gradation applies at interfaces
   /// References of facets, and of elements, to be kept unchanged; ascending.
   std::vector<std::int32_t> required_facets = {}, required_elements = {};
+  /// Gives metrics after the target metric if there is only one rank.
+  meshadapt::MetricSource* source = nullptr;
 };
 
 struct AdaptedPart {

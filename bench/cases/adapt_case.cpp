@@ -20,8 +20,8 @@ using meshadapt::InputError;
 
 namespace {
 
-/// What is known, and what it takes to make it. `start_cells` are those along an axis; the metric
-/// of the last case needs a mesh that knows where the layer is, so it starts from one adapted to a
+/// The cases with their numbers of elements. `start_cells` is the number per axis. The metric of
+/// the last case needs a mesh that resolves the layer, so it starts from a mesh adapted to a
 /// hundredth of the complexity.
 constexpr double layer_coarser = 100;
 constexpr std::array<CaseInfo, 12> cases{{
@@ -42,7 +42,7 @@ constexpr std::array<CaseInfo, 12> cases{{
      "edges of 0.1 in a sector of a hollow ball; 96,000 to about 9,600 tetrahedra"},
 }};
 
-/// Along an axis.
+/// Number of cells along an axis of the start mesh.
 int start_cells(std::string_view name) {
   if (name == "psi2d") return 100;
   if (name == "psi3d") return 50;
@@ -55,8 +55,8 @@ int start_cells(std::string_view name) {
   return name == "layer3d" ? 6 : 32;
 }
 
-/// How far curved boundaries may go astray: twice as far as chords as long as asked for are from
-/// the arc that bends most.
+/// Surface tolerance of curved boundaries: twice the error of chords of the requested length on the
+/// arc with the largest curvature.
 double hausdorff_tolerance(std::string_view name) {
   if (name == "ring2d") return 2e-4;
   return name == "dome3d" ? 5e-3 : 0;
@@ -87,7 +87,8 @@ const CaseInfo& find_case(const std::string& name) {
   throw InputError("expected one of the cases" + names + ", found '" + name + "'");
 }
 
-/// Those of the working group have a metric as published; its complexity is only told.
+/// The metrics of the working group are used as published; their complexity is given for
+/// information only.
 template <int Dim>
 Formula<Dim> formula_of(const runtime::Executor& executor, const CaseInfo& info, double factor);
 
@@ -118,7 +119,7 @@ AnyMesh regular_mesh(int dimension, int cells) {
                         : meshadapt::box_mesh({1, 1, 1}, {cells, cells, cells});
 }
 
-/// The start mesh adapted to a hundredth of the complexity. On one thread: it is a small one.
+/// The start mesh adapted to a hundredth of the complexity, on one thread because it is small.
 template <int Dim>
 AnyMesh layer_mesh(AnyMesh mesh, const Formula<Dim>& formula) {
   const runtime::Executor alone({.threads = 1});

@@ -1,6 +1,6 @@
 /// @file
-/// AdaptCase: something to adapt: a mesh to start from, a metric, and how often the metric is
-/// evaluated anew and the mesh adapted to it. Made by name, at any size.
+/// AdaptCase: a case to adapt: a start mesh, a metric, and how often the metric is evaluated and
+/// the mesh adapted to it. Made by name, at any size.
 #pragma once
 
 #include <functional>
@@ -14,13 +14,13 @@
 
 namespace ductile::bench {
 
-/// What there is to choose from.
+/// One of the available cases.
 struct CaseInfo {
   std::string_view name;
   int dimension = 0;
-  double complexity = 0;   ///< at factor 1
-  int calls = 1;           ///< of adapt, each to the formula on the mesh that the last one left
-  bool has_peers = false;  ///< others can be run on it in reasonable time: one call, not too large
+  double complexity = 0;  ///< at factor 1
+  int calls = 1;  ///< calls of adapt(), each with the formula evaluated on the previous result
+  bool has_peers = false;  ///< Mmg can run it in reasonable time: one call, not too large
   std::string_view what;   ///< one line
 };
 
@@ -34,7 +34,7 @@ struct AdaptCase {
   bool has_peers = false;
   double hausdorff_tolerance = 0;  ///< of MakeMeshOptions
   meshadapt::AnyMesh start;
-  /// The formula at the vertices of a mesh: one symmetric field.
+  /// Evaluates the formula at the vertices of a mesh: one symmetric field.
   std::function<meshadapt::AnyField(const runtime::Executor&, const meshadapt::AnyMesh&)> metric_on;
 };
 
@@ -44,15 +44,15 @@ struct AdaptCase {
 /// Thread safety: one caller; runs on the executor.
 AdaptCase make_case(const runtime::Executor& executor, const std::string& name);
 
-/// Whether this is a valid mesh of the domain that the case starts from, boundaries within the
-/// tolerance. Thread safety: one caller; runs on the executor.
+/// Is this a valid mesh of the case's domain, with boundaries within the tolerance? Thread safety:
+/// one caller; runs on the executor.
 bool is_sound(const runtime::Executor& executor, const AdaptCase& adapt_case,
               const meshadapt::AnyMesh& mesh);
 
-/// The name with a factor (or another factor, the two multiplied).
+/// The name with this factor; a factor that it already has is multiplied by it.
 std::string times(const std::string& name, double factor);
 
-/// Triangles or tetrahedra.
+/// Number of triangles, or of tetrahedra in 3D.
 std::size_t element_count(const meshadapt::AnyMesh& mesh);
 
 }  // namespace ductile::bench

@@ -1,14 +1,14 @@
 /// @file
-/// curved_mesh: domains with curved boundaries, to start from.
+/// curved_mesh: start meshes with curved boundaries.
 #pragma once
 
 #include "ductile/meshadapt/any_mesh.hpp"
 
 namespace ductile::bench {
 
-/// All between the radii 1/2 and 1 and within an angle of 1 to either side, in 3D of longitude and
-/// of latitude: a sector of a ring, or of a hollow ball. `cells` along an angle, a fourth of that
-/// along the radius, cut as those of box_mesh(), with their references.
+/// A sector of a ring (3D: of a hollow ball), between the radii 1/2 and 1 and from -1 to 1 in angle
+/// (3D: in longitude and latitude). It has `cells` cells along each angle and a fourth of that
+/// along the radius, cut like those of box_mesh() and with their references.
 meshadapt::AnyMesh curved_mesh(int dimension, int cells);
 
 }  // namespace ductile::bench

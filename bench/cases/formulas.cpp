@@ -34,7 +34,7 @@ double mean_over_square(const runtime::Executor& executor, std::size_t n, Value&
 
 constexpr double least_curvature = 0.01, smallest_size = 1e-5, largest_size = 0.3;
 
-/// det(|H|)^(-1/(4 + Dim)) |H|, in its eigenvectors; values in no order.
+/// The eigenvalues, in no order, and eigenvectors of det(|H|)^(-1/(4 + Dim)) |H|.
 template <int Dim>
 meshadapt::PrincipalAxes<Dim> unscaled_psi_metric(double x, double y) {
   const PsiHessian hessian = psi_hessian(x, y, 0);
@@ -64,8 +64,8 @@ double density(const meshadapt::PrincipalAxes<Dim>& axes, double factor) {
   return std::sqrt(determinant);
 }
 
-/// The factor with which the metric, bounded, has the complexity. Bounds hold in few places, so
-/// scaling as if there were none is right after few repetitions.
+/// The factor with which the bounded metric has this complexity. Bounds apply in few places, so
+/// scaling without regard to them converges in a few steps.
 template <int Dim>
 double psi_factor(const runtime::Executor& executor, double complexity) {
   double factor = 1;
@@ -79,7 +79,7 @@ double psi_factor(const runtime::Executor& executor, double complexity) {
   return factor;
 }
 
-/// The size `across` along the direction, `along` at right angles to it.
+/// The metric with the size `across` along the direction and `along` at right angles to it.
 template <int Dim>
 Metric<Dim> stretched(const Vector<Dim>& direction, double across, double along) {
   Metric<Dim> metric = meshadapt::isotropic<Dim>(along);
@@ -92,11 +92,11 @@ Metric<Dim> stretched(const Vector<Dim>& direction, double across, double along)
 
 // ---- Layers ----
 
-/// What sizes that grow from 0.001 to 0.1 are at a distance of up to 1/2.
+/// A size that grows linearly from 0.001 to 0.1 over a distance of 1/2.
 double layer_size(double distance) { return 0.001 + 0.198 * distance; }
 
-/// How far the curved layer is below a place, how steeply that grows along x and y, and the same as
-/// a distance along its normal.
+/// A place relative to the curved layer: its height above the layer, the slopes of the layer along
+/// x and y, and its distance along the layer's normal.
 struct LayerPlace {
   double below = 0, slope_x = 0, slope_y = 0;
   double steepness() const { return std::sqrt(1 + slope_x * slope_x + slope_y * slope_y); }
@@ -110,7 +110,7 @@ LayerPlace layer_place(const Vector<3>& place) {
           height * pi * std::sin(x) * std::cos(y), height * pi * std::cos(x) * std::sin(y)};
 }
 
-/// Size across the layer over that along it.
+/// Ratio of the size across the layer to that along it.
 double layer_ratio(const LayerPlace& place) { return std::min(1.0, 0.01 + 2 * place.distance()); }
 
 }  // namespace

@@ -26,8 +26,8 @@ Formula<Dim> psi_metric(const runtime::Executor& executor, double complexity);
 template <int Dim>
 Formula<Dim> uniform_metric(double size);
 
-// ---- Of the unstructured grid adaptation working group (Ibanez et al., Procedia Eng. 203, 2017)
-// ----
+// ---- Metrics of the unstructured grid adaptation working group (Ibanez et al., Procedia Eng. 203,
+// 2017) ----
 
 /// A circle of radius 1/4 around the middle of the square: sizes across it grow linearly with the
 /// distance from it, 0.001 to 0.1, and are 0.1 along it.
@@ -54,7 +54,8 @@ meshadapt::Metric<3> turning_metric(const meshadapt::Vector<3>& place);
 /// and grow linearly with the distance until they are the same.
 Formula<3> curved_layer_metric(const runtime::Executor& executor, double complexity);
 
-/// The formula times `factor`, which multiplies the complexity by factor^(Dim / 2).
+/// The formula with its tensors multiplied by `factor`, which multiplies the complexity by
+/// factor^(Dim / 2).
 template <int Dim>
 Formula<Dim> scaled(Formula<Dim> formula, double factor);
 

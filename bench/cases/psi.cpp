@@ -10,8 +10,8 @@ double psi(double x, double y, double phase) {
   return 0.1 * std::sin(50 * x + phase) + std::atan(-0.1 / psi_jump_level(x, y, phase));
 }
 
-/// Beside the jump atan(-0.1 / level) differs by a constant from atan(level / 0.1), whose
-/// derivatives go on through it.
+/// Away from the jump, atan(-0.1 / level) differs by a constant from atan(level / 0.1), whose
+/// derivatives are continuous across it.
 PsiHessian psi_hessian(double x, double y, double phase) {
   constexpr double width = 0.1, waves = 50;
   const double level = psi_jump_level(x, y, phase);

@@ -33,7 +33,7 @@ void write_binary(std::ostream& out, const std::vector<Number>& numbers) {
             static_cast<std::streamsize>(numbers.size() * sizeof(Number)));
 }
 
-/// Version 1 of Galois's graphs: where rows end, neighbours, and weights if there are.
+/// Writes version 1 of Galois's format: the ends of rows, neighbours, and weights if wanted.
 void write_galois(std::ostream& out, const example::WeightedGraph& graph, bool weighted) {
   const auto& [offset, neighbour] = graph.rows;
   write_binary(out, std::vector<std::uint64_t>{1, weighted ? sizeof(example::Weight) : 0,

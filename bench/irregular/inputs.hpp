@@ -1,5 +1,5 @@
 /// @file
-/// What the algorithms work on, by name and size, and the formats of other programs.
+/// Inputs of the algorithms, by name and size, and their files in other programs' formats.
 #pragma once
 
 #include <cstddef>
@@ -21,15 +21,15 @@ struct GraphInput {
   runtime::CsrGraph<> view() const { return graph.rows.view(); }
 };
 
-/// "random", 4 edges for each vertex; "rmat", 8 edges; "grid"; "geometric". `size` is about how
-/// many vertices there are. After "shuffled-" their list of edges is in a random order. Throws
-/// std::invalid_argument for another name.
+/// Makes the graph "random" (4 edges per vertex), "rmat" (8 edges per vertex), "grid" or
+/// "geometric", with about `size` vertices. With the prefix "shuffled-", its list of edges is in
+/// random order. Throws std::invalid_argument for another name.
 GraphInput graph_input(const std::string& name, std::size_t size);
 
-/// Formats of PBBS, as text, and of Galois.
+/// Text formats of PBBS, and the formats of Galois.
 enum class Format { adjacency, edges, weighted_edges, points, galois, galois_weighted };
 
-/// False, with nothing written, if the input has no such format.
+/// Writes the input, or writes nothing and returns false if it has no such format.
 bool write_input(std::ostream& out, Format format, const GraphInput& input);
 bool write_input(std::ostream& out, Format format, const std::vector<example::Point>& points);
 template <class Other>

@@ -20,7 +20,7 @@ using namespace ductile::bench::irregular;
 using ductile::runtime::Executor;
 using ductile::runtime::Placement;
 
-constexpr double enough_seconds = 20;  // for an input; then no more repetitions
+constexpr double enough_seconds = 20;  // per input; after that no more repetitions
 
 double median(std::vector<double> samples) {
   std::sort(samples.begin(), samples.end());
@@ -28,8 +28,8 @@ double median(std::vector<double> samples) {
   return samples.size() % 2 == 1 ? samples[half] : (samples[half - 1] + samples[half]) / 2;
 }
 
-/// The serial code first, then Ductile on each number of threads, again and again, so that whatever
-/// else the machine does meets all alike.
+/// Runs the serial code and then Ductile on each number of threads, repeatedly, so that other load
+/// on the machine affects all alike.
 std::vector<Measurement> measure(Problem& problem, const Options& options) {
   std::vector<Executor> executors;
   if (problem.has_ductile())
@@ -52,7 +52,7 @@ std::vector<Measurement> measure(Problem& problem, const Options& options) {
   return measurements;
 }
 
-/// One line for each program and number of threads.
+/// Measures an input: one result per program and number of threads.
 std::vector<Measurement> measure(const Algorithm& algorithm, const std::string& input,
                                  std::size_t size, const Options& options) {
   const auto problem = algorithm.problem(input, size);
@@ -71,7 +71,7 @@ std::vector<Measurement> measure(const Algorithm& algorithm, const std::string& 
   return measurements;
 }
 
-/// Those asked for.
+/// The algorithms named by the options.
 std::vector<Algorithm> chosen(const Options& options) {
   std::vector<Algorithm> all = algorithms();
   std::string known;
@@ -86,7 +86,7 @@ std::vector<Algorithm> chosen(const Options& options) {
   return all;
 }
 
-/// Returns whether all results were right.
+/// Runs the suite. Returns true if all results were valid.
 bool run(const Options& options) {
   const std::vector<Algorithm> rows = chosen(options);
   JsonFile json(options.json);

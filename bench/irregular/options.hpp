@@ -1,5 +1,5 @@
 /// @file
-/// What a run of the suite measures, from the words of a command line.
+/// Options of the suite, parsed from a command line.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ using cli::UsageError;
 
 std::span<const cli::Option> known_options();
 
-/// Throws UsageError, with the word and what was expected.
+/// Throws UsageError, which names the word and what was expected.
 Options options_from(const std::vector<std::string>& words);
 
 }  // namespace ductile::bench::irregular

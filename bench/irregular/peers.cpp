@@ -20,8 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// How to run a program. In `command`, {program}, {file}, {threads} and {repetitions} are replaced.
-/// A time follows each occurrence of `before_time` in what it prints; times `unit` it is in
-/// seconds.
+/// Each occurrence of `before_time` in the output precedes a time, in units of `unit` seconds.
 struct Peer {
   const char *algorithm, *name, *program;
   Format format;
@@ -56,7 +55,7 @@ std::optional<fs::path> on_path(const char* program) {
   return std::nullopt;
 }
 
-/// A file in a place of its own, gone in the end.
+/// A temporary file, removed by the destructor.
 class TemporaryFile {
  public:
   TemporaryFile()
@@ -85,7 +84,7 @@ std::string quoted(const fs::path& path) {
   return "'" + text + "'";
 }
 
-/// What a command prints; nothing if it fails.
+/// The output of a command; empty if it fails.
 std::string output_of(const std::string& command) {
   std::string output;
   FILE* const pipe = popen((command + " 2>/dev/null").c_str(), "r");
@@ -96,7 +95,7 @@ std::string output_of(const std::string& command) {
   return pclose(pipe) == 0 ? output : std::string();
 }
 
-/// The median of the times in what a program prints, or -1.
+/// The median of the times in a program's output, or -1.
 double median_time(const std::string& output, std::string_view before_time) {
   std::vector<double> times;
   for (auto at = output.find(before_time); at != std::string::npos;

@@ -1,6 +1,6 @@
 /// @file
-/// Programs of PBBS and Galois on the same inputs, if they are on the PATH. What counts is the time
-/// that they print themselves, without reading and writing files.
+/// Runs programs of PBBS and Galois on the same inputs, if they are on the PATH. Only the times
+/// that they print themselves are used; these exclude reading and writing files.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace ductile::bench::irregular {
 
-/// Medians of all programs for this algorithm that are found and can read the input; seconds are a
-/// number below 0 for one that failed or printed no time.
+/// Medians for all programs of this algorithm that are found and can read the input. Seconds are
+/// negative if a program failed or printed no time.
 std::vector<Measurement> measure_peers(const std::string& algorithm, const Problem& problem,
                                        const std::vector<int>& thread_counts, int repetitions);
 

@@ -1,5 +1,5 @@
 /// @file
-/// What was measured, as a table for people and as JSON for programs.
+/// Results as a table for people and as JSON for programs.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace ductile::bench::irregular {
 
-/// Medians of one program on an input.
+/// Median of one program on one input.
 struct Measurement {
   std::string algorithm, input;
   std::string program;  ///< "serial", "Ductile", or another's name
@@ -17,20 +17,20 @@ struct Measurement {
 };
 
 void print_head();
-/// A line, at once.
+/// Prints a line immediately.
 void print(const Measurement& measurement);
 
-/// A file that appears whole or not at all. Throws std::runtime_error if it cannot be written, from
-/// the start.
+/// A JSON file that appears whole or not at all. The constructor throws std::runtime_error if it
+/// cannot be written.
 class JsonFile {
  public:
-  /// Nowhere, if the path is empty.
+  /// Writes no file if the path is empty.
   explicit JsonFile(std::filesystem::path path);
   ~JsonFile();
   JsonFile(const JsonFile&) = delete;
   JsonFile& operator=(const JsonFile&) = delete;
 
-  /// Ductile's measurements, and the file in place.
+  /// Writes the measurements and moves the file to its place.
   void write(const std::vector<Measurement>& measurements);
 
  private:

@@ -1,6 +1,6 @@
 /// @file
-/// What the suite consists of: algorithms, each with inputs, the serial code, Ductile, and a check
-/// of what they give. A file in algorithms/ fills in a Row, whose types nobody else needs to know.
+/// The suite: algorithms, each with inputs, the serial code, Ductile's code, and a check of
+/// results. A file in algorithms/ fills in a Row, whose types are not needed elsewhere.
 #pragma once
 
 #include <chrono>
@@ -24,11 +24,11 @@ class Problem {
  public:
   virtual ~Problem() = default;
   virtual bool has_ductile() const = 0;
-  /// Seconds that one run takes. Throws std::runtime_error, with what is wrong, if its result is
-  /// not valid, or not that of the runs before.
+  /// Returns the seconds of one run. Throws std::runtime_error, with the fault, if the result is
+  /// not valid or differs from those of earlier runs.
   virtual double run_serially() = 0;
   virtual double run_ductile(const runtime::Executor& executor) = 0;
-  /// Writes the input for another program; false if there is no such format for it.
+  /// Writes the input for another program; returns false if it has no such format.
   virtual bool write(std::ostream& out, Format format) const = 0;
 };
 
@@ -38,7 +38,7 @@ struct Algorithm {
   std::function<std::unique_ptr<Problem>(const std::string& input, std::size_t size)> problem;
 };
 
-/// All of them.
+/// All algorithms.
 std::vector<Algorithm> algorithms();
 
 /// The functions of an algorithm. Results have operator==.
@@ -47,12 +47,12 @@ struct Row {
   std::string name;
   std::vector<std::string> inputs;
   std::function<Input(const std::string& input, std::size_t size)> make_input;
-  /// What a run starts from, made before the clock runs; nothing if empty.
+  /// Makes the initial result before the clock starts; may be empty.
   std::function<Result(const Input&)> begin{};
   std::function<void(const Input&, Result&)> serial;
-  /// Empty as long as Ductile has no such example.
+  /// Empty if Ductile has no such example.
   std::function<void(const runtime::Executor&, const Input&, Result&)> ductile{};
-  /// What is wrong with a result; nothing if empty. It is asked of the serial result, too.
+  /// Returns the fault of a result, or an empty text. Also called for the serial result.
   std::function<std::string(const Input&, const Result& result, const Result& serial)> fault;
 };
 
@@ -81,7 +81,7 @@ class RowProblem : public Problem {
   }
 
  private:
-  /// `first` is what the first such run gave.
+  /// `first` keeps the result of the first such run.
   template <class Solve>
   double run(const std::string& whose, std::optional<Result>& first, Solve&& solve) {
     Result result = row_.begin ? row_.begin(input_) : Result{};
@@ -109,7 +109,7 @@ Algorithm algorithm(Row<Input, Result> row) {
           }};
 }
 
-/// For a fault: `what` unless it is as it should be.
+/// Returns `what` if the condition does not hold, otherwise an empty text.
 inline std::string unless(bool as_it_should_be, const char* what) {
   return as_it_should_be ? "" : what;
 }

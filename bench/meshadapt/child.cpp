@@ -23,8 +23,8 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-/// The most memory that a running process has held. What wait4() tells is no use: it starts from
-/// what the parent held.
+/// Peak memory of a running process. The figure of wait4() is useless because it starts from the
+/// parent's memory.
 std::size_t peak_of(pid_t process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");
   for (std::string line; std::getline(status, line);)
@@ -32,7 +32,7 @@ std::size_t peak_of(pid_t process) {
   return 0;
 }
 
-/// Starts a process that prints nowhere; none if the system refuses.
+/// Starts a process with its output discarded; returns none if the system refuses.
 std::optional<pid_t> start(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);

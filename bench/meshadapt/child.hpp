@@ -1,5 +1,5 @@
 /// @file
-/// Other programs, run and measured as whole processes.
+/// Runs other programs and measures them as whole processes.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace ductile::bench {
 
-/// What a process took from its start to its end.
+/// Resources used by a process from start to end.
 struct ChildReport {
   int status = 0;  ///< exit status; 128 + the signal that ended it; 127 if it could not be started
   double processor_seconds = 0;  ///< user and system
@@ -18,10 +18,10 @@ struct ChildReport {
   std::size_t peak_memory = 0;  ///< bytes, as seen every 10 ms
 };
 
-/// Runs words[0] with the others as arguments, and waits for it. What it prints is thrown away.
+/// Runs words[0] with the other words as arguments and waits for it. Its output is discarded.
 ChildReport run_child(const std::vector<std::string>& words);
 
-/// Where a program of this name lies on the PATH.
+/// The path of a program on the PATH, if it is there.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
 }  // namespace ductile::bench

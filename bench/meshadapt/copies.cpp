@@ -15,7 +15,7 @@ namespace ductile::bench {
 
 namespace {
 
-/// A process that runs the work, and where it tells its seconds.
+/// A process that runs the work, and the pipe from which to read its seconds.
 struct Copy {
   pid_t process = 0;
   int from = -1;
@@ -25,7 +25,7 @@ struct Copy {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// Of this process, with what it has in memory.
+/// Forks this process and runs the work in the child.
 Copy start(const std::function<double()>& work) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) refuse("a pipe from a copy of the benchmark");
@@ -41,7 +41,7 @@ Copy start(const std::function<double()>& work) {
     double seconds = 0;
     try {
       seconds = work();
-    } catch (...) {  // zero tells that
+    } catch (...) {  // a time of zero reports the failure
     }
     const bool told = write(to, &seconds, sizeof seconds) == sizeof seconds;
     _exit(told ? 0 : 1);
@@ -50,7 +50,7 @@ Copy start(const std::function<double()>& work) {
   return {process, from};
 }
 
-/// The seconds that it tells, 0 if it fails.
+/// The seconds that the copy reports; 0 if it fails.
 double finish(const Copy& copy) {
   double seconds = 0;
   ssize_t bytes = 0;
@@ -62,7 +62,7 @@ double finish(const Copy& copy) {
   return told ? seconds : 0;
 }
 
-/// How often a second so many copies, side by side, do the work.
+/// Runs of the work per second by `copies` simultaneous copies.
 double rate(const std::function<double()>& work, int copies) {
   std::vector<Copy> running(static_cast<std::size_t>(copies));
   for (Copy& copy : running) copy = start(work);
@@ -80,7 +80,7 @@ double rate(const std::function<double()>& work, int copies) {
   return sum;
 }
 
-/// The middle one of an odd number.
+/// Median of an odd number of values.
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

@@ -42,8 +42,8 @@ void bind_to(int unit) {
 
 constexpr int batch_count = 7, turns_in_batch = 400;
 
-/// Two threads hand a number to and fro; the calling one is a thread of its own, so that the
-/// program's keep their affinity. The best batch counts: the others were interrupted.
+/// Two threads pass a number back and forth. The first is a new thread, too, so that the caller
+/// keeps its affinity. The best batch counts, because others were interrupted.
 double round_trip_ns(int unit, int other_unit) {
   constexpr int turns = 2 * batch_count * turns_in_batch;
   alignas(128) std::atomic<int> turn{0};
@@ -116,7 +116,8 @@ std::string placement_of(const CoreDistance& distance) {
   return nearest == farthest ? nearest : nearest + " to " + farthest;
 }
 
-/// "5" makes Linux set VmHWM to what is held now (proc(5)); that shall not be what was freed.
+/// Writing "5" makes Linux set VmHWM to the memory held now (proc(5)), so freed memory is returned
+/// first.
 void reset_peak_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);

@@ -1,6 +1,6 @@
 /// @file
-/// What a figure depends on besides the program: how far apart the cores are at the moment, how
-/// much memory and processor time this process took, and what the machine calls itself.
+/// Conditions that a figure depends on besides the program: the current distance between cores, the
+/// memory and processor time of this process, and the description of the machine.
 #pragma once
 
 #include <cstddef>
@@ -8,24 +8,24 @@
 
 namespace ductile::bench {
 
-/// Nanoseconds that a cache line takes from one core to another and back: to the nearest and to the
-/// farthest of those that threads run on, seen from the first. 0 on one core.
+/// Nanoseconds for a cache line to go from the first core to another and back: to the nearest and
+/// to the farthest core in use. 0 on one core.
 struct CoreDistance {
   double nearest_ns = 0, farthest_ns = 0;
 };
 
-/// Looks at the first `threads` processing units that this process may use (at most 16 of them).
-/// Takes some milliseconds for each. A virtual machine's answer may change from minute to minute.
-/// Thread safety: one caller, nothing else running.
+/// Measures the first `threads` processing units that this process may use (at most 16), in some
+/// milliseconds each. On a virtual machine the result may change from minute to minute. Thread
+/// safety: one caller, nothing else running.
 CoreDistance core_distance(int threads);
 
-/// What a distance means: "one core" for hyperthreads of one core, "near", "far"; "-" for 0. A pair
-/// of words if the nearest and the farthest differ.
+/// A word for a distance: "one core" for hyperthreads of one core, "near", "far"; "-" for 0. Two
+/// words if the nearest and the farthest differ.
 std::string placement_of(const CoreDistance& distance);
 
-/// Forgets the most memory that was held so far, where the system can.
+/// Resets the peak memory of this process, where the system can.
 void reset_peak_memory();
-/// The most memory held since, in bytes.
+/// Peak memory since then, in bytes.
 std::size_t peak_memory();
 
 /// Processor time of all threads of this process so far, seconds.

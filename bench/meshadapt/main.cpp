@@ -1,7 +1,7 @@
 /// @file
-/// The whole adaptation, measured: time by kernel and phase on 1, 2, ... threads, what the
-/// published method costs on the same kernels, quality and memory; and Mmg on the same files, if it
-/// is there. Leaves every sample in results.json, from which bench/report makes a page.
+/// Benchmark of whole adaptations: time by kernel and phase on 1, 2, ... threads, the cost of the
+/// published method on the same kernels, quality and memory; and Mmg on the same files, if it is
+/// installed. Writes every sample to results.json, from which bench/report makes a page.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -35,8 +35,8 @@ void say(const Sample& sample) {
   std::fflush(stdout);
 }
 
-/// As many copies as the most threads that have a core each: more say nothing, and each has memory
-/// of its own.
+/// Runs as many copies as the largest number of threads with a core each. More copies would tell
+/// nothing, and each needs its own memory.
 void measure_copies(Results& results, const Plan& plan, const AdaptCase& made,
                     const Sampler& sampler) {
   int copies = 1;
@@ -51,11 +51,11 @@ void measure_copies(Results& results, const Plan& plan, const AdaptCase& made,
               speed);
 }
 
-/// All settings in turn, again and again, so that whatever else the machine does meets all alike.
+/// Runs all settings alternately, repeatedly, so that other load on the machine affects all alike.
 void measure_case(Results& results, const Plan& plan, const AdaptCase& made) {
   Sampler sampler(made);
-  // Only the median of several runs hides what it takes a virtual machine's host to give memory
-  // that no program has had before.
+  // The first use of memory is slow on a virtual machine, whose host must provide it. Medians of
+  // several runs hide that; a single run of a large case needs a call in advance.
   if (is_large(made.name)) sampler.first_call_alone();
   const auto start = std::chrono::steady_clock::now();
   const int repetitions = is_large(made.name) ? 1 : plan.repetitions;
@@ -85,13 +85,13 @@ void measure_peer(Results& results, const Plan& plan, const AdaptCase& made) {
   }
 }
 
-/// Results are written after each case, so that a run that is cut short leaves what it has.
+/// Writes results after each case, so that an interrupted run keeps them.
 int run(const Plan& plan) {
   const auto start = std::chrono::steady_clock::now();
   Results results;
   fs::create_directories(plan.folder);
   const fs::path file = plan.folder / "results.json";
-  fs::remove(file);  // of an earlier run
+  fs::remove(file);  // left by an earlier run
   for (const std::string& name : plan.cases) {
     const AdaptCase made = make_case(ductile::runtime::Executor(), name);
     measure_case(results, plan, made);
@@ -126,7 +126,7 @@ int main(int word_count, char** word) {
       return 0;
     }
     const Plan plan = plan_from(arguments);
-    ductile::cli::reuse_memory(plan.most_threads);  // as the program does
+    ductile::cli::reuse_memory(plan.most_threads);  // as the program ductile does
     return run(plan);
   } catch (const ductile::cli::UsageError& error) {
     std::fprintf(stderr, "adapt_bench: %s\n", error.what());

@@ -19,7 +19,8 @@ using meshadapt::AnyMesh;
 using meshadapt::Metric;
 using runtime::Executor;
 
-/// A tensor field with each tensor replaced by its matrix logarithm or exponential.
+/// Returns a tensor field whose tensors are the matrix logarithms or exponentials of the given
+/// ones.
 template <int Dim>
 AnyField each(const Executor& executor, const AnyField& field,
               Metric<Dim> (*function)(const Metric<Dim>&)) {
@@ -29,7 +30,7 @@ AnyField each(const Executor& executor, const AnyField& field,
   return meshadapt::symmetric_field<Dim>(executor, tensor_of, field.name);
 }
 
-/// The start mesh's metric at the vertices of another mesh, log-Euclidean.
+/// The start mesh's metric at the vertices of another mesh, interpolated log-Euclidean.
 template <int Dim>
 AnyField interpolated(const Executor& executor, const AdaptCase& made, const AnyMesh& mesh) {
   const AnyField logarithms =
@@ -38,7 +39,7 @@ AnyField interpolated(const Executor& executor, const AdaptCase& made, const Any
                    meshadapt::exponential<Dim>);
 }
 
-/// Runs one program, which writes `output`, and judges that.
+/// Runs one program, which writes `output`, and judges the output.
 ProgramRun run(const AdaptCase& made, const std::vector<std::string>& words,
                const fs::path& output) {
   ProgramRun result;

@@ -1,6 +1,6 @@
 /// @file
-/// Peer: Mmg on the same files as the program ductile, one run of each in turn, on one thread.
-/// Both are measured as whole processes, files included.
+/// Peer: runs Mmg on the same files as the program ductile, alternating, on one thread. Both are
+/// measured as whole processes, including files.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace ductile::bench {
 
-/// One program's run on a case. The mesh is judged in the start mesh's metric, interpolated.
+/// One program's run on a case. Its mesh is judged in the start mesh's metric, interpolated.
 struct ProgramRun {
   ChildReport child;
   std::size_t elements = 0;
@@ -27,15 +27,15 @@ struct Pair {
 };
 
 struct PairSettings {
-  std::filesystem::path folder;  ///< where the files go
+  std::filesystem::path folder;  ///< folder for the files
   int most_pairs = 3;
-  double seconds = 60;  ///< no further pair is begun after so long
+  double seconds = 60;  ///< no further pair begins after this time
 };
 
 /// Mmg for this dimension (mmg2d_O3, mmg3d_O3), if it is on the PATH.
 std::optional<std::filesystem::path> find_mmg(int dimension);
 
-/// Who goes first alternates. A program that fails leaves its status in the pair.
+/// Runs both programs in alternating order. If a program fails, the pair has its exit status.
 std::vector<Pair> run_pairs(const AdaptCase& adapt_case, const std::filesystem::path& mmg,
                             const PairSettings& settings);
 

@@ -47,7 +47,7 @@ std::vector<std::string> split(const std::string& list) {
   return words;
 }
 
-/// The factor of the name.
+/// The factor in the name NAME@FACTOR; 1 if there is none.
 double factor_of(const std::string& name) {
   const std::size_t at = name.find('@');
   return at == std::string::npos ? 1 : std::strtod(name.c_str() + at + 1, nullptr);

@@ -1,5 +1,5 @@
 /// @file
-/// Plan: which cases are measured, at which sizes, on how many threads and how often.
+/// Plan: the cases to measure, their sizes, the numbers of threads and repetitions.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct Plan {
   int most_threads = 1;
   int repetitions = 5;
   int pairs = 3;
-  double seconds = 120;  ///< no further repetition of a case, or pair, is begun after so long
+  double seconds = 120;  ///< no further repetition of a case, or pair, begins after this time
   bool peers = true;
 };
 
@@ -27,11 +27,11 @@ std::span<const cli::Option> plan_options();
 /// Throws UsageError.
 Plan plan_from(const cli::Arguments& arguments);
 
-/// What to measure of a case: 1, 2, 4, ... threads, and by colours on the fewest and the most. Of
-/// a large one, NAME@FACTOR with a factor above 1, only the most threads.
+/// Settings for a case: 1, 2, 4, ... threads, and by colours on the fewest and the most threads. A
+/// large case, NAME@FACTOR with a factor above 1, runs on the most threads only.
 std::vector<RunSettings> settings_for(const Plan& plan, const std::string& case_name);
 
-/// Whether it is measured for its size only.
+/// Is the case measured on the most threads only, because it is large?
 bool is_large(const std::string& case_name);
 
 }  // namespace ductile::bench

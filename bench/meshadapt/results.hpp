@@ -1,5 +1,5 @@
 /// @file
-/// Results: all that was measured, and the JSON file that tells it.
+/// Results: all measurements, and their JSON file.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct Results {
   std::vector<Pair> pairs;
   std::vector<std::string> notes;  ///< what was not measured, and why
 
-  /// Whether every result is valid, and of each case and mode the same at all threads.
+  /// Is every result valid, and the same at all threads for each case and mode?
   bool sound() const;
 };
 

@@ -98,7 +98,7 @@ double Sampler::first_call_alone() const {
       .report.total_seconds;
 }
 
-/// The metric of the next call is evaluated while no clock runs.
+/// Times the calls of adapt(); the metric of the next call is evaluated while the clock is stopped.
 Sample Sampler::timed(const Executor& executor, Mode mode, AdaptedMesh& result) const {
   Sample sample;
   meshadapt::AnyMesh last;

@@ -1,6 +1,6 @@
 /// @file
-/// Sample: one measured adaptation: its time by kernel and phase, its memory, what came out, and
-/// how far apart the cores were before and after.
+/// Sample: one measured adaptation: its time by kernel and phase, its memory, the resulting mesh,
+/// and the distance between cores before and after.
 #pragma once
 
 #include <array>
@@ -26,11 +26,11 @@ struct RunSettings {
 
 inline const char* name_of(Mode mode) { return mode == Mode::tiles ? "tiles" : "colours"; }
 
-/// How good a mesh is in the metric that it was made for: the start mesh's, interpolated, for one
-/// call; the formula's for several.
+/// Quality of a mesh in its metric: after one call the start mesh's, interpolated; after several
+/// the formula's.
 struct MeshFigures {
   double share_in_range = 0, mean_quality = 0, least_quality = 0;
-  bool valid = false;  ///< it is a mesh, and one of the unit square or cube
+  bool valid = false;  ///< the mesh is valid and covers the domain
 };
 
 /// Parts of the time of adapt(), in the order of all tables: the kernels are the first ones.
@@ -53,12 +53,12 @@ struct Sample {
   std::string case_name;
   RunSettings settings;
   int repetition = 0;
-  double wall_seconds = 0, processor_seconds = 0;  ///< of all calls of adapt()
+  double wall_seconds = 0, processor_seconds = 0;  ///< all calls of adapt() together
   PartSeconds part_seconds{};
   std::array<PhaseSeconds, kernel_count> phase_seconds{};
   std::size_t start_elements = 0, elements = 0;
   std::size_t peak_memory = 0;    ///< bytes, with the case in memory
-  std::uint64_t fingerprint = 0;  ///< of all bytes of the result
+  std::uint64_t fingerprint = 0;  ///< hash of all bytes of the result
   std::string_view instructions;  ///< see AdaptReport
   MeshFigures figures;
   CoreDistance before, after;
@@ -67,16 +67,16 @@ struct Sample {
   bool steady() const { return placement_of(before) == placement_of(after); }
 };
 
-/// Adapts cases and judges what comes out; the same bytes are judged once.
-/// Thread safety: one thread.
+/// Adapts cases and judges the results; identical results are judged once. Thread safety: one
+/// thread.
 class Sampler {
  public:
   explicit Sampler(const AdaptCase& adapt_case);
 
-  /// Times all calls of adapt() on an executor of its own.
+  /// Times all calls of adapt() on a new executor.
   Sample take(const RunSettings& settings, int repetition);
 
-  /// Seconds of the first call on one thread; starts no threads.
+  /// Seconds of the first call, on one thread; starts no threads.
   double first_call_alone() const;
 
  private:

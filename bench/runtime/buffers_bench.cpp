@@ -1,8 +1,8 @@
 /// @file
-/// What it costs to carry out a write for data that another thread may own: kept and committed
-/// (DeferredUpdate), or at once under a lock or by an atomic, or kept in other containers.
-/// Item i of a loop adds i to the sum of an owner. Floor: it writes what has to be kept into a
-/// place of its own; arrays.read_back is what else it takes to carry that out.
+/// Cost of a write to data that another thread may own: deferred and committed (DeferredUpdate), or
+/// immediate under a lock or by an atomic, or kept in other containers. Item i of a loop adds i to
+/// the sum of an owner. Floor: each update is written to a place of its own; arrays.read_back adds
+/// the cost of carrying it out.
 
 #include <algorithm>
 #include <atomic>
@@ -35,8 +35,8 @@ struct Update {
 
 struct Case {
   std::string name;
-  std::uint32_t count;  // of updates, and of owners
-  std::uint32_t reach;  // owners are so near by
+  std::uint32_t count;  // number of updates, and of owners
+  std::uint32_t reach;  // largest distance from an item to its owner
 
   Update update(std::size_t i) const {
     const auto item = static_cast<std::uint32_t>(i);
@@ -70,7 +70,7 @@ void add_buffers(const std::string& subject, const std::string& candidate, Make 
           carry_out(sums);  // its memory is there from now on, as the floor's is
           std::fill(sums.begin(), sums.end(), 0U);
           for (auto _ : state) carry_out(sums);
-          const auto sum = std::accumulate(sums.begin(), sums.end(), 0U);  // all of these wrap
+          const auto sum = std::accumulate(sums.begin(), sums.end(), 0U);  // all sums wrap
           const std::uint32_t once =
               c.count % 2 == 0 ? c.count / 2 * (c.count - 1) : (c.count - 1) / 2 * c.count;
           if (sum != once * static_cast<std::uint32_t>(state.iterations()))
@@ -78,7 +78,7 @@ void add_buffers(const std::string& subject, const std::string& candidate, Make 
         });
 }
 
-/// The bytes that are kept of an update.
+/// The stored part of an update.
 struct Plain {
   std::uint32_t owner, value;
   Plain() = default;
@@ -92,7 +92,7 @@ struct Sourced {
       : source(item), owner(update.owner), value(update.value) {}
 };
 
-/// What nobody who keeps updates can do without: what is kept is written to an array.
+/// The floor: every method that stores updates must write what it keeps to memory.
 template <class Kept>
 void add_floor(const std::string& subject) {
   for (const Case& c : cases())
@@ -106,9 +106,9 @@ void add_floor(const std::string& subject) {
     });
 }
 
-/// The least that does for updates to be carried out afterwards, in no particular order: they are
-/// written to arrays, of each thread one for every thread; then each thread reads those for it and
-/// carries them out. A thread owns a run of owners.
+/// The minimum for carrying out updates later, in no particular order: each thread writes updates
+/// to one array per target thread; then each thread reads the arrays for it and carries them out. A
+/// thread owns consecutive owners.
 template <class Kept>
 class ArraysForThreads {
  public:
@@ -152,7 +152,7 @@ class ArraysForThreads {
 
   const Executor* executor_;
   const Case* case_;
-  unsigned shift_;  // of an owner, to its thread
+  unsigned shift_;  // maps an owner to its thread
   runtime::PerThread<Lane> lanes_;
 };
 
@@ -169,7 +169,8 @@ std::string name_of(Way way) {
   return way == Way::range ? "ductile.deferred" : "ductile.one_by_one";
 }
 
-/// Of a subject: in order, updates are kept with their sources, which are as many bytes again.
+/// Suffix of a subject. In loop order, updates are kept with their sources, which doubles their
+/// size.
 std::string suffix(CommitOrder order) { return order == CommitOrder::any ? "" : "_by_loop"; }
 
 template <CommitOrder order>
@@ -199,7 +200,7 @@ void add_deferred(Way way) {
       });
 }
 
-/// Without the commit: what a loop pays for an update that it defers.
+/// Measures deferring without the commit: the cost in the loop.
 template <CommitOrder order>
 void add_deferring(Way way) {
   for (const Case& c : cases())
@@ -227,7 +228,7 @@ void add_atomic() {
   });
 }
 
-/// Locks shared among the owners in turn.
+/// Locks shared among the owners, assigned cyclically.
 void add_mutexes(const std::string& name, std::size_t lock_count) {
   add_buffers("buffers", name, [lock_count](const Executor& executor, const Case& c) {
     struct alignas(64) Lock {
@@ -244,7 +245,7 @@ void add_mutexes(const std::string& name, std::size_t lock_count) {
 }
 
 #ifdef DUCTILE_BENCH_TBB
-/// One list for all owners, so that one thread commits it.
+/// One list for all owners, committed by one thread.
 void add_concurrent_vector() {
   add_buffers("buffers", "tbb.concurrent_vector", [](const Executor& executor, const Case& c) {
     return [&, list = std::make_shared<tbb::concurrent_vector<Update>>()](Sums& sums) {
@@ -256,9 +257,9 @@ void add_concurrent_vector() {
 }
 #endif
 
-/// Two passes: blocks of items count what goes to which group of owners, a prefix sum over blocks
-/// within groups says where, and then they write it there. Deterministic, as blocks do not depend
-/// on threads; decides everything twice.
+/// Two passes: blocks of items count the updates for each group of owners, a prefix sum over blocks
+/// within groups gives positions, and then blocks write the updates there. Deterministic, because
+/// blocks do not depend on threads; computes everything twice.
 class TwoPasses {
  public:
   TwoPasses(const Executor& executor, const Case& c)
@@ -305,7 +306,7 @@ class TwoPasses {
   std::vector<Update> list_;             // by group, then block
 };
 
-/// What commits in this order, of which Kept is kept.
+/// Adds the methods that commit in this order and store a Kept per update.
 template <class Kept, CommitOrder order>
 void add_keepers() {
   const std::string buffers = "buffers" + suffix(order), deferring = "deferring" + suffix(order);

@@ -1,7 +1,7 @@
 /// @file
-/// Colourings of graphs by every method of the runtime and by others; floor: a bare sweep that
-/// reads a byte of every neighbour and writes one. And recolouring after a change, beside colouring
-/// anew.
+/// Colourings of graphs by every method of the runtime and by other libraries. Floor: a bare sweep
+/// that reads a byte of every neighbour and writes one. Also recolouring after a change, compared
+/// with colouring anew.
 
 #include <cstdint>
 #include <utility>
@@ -66,7 +66,7 @@ Colouring colour_by_boost(const Rows& graph) {
   return colouring;
 }
 
-/// A graph of which vertices scattered at random, `per_mille` of all, want new colours.
+/// Recolours `per_mille` of the vertices of a graph, scattered at random.
 void add_recolouring(const GraphCase& graph_case, std::uint32_t per_mille) {
   const unsigned scale = graph_scales().back();
   const std::string name = "recolouring/" + graph_case.name + "_2^" + std::to_string(scale) + '_' +

@@ -1,5 +1,5 @@
 /// @file
-/// add_colourings: adds a candidate that colours graphs, for all graphs, and checks what it does.
+/// add_colourings: adds a candidate that colours graphs, for all graphs, and checks its colourings.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -15,12 +15,12 @@
 
 namespace ductile::bench {
 
-/// Of the graphs: 2^scale vertices, about; more than one in the full extent.
+/// Sizes of graphs, as powers of 2; more than one in the full extent.
 inline std::vector<unsigned> graph_scales() {
   return by_extent<std::vector<unsigned>>({14}, {20}, {17, 20, 22});
 }
 
-/// `make(rows, threads)` returns a function that colours these rows and returns a
+/// Adds a candidate: `make(rows, threads)` returns a function that colours these rows and returns a
 /// runtime::Colouring. Counter: colours.
 template <class Make>
 void add_colourings(const std::string& candidate, const std::vector<int>& threads_of, Make make) {
@@ -38,7 +38,8 @@ void add_colourings(const std::string& candidate, const std::vector<int>& thread
           });
 }
 
-/// Candidates of Kokkos Kernels; in a file of its own, as it is there only where it is installed.
+/// Adds the candidates of Kokkos Kernels. They have a file of their own, because it is built only
+/// where that is installed.
 void add_kokkos_colourings();
 
 }  // namespace ductile::bench

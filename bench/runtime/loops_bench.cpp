@@ -20,7 +20,7 @@ namespace {
 using runtime::Executor;
 using runtime::Schedule;
 
-/// Of the time on one thread.
+/// Lower bound of a parallel loop's time, as a share of the time on one thread.
 double least_share(std::span<const std::uint32_t> units, int threads) {
   const auto total = std::accumulate(units.begin(), units.end(), 0.0);
   const auto longest = static_cast<double>(*std::max_element(units.begin(), units.end()));
@@ -38,7 +38,7 @@ void serial_loop(benchmark::State& state, const LoopCase& loop_case, int threads
   }
 }
 
-/// The loops of a team, whose threads stay together from one to the next.
+/// Loops in a team, whose threads stay together from one loop to the next.
 void add_loops_of_team() {
   for (const LoopCase& loop_case : loop_cases())
     add("loops/" + loop_case.name + "/ductile.team", team_sizes(),

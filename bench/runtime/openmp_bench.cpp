@@ -49,7 +49,7 @@ struct Scan {
     std::uint32_t sum = 0;
 #pragma omp parallel for num_threads(threads) reduction(inscan, + : sum)
     for (std::size_t i = 0; i < n; ++i) {
-      values[i] = sum;  // after what follows has been done for all i: that is what the scan means
+      values[i] = sum;  // the scan directive runs this after the part below, for all i
 #pragma omp scan exclusive(sum)
       sum += values[i];
     }

@@ -1,7 +1,7 @@
 /// @file
-/// What it costs to collect the items that the threads of a loop find: in a Worklist, or in one
-/// list under a lock, in oneTBB's concurrent vector, or by counting first and a prefix sum. Floor:
-/// every item found is written to a place of its own.
+/// Cost of collecting the items that the threads of a loop find: in a Worklist, in one list under a
+/// lock, in oneTBB's concurrent vector, or by counting first and a prefix sum. Floor: every item
+/// found is written to a place of its own.
 
 #include <memory>
 #include <mutex>
@@ -24,7 +24,7 @@ namespace {
 
 using runtime::Executor;
 
-/// A loop that looks at `count` places and finds an item in one of `one_in`, at random.
+/// A loop over `count` indices that finds an item at one of `one_in`, at random.
 struct Case {
   std::string name;
   std::uint32_t count, one_in;
@@ -86,7 +86,7 @@ void fill(List& list, const Executor& executor, const Case& c) {
   });
 }
 
-/// Asks for the way in for every item.
+/// Calls mine() for every item.
 void fill_one_by_one(List& list, const Executor& executor, const Case& c) {
   list.clear();
   parallel_for(executor, c.count, [&](std::size_t i) {
@@ -128,8 +128,8 @@ void add_push_back() {
   });
 }
 
-/// Collects into a common list by `place(list, items)`, which any thread may call, in batches of so
-/// many items of one thread.
+/// Collects into a common list by `place(list, items)`, which any thread may call, in batches of
+/// `batch` items of one thread.
 template <class List, class Place>
 void add_batches(const std::string& name, std::size_t batch, Place place) {
   using Batches = runtime::PerThread<std::vector<std::uint32_t>>;
@@ -153,7 +153,7 @@ void add_batches(const std::string& name, std::size_t batch, Place place) {
   });
 }
 
-/// A vector that one thread at a time may change.
+/// A vector that threads change one at a time.
 class LockedList {
  public:
   void append(std::span<const std::uint32_t> items) {
@@ -188,8 +188,8 @@ void add_locked_and_concurrent() {
 #endif
 }
 
-/// Two passes: blocks of the loop count their items, a prefix sum says where they go, and then they
-/// are written there. Deterministic; looks at everything twice.
+/// Two passes: blocks of the loop count their items, a prefix sum gives positions, and then blocks
+/// write the items there. Deterministic; runs everything twice.
 class TwoPasses {
  public:
   TwoPasses(const Executor& executor, const Case& c)

@@ -1,6 +1,6 @@
 /// @file
-/// A mesh from plain arrays, adapted, and plain arrays again: what a simulation or a binding of
-/// another language does. No file is read or written.
+/// Makes a mesh from plain arrays, adapts it, and returns plain arrays, as a simulation or a
+/// language binding does. No file is read or written.
 
 #include <cmath>
 #include <cstdint>
@@ -32,7 +32,7 @@ int main() {
     const meshadapt::AnyField metric =
         meshadapt::metric_of(meshadapt::scalar_field(2, size_of), mesh);
     const meshadapt::AdaptedMesh adapted = meshadapt::adapt(executor, mesh, metric);
-    // ---- Out: arrays; the first corner of the first triangle, say ----
+    // ---- Out: arrays; for example the first corner of the first triangle ----
     const meshadapt::AnyMesh& out = adapted.mesh;
     const double* const point = &out.coordinates[2 * out.triangles.vertices[0][0]];
     std::printf("%zu vertices, %zu triangles, %zu boundary edges; a corner at (%g, %g)\n",

@@ -1,9 +1,9 @@
 /// @file
-/// Cavities: to put a point into a Delaunay triangulation, the triangles whose circles hold it go,
-/// and triangles from the point to the sides of the hole they leave take their places (Bowyer and
-/// Watson, 1981). Those that go are a tree, because there is no vertex inside. A search that goes
-/// around that tree finds each once, without looking for it among those found before, and the sides
-/// of the cavity in their order, anticlockwise.
+/// Cavities: to insert a point into a Delaunay triangulation, the triangles whose circumcircles
+/// contain it are removed, and triangles from the point to the sides of the cavity take their
+/// places (Bowyer and Watson, 1981). The removed triangles form a tree, because there is no vertex
+/// inside. A search around that tree visits each once, without a look-up among those found before,
+/// and gives the sides of the cavity in order, anticlockwise.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace example {
 
-/// An edge of a cavity, which lies to its left; `place` is that of the edge in triangle `beyond`.
+/// An edge of a cavity, which lies to its left; `place` is the edge's number in triangle `beyond`.
 struct CavitySide {
   VertexId begin, end;
   TriangleId beyond;
@@ -27,18 +27,18 @@ struct CavitySide {
 enum class Dug {
   closed,   ///< the cavity is complete
   stopped,  ///< at a boundary edge
-  denied    ///< reach() said no
+  denied    ///< reach() returned false
 };
 
 struct Cavity {
   Point point{};
-  std::vector<TriangleId> triangles{};  ///< those that go; after fill() those that came
+  std::vector<TriangleId> triangles{};  ///< the removed triangles; after fill() the new ones
   std::vector<CavitySide> sides{};
 
-  /// Finds the cavity of `point` from triangle `start` on, which has been reached; reaches for all
-  /// other triangles that it looks at. If `open` is less than 3, the point is on that edge of
-  /// `start`, a boundary edge, which is no side then. Calls stops(begin, end, triangle) at every
-  /// other boundary edge, and stops as soon as that is true.
+  /// Finds the cavity of `point`, starting from triangle `start`, which has been reached; reaches
+  /// for all other triangles that it reads. If `open` is less than 3, the point lies on that edge
+  /// of `start`, a boundary edge, which is then no side. Calls stops(begin, end, triangle) at every
+  /// other boundary edge, and stops when that returns true.
   Dug dig(const Triangulation& mesh, TriangleId start, std::uint32_t open, auto& reach,
           auto&& stops) {
     triangles.assign(1, start);
@@ -72,8 +72,8 @@ struct Cavity {
     return Dug::closed;
   }
 
-  /// Puts triangles from the sides to a vertex in place of the cavity: first those that were there,
-  /// then new ones.
+  /// Replaces the cavity by triangles from its sides to a vertex; reuses its triangles first, then
+  /// takes new ones.
   void fill(Triangulation& mesh, VertexId vertex, auto&& new_triangle) {
     mesh.points[vertex] = point;
     while (triangles.size() < sides.size()) triangles.push_back(new_triangle());
@@ -94,15 +94,15 @@ struct Cavity {
   std::vector<std::pair<TriangleId, std::uint32_t>> ahead_;  // edges to look at
 };
 
-/// Whether a point is on the wrong side of a boundary edge, or inside the circle on it.
+/// Is the point on the wrong side of a boundary edge, or inside the circle on that edge?
 inline bool is_in_the_way(Point begin, Point end, Point point) {
   const std::int64_t across = std::int64_t{begin.x - point.x} * (end.x - point.x) +
                               std::int64_t{begin.y - point.y} * (end.y - point.y);
   return across < 0 || turn(begin, end, point) <= 0;
 }
 
-/// Goes from triangle to triangle towards a point, to the one that holds it; false if one is
-/// denied. The point is inside the whole.
+/// Walks from triangle to triangle to the one that contains the point, which lies inside the
+/// triangulation. Returns false if a triangle is denied.
 inline bool walk(const Triangulation& mesh, TriangleId& t, Point point, auto& reach) {
   for (TriangleId from = outside;;) {
     if (!reach(t)) return false;
@@ -116,7 +116,7 @@ inline bool walk(const Triangulation& mesh, TriangleId& t, Point point, auto& re
   }
 }
 
-/// Triangles take other numbers, below `count`.
+/// Moves triangles to other numbers, below `count`.
 inline void renumber_triangles(Triangulation& mesh,
                                std::span<const ductile::runtime::Renumbered> moved,
                                std::size_t count) {
@@ -131,7 +131,7 @@ inline void renumber_triangles(Triangulation& mesh,
   mesh.neighbours_of.resize(count);
 }
 
-/// Vertices take other numbers, below `count`.
+/// Moves vertices to other numbers, below `count`.
 inline void renumber_vertices(Triangulation& mesh,
                               std::span<const ductile::runtime::Renumbered> moved,
                               std::size_t count) {

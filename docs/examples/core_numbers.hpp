@@ -1,10 +1,10 @@
 /// @file
-/// The core number of each vertex: the greatest k such that it has k neighbours in what is left
-/// when vertices with fewer than k neighbours are taken away again and again. Peels shell after
-/// shell. This loop has no conflicts to find, so it uses the parts that run_rounds is made of: the
-/// losses of a shell's neighbours are deferred, and a vertex that falls to k joins the worklist. As
-/// an operator with levels a vertex would have to reach for all its neighbours, since a count is no
-/// minimum that several may lower: those beside a hub would go one after the other.
+/// The core number of each vertex: the greatest k such that the vertex has k neighbours left when
+/// vertices with fewer than k neighbours are removed repeatedly. Peels one shell after the other.
+/// This loop has no conflicts, so it uses the building blocks of run_rounds: the losses of a
+/// shell's neighbours are deferred, and a vertex that falls to k joins the worklist. As an operator
+/// with levels, a vertex would have to reach for all its neighbours, because a count is no minimum
+/// that several may lower: the neighbours of a hub would run one by one.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ class Peeling {
     });
   }
 
-  /// Peels the k-shell for k = 0, 1, ... until nothing is left.
+  /// Peels the k-shells for k = 0, 1, ... until no vertex is left.
   runtime::RoundsReport run() {
     runtime::RoundsReport report;
     for (std::uint32_t k = 0; report.applied < core_of.size(); ++k) {
@@ -57,7 +57,8 @@ class Peeling {
  private:
   struct Loss {};
 
-  /// None that was peeled: those have kept the degree at which they were, less than k.
+  /// Vertices of degree k that are left. Peeled vertices keep their last degree, which is less than
+  /// k.
   runtime::UnsetVector<Vertex> vertices_of_degree(std::uint32_t k) const {
     return runtime::parallel_collect<Vertex>(executor_, degree_of_.size(),
                                              [&](std::size_t v, auto&& append) {
@@ -66,8 +67,8 @@ class Peeling {
                                              });
   }
 
-  /// Takes vertices of degree k away. Degrees are read while they are taken, and change only when
-  /// losses are committed; they stop at k, so a vertex falls to it once.
+  /// Removes vertices of degree k. Degrees are read meanwhile and change only when losses are
+  /// committed; they stop at k, so a vertex falls to k only once.
   void peel(std::span<const Vertex> shell, std::uint32_t k) {
     const auto take_away = [&](std::size_t i, auto& losses) {
       core_of[shell[i]] = k;
@@ -88,7 +89,7 @@ class Peeling {
   runtime::Worklist<Vertex> fallen_;
 };
 
-/// [vertex]; fills in a report if there is one.
+/// Returns the core numbers, [vertex]; fills in a report if there is one.
 inline std::vector<std::uint32_t> core_numbers_in_parallel(
     const runtime::Executor& executor, runtime::CsrGraph<> graph,
     runtime::RoundsReport* report = nullptr) {

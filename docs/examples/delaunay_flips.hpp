@@ -1,7 +1,7 @@
 /// @file
-/// The Delaunay triangulation of points by edge flips: from any triangulation, an edge is replaced
-/// by the other diagonal of its two triangles if the circle through one holds the far corner of the
-/// other (Lawson, 1977). A flip changes its two triangles, and two whose neighbours change.
+/// The Delaunay triangulation of points by edge flips: in any triangulation, an edge is replaced by
+/// the other diagonal of its two triangles if the circumcircle of one contains the far corner of
+/// the other (Lawson, 1977). A flip changes its two triangles, and two that get other neighbours.
 #pragma once
 
 #include <array>
@@ -28,14 +28,14 @@ class FlipEdges {
 
   explicit FlipEdges(Triangulation& mesh) : mesh_(mesh) {}
 
-  // ---- Resources: triangles. What is reached together lies together ----
+  // ---- Resources: triangles, close together if they are reached together ----
   std::size_t resource_count() const { return mesh_.corners_of.size(); }
   std::array<double, 2> place_of(TriangleId t) const {
     const Point point = mesh_.corner(t, 0);
     return {static_cast<double>(point.x), static_cast<double>(point.y)};
   }
 
-  // ---- Plan: flip if the far corner is inside the circle. Reads only, what it has reached ----
+  // ---- Plan: flip if the far corner is inside the circle. Reads only what it has reached ----
   bool plan(Item edge, Plan& flip, auto& reach) const {
     flip.one = edge / 3;
     flip.far = edge % 3;
@@ -51,7 +51,7 @@ class FlipEdges {
     return (flip.left_of_two == outside || reach(flip.left_of_two)) &&
            (flip.left_of_one == outside || reach(flip.left_of_one));
   }
-  // ---- Apply: turn the diagonal; tell two neighbours; look at the four edges around again ----
+  // ---- Apply: flip the edge, update two neighbours, and wake the four edges around ----
   void apply(Item, Plan& flip, auto& commit) {
     auto& corners_one = mesh_.corners_of[flip.one];
     auto& corners_two = mesh_.corners_of[flip.two];

@@ -1,8 +1,8 @@
 /// @file
-/// The Delaunay triangulation of points by insertion (Bowyer and Watson, 1981). Points come in
-/// rounds, each of about as many as all before, drawn at random (Amenta, Choi & Rote, SoCG 2003).
-/// In a round each is found by a walk from what was made around the point of an earlier round that
-/// comes before it along a Hilbert curve.
+/// The Delaunay triangulation of points by insertion (Bowyer and Watson, 1981). Points are inserted
+/// in rounds, each of about as many random points as all before (Amenta, Choi & Rote, SoCG 2003).
+/// In a round each point is located by a walk. The walk starts at a triangle made for a point of an
+/// earlier round that precedes it along a Hilbert curve.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace runtime = ductile::runtime;
 
 class InsertPoints {
  public:
-  // ---- Items: a vertex, and a triangle that is not far ----
+  // ---- Items: a vertex, and a triangle close to it ----
   struct Item {
     VertexId vertex;
     TriangleId start;
@@ -36,14 +36,14 @@ class InsertPoints {
 
   explicit InsertPoints(Triangulation& mesh) : triangle_of(mesh.points.size()), mesh_(mesh) {}
 
-  // ---- Resources: triangles. What is reached together lies together ----
+  // ---- Resources: triangles, close together if they are reached together ----
   std::size_t resource_count() const { return mesh_.corners_of.size(); }
   std::array<double, 2> place_of(TriangleId t) const {
     const Point point = mesh_.corner(t, 2);
     return {static_cast<double>(point.x), static_cast<double>(point.y)};
   }
 
-  // ---- Plan: walk to the triangle that holds the point, and find the cavity ----
+  // ---- Plan: walk to the triangle that contains the point, and find the cavity ----
   bool plan(const Item& item, Cavity& cavity, auto& reach) const {
     cavity.point = mesh_.points[item.vertex];
     TriangleId t = item.start;
@@ -82,8 +82,8 @@ class InsertPoints {
   Triangulation& mesh_;
 };
 
-/// Keys of vertices in the order of rounds, and in a round along the curve; the first four left
-/// out.
+/// Keys of all vertices except the first four, in the order of rounds, and within a round along the
+/// curve.
 inline std::vector<std::uint64_t> insertion_keys(const runtime::Executor& executor,
                                                  std::span<const Point> points) {
   constexpr int bits = 12, coarser = 24 - bits, last_round = 24;
@@ -103,7 +103,7 @@ inline std::vector<std::uint64_t> insertion_keys(const runtime::Executor& execut
   return keys;
 }
 
-/// Puts all points of the keys into a mesh, round by round; adds to a report if there is one.
+/// Inserts the points of all keys, round by round; adds to a report if there is one.
 inline void insert_in_rounds(const runtime::Executor& executor, Triangulation& mesh,
                              std::span<const std::uint64_t> keys, runtime::RoundsReport* report) {
   InsertPoints insert(mesh);
@@ -128,8 +128,8 @@ inline void insert_in_rounds(const runtime::Executor& executor, Triangulation& m
   }
 }
 
-/// The first four points are the corners of a rectangle, anticlockwise, and all others are inside.
-/// A point that is there twice is a vertex once; its repetition has no triangle.
+/// The first four points are the corners of a rectangle, anticlockwise; all others are inside. Of
+/// equal points only one becomes a vertex with triangles.
 inline Triangulation delaunay_insertion_in_parallel(const runtime::Executor& executor,
                                                     std::vector<Point> points,
                                                     runtime::RoundsReport* report = nullptr) {

@@ -15,7 +15,7 @@ namespace {
 
 using namespace example;
 
-/// It still covers the plate, is Delaunay, and has no bad triangle.
+/// Checks that the result covers the plate, is Delaunay, and has no bad triangle.
 bool is_refined(const Triangulation& mesh, const RefineTriangles& refine) {
   for (TriangleId t = 0; t < mesh.corners_of.size(); ++t)
     if (refine.is_bad(t)) return false;
@@ -24,7 +24,7 @@ bool is_refined(const Triangulation& mesh, const RefineTriangles& refine) {
 
 void compare(const Arguments& arguments) {
   const Triangulation start = plate();
-  // About as many triangles as asked for: that was measured.
+  // This size gives about as many triangles as asked for, by measurement.
   const double size = plate_cells * cell_side / std::sqrt(static_cast<double>(arguments.size));
   std::printf("Delaunay refinement of %zu triangles\n", start.corners_of.size());
   Triangulation mesh = solve_at_each_thread_count(

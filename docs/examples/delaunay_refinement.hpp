@@ -1,7 +1,7 @@
 /// @file
-/// Delaunay refinement (Ruppert, J. Algorithms 18, 1995): the centre of a bad triangle's circle
-/// becomes a vertex, and the triangles whose circles hold it, the cavity, are replaced by triangles
-/// around it; a boundary edge in its way is halved instead.
+/// Delaunay refinement (Ruppert, J. Algorithms 18, 1995): the circumcentre of a bad triangle
+/// becomes a vertex, and the triangles whose circumcircles contain it, the cavity, are replaced by
+/// triangles around it. If a boundary edge is in the way, that is halved instead.
 #pragma once
 
 #include <algorithm>
@@ -22,17 +22,18 @@ namespace runtime = ductile::runtime;
 
 class RefineTriangles {
  public:
-  // ---- Items: a triangle, for as long as it has the last corner that it has now ----
+  // ---- Items: a triangle, valid as long as its last corner stays the same ----
   struct Item {
     TriangleId triangle;
     VertexId last;
   };
   using Plan = Cavity;
 
-  /// No triangle's circle shall have a radius above `size`.
+  /// Refines until no circumradius exceeds `size`.
   RefineTriangles(Triangulation& mesh, double size) : mesh_(mesh), size_(size) {}
 
-  /// Too large, or with an angle below 20.7 degrees: the radius is over sqrt(2) shortest edges.
+  /// Is the triangle too large, or has it an angle below 20.7 degrees (a circumradius above sqrt(2)
+  /// shortest edges)?
   bool is_bad(TriangleId t) const {
     const Point a = mesh_.corner(t, 0), b = mesh_.corner(t, 1), c = mesh_.corner(t, 2);
     const double shortest =
@@ -40,14 +41,14 @@ class RefineTriangles {
     return circle_radius_squared(a, b, c) > std::min(2 * shortest, size_ * size_);
   }
 
-  // ---- Resources: triangles. What is reached together lies together ----
+  // ---- Resources: triangles, close together if they are reached together ----
   std::size_t resource_count() const { return mesh_.corners_of.size(); }
   std::array<double, 2> place_of(TriangleId t) const {
     const Point point = mesh_.corner(t, 2);
     return {static_cast<double>(point.x), static_cast<double>(point.y)};
   }
 
-  // ---- Plan: the cavity of the circle's centre, or of the middle of an edge in its way ----
+  // ---- Plan: the cavity of the circumcentre, or of the midpoint of an edge in its way ----
   bool plan(const Item& item, Cavity& cavity, auto& reach) const {
     const TriangleId t = item.triangle;
     if (!reach(t) || mesh_.corners_of[t][2] != item.last || !is_bad(t)) return false;
@@ -67,13 +68,13 @@ class RefineTriangles {
     }
     return dug == Dug::closed;
   }
-  // ---- Apply: a triangle on each side of the cavity; wake those that are bad ----
+  // ---- Apply: a triangle on each side of the cavity; wake the bad ones ----
   void apply(const Item& item, Cavity& cavity, auto& commit) {
     const VertexId vertex = commit.fresh(1);
     cavity.fill(mesh_, vertex, [&] { return commit.fresh(0); });
     for (const TriangleId t : cavity.triangles)
       if (is_bad(t)) commit.wake({t, vertex});
-    // If an edge in its way was halved, the triangle may still be there.
+    // If an edge in the way was halved, the triangle may still exist.
     if (mesh_.corners_of[item.triangle][2] == item.last) commit.wake(item);
   }
 
@@ -102,7 +103,7 @@ class RefineTriangles {
   double size_;
 };
 
-/// All triangles, to begin with.
+/// All triangles, as the initial work.
 inline std::vector<RefineTriangles::Item> all_triangles(const Triangulation& mesh) {
   std::vector<RefineTriangles::Item> triangles;
   for (TriangleId t = 0; t < mesh.corners_of.size(); ++t)

@@ -21,17 +21,17 @@ namespace example {
 
 namespace runtime = ductile::runtime;
 
-/// Prints what the same took without Ductile, or without threads, below the table of runs.
+/// Prints the time of another method, without Ductile or without threads, below the table of runs.
 inline void print_yardstick(const char* what, double seconds) {
   std::printf("%-71s %6.3f\n", what, seconds);
 }
 
-/// Throws unless a result is what it should be.
+/// Throws with this text unless the result is as expected.
 inline void require(bool as_expected, const char* what) {
   if (!as_expected) throw std::runtime_error(what);
 }
 
-/// How long f() takes, in seconds.
+/// Time of f() in seconds.
 template <class F>
 double seconds_of(F&& f) {
   const auto start = std::chrono::steady_clock::now();
@@ -67,7 +67,7 @@ auto solve_at_each_thread_count(const Arguments& arguments, Solve&& solve) {
   return *std::move(first);
 }
 
-/// Calls body(arguments); returns what main() should: 1 and a message if it throws.
+/// Calls body(arguments) and returns the exit status of main(): 1, with a message, if it throws.
 template <class Body>
 int run(int argument_count, char** argument, std::size_t usual_size, Body&& body) {
   try {

@@ -1,8 +1,8 @@
 /// @file
-/// Graphs for the examples, the same in every run: a random one, whose edges join two hashed
-/// vertices each, the low ones more often, so that degrees follow a power law of exponent 3; an
-/// RMAT graph, whose degrees are more uneven still; a square grid; points in a square, joined to
-/// those near by; and lists of edges with weights.
+/// Graphs for the examples, the same in every run: a random one, whose edges each join two hashed
+/// vertices, preferring low ones, so that degrees follow a power law of exponent 3; an RMAT graph,
+/// with even more uneven degrees; a square grid; points in a square, joined to close ones; and
+/// lists of edges with weights.
 #pragma once
 
 #include <algorithm>
@@ -29,8 +29,8 @@ inline Weight weight_of(Vertex a, Vertex b) {
   return static_cast<Weight>(ductile::runtime::mix64(ends) >> 32U) | 1U;
 }
 
-/// A graph of arcs, (from, to) in the two halves of a word, each with its reverse; repetitions and
-/// loops are dropped.
+/// The graph of arcs, (from, to) in the two halves of a word, each with its reverse; drops
+/// repetitions and loops.
 inline ductile::runtime::CsrRows graph_of_arcs(const ductile::runtime::Executor& executor,
                                                std::size_t vertex_count,
                                                std::vector<std::uint64_t> arcs) {
@@ -51,7 +51,7 @@ inline ductile::runtime::CsrRows graph_of_arcs(const ductile::runtime::Executor&
   return graph;
 }
 
-/// A graph of `edge_count` edges, or a few less: ends_of(e) is the pair of vertices of one.
+/// A graph of `edge_count` edges, or a few less; ends_of(e) is a pair of vertices.
 template <class EndsOf>
 ductile::runtime::CsrRows graph_of_edges(const ductile::runtime::Executor& executor,
                                          std::size_t vertex_count, std::size_t edge_count,
@@ -112,7 +112,7 @@ inline ductile::runtime::CsrRows grid_graph(std::size_t vertex_count) {
   return graph;
 }
 
-/// A graph and what its arcs weigh, the same in both directions.
+/// A graph with weights of its arcs, the same in both directions.
 struct WeightedGraph {
   ductile::runtime::CsrRows rows;
   std::vector<Weight> weight_of;  // [arc], numbered as the neighbours
@@ -130,8 +130,8 @@ inline WeightedGraph with_random_weights(ductile::runtime::CsrRows rows) {
   return graph;
 }
 
-/// Random points in the unit square, numbered by rows of square cells, each joined to the 12 or so
-/// nearer than some radius. An edge weighs its length, most_weight for the radius.
+/// Random points in the unit square, numbered by rows of square cells. Each is joined to the points
+/// within some radius, about 12. The weight of an edge is its length, most_weight for the radius.
 inline WeightedGraph geometric_graph(std::size_t vertex_count) {
   constexpr double pi = 3.14159265358979323846;
   const double radius = std::sqrt(12 / (pi * static_cast<double>(vertex_count)));
@@ -175,7 +175,7 @@ struct Edge {
   Vertex a, b;
 };
 
-/// The edges of a graph, by their lower ends.
+/// The edges of a graph, sorted by their lower ends.
 inline std::vector<Edge> edges_of(ductile::runtime::CsrGraph<> graph) {
   std::vector<Edge> edges;
   edges.reserve(graph.neighbour.size() / 2);

@@ -1,7 +1,7 @@
 /// @file
-/// A maximal independent set: vertices of a graph of which no two are neighbours, and to which none
-/// can be added. The smallest operator there is: a vertex joins unless a neighbour has. Vertices
-/// are taken in the order of their numbers, so the set is the one that a plain loop finds.
+/// A maximal independent set: no two of its vertices are neighbours, and no vertex can be added.
+/// This is the smallest operator: a vertex joins unless a neighbour has joined. Vertices are taken
+/// in the order of their numbers, so the set is that of a plain loop.
 #pragma once
 
 #include <cstddef>
@@ -25,11 +25,11 @@ class IndependentSet {
   explicit IndependentSet(runtime::CsrGraph<> graph)
       : member(graph.vertex_count()), graph_(graph), is_decided_(graph.vertex_count()) {}
 
-  // ---- Resources: vertices. What an item reaches besides its own it only marks ----
+  // ---- Resources: vertices. An item only marks its neighbours ----
   std::size_t resource_count() const { return member.size(); }
   void conflicts(Vertex vertex, auto&& visit) const { graph_.for_each_neighbour(vertex, visit); }
 
-  // ---- Plan: join, unless a neighbour has. Reads only, and only what it has reached ----
+  // ---- Plan: join unless a neighbour has joined. Reads only what it has reached ----
   bool plan(Vertex vertex, Plan&, auto& reach) const {
     if (!reach(vertex)) return false;
     for (std::uint32_t i = graph_.offset[vertex]; i < graph_.offset[vertex + 1]; ++i)
@@ -50,7 +50,7 @@ class IndependentSet {
   std::vector<std::uint8_t> is_decided_;  // [vertex], is in the set or beside it
 };
 
-/// Members have no member beside them, and all others have one.
+/// Checks that no member has a member as neighbour, and that all other vertices have one.
 inline bool is_maximal_independent(runtime::CsrGraph<> graph,
                                    const std::vector<std::uint8_t>& member) {
   for (Vertex vertex = 0; vertex < member.size(); ++vertex) {
@@ -61,7 +61,7 @@ inline bool is_maximal_independent(runtime::CsrGraph<> graph,
   return true;
 }
 
-/// [vertex], 1 for the members; fills in a report if there is one.
+/// Returns [vertex], 1 for the members; fills in a report if there is one.
 inline std::vector<std::uint8_t> independent_set_in_parallel(
     const runtime::Executor& executor, runtime::CsrGraph<> graph,
     runtime::RoundsReport* report = nullptr) {

@@ -1,6 +1,6 @@
 /// @file
-/// A maximal matching: edges of which no two share a vertex, and to which none can be added. Edges
-/// are taken in their order, so the matching is the one that a plain loop finds.
+/// A maximal matching: no two of its edges share a vertex, and no edge can be added. Edges are
+/// taken in order, so the matching is that of a plain loop.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 /// @file
-/// A minimum-degree ordering of a graph, for sparse factors: the vertex with the least neighbours
-/// is eliminated, which joins these to each other, then the next. Levels are degrees; vertices of
-/// the same degree go one 64th of the numbers after the other, which leaves less fill in the plane.
+/// A minimum-degree ordering of a graph, for sparse factors: the vertex with the fewest neighbours
+/// is eliminated, which joins these to each other, then the next. Levels are degrees, each divided
+/// into 64 ranges of vertex numbers, which leaves less fill for plane graphs.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace runtime = ductile::runtime;
 
 struct Ordering {
   std::vector<Vertex> order;  ///< all vertices
-  std::uint64_t fill = 0;     ///< entries of the factor L, its diagonal included
+  std::uint64_t fill = 0;     ///< number of entries of the factor L, including its diagonal
   friend bool operator==(const Ordering&, const Ordering&) = default;
 };
 
@@ -33,7 +33,7 @@ class MinimumDegree {
     std::uint32_t degree, version;
   };
   struct Plan {
-    std::vector<Vertex> clique;  // what is beside the vertex
+    std::vector<Vertex> clique;  // the neighbours of the vertex
     QuotientGraph::Scratch scratch;
     friend bool operator==(const Plan& a, const Plan& b) { return a.clique == b.clique; }
   };
@@ -44,7 +44,7 @@ class MinimumDegree {
         step_of_(graph.vertex_count()),
         is_pivot_(graph.vertex_count()) {}
 
-  /// All vertices.
+  /// The initial work: all vertices.
   std::vector<Item> all_items() const {
     std::vector<Item> items(graph_.size());
     for (Vertex v = 0; v < items.size(); ++v) items[v] = {v, graph_.degree(v), 0};
@@ -58,7 +58,7 @@ class MinimumDegree {
     return static_cast<std::uint32_t>(parts * item.degree + parts * item.vertex / graph_.size());
   }
 
-  // ---- Plan: what is beside the vertex. Reaches for that, and for what is in its lists ----
+  // ---- Plan: the neighbours of the vertex. Reaches for them, and for what is in its lists ----
   bool plan(const Item& item, Plan& plan, auto& reach) const {
     if (!reach(item.vertex) || version_of_[item.vertex] != item.version) return false;
     plan.clique.clear();
@@ -99,7 +99,7 @@ class MinimumDegree {
     }
   }
 
-  /// The ordering found: vertices sorted by step, because those of one step do not touch.
+  /// The resulting ordering: vertices sorted by step. Vertices of one step are not adjacent.
   Ordering ordering(const runtime::Executor& executor) const {
     std::vector<std::uint64_t> pivots;  // steps and vertices
     for (Vertex v = 0; v < graph_.size(); ++v)
@@ -119,11 +119,11 @@ class MinimumDegree {
  private:
   QuotientGraph graph_;
   std::vector<std::uint32_t> version_of_;  // [vertex], how often its neighbours have changed
-  std::vector<std::uint32_t> step_of_;     // [vertex], more than of all that had to go before
+  std::vector<std::uint32_t> step_of_;     // [vertex], greater than those of all before it
   std::vector<std::uint8_t> is_pivot_;     // [vertex], was eliminated by an item of its own
 };
 
-/// Fills in a report if there is one.
+/// Returns the ordering; fills in a report if there is one.
 inline Ordering minimum_degree_in_parallel(const runtime::Executor& executor,
                                            runtime::CsrGraph<> graph,
                                            runtime::RoundsReport* report = nullptr) {

@@ -1,7 +1,7 @@
 /// @file
-/// Triangulations of points with whole-number coordinates, for the examples: the two exact tests
-/// that Delaunay algorithms need, and a check of the result. in_circle computes in doubles and
-/// falls back to 128-bit integers where the sign is less than the possible error.
+/// Triangulations of points with integer coordinates, for the examples: the two exact predicates of
+/// Delaunay algorithms, and a check of the result. in_circle computes in doubles, and in 128-bit
+/// integers if the result does not exceed the possible error.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using VertexId = std::uint32_t;
 using TriangleId = std::uint32_t;
 constexpr TriangleId outside = 0xffffffffU;
 
-/// Coordinates from 0 to 2^24, so that differences, their products and sums of two of those are
+/// Coordinates are from 0 to 2^24, so that differences, their products and sums of two of those are
 /// exact in doubles.
 struct Point {
   std::int32_t x, y;
@@ -29,7 +29,7 @@ inline std::int64_t turn(Point a, Point b, Point c) {
   return std::int64_t{b.x - a.x} * (c.y - a.y) - std::int64_t{b.y - a.y} * (c.x - a.x);
 }
 
-/// Whether d is inside the circle through a, b, c, which go anticlockwise. Exact.
+/// Is d inside the circle through a, b, c, which are anticlockwise? Exact.
 inline bool in_circle(Point a, Point b, Point c, Point d) {
   __extension__ using Wide = __int128;
   // The determinant of the rows (x, y, x^2 + y^2) of a, b and c, seen from d: squares times turns.
@@ -55,14 +55,14 @@ inline double squared_length(Point a, Point b) {
   return std::pow(a.x - b.x, 2) + std::pow(a.y - b.y, 2);
 }
 
-/// The square of the radius of the circle through three points.
+/// Square of the circumradius of three points.
 inline double circle_radius_squared(Point a, Point b, Point c) {
   return squared_length(a, b) * squared_length(b, c) * squared_length(c, a) /
          (4 * std::pow(static_cast<double>(turn(a, b, c)), 2));
 }
 
-/// The centre of the circle through three points, rounded to whole numbers; if that is far outside
-/// the range of coordinates, a point on the way that is outside too.
+/// The circumcentre of three points, rounded to integers. If it is far outside the range of
+/// coordinates, a point on the way there that is also outside.
 inline Point circle_centre(Point a, Point b, Point c) {
   const double b_squared = squared_length(a, b), c_squared = squared_length(a, c);
   const double scale = 0.5 / static_cast<double>(turn(a, b, c));
@@ -84,7 +84,7 @@ struct Triangulation {
   Point corner(TriangleId t, std::size_t i) const { return points[corners_of[t][i % 3]]; }
 };
 
-/// The place of a value among three, of which it is one.
+/// Index of a value in an array that contains it.
 inline std::size_t place_of(std::uint32_t value, const std::array<std::uint32_t, 3>& in) {
   return in[0] == value ? 0 : in[1] == value ? 1 : 2;
 }
@@ -122,8 +122,9 @@ inline std::vector<std::array<VertexId, 3>> sorted_corners(const Triangulation& 
   return corners_of;
 }
 
-/// Twice the area that the triangles cover; -1 if one is not positive, if neighbours do not agree
-/// or if a corner lies in the circle of a triangle beside it: 0 or more means Delaunay.
+/// Twice the area covered by the triangles. -1 if one is not positive, if neighbours are
+/// inconsistent or if a corner lies in the circumcircle of an adjacent triangle: 0 or more means
+/// Delaunay.
 inline std::int64_t delaunay_area(const Triangulation& mesh) {
   Triangulation again{mesh.points, mesh.corners_of, {}};
   find_neighbours(again);

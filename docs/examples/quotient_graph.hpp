@@ -1,8 +1,8 @@
 /// @file
-/// A graph whose vertices are eliminated (George & Liu, SIAM Review 31, 1989). One that is becomes
-/// an element: a list of its neighbours, which are a clique from then on. Elements that lie in the
-/// new one go; vertices with the same neighbours become one, with a size. Degrees are bounds
-/// (Amestoy, Davis & Duff, SIAM J. Matrix Anal. Appl. 17, 1996).
+/// A quotient graph for elimination (George & Liu, SIAM Review 31, 1989). An eliminated vertex
+/// becomes an element: a list of its neighbours, which are a clique from then on. Elements inside
+/// the new one are absorbed; vertices with the same neighbours are merged into one with a size.
+/// Degrees are bounds (Amestoy, Davis & Duff, SIAM J. Matrix Anal. Appl. 17, 1996).
 #pragma once
 
 #include <algorithm>
@@ -38,9 +38,9 @@ class QuotientGraph {
   }
 
   std::size_t size() const { return nodes_.size(); }
-  /// Whether a vertex is neither eliminated nor one with another.
+  /// Is the vertex neither eliminated nor merged into another?
   bool is_left(Vertex v) const { return nodes_[v].size > 0; }
-  /// At least how many vertices are beside it, itself and those that are one with it not counted.
+  /// A bound on the number of vertices adjacent to it, without itself and those merged into it.
   std::uint32_t degree(Vertex v) const { return nodes_[v].degree; }
   /// A vertex's list has elements first, then neighbours.
   std::span<const Vertex> list(Vertex v) const {
@@ -48,14 +48,14 @@ class QuotientGraph {
   }
   std::span<const Vertex> elements(Vertex v) const { return list(v).first(nodes_[v].elements); }
   std::span<const Vertex> neighbours(Vertex v) const { return list(v).subspan(nodes_[v].elements); }
-  /// Nothing if it is none, or lies in another by now.
+  /// Members of an element; empty if this is none or has been absorbed.
   std::span<const Vertex> members(Vertex element) const { return members_[element]; }
 
-  /// Eliminates a vertex. `clique` is what is beside it, in the end without what has become one
-  /// with others. Changes the vertex, these, and what their lists have; reads nothing else.
+  /// Eliminates a vertex. `clique` has its neighbours; those merged into others are removed.
+  /// Changes the vertex, its neighbours, and the entries of their lists; reads nothing else.
   void eliminate(Vertex pivot, std::vector<Vertex>& clique, Scratch& scratch) {
     for (const Vertex e : elements(pivot)) members_[e] = {};
-    nodes_[pivot].degree = 0;  // what the members of the element weigh
+    nodes_[pivot].degree = 0;  // becomes the weight of the element's members
     for (const Vertex v : clique) {
       nodes_[v].mark = pivot;
       nodes_[pivot].degree += nodes_[v].size;
@@ -74,7 +74,7 @@ class QuotientGraph {
     for (const Vertex v : clique) bound_degree(pivot, v);
   }
 
-  /// A vertex and all that have become one with it, which were eliminated together.
+  /// Visits a vertex and all those merged into it, which were eliminated together.
   void for_each_of(Vertex v, auto&& visit) const {
     for (; v != none; v = nodes_[v].next) visit(v);
   }
@@ -83,22 +83,22 @@ class QuotientGraph {
   static constexpr Vertex none = 0xffffffffU;
   struct Node {
     std::uint32_t begin = 0, elements = 0, neighbours = 0;  // its list
-    std::uint32_t size = 1;           // 0 for elements and what is one with another
-    std::uint32_t degree = 0;         // of an element, what its members weigh
-    std::uint32_t left = 0;           // of an element, what of that is not in the new one
-    Vertex mark = none;               // the last that has met it
-    Vertex next = none, last = none;  // of those that are one
+    std::uint32_t size = 1;                                 // 0 for elements and merged vertices
+    std::uint32_t degree = 0;  // of an element, the weight of its members
+    std::uint32_t left = 0;    // of an element, the weight of its members outside the new one
+    Vertex mark = none;        // the last pivot that met it
+    Vertex next = none, last = none;  // the vertices merged into this one
   };
 
-  /// Vertex `gone` becomes one with `kept`.
+  /// Merges vertex `gone` into `kept`.
   void unite(Vertex kept, Vertex gone) {
     nodes_[kept].size += std::exchange(nodes_[gone].size, 0);
     nodes_[nodes_[kept].last].next = gone;
     nodes_[kept].last = nodes_[gone].last;
   }
 
-  /// Leaves the new element, others that reach beyond it, and neighbours that are not in it.
-  /// Without any of these two the vertex goes with the pivot.
+  /// Reduces the list to the new element, elements with vertices outside it, and neighbours outside
+  /// it. A vertex with neither of the last two is eliminated with the pivot.
   void shorten(Vertex pivot, Vertex v, Scratch& scratch) {
     std::vector<Vertex>& kept = scratch.kept;
     kept.assign(1, pivot);
@@ -120,8 +120,8 @@ class QuotientGraph {
     }
   }
 
-  /// Those with the same lists, among those with the same sum. Lists are in one order: the newest
-  /// element first, neighbours as the rows of the graph have them.
+  /// Merges vertices with the same lists, comparing only those with the same hash. Lists have a
+  /// fixed order: the newest element first, neighbours as in the rows of the graph.
   void unite_alike(std::vector<std::pair<std::uint64_t, Vertex>>& hashes) {
     std::sort(hashes.begin(), hashes.end());
     for (auto one = hashes.begin(); one != hashes.end(); ++one)

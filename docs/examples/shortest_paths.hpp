@@ -1,7 +1,7 @@
 /// @file
 /// Shortest paths from one vertex, level by level (delta stepping: Meyer & Sanders, J. Algorithms
 /// 49, 2003). An item is a vertex and a distance at which it can be reached; its level is that
-/// distance in units of a power of two. It tells its neighbours how near they are through it.
+/// distance in units of a power of two. It lowers the distances of its neighbours.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class ShortestPaths {
   };
   static constexpr Distance unreachable = 0xffffffffU;
 
-  /// Paths are shorter than 2^32 - 1. Levels are 2^bits wide, bits below 32.
+  /// Paths must be shorter than 2^32 - 1. Levels are 2^bits wide, with bits below 32.
   ShortestPaths(runtime::CsrGraph<> graph, std::span<const Weight> weight_of, unsigned bits)
       : distance_of(graph.vertex_count(), unreachable),
         graph_(graph),
@@ -47,11 +47,11 @@ class ShortestPaths {
   std::size_t resource_count() const { return distance_of.size(); }
   std::uint32_t level(const Item& item) const { return item.distance >> bits_; }
 
-  // ---- Plan: go on from the vertex, unless there was a shorter way. Reads only ----
+  // ---- Plan: continue from the vertex, unless there was a shorter path. Reads only ----
   bool plan(const Item& item, Plan&, auto& reach) const {
     return reach(item.vertex) && distance_of[item.vertex] == item.distance;
   }
-  // ---- Apply: whoever comes nearer is an item ----
+  // ---- Apply: each vertex whose distance falls becomes an item ----
   void apply(const Item& item, Plan&, auto& commit) {
     const std::uint32_t end = graph_.offset[item.vertex + 1];
     for (std::uint32_t arc = graph_.offset[item.vertex]; arc < end; ++arc) {
@@ -68,9 +68,9 @@ class ShortestPaths {
   unsigned bits_;
 };
 
-/// Levels so wide that, where an arc leads, about three others are no longer than that: where there
-/// are more, many are gone along in vain; with fewer, there is little to do at once. In bits, from
-/// a sample of the arcs.
+/// Width of levels, in bits, from a sample of the arcs: so that at the end of an arc about three
+/// other arcs are no longer than it. With wider levels many arcs are relaxed in vain; with narrower
+/// ones there is little to do in parallel.
 inline unsigned level_bits(runtime::CsrGraph<> graph, std::span<const Weight> weight_of) {
   constexpr std::size_t most_arcs = 65536;
   const std::size_t step = weight_of.size() / most_arcs + 1;
@@ -80,13 +80,13 @@ inline unsigned level_bits(runtime::CsrGraph<> graph, std::span<const Weight> we
     weights += weight_of[arc];
     degrees += graph.offset[end + 1] - graph.offset[end];
   }
-  // Weights are taken to be spread evenly from 0 to twice their mean.
+  // Assumes that weights are spread evenly from 0 to twice their mean.
   const std::uint64_t width = 3 * 2 * weights / degrees;
   return std::min(31U, static_cast<unsigned>(std::bit_width(width)));
 }
 
-/// [vertex], the length of the shortest path from `source`, or ShortestPaths::unreachable; fills in
-/// a report if there is one.
+/// Returns [vertex], the length of the shortest path from `source`, or ShortestPaths::unreachable;
+/// fills in a report if there is one.
 inline std::vector<Distance> shortest_paths_in_parallel(const runtime::Executor& executor,
                                                         runtime::CsrGraph<> graph,
                                                         std::span<const Weight> weight_of,

@@ -1,7 +1,7 @@
 /// @file
 /// A spanning forest: edges that join the vertices of each component of a graph into a tree. Edges
-/// are taken in their order, and one is left out if edges before it join its ends already: it is
-/// the forest that a plain loop finds, and a minimum spanning forest if edges come sorted by weight
+/// are taken in order, and an edge is left out if earlier ones join its ends already: the result is
+/// the forest of a plain loop, and a minimum spanning forest if edges are sorted by weight
 /// (Kruskal, 1956).
 #pragma once
 
@@ -29,7 +29,7 @@ class SpanningForest {
                  const std::vector<Edge>& edges)
       : edges_(edges), trees_(executor, vertex_count) {}
 
-  // ---- Resources: vertices, of which an edge needs the roots of its two trees ----
+  // ---- Resources: vertices; an edge needs the roots of its two trees ----
   std::size_t resource_count() const { return trees_.size(); }
   // ---- Plan: join two trees, which each have their lowest vertex as root ----
   bool plan(Item edge, Plan& plan, auto& reach) const {
@@ -44,8 +44,8 @@ class SpanningForest {
   void apply(Item, Plan& plan, auto& /*commit*/) { trees_.unite_roots(plan.root, plan.other_root); }
 
  private:
-  /// Reaches for the root of a vertex's tree. While others write, what was a root may be one no
-  /// more when it is reached; once it is reached it stays one.
+  /// Reaches for the root of a vertex's tree. Because others write, a root may have got a parent by
+  /// the time it is reached; once reached, it stays a root.
   bool reach_root(Vertex& vertex, auto& reach) const {
     while (reach(vertex)) {
       const Vertex root = trees_.lowest(vertex);
@@ -56,7 +56,7 @@ class SpanningForest {
   }
 
   const std::vector<Edge>& edges_;
-  // Any thread may ask for a root, which also shortens the way there.
+  // Any thread may ask for a root, which also shortens the path to it.
   mutable runtime::DisjointSets trees_;
 };
 

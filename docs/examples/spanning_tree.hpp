@@ -17,7 +17,7 @@ namespace example {
 
 namespace runtime = ductile::runtime;
 
-/// The numbers of edges, in the lower halves of keys, as work.
+/// Work: the numbers of edges in the lower halves of sorted keys.
 class EdgesByKey {
  public:
   explicit EdgesByKey(std::span<const std::uint64_t> keys) : keys_(keys) {}

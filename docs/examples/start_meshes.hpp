@@ -1,6 +1,6 @@
 /// @file
-/// Start meshes: random points in a square, alone or sorted into rows, with the strip between two
-/// rows triangulated from left to right, which is far from Delaunay; and a plate with holes.
+/// Start meshes: random points in a square, alone, or sorted into rows with the strips between rows
+/// triangulated from left to right, which is far from Delaunay; and a plate with holes.
 #pragma once
 
 #include <algorithm>
@@ -29,9 +29,9 @@ inline std::vector<Point> random_points(std::size_t n) {
   return points;
 }
 
-/// Triangulates between two rows of points, each ascending in x, the second above the first. Goes
-/// through both from left to right; those that are not joined to the right yet wait on a stack
-/// (Garey, Johnson, Preparata & Tarjan, Inf. Process. Lett. 7, 1978).
+/// Triangulates between two rows of points, each ascending in x, the second above the first. Sweeps
+/// both from left to right; vertices not yet joined to the right wait on a stack (Garey, Johnson,
+/// Preparata & Tarjan, Inf. Process. Lett. 7, 1978).
 inline void triangulate_between(Triangulation& mesh, std::span<const VertexId> low,
                                 std::span<const VertexId> high) {
   std::vector<VertexId> waiting;
@@ -62,7 +62,7 @@ inline void triangulate_between(Triangulation& mesh, std::span<const VertexId> l
   }
 }
 
-/// About n random points in a square, with its corners and a point per row on its sides.
+/// About n random points in a square, with its corners and a point for each row on its sides.
 inline Triangulation rows_of_points(std::size_t n) {
   const auto rows = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(n))) + 1;
   const auto random = [](std::uint64_t seed) {
@@ -97,13 +97,13 @@ inline Triangulation rows_of_points(std::size_t n) {
   return mesh;
 }
 
-/// The plate has so many cells in a row, and a hole in every other one of every other row.
+/// Cells in a row of the plate; every other cell of every other row is a hole.
 constexpr std::int32_t plate_cells = 15, cell_side = 1 << 20;
 constexpr std::int64_t plate_area =
     (plate_cells * plate_cells - (plate_cells / 2) * (plate_cells / 2)) * std::int64_t{cell_side} *
     cell_side;
 
-/// The cells of the plate, two triangles each.
+/// Makes the cells of the plate, two triangles each.
 inline Triangulation plate() {
   Triangulation mesh;
   for (std::int32_t y = 0; y <= plate_cells; ++y)

@@ -1,5 +1,5 @@
 /// @file
-/// The runtime without meshes: sums 1 / n^2, the same bit for bit at any number of threads.
+/// The runtime without meshes: sums 1 / n^2, bit-identical at any number of threads.
 
 #include <cstdio>
 

@@ -1,20 +1,14 @@
 #include "ductile/meshadapt/adapt.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
+#include <string>
 
-#include "adapt/processor_level.hpp"
+#include "adapt/outer_loop.hpp"
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "ductile/runtime/parallel_for.hpp"
 #include "mesh/array_lengths.hpp"
-#include "mesh/wording.hpp"
-#include "metric/bounded_metric.hpp"
-#include "metric/expect_metrics.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -32,30 +26,6 @@ void expect_rules(const Rules& rules) {
                      number(rules.long_edge) + " and " + number(rules.short_edge));
 }
 
-/// The metric with those tensors that are none within the bounds, if there are such; nothing if the
-/// metric can be taken as it is. They are bounded before they are judged.
-template <int Dim>
-std::optional<AnyField> within_bounds(const runtime::Executor& executor, const AnyField& metric,
-                                      const SizeBounds& bounds) {
-  const auto tensor = [](const AnyField& field, std::size_t v) {
-    Metric<Dim> one;
-    std::copy_n(&field.values[v * one.m.size()], one.m.size(), one.m.begin());
-    return one;
-  };
-  const bool all_good = first_bad(executor, metric.vertex_count, [&](std::size_t v) {
-                          return !in_range(tensor(metric, v));
-                        }) == no_index;
-  if (all_good) return std::nullopt;
-  AnyField bounded = metric;
-  runtime::parallel_for(executor, metric.vertex_count, [&](std::size_t v) {
-    const Metric<Dim> one = tensor(metric, v);
-    if (in_range(one)) return;
-    const Metric<Dim> better = meshadapt::within_bounds(one, bounds);
-    std::copy_n(better.m.begin(), better.m.size(), &bounded.values[v * better.m.size()]);
-  });
-  return bounded;
-}
-
 void expect_options(const AdaptOptions& options) {
   if (options.iterations < 0)
     throw InputError("adaptation: expected 0 iterations or more, found " +
@@ -71,31 +41,37 @@ void expect_options(const AdaptOptions& options) {
     throw InputError("curved_sizes: expected a hausdorff_tolerance with it, found none");
 }
 
+/// A metric that the caller has evaluated.
+class GivenMetric : public MetricSource {
+ public:
+  explicit GivenMetric(const AnyField& metric) : metric_(metric) {}
+  const AnyField* next(const AdaptState& state) override {
+    return state.pass == 0 ? &metric_ : nullptr;
+  }
+
+ private:
+  const AnyField& metric_;
+};
+
 }  // namespace
 
-AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
+AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, MetricSource& source,
                   const AdaptOptions& options) {
   expect_options(options);
   expect_coordinates(mesh);
-  if (metric.types != std::vector{AnyField::Type::symmetric} ||
-      metric.dimension != mesh.dimension || metric.vertex_count != mesh.vertex_count())
-    throw InputError(name_of(metric) + ": expected one symmetric tensor for each of the " +
-                     std::to_string(mesh.vertex_count()) + " vertices of " + name_of(mesh));
-  expect_values(metric);
   AdaptedMesh adapted;
   runtime::with_team(executor, [&] {
-    const SizeBounds bounds{options.smallest_size, options.largest_size};
-    std::optional<AnyField> bounded;
-    if (has_bounds(bounds))
-      bounded = mesh.dimension == 2 ? within_bounds<2>(executor, metric, bounds)
-                                    : within_bounds<3>(executor, metric, bounds);
-    const AnyField& judged = bounded ? *bounded : metric;
-    mesh.dimension == 2 ? expect_metric_field<2>(executor, judged)
-                        : expect_metric_field<3>(executor, judged);
-    adapted = adapt_at(usable_levels().front(), executor, mesh, judged, options);
+    adapted = mesh.dimension == 2 ? adapt_in<2>(executor, mesh, source, options)
+                                  : adapt_in<3>(executor, mesh, source, options);
   });
   adapted.mesh.names = mesh.names;
   return adapted;
+}
+
+AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
+                  const AdaptOptions& options) {
+  GivenMetric source(metric);
+  return adapt(executor, mesh, source, options);
 }
 
 }  // namespace ductile::meshadapt

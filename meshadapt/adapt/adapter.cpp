@@ -16,45 +16,48 @@ namespace ductile::meshadapt {
 
 template <int Dim>
 Adapter<Dim>::Adapter(const runtime::Executor& executor, const AdaptOptions& options,
-                      Mesh<Dim> mesh, Neighbours<Dim> neighbours,
-                      const std::vector<Metric<Dim>>& metric_of)
-    : executor_(executor),
-      options_(options),
-      work_(executor, options, std::move(mesh), std::move(neighbours), metric_of) {}
+                      Start<Dim> start, AdaptReport& report)
+    : executor_(executor), options_(options), work_(executor, options, std::move(start), report) {}
 
 template <int Dim>
-void Adapter<Dim>::run() {
-  if (options_.approach_only) return adapt_anew();
+std::optional<Effort> Adapter<Dim>::run(Effort effort) {
+  if (effort == Effort::nothing) report().converged = true;
+  if (effort == Effort::mending && options_.insert && !mend(share_to_change()))
+    return Effort::nothing;
+  if (effort == Effort::as_needed && !options_.approach_only) return adapt_as_needed();
+  if (effort <= Effort::as_needed) adapt_anew();
+  return std::nullopt;
+}
+
+template <int Dim>
+std::optional<Effort> Adapter<Dim>::adapt_as_needed() {
   const double wanted = share_to_change();
-  // Rules that refuse what is next to poor elements may hide what there is to do.
+  // Rules that refuse changes next to poor elements may hide what there is to do.
   const bool many_are_poor =
       work_.share(elements_below(RemainingWork<Dim>::poor)) >= Thresholds::many_poor;
-  if (options_.insert && wanted < Thresholds::little && !many_are_poor) return mend(wanted);
+  if (options_.insert && wanted < Thresholds::little && !many_are_poor)
+    return mend(wanted) ? std::nullopt : std::optional(Effort::nothing);
   const bool doubtful = !options_.insert || wanted < Thresholds::not_much;
   const Standing before = doubtful ? standing() : Standing{};
   adapt_anew();
-  if (doubtful && !is_better(standing(), before, after_a_run)) outcome_ = Outcome::better_mended;
+  if (doubtful && !is_better(standing(), before, after_a_run)) return Effort::mending;
+  return std::nullopt;
 }
 
+/// Finishes the mesh where there is something to do. Returns false if it should be left as it came:
+/// much has changed without making it clearly better, or much is still to be done, because splits
+/// next to thin elements that cannot go may make others like them without end.
 template <int Dim>
-void Adapter<Dim>::mend() {
-  if (options_.insert) mend(share_to_change());
-}
-
-/// Does what is to be done next to where it is to be done, if anything is. Where that changes more
-/// than little, the mesh must be clearly better for it; and next to elements that are thin and
-/// cannot go, splits may make others like them, without an end.
-template <int Dim>
-void Adapter<Dim>::mend(double wanted) {
+bool Adapter<Dim>::mend(double wanted) {
   report().converged = true;
   came_adapted_ = true;
-  if (wanted < Thresholds::nothing) return;
+  if (wanted < Thresholds::nothing) return true;
   const std::uint32_t epoch = mesh().epoch;
   const Standing before = standing();
-  run(schedule_for<Dim>(options_).finish);
+  follow(schedule_for<Dim>(options_).finish);
   const bool in_vain = work_.share(elements_changed_after(epoch)) >= Thresholds::little &&
                        !is_better(standing(), before, after_mending);
-  if (in_vain || share_to_change() >= Thresholds::little) outcome_ = Outcome::better_left;
+  return !in_vain && share_to_change() < Thresholds::little;
 }
 
 template <int Dim>
@@ -62,32 +65,35 @@ void Adapter<Dim>::adapt_anew() {
   const Schedule<Dim> schedule = schedule_for<Dim>(options_);
   approach(schedule.approach);
   if (options_.approach_only) return;
-  if (options_.insert) run(schedule.rearrange);
-  run(schedule.settle);
-  run(schedule.polish);
-  run(schedule.raise);
-  if (options_.insert) run(schedule.finish);
+  if (options_.insert) follow(schedule.rearrange);
+  follow(schedule.settle);
+  follow(schedule.polish);
+  follow(schedule.raise);
+  if (options_.insert) follow(schedule.finish);
 }
 
-/// One round of all kernels of a phase; returns how many of their changes count.
+/// One round of the kernels of a phase that are allowed; returns how many of their changes count.
 template <int Dim>
 std::size_t Adapter<Dim>::pass(const Phase& phase) {
   std::size_t changes = 0;
   for (const Step& step : phase.steps) {
     const bool may_renumber = step.renumber_above < never && !work_.is_in_order();
     if (may_renumber && work_.share(changes) > step.renumber_above) work_.renumber_mesh();
-    changes += work_.run(step);
-    while (step.next_stage_below > 0 && work_.share(changes) < step.next_stage_below &&
-           work_.next_stage())
-      changes += work_.run(step);
+    const KernelRow<Dim>& kernel = kernel_rows<Dim>[index_of(step.kernel)];
+    if (!(options_.*kernel.allowed)) continue;
+    do {
+      const std::size_t made = kernel.run(work_, step);
+      if (kernel.counts) changes += made;
+    } while (step.next_stage_below > 0 && work_.share(changes) < step.next_stage_below &&
+             work_.next_stage());
   }
   return changes;
 }
 
-/// Moves and swaps keep lengths in the end; in a mesh that did not come adapted, not yet the first
+/// Moves and swaps keep lengths at the end; in a mesh that did not come adapted, not yet the first
 /// time.
 template <int Dim>
-void Adapter<Dim>::run(const Phase& phase) {
+void Adapter<Dim>::follow(const Phase& phase) {
   work_.begin(phase, came_adapted_);
   for (int times = 0; times < phase.passes; ++times) {
     work_.go_for(phase.aim, phase.aim == Aim::finish && (came_adapted_ || times > 0));
@@ -119,23 +125,25 @@ Standing Adapter<Dim>::standing() const {
 }
 
 template <int Dim>
-std::size_t Adapter<Dim>::elements_below(double mean_ratio) const {
-  const double quality = quality_of_mean_ratio<Dim>(mean_ratio);
-  const auto is_below = [&](std::size_t e) -> std::size_t {
-    return mesh().alive(static_cast<ElementId>(e)) && mesh().quality_of[e] < quality;
-  };
-  return runtime::parallel_reduce(executor_, mesh().element_slots(), std::size_t{0}, is_below,
-                                  std::plus<>());
+std::size_t Adapter<Dim>::count_elements(auto&& counts) const {
+  return runtime::parallel_reduce(
+      executor_, mesh().element_slots(), std::size_t{0},
+      [&](std::size_t e) {
+        return std::size_t{mesh().alive(static_cast<ElementId>(e)) && counts(e)};
+      },
+      std::plus<>());
 }
 
-/// Those that are there now: made, moved or swapped since that epoch.
+template <int Dim>
+std::size_t Adapter<Dim>::elements_below(double mean_ratio) const {
+  const double quality = quality_of_mean_ratio<Dim>(mean_ratio);
+  return count_elements([&](std::size_t e) { return mesh().quality_of[e] < quality; });
+}
+
+/// Existing elements that were made, moved or swapped since that epoch.
 template <int Dim>
 std::size_t Adapter<Dim>::elements_changed_after(std::uint32_t epoch) const {
-  const auto is_changed = [&](std::size_t e) -> std::size_t {
-    return mesh().alive(static_cast<ElementId>(e)) && mesh().changed_at[e] > epoch;
-  };
-  return runtime::parallel_reduce(executor_, mesh().element_slots(), std::size_t{0}, is_changed,
-                                  std::plus<>());
+  return count_elements([&](std::size_t e) { return mesh().changed_at[e] > epoch; });
 }
 
 /// Are most elements slivers in the metric, or some, and many to be made where sizes jump, or where

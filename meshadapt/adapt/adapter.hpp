@@ -1,10 +1,10 @@
 /// @file
-/// Adapter: the driver. It owns the mesh while it is adapted and follows the schedule.
+/// Adapter: adapts a mesh to one metric. It owns the mesh meanwhile and follows the schedule.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <optional>
 
 #include "adapt/schedule.hpp"
 #include "adapt/workpiece.hpp"
@@ -14,39 +14,38 @@
 
 namespace ductile::meshadapt {
 
+/// How much of the schedule is for a mesh: all phases; what it needs, for one that may have come
+/// adapted; only the finish, for what is left to do in one that did; nothing.
+enum class Effort : std::uint8_t { everything, as_needed, mending, nothing };
+
 template <int Dim>
 class Adapter {
  public:
-  Adapter(const runtime::Executor& executor, const AdaptOptions& options, Mesh<Dim> mesh,
-          Neighbours<Dim> neighbours, const std::vector<Metric<Dim>>& metric_of);
+  /// Refers to the options and the report, which may be that of earlier runs.
+  Adapter(const runtime::Executor& executor, const AdaptOptions& options, Start<Dim> start,
+          AdaptReport& report);
 
-  /// Adapts the mesh. Either this or mend() may be called, once.
-  void run();
-
-  /// Changes only what it must of a mesh that came adapted.
-  void mend();
-  /// Adapts it as one that did not. The report's iterations are then those of this.
-  void adapt_anew();
-
-  /// What has become of a mesh that came more or less adapted: it is to be kept as it is now; or
-  /// the one that came is better for it, and is to be mended, or left alone.
-  enum class Outcome : std::uint8_t { good, better_mended, better_left };
-  Outcome outcome() const { return outcome_; }
+  /// Adapts the mesh, once. If it came adapted and was better than it is now, returns the effort
+  /// that should be tried on the mesh that came instead. The report's iterations are those of this.
+  std::optional<Effort> run(Effort effort);
 
   const Mesh<Dim>& mesh() const { return work_.mesh(); }
   /// Gives the mesh away, which is the end of this adapter's work.
   Mesh<Dim> take_mesh() { return work_.take_mesh(); }
-  AdaptReport& report() { return work_.report(); }
 
  private:
+  AdaptReport& report() { return work_.report(); }
+
   // ---- The schedule ----
-  std::size_t pass(const Phase& phase);
-  void run(const Phase& phase);
+  std::optional<Effort> adapt_as_needed();
+  void adapt_anew();
   void approach(const Phase& phase);
+  void follow(const Phase& phase);
+  std::size_t pass(const Phase& phase);
 
   // ---- A mesh that came adapted ----
   double share_to_change();
-  void mend(double wanted);
+  bool mend(double wanted);
   Standing standing() const;
   std::size_t least_count() const;
 
@@ -56,6 +55,7 @@ class Adapter {
   bool has_too_many() const;
 
   std::size_t splits_to_come();
+  std::size_t count_elements(auto&& counts) const;
   std::size_t elements_below(double mean_ratio) const;
   std::size_t elements_changed_after(std::uint32_t epoch) const;
 
@@ -63,7 +63,6 @@ class Adapter {
   const AdaptOptions& options_;
   Workpiece<Dim> work_;
   bool came_adapted_ = false;  // or nearly
-  Outcome outcome_ = Outcome::good;
 };
 
 }  // namespace ductile::meshadapt

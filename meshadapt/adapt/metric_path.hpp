@@ -1,8 +1,8 @@
 /// @file
-/// MetricPath: a way to a metric that is far from what a mesh is like, by metrics between the two.
-/// In a metric in which nearly all elements are slivers no operator can tell what makes them
-/// better: splits would make slivers of slivers, and are refused, or go on for ever. A mesh whose
-/// elements are stretched three times as much as the ones before is no trouble.
+/// MetricPath: continuation through metrics between a mesh's implied metric and a distant target.
+/// In a metric in which nearly all elements are slivers no kernel can tell which change improves
+/// them: splits would make slivers of slivers, and are refused or never end. Elements stretched
+/// three times as much as before are no trouble.
 #pragma once
 
 #include <algorithm>
@@ -28,9 +28,9 @@ namespace ductile::meshadapt {
 template <int Dim>
 class MetricPath {
  public:
-  /// From the metric of the elements of the mesh, of which the background is a copy.
-  /// How many steps there are is a mean over the vertices: of all alike, or by the elements that
-  /// are to be made around them.
+  /// Starts at the metric of the elements of the mesh, which the background is a copy of. The
+  /// number of steps follows from a mean over the vertices, weighted equally or by the number of
+  /// elements that the target asks for around them.
   MetricPath(const runtime::Executor& executor, const Mesh<Dim>& mesh, Background<Dim>& background,
              bool by_demand)
       : executor_(executor),
@@ -53,10 +53,9 @@ class MetricPath {
 
   int steps() const { return steps_; }
 
-  /// Gives the background the metric that comes after so many steps: after all, its own.
-  /// Log-Euclidean, as it interpolates between places. Where flat elements lie beside large ones it
-  /// may ask for many more elements than either end has; then all sizes are larger, and stretched
-  /// as much.
+  /// Gives the background the metric after so many steps; the last one is the target. It is the
+  /// log-Euclidean mean. Where flat elements lie beside large ones that may ask for many more
+  /// elements than either end; then all sizes are enlarged by one factor.
   void go_to(int step) {
     if (step == steps_) return set([&](std::size_t v) { return to_[v]; });
     const double share = static_cast<double>(step) / steps_;
@@ -72,7 +71,7 @@ class MetricPath {
   }
 
  private:
-  static constexpr double longest_step = 3;  ///< of a size, as against that across
+  static constexpr double longest_step = 3;  ///< factor by which a ratio of sizes may change
 
   Metric<Dim> between(std::size_t v, double share) const {
     Metric<Dim> metric = share * to_[v];
@@ -123,7 +122,7 @@ class MetricPath {
     return 1 / static_cast<double>(std::max<std::size_t>(1, around.size())) * sum;
   }
 
-  /// How much more one size changes than another, as a logarithm.
+  /// Logarithm of the factor by which the ratio of two sizes changes most.
   double log_stretch(std::size_t v) const {
     Metric<Dim> change = to_[v];
     change += -1.0 * from_[v];

@@ -24,12 +24,15 @@ Rescue<Dim>::Rescue(const runtime::Executor& executor, const AnyMesh& input,
       distance_(options.hausdorff_tolerance) {}
 
 template <int Dim>
-bool Rescue<Dim>::accepts(const AnyMesh& adapted) {
+bool Rescue<Dim>::accepts(AdaptedMesh& adapted, bool may_meet) {
   ++attempts_;
-  const AdjacentMesh now(input_.executor(), adapted);
+  if (!may_meet && attempts_ == 1) return true;
+  const AdjacentMesh now(input_.executor(), adapted.mesh);
   const auto faults = adapted_faults(input_, now, tolerance_);
-  is_right_ = faults.empty();
-  if (is_right_ || options_.lock_boundary) return true;
+  if (faults.empty() || options_.lock_boundary) {
+    complete(adapted.report, faults.empty());
+    return true;
+  }
   if (first_fault_.empty()) first_fault_ = faults.front();
   if (options_.hausdorff_tolerance == 0)
     options_.lock_boundary = true;
@@ -38,7 +41,7 @@ bool Rescue<Dim>::accepts(const AnyMesh& adapted) {
   return false;
 }
 
-/// Each time from farther away, as facets of the adapted mesh may have been larger before.
+/// Doubles the distance each time, because facets of the adapted mesh may have been larger before.
 template <int Dim>
 bool Rescue<Dim>::keeps_more(const AdjacentMesh& adapted) {
   if (!mesh_faults(adapted).empty()) return false;
@@ -54,18 +57,20 @@ bool Rescue<Dim>::keeps_more(const AdjacentMesh& adapted) {
 }
 
 template <int Dim>
-void Rescue<Dim>::warn(std::vector<std::string>& warnings) const {
-  if (attempts_ < 2 || !is_right_) return;
+void Rescue<Dim>::complete(AdaptReport& report, bool is_right) const {
+  report.attempts = attempts_;
+  report.checked = is_right;
+  if (attempts_ < 2 || !is_right) return;
   std::string kept = "all facets of the boundary";
   if (options_.hausdorff_tolerance > 0)
     kept = "facets at " + std::to_string(options_.keep_facets_at.size()) +
            " vertices of curved boundaries";
   else if (!options_.lock_boundary)
     kept = "all facets of curved boundaries";
-  warnings.push_back(input_.mesh().name + ": adapted " + std::to_string(attempts_) +
-                     " times, because " +
-                     "boundaries that are closer than the surface tolerance met (" + first_fault_ +
-                     "); " + kept + " keep their shape");
+  report.warnings.push_back(input_.mesh().name + ": adapted " + std::to_string(attempts_) +
+                            " times, because " +
+                            "boundaries that are closer than the surface tolerance met (" +
+                            first_fault_ + "); " + kept + " keep their shape");
 }
 
 template class Rescue<2>;

@@ -1,7 +1,7 @@
 /// @file
-/// Rescue: looks at a mesh that was adapted with curved boundaries, and if they crossed each other
-/// or grew together says what to keep when its input is adapted again: first the facets near the
-/// places of that, then all facets, in the end all that is on the boundary.
+/// Rescue: checks a mesh that was adapted with curved boundaries. If they crossed each other or
+/// grew together, it decides what is kept when the input is adapted again: at first facets near
+/// those places, then all curved facets, in the end the whole boundary.
 #pragma once
 
 #include <string>
@@ -18,28 +18,23 @@ class Rescue {
   /// Refers to the input.
   Rescue(const runtime::Executor& executor, const AnyMesh& input, const MakeMeshOptions& options);
 
-  /// How to adapt.
+  /// For the next attempt.
   const MakeMeshOptions& options() const { return options_; }
-  int attempts() const { return attempts_; }
 
-  /// Is what came out right, or will nothing help? Else it is to be adapted again. Two checks of
-  /// the mesh, and of its input.
-  /// Thread safety: one caller; runs on the executor.
-  bool accepts(const AnyMesh& adapted);
-  /// Was the last one right?
-  bool is_right() const { return is_right_; }
-  /// What a user should know.
-  void warn(std::vector<std::string>& warnings) const;
+  /// Is the result right, or will nothing help? Otherwise the input should be adapted again. A
+  /// result whose boundary cannot have met itself needs no check. Completes the report of one that
+  /// is accepted. Thread safety: one caller; runs on the executor.
+  bool accepts(AdaptedMesh& adapted, bool may_meet);
 
  private:
   bool keeps_more(const AdjacentMesh& adapted);
+  void complete(AdaptReport& report, bool is_right) const;
 
   AdjacentMesh input_;
   MakeMeshOptions options_;
   double tolerance_;  // of the surface, as asked for
   double distance_;   // from places at which facets are kept
   int attempts_ = 0;
-  bool is_right_ = false;
   std::string first_fault_;
 };
 

@@ -39,7 +39,8 @@ std::size_t run_refine(Workpiece<Dim>& work, const Step& step) {
   if (std::isinf(limit)) return 0;
   const Splits splits = split_edges_above(work, limit);
   if (splits.left_lists_stale) work.renumber_mesh(splits.first_vertex);
-  if (splits.count != 0) work.run({.kernel = Kernel::smooth, .move = Move::to_surface});
+  if (splits.count != 0 && work.options().move)
+    run_smooth<Dim>(work, {.kernel = Kernel::smooth, .move = Move::to_surface});
   work.tell(step.kernel, splits.count);
   return splits.count;
 }

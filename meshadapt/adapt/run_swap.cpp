@@ -1,9 +1,8 @@
 #include <utility>
 
+#include "adapt/run_by_conflicts.hpp"
 #include "adapt/workpiece.hpp"
-#include "ductile/runtime/run_rounds.hpp"
 #include "operators/swap.hpp"
-#include "operators/swap_by_vertex.hpp"
 
 namespace ductile::meshadapt {
 
@@ -11,13 +10,10 @@ namespace {
 
 template <int Dim>
 runtime::RoundsReport run_swaps(Workpiece<Dim>& work, runtime::UnsetVector<Swappable> found) {
-  using runtime::Strategy;
-  if (work.options().by_colours) {
-    SwapByVertex<Dim> op(work.executor(), work.mesh(), std::move(found), work.range());
-    return runtime::run_rounds_by<Strategy::colours>(work.executor(), op, op.vertices());
-  }
+  if (work.options().by_colours) return swap_by_colours(work, std::move(found));
   Swap<Dim> op(work.executor(), work.mesh(), work.range());
-  return runtime::run_rounds_by<Strategy::reservations>(work.executor(), op, std::move(found));
+  return runtime::run_rounds_by<runtime::Strategy::reservations>(work.executor(), op,
+                                                                 std::move(found));
 }
 
 }  // namespace

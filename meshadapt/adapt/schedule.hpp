@@ -20,13 +20,13 @@ namespace ductile::meshadapt {
 
 constexpr std::size_t index_of(Kernel kernel) { return static_cast<std::size_t>(kernel); }
 
-/// What the kernels that change lengths go for. The input is brought near the metric; then edges
-/// that are still too short are collapsed even if that makes some too long, because splits and
-/// swaps find a better way to fill the same place; in the end no edge leaves its range any more.
+/// The aim of kernels that change lengths. The input is brought near the metric; then edges that
+/// are still too short are collapsed even if that makes some too long, because splits and swaps
+/// find a better way to fill the same place; in the end no edge leaves its range any more.
 enum class Aim : std::uint8_t { approach, rearrange, finish };
 
-/// What a kernel looks at first in a phase: what has changed since it last looked, the whole mesh,
-/// or only what changes from then on.
+/// Where a kernel looks first in a phase: at changes since it last looked, at the whole mesh, or
+/// only at later changes.
 enum class Look : std::uint8_t { news, all, what_comes };
 
 /// How smoothing moves vertices: towards the places where their elements would be regular, and to
@@ -141,7 +141,7 @@ std::size_t run_swap(Workpiece<Dim>& work, const Step& step);
 template <int Dim>
 std::size_t run_smooth(Workpiece<Dim>& work, const Step& step);
 
-/// What the driver knows of a kernel; its name and its report are in `kernels`.
+/// A kernel for the driver; its name and its report are in `kernels`.
 template <int Dim>
 struct KernelRow {
   std::size_t (*run)(Workpiece<Dim>&, const Step&);

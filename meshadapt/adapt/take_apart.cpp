@@ -23,7 +23,7 @@ using runtime::parallel_for;
 
 namespace {
 
-/// The numbers below n that something holds of, in order.
+/// The numbers i below n for which holds(i) is true, in order.
 template <class Holds>
 std::vector<std::uint32_t> numbers_of(const Executor& executor, std::size_t n, Holds&& holds) {
   const auto found =
@@ -33,8 +33,8 @@ std::vector<std::uint32_t> numbers_of(const Executor& executor, std::size_t n, H
   return {found.begin(), found.end()};
 }
 
-/// The mesh's edges along curves, and which of them are ridges or required. A vertex is called by
-/// its place among `vertices`, which place_of tells.
+/// Adds the mesh's edges along curves, and which of them are ridges or required. Vertices get their
+/// positions in `vertices` as numbers, which place_of has.
 void add_curves(const Executor& executor, const Mesh<3>& mesh, const Ids& vertices,
                 const Ids& place_of, AnyMesh& any) {
   struct Edge {
@@ -93,7 +93,7 @@ class RenumberedFacets {
     return other != none && rank_of(other) < rank_of(element);
   }
 
-  /// What elements are in the order of, see renumber_corners().
+  /// The order of elements, see renumber_corners().
   std::pair<VertexId, ElementId> rank_of(ElementId element) const {
     const Corners<Dim>& corners = mesh_.corners_of[element];
     return {*std::min_element(corners.begin(), corners.end()), element};
@@ -151,7 +151,7 @@ void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& ve
     const Site<Dim>& site = mesh.site_of[vertices[i]];
     any.vertex_reference[i] = mesh.reference_of[vertices[i]];
     std::copy_n(site.position.x.begin(), Dim, &any.coordinates[i * Dim]);
-    // What rounding made of one at the end of the range is brought back, to be read again.
+    // Rounding may have left the range by a little, so that it could not be read again.
     const Metric<Dim> metric = brought_into_range(site.metric);
     std::copy_n(metric.m.begin(), stride, &field.values[i * stride]);
   });
@@ -161,11 +161,11 @@ void add_vertices(const Executor& executor, const Mesh<Dim>& mesh, const Ids& ve
       executor, vertices.size(), [&](std::size_t i) { return mesh.kind_of[vertices[i]].required; });
 }
 
-}  // namespace
-
+/// Gives arrays back as soon as they have been read if the mesh is not needed any more.
 template <int Dim>
-MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
+MeshWithMetric read_out(const Executor& executor, Mesh<Dim>& mesh, bool is_spent) {
   const auto release = [&](auto&... arrays) {
+    if (!is_spent) return;
     runtime::SpentMemory spent;
     (arrays.release(spent), ...);
     spent.give_back(executor);
@@ -180,8 +180,10 @@ MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
     return renumber_corners(executor, mesh, place_of, vertices.size());
   }();
   RenumberedFacets(executor, mesh, vertices, elements).add_to(result.mesh);
-  mesh.elements_of.release(executor);
-  mesh.links_of.release(executor);
+  if (is_spent) {
+    mesh.elements_of.release(executor);
+    mesh.links_of.release(executor);
+  }
   release(mesh.patches_of);
   add_elements(executor, mesh, elements, result.mesh);
   release(mesh.corners_of, mesh.region_of);
@@ -190,7 +192,22 @@ MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
   return result;
 }
 
+}  // namespace
+
+template <int Dim>
+MeshWithMetric take_apart(const Executor& executor, Mesh<Dim> mesh) {
+  return read_out(executor, mesh, true);
+}
+
+template <int Dim>
+MeshWithMetric copy_in_order(const Executor& executor, Mesh<Dim>& mesh) {
+  renumber(executor, mesh);
+  return read_out(executor, mesh, false);  // numbers nothing anew
+}
+
 template MeshWithMetric take_apart(const Executor&, Mesh<2>);
 template MeshWithMetric take_apart(const Executor&, Mesh<3>);
+template MeshWithMetric copy_in_order(const Executor&, Mesh<2>&);
+template MeshWithMetric copy_in_order(const Executor&, Mesh<3>&);
 
 }  // namespace ductile::meshadapt

@@ -1,7 +1,7 @@
 /// @file
-/// Tuning: the numbers by which the driver decides, with what they were chosen by; the trials are
-/// in docs/notebook/tried-in-adaptation.md. How often steps run is in schedule.hpp; by what kernels
-/// refuse a change is in rules.hpp. Shares are of the number of elements.
+/// Tuning: the driver's constants and why they were chosen; the trials are in
+/// docs/notebook/tried-in-adaptation.md. How often steps run is in schedule.hpp, thresholds of
+/// kernels in adapt_options.hpp (Rules). Shares are of the number of elements.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace ductile::meshadapt {
 
-/// Bounds of shares and lengths that nothing is above, or below.
+/// Bounds that no share or length exceeds, or falls below.
 inline constexpr double never = std::numeric_limits<double>::infinity(), always = -1;
 
-/// What is the same in both dimensions.
+/// Constants for both dimensions.
 struct Thresholds {
   // ---- A mesh that comes adapted (decision 27) ----
   static constexpr double nothing = 2e-4;    ///< to change: it is left alone
@@ -55,7 +55,7 @@ struct Care {
   double far;    ///< of SmoothOptions
 };
 
-/// What differs between the dimensions.
+/// Constants that differ between the dimensions.
 template <int Dim>
 struct Tuning;
 

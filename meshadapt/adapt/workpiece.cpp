@@ -15,15 +15,15 @@ using runtime::parallel_for;
 
 namespace {
 
-/// The mesh in an order in which what is near in space is near in memory, every vertex with its
+/// The mesh in an order in which neighbours in space are close in memory, every vertex with its
 /// metric and with one of its elements as its host.
 template <int Dim>
-Mesh<Dim> with_metrics(const runtime::Executor& executor, Mesh<Dim> mesh,
-                       const std::vector<Metric<Dim>>& metric_of, Neighbours<Dim>& neighbours) {
+Mesh<Dim> with_metrics(const runtime::Executor& executor, Start<Dim>& start) {
+  Mesh<Dim> mesh = std::move(start.mesh);
   parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
-    mesh.site_of[v] = make_site(mesh.site_of[v].position, metric_of[v]);
+    mesh.site_of[v] = make_site(mesh.site_of[v].position, start.metric_of[v]);
   });
-  renumber(executor, mesh, neighbours);
+  renumber(executor, mesh, start.neighbours);
   parallel_for(executor, mesh.vertex_slots(), [&](std::size_t v) {
     mesh.host_of[v] = mesh.elements_of.of(static_cast<VertexId>(v)).front();
   });
@@ -34,12 +34,12 @@ Mesh<Dim> with_metrics(const runtime::Executor& executor, Mesh<Dim> mesh,
 
 template <int Dim>
 Workpiece<Dim>::Workpiece(const runtime::Executor& executor, const AdaptOptions& options,
-                          Mesh<Dim> mesh, Neighbours<Dim> neighbours,
-                          const std::vector<Metric<Dim>>& metric_of)
+                          Start<Dim> start, AdaptReport& report)
     : executor_(executor),
       options_(options),
-      mesh_(with_metrics(executor, std::move(mesh), metric_of, neighbours)),
-      background_(executor, mesh_, std::move(neighbours)) {
+      mesh_(with_metrics(executor, start)),
+      background_(executor, mesh_, std::move(start.neighbours)),
+      report_(report) {
   update_qualities(executor_, mesh_);
 }
 
@@ -58,14 +58,6 @@ void Workpiece<Dim>::begin(const Phase& phase, bool came_adapted) {
   everywhere_after_ = came_adapted ? now : 0;
   for (std::size_t k = 0; k < kernels.size(); ++k)
     if (phase.look[k] != Look::news) seen_by_[k] = phase.look[k] == Look::all ? 0 : now;
-}
-
-template <int Dim>
-std::size_t Workpiece<Dim>::run(const Step& step) {
-  const KernelRow<Dim>& row = kernel_rows<Dim>[index_of(step.kernel)];
-  if (!(options_.*row.allowed)) return 0;
-  const std::size_t changes = row.run(*this, step);
-  return row.counts ? changes : 0;
 }
 
 template <int Dim>
@@ -96,7 +88,7 @@ Rules Workpiece<Dim>::rules() const {
   return rules;
 }
 
-/// What moves and swaps leave edges in: in the end they may undo nothing of what collapses and
+/// The range that moves and swaps leave edges in: at the end they may not undo what collapses and
 /// splits have reached.
 template <int Dim>
 EdgeRange Workpiece<Dim>::range() const {

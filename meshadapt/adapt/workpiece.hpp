@@ -1,6 +1,6 @@
 /// @file
 /// Workpiece: a mesh while it is adapted, and what its kernels share: the metric that it came with,
-/// what the phase of the schedule asks for, what each kernel has seen, and the report.
+/// the aim of the current phase, what each kernel has seen, and the report.
 #pragma once
 
 #include <array>
@@ -20,13 +20,21 @@
 
 namespace ductile::meshadapt {
 
+/// What an adaptation begins with.
+template <int Dim>
+struct Start {
+  Mesh<Dim> mesh;
+  Neighbours<Dim> neighbours;
+  std::vector<Metric<Dim>> metric_of;  ///< [vertex]
+};
+
 /// Thread safety: one caller; what takes time runs on the executor.
 template <int Dim>
 class Workpiece {
  public:
-  /// Puts the mesh in order. Refers to the options.
-  Workpiece(const runtime::Executor& executor, const AdaptOptions& options, Mesh<Dim> mesh,
-            Neighbours<Dim> neighbours, const std::vector<Metric<Dim>>& metric_of);
+  /// Puts the mesh in order. Refers to the options and the report.
+  Workpiece(const runtime::Executor& executor, const AdaptOptions& options, Start<Dim> start,
+            AdaptReport& report);
 
   const runtime::Executor& executor() const { return executor_; }
   const AdaptOptions& options() const { return options_; }
@@ -38,18 +46,16 @@ class Workpiece {
   Mesh<Dim> take_mesh();
 
   // ---- The schedule ----
-  /// What the steps that follow go for; in a mesh that came adapted, steps that look everywhere
-  /// only look at what changes from now on.
+  /// Begins a phase. In a mesh that came adapted, steps that look everywhere only look at what
+  /// changes from now on.
   void begin(const Phase& phase, bool came_adapted);
-  /// Runs a step if its kernel is allowed; returns those of its changes that count.
-  std::size_t run(const Step& step);
   /// Sets what kernels go for, and whether moves and swaps may lead edges out of the rules' range.
   void go_for(Aim aim, bool keeps_lengths);
   /// Splits shorter edges from now on; false if all that are too long are split already.
   bool next_stage();
   void go_to_last_stage() { stage_ = last_stage; }
 
-  // ---- What kernels go by ----
+  // ---- What kernels follow ----
   Rules rules() const;
   EdgeRange range() const;
   SmoothOptions smoothing(const Step& step) const;
@@ -83,7 +89,7 @@ class Workpiece {
   Mesh<Dim> mesh_;
   Background<Dim> background_;
   EdgeSurvey<Dim> survey_;
-  AdaptReport report_;
+  AdaptReport& report_;
 
   Aim aim_ = Aim::approach;
   bool keeps_lengths_ = false;

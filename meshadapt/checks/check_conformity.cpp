@@ -18,7 +18,7 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// What a vertex lies on without being connected to it: another vertex, or else a facet.
+/// The other vertex, or else the facet, that a vertex lies on without being connected to it.
 struct LooseContact {
   std::size_t vertex = no_index, facet = no_index;
 };

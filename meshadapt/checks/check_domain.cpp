@@ -28,7 +28,7 @@ using runtime::Executor;
 
 namespace {
 
-/// Adds up measure_of(i) by reference, for each row of equal ones at once.
+/// Sums measure_of(i) by reference. A run of equal references is summed before it is added.
 template <class MeasureOf>
 std::map<std::int32_t, double> sums(const std::vector<std::int32_t>& reference_of,
                                     MeasureOf measure_of) {
@@ -48,7 +48,8 @@ double total(const std::map<std::int32_t, double>& sum_of) {
   return total;
 }
 
-/// Number by number: what is copied as a whole goes through memory, and takes twice as long.
+/// Copies number by number, because copying whole points goes through memory and takes twice as
+/// long.
 template <int Dim, std::size_t N>
 std::array<Vector<Dim>, N> points(const AnyMesh& mesh,
                                   const std::array<std::uint32_t, N>& corners) {
@@ -64,7 +65,7 @@ double facet_measure(const AnyMesh& mesh, const Facet<Dim>& facet) {
   return norm(facet_normal(points<Dim>(mesh, facet))) / (Dim == 2 ? 1 : 2);
 }
 
-/// By reference: of the elements, and of the facets that are listed.
+/// Measures of the elements and of the listed facets, by reference.
 struct Measures {
   std::map<std::int32_t, double> regions, facets;
 };
@@ -82,7 +83,7 @@ Measures measures(const AnyMesh& mesh) {
                [&](std::size_t f) { return facet_measure<Dim>(mesh, facets.vertices[f]); })};
 }
 
-/// Of each region, by reference, interfaces to others included.
+/// Measure of each region's boundary by reference, including interfaces to other regions.
 template <int Dim>
 std::map<std::int32_t, double> boundary_measures(const AdjacentMesh& mesh) {
   const auto& reference_of = elements_in<Dim>(mesh.mesh()).reference;
@@ -94,7 +95,7 @@ std::map<std::int32_t, double> boundary_measures(const AdjacentMesh& mesh) {
   return sum_of;
 }
 
-/// Of the boundary that is not listed.
+/// Measure of the boundary facets that are not listed.
 template <int Dim>
 double unlisted_measure(const AdjacentMesh& mesh) {
   std::vector<Facet<Dim>> listed = facets_in<Dim>(mesh.mesh()).vertices;
@@ -107,7 +108,7 @@ double unlisted_measure(const AdjacentMesh& mesh) {
   return sum;
 }
 
-/// Says what differs by more than is allowed, with as many digits as show it.
+/// Reports a difference that exceeds the allowed one, with enough digits to show it.
 void compare(const std::string& what, double now, double expected, double allowed,
              std::vector<std::string>& faults) {
   if (std::abs(now - expected) <= allowed) return;
@@ -119,7 +120,8 @@ void compare(const std::string& what, double now, double expected, double allowe
   faults.push_back(text.str());
 }
 
-/// The facets, each once: of those that are listed again the first counts, as make_mesh has it.
+/// Measures of the facets by reference; a facet listed repeatedly counts once, by its first
+/// reference, as in make_mesh.
 template <int Dim>
 std::map<std::int32_t, double> measures_listed_once(const AnyMesh& mesh) {
   const auto& facets = facets_in<Dim>(mesh);
@@ -137,7 +139,7 @@ std::map<std::int32_t, double> measures_listed_once(const AnyMesh& mesh) {
   return sum_of;
 }
 
-/// By how much facets measure more than the plane that they are in, if it is rough by a length.
+/// Excess of the facets' measure over that of their plane if vertices are off it by the roughness.
 template <int Dim>
 double rough_measure(const AnyMesh& mesh, double roughness) {
   double sum = 0;
@@ -153,8 +155,8 @@ double rough_measure(const AnyMesh& mesh, double roughness) {
   return sum;
 }
 
-/// How long the non-manifold edges are, where more than two facets of the boundary meet, in 2D how
-/// many such vertices there are; each as often as there is a pair of facets too many.
+/// Total length of non-manifold edges, on which more than two boundary facets meet (2D: the number
+/// of such vertices). Each counts once per pair of facets beyond the first.
 template <int Dim>
 double non_manifold_length(const AdjacentMesh& mesh) {
   const BoundarySurface<Dim> surface(mesh.executor(),
@@ -183,7 +185,8 @@ class DomainChecker {
         old_(measures<Dim>(before_)),
         now_(measures<Dim>(after_)) {}
 
-  /// What differs by more than usual is looked at again if the mesh was written with few digits.
+  /// Checks with the usual tolerances; if that fails and the mesh was written with few digits,
+  /// checks again with tolerances that allow for them.
   std::vector<std::string> run() {
     auto faults = faults_if_rough(0);
     if (faults.empty()) return faults;
@@ -192,10 +195,10 @@ class DomainChecker {
   }
 
  private:
-  /// What is flat may be rough by a length.
+  /// Returns the differences if flat parts may be rough by this length.
   std::vector<std::string> faults_if_rough(double roughness) {
     const double domain = total(old_.regions);
-    // What was not listed before may be by now.
+    // The larger total counts, because facets not listed before may be listed now.
     const double boundary = std::max(total(old_.facets), total(now_.facets));
     const auto scale = scale_of<Dim>(before_);
     const double slack = scale.slack + 2 * roughness;
@@ -204,7 +207,8 @@ class DomainChecker {
     compare("the domain measures ", total(now_.regions), domain,
             allowed + hausdorff_tolerance_ * boundary, faults);
     compare_regions(allowed, faults);
-    // The rim of a patch of facets: two points in 2D, in 3D a line about as long as the mesh.
+    // Length of the rim of a patch of facets: two points in 2D, a line about as long as the mesh in
+    // 3D.
     const double rim = Dim == 2 ? 2 : 4 * scale.extent;
     double rough = 0;
     if (roughness > 0)
@@ -235,7 +239,8 @@ class DomainChecker {
     }
   }
 
-  /// Those of a boundary that may move have to be there, the others to measure the same.
+  /// Facets of each reference must exist if the boundary may move, and otherwise have the same
+  /// measure.
   std::vector<std::string> faults_of_facets(const std::map<std::int32_t, double>& expected,
                                             double allowed) {
     std::vector<std::string> faults;
@@ -245,7 +250,7 @@ class DomainChecker {
         if (!(now_.facets[reference] > 0)) faults.push_back(what + " are gone");
         continue;
       }
-      // What was not listed may be by now, see MakeMeshOptions::complete_boundary.
+      // Facets that were not listed may be listed now, see MakeMeshOptions::complete_boundary.
       if (reference == 0 && std::abs(now_.facets[0] - value) > allowed)
         value += unlisted_measure<Dim>(adjacent_before_);
       compare(what + " measure ", now_.facets[reference], value, allowed, faults);
@@ -253,8 +258,8 @@ class DomainChecker {
     return faults;
   }
 
-  /// Curves along which the boundary met itself before may be shorter now, or end elsewhere by
-  /// rounding; those that bend may be longer.
+  /// Reports non-manifold edges that have become longer than rounding explains. They may become
+  /// shorter, and curved ones somewhat longer.
   void compare_non_manifold(std::vector<std::string>& faults) const {
     const double now = non_manifold_length<Dim>(adjacent_after_);
     if (now == 0) return;

@@ -122,7 +122,7 @@ class AnyMeshChecker {
                          static_cast<std::size_t>(place.facet)];
   }
 
-  /// Says which facets of elements are listed, and where listed ones are.
+  /// Finds which facets of elements are listed, and where each listed facet is.
   void find_listed() {
     const Adjacency<Dim>& adjacency = adjacent_.adjacency<Dim>();
     first_listed_ =

@@ -1,5 +1,5 @@
 /// @file
-/// Problems: collects what is wrong with something, a line for each kind of fault.
+/// Problems: collects the faults of a mesh, one line for each kind.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@ class Problems {
  public:
   explicit Problems(const runtime::Executor& executor) : executor_(executor) {}
 
-  /// Looks for i in [0, n) with bad(i); adds a line made by describe(first) if there is one.
-  /// Returns whether there is none.
+  /// Looks for i in [0, n) with bad(i). If there is one, adds the line describe(first) and returns
+  /// false.
   template <class Bad, class Describe>
   bool expect_none(std::size_t n, Bad&& bad, Describe&& describe) {
     struct Found {

@@ -22,7 +22,6 @@
 #include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/process.hpp"
 #include "files.hpp"
-#include "io/atomic_file.hpp"
 #include "local_parameters.hpp"
 #include "mmg_options.hpp"
 #include "recovery_option.hpp"
@@ -92,7 +91,7 @@ constexpr std::array<Option, 36> own_options{{
     {"--interpolate", "", "carries fields by their values, whatever becomes of integrals"},
 }};
 
-/// Those, and those of Mmg that are not needed.
+/// The options above, and those of Mmg that have no effect.
 constexpr auto options = [] {
   std::array<Option, own_options.size() + mmg_options.size()> all;
   const auto rest = std::copy(own_options.begin(), own_options.end(), all.begin());
@@ -109,7 +108,7 @@ fs::path only_mesh(const Arguments& arguments) {
   return input_of(meshes[0]);
 }
 
-/// Nothing is beside standard output.
+/// Sets where the mesh goes and, unless that is standard output, the metric beside it.
 void set_output(Job& job, const Arguments& arguments, const std::optional<fs::path>& given) {
   const auto out = arguments.text("-o");
   if (!given && !out && job.input == "/dev/stdin")
@@ -125,7 +124,7 @@ void set_output(Job& job, const Arguments& arguments, const std::optional<fs::pa
   if (job.with_metric && !is_standard_output(job.output)) job.metric_out = field_beside(job.output);
 }
 
-/// Sizes are said in one way, or none: then a metric beside the mesh counts, if there is one.
+/// Sizes are given in at most one way; otherwise a metric beside the mesh is used, if there is one.
 void set_sizes(Job& job, const Arguments& arguments) {
   job.size = size_option(arguments, "-hsiz");
   job.places = SizeOptions(arguments, "-hsiz");
@@ -166,9 +165,7 @@ void set_files(Job& job, const Arguments& arguments, const std::optional<fs::pat
   job.json = json_output(arguments);
   if (job.json == standard_output && is_standard_output(job.output))
     throw UsageError("option --json: expected a file, because the mesh goes to standard output");
-  job.join = arguments.number("--join");
-  if (job.join && !(*job.join >= 0 && *job.join <= meshadapt::largest_size))
-    refuse_value("--join", "a distance of 0 or more", *arguments.text("--join"));
+  job.join = join_option(arguments);
   job.vtu = arguments.text("--vtu");
   if (job.vtu && job.vtu->extension() != ".vtu")
     throw UsageError(job.vtu->string() + ": expected a name ending in .vtu");
@@ -182,7 +179,7 @@ void set_files(Job& job, const Arguments& arguments, const std::optional<fs::pat
   set_sizes(job, arguments);
 }
 
-/// A factor; 0 for none, which is 0 or less, as in Mmg.
+/// A factor; 0 for none, which the command line says by 0 or less, as in Mmg.
 double gradation_of(const Arguments& arguments, std::string_view option) {
   const double factor = arguments.number(option).value_or(0);
   if (factor > 0 && factor < 1)
@@ -226,7 +223,8 @@ std::vector<fs::path> outputs_of(const Job& job) {
   return paths;
 }
 
-/// A mesh may be adapted in place, with its metric; else what was read stays as it is.
+/// Throws UsageError if an output would replace an input. A mesh may be adapted in place, with its
+/// metric.
 void expect_inputs_to_stay(const Job& job) {
   std::vector<fs::path> inputs = {job.input}, fields = job.fields.inputs();
   if (job.metric_in) fields.push_back(*job.metric_in);
@@ -314,23 +312,18 @@ void expect_right(const meshadapt::AdjacentMesh& before, const meshadapt::Adjace
                            "); nothing was written; please report this with its input");
 }
 
-/// Joins vertices that lie together, with --join, and keeps the values at one of them.
-void join(const Job& job, AdaptInput& input, meshadapt::Warnings& warnings) {
+/// With --join, joins vertices that lie together, in the mesh, its metric and its fields.
+void join_all(const Job& job, AdaptInput& input, meshadapt::Warnings& warnings) {
   if (!job.join) return;
-  AnyMesh& mesh = input.file.mesh;
-  auto joined = meshadapt::join_vertices(std::move(mesh), *job.join);
+  const int dimension = input.file.mesh.dimension;
   const std::size_t before = input.metric.vertex_count;
-  mesh = std::move(joined.mesh);
-  warnings.push_back(mesh.name + ": " +
-                     counted(before - joined.kept.size(), "vertex was", "vertices were") +
-                     " joined with others");
-  input.metric = meshadapt::at_kept(input.metric, joined.kept);
+  const auto kept = join(input.file.mesh, *job.join, warnings);
+  input.metric = meshadapt::at_kept(input.metric, kept);
   for (auto* fields : {&input.file.fields, &input.fields.fields})
     for (meshadapt::NamedField& field : *fields)
       if (is_at_vertices(field))
         field.values =
-            meshadapt::at_kept({mesh.dimension, before, {field.type}, std::move(field.values), {}},
-                               joined.kept)
+            meshadapt::at_kept({dimension, before, {field.type}, std::move(field.values), {}}, kept)
                 .values;
 }
 
@@ -352,7 +345,7 @@ void warn_of_fields_left(const Job& job, const meshadapt::MeshWithFields& file,
         "; --field takes those at the vertices of a file along, ductile transfer all");
 }
 
-/// Of a mesh that only says what boundaries are like.
+/// The geometry from the mesh of -geometry; null without that option.
 std::shared_ptr<const meshadapt::Geometry> read_geometry(const Executor& executor, const Job& job,
                                                          meshadapt::Warnings& warnings) {
   if (!job.geometry) return nullptr;
@@ -375,7 +368,7 @@ AdaptInput read_input(const Executor& executor, Job& job, meshadapt::Warnings& w
   input.metric = choose_metric(executor, job, input.file, input.sizes, warnings);
   input.fields = job.fields.read(mesh, warnings);
   input.in_force = {metric_said(job, input.file), values_in_force(job)};
-  join(job, input, warnings);
+  join_all(job, input, warnings);
   warn_of_loose_vertices(executor, mesh, warnings);
   if (!job.places.any())
     bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings),
@@ -432,7 +425,7 @@ int work(const Executor& executor, Job job) {
                 {adapted.mesh, adapted.metric, carried, fields.count_of,
                  job.json ? to_json(summary) : std::string()},
                 warnings);
-  // No memory is taken now that the outputs are there.
+  // From here on no memory is taken, because the outputs are there.
   const bool taken = is_standard_output(job.output) || job.json == standard_output;
   std::fputs(said.c_str(), taken ? stderr : stdout);
   return done;

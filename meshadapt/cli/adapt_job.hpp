@@ -1,6 +1,6 @@
 /// @file
-/// AdaptJob: all that the command line of `adapt` says, checked before any file is read; for the
-/// programs that adapt.
+/// AdaptJob: the command line of `adapt`, checked before any file is read; for the programs that
+/// adapt.
 #pragma once
 
 #include <cstddef>
@@ -88,10 +88,10 @@ meshadapt::AnyField choose_metric(const runtime::Executor& executor, const Adapt
                                   const meshadapt::MeshWithFields& file,
                                   const meshadapt::Sizes& sizes, meshadapt::Warnings& warnings);
 
-/// Where that metric comes from: "part.sol (found beside the mesh)".
+/// The source of that metric in words: "part.sol (found beside the mesh)".
 std::string metric_said(const AdaptJob& job, const meshadapt::MeshWithFields& file);
 
-/// The options that bear on sizes, as far as they are in force.
+/// The options about sizes that are in force.
 std::vector<ValueInForce> values_in_force(const AdaptJob& job);
 
 }  // namespace ductile::cli

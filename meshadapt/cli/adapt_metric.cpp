@@ -1,5 +1,5 @@
 /// @file
-/// The metric that `ductile adapt` adapts to: where it comes from, and how that is said.
+/// The metric that `ductile adapt` adapts to: chooses its source and names it.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using runtime::Executor;
 
-/// As `ductile metric make`.
+/// Makes the metric of a solution, as `ductile metric make` does.
 AnyField metric_of_solution(const Executor& executor, const AdaptJob& job,
                             const meshadapt::MeshWithFields& file, meshadapt::Warnings& warnings) {
   const AnyMesh& mesh = file.mesh;

@@ -88,7 +88,7 @@ std::string short_figures(const meshadapt::MeshStatistics& s) {
   return text.data();
 }
 
-/// A line about edges that required entities keep too long or too short, if there are such.
+/// A line about edges that required entities keep too long or too short; empty without such edges.
 std::string held_edges(const AdaptReport& report) {
   if (report.held_long_edges + report.held_short_edges == 0) return {};
   return "  required entities hold " + with_commas(report.held_long_edges) + " edges longer and " +
@@ -126,7 +126,7 @@ std::string percent(double share) { return std::to_string(std::lround(100 * shar
 
 constexpr double many_short = 0.1;
 
-/// Of a mesh that is far from its metric, what to do; else nothing.
+/// Advice for a mesh that is far from its metric; otherwise empty.
 std::string advice_on_lengths(const meshadapt::MeshStatistics& statistics) {
   constexpr double many = 0.25;
   const double share = share_of_edges(statistics, statistics.edges_long);
@@ -137,8 +137,7 @@ std::string advice_on_lengths(const meshadapt::MeshStatistics& statistics) {
          " (ductile metric bound --anisotropy)";
 }
 
-/// Of a mesh that cannot be as coarse as its metric, since vertices are fixed, how it can; else
-/// nothing.
+/// Advice for a mesh that fixed vertices keep finer than its metric; otherwise empty.
 std::string advice_on_surface(const meshadapt::MeshStatistics& statistics,
                               const AdaptReport& report) {
   constexpr std::size_t more_than_corners = 32;
@@ -149,8 +148,8 @@ std::string advice_on_surface(const meshadapt::MeshStatistics& statistics,
          " lets these be up to X from where they are";
 }
 
-/// Of a mesh that cannot be as coarse as its metric, since curved boundaries may not be far from
-/// where they were, how it can; else nothing. They are why if edges are short on them above all.
+/// Advice for a mesh that the tolerance of curved boundaries keeps finer than its metric, which
+/// shows in a larger share of short edges on them; otherwise empty.
 std::string advice_on_tolerance(const meshadapt::MeshStatistics& statistics,
                                 const AdaptReport& report, double tolerance) {
   constexpr std::size_t more_than_few = 32;
@@ -170,7 +169,7 @@ std::string advice_on_tolerance(const meshadapt::MeshStatistics& statistics,
          " sizes grow gently from there";
 }
 
-/// The same of a mesh much of which are corners, as where too small an angle makes ridges.
+/// Advice for a mesh with many corners, which too small an angle of ridges makes; otherwise empty.
 std::string advice_on_ridges(const meshadapt::MeshStatistics& statistics, const AdaptReport& report,
                              std::size_t vertices) {
   constexpr std::size_t in_part = 4;
@@ -182,7 +181,7 @@ std::string advice_on_ridges(const meshadapt::MeshStatistics& statistics, const 
          " fewer of a curved one are";
 }
 
-/// What is to be said of lengths.
+/// All advice about lengths.
 std::vector<std::string> advice(const meshadapt::MeshStatistics& statistics,
                                 const meshadapt::AdaptedMesh& after,
                                 const SummaryOptions& options) {

@@ -1,5 +1,5 @@
 /// @file
-/// What `ductile adapt` tells about a run: in a few lines for people, as JSON for programs.
+/// The report of `ductile adapt` about a run: a few lines for people, JSON for programs.
 #pragma once
 
 #include <optional>

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using meshadapt::AnyField;
 
-/// A name that no field before has: with that of the file where there is one.
+/// A name that no field before has: with that of the file in front if the name is taken.
 std::string other_name(std::string name, const std::string& file,
                        const std::vector<std::string>& taken) {
   while (std::find(taken.begin(), taken.end(), name) != taken.end()) name.insert(0, file + "_");

@@ -1,6 +1,6 @@
 /// @file
-/// CarriedFields: the fields that `adapt` takes along to the new mesh, each in a file of its own.
-/// All go at once, as to find which elements overlap takes most of the time.
+/// CarriedFields: the fields that `adapt` carries to the new mesh, each in its own file. All are
+/// carried at once, because finding overlapping elements takes most of the time.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class CarriedFields {
 
   bool interpolates() const { return interpolate_; }
   const std::vector<std::filesystem::path>& inputs() const { return inputs_; }
-  /// OUT.FIELD.sol for each FIELD, wherever that is; none if OUT itself holds fields.
+  /// OUT.FIELD.sol for each FIELD, in the folder of OUT; none if OUT itself holds fields.
   const std::vector<std::filesystem::path>& outputs() const { return outputs_; }
 
   struct Values {

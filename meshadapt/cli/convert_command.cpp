@@ -17,14 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<Option, 3> options{{
+constexpr std::array<Option, 4> options{{
     {"-sol", "FIELD", "for formats that hold fields: those at the vertices to take along"},
     {"--version-of-file", "N",
      "GMF: 1 to 4 (default: 2, more if the size needs it); .msh: 2 for 2.2, or 4 for 4.1"},
     {"--binary", "", "for .msh and .vtk: bytes instead of text"},
+    {"--join", "X", "makes one of vertices that are at most X from each other; 0: at one place"},
 }};
 
-/// Version 1 has numbers of 4 bytes in binary: what is rounded may move vertices onto each other.
+/// Version 1 has numbers of 4 bytes in binary; rounding may move vertices onto each other.
 void warn_of_rounding(const std::vector<double>& values, const fs::path& to, int version,
                       meshadapt::Warnings& warnings) {
   const std::string ending = to.extension().string();
@@ -57,7 +58,7 @@ bool passes(Check&& check) {
   return true;
 }
 
-/// What could be adapted, or adapted to, before it is rounded shall be so when it is read again.
+/// Throws InputError if rounding makes a valid mesh, or metric, invalid.
 template <class Check, class Rounded>
 void expect_to_stay(const char* what, const fs::path& to, Check&& check, Rounded&& rounded_of) {
   if (!passes([&] { check(rounded_of(false)); }) || passes([&] { check(rounded_of(true)); }))
@@ -117,17 +118,33 @@ void warn_of_fields(const meshadapt::MeshWithFields& file, const fs::path& to,
                        "; convert to a .sol for those at vertices");
 }
 
+/// With --join, joins vertices of a mesh; fields at vertices keep the values of those that stay.
+void join_in(meshadapt::MeshWithFields& file, const Arguments& arguments,
+             meshadapt::Warnings& warnings) {
+  const auto distance = join_option(arguments);
+  if (!distance) return;
+  const std::size_t count = file.mesh.vertex_count();
+  const auto kept = join(file.mesh, *distance, warnings);
+  for (auto& field : file.fields)
+    if (is_at_vertices(field))
+      field.values =
+          meshadapt::at_kept(
+              {file.mesh.dimension, count, {field.type}, std::move(field.values), {}}, kept)
+              .values;
+}
+
 void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arguments,
                   meshadapt::WriteOptions form, meshadapt::Warnings& warnings) {
   meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(from, &warnings);
-  if (is_gmf(to)) {
-    if (rounds(to, form)) expect_mesh_to_stay(file.mesh, to);
-    warn_of_rounding(file.mesh.coordinates, to, form.version, warnings);
-  }
   if (const auto path = arguments.text("-sol"))
     for (auto& field : meshadapt::named_fields(read_fields(*path, file.mesh, warnings),
                                                as_utf8(fs::path(*path).stem().string())))
       file.fields.push_back(std::move(field));
+  join_in(file, arguments, warnings);
+  if (is_gmf(to)) {
+    if (rounds(to, form)) expect_mesh_to_stay(file.mesh, to);
+    warn_of_rounding(file.mesh.coordinates, to, form.version, warnings);
+  }
   if (holds_fields(to))
     form.fields = file.fields;
   else
@@ -137,7 +154,8 @@ void convert_mesh(const fs::path& from, const fs::path& to, const Arguments& arg
   meshadapt::write_mesh(place_of(to), file.mesh, form);
 }
 
-/// Only a mesh has room for what is asked for, or nothing has.
+/// Throws UsageError unless the output can hold the input: a field goes to a field, a mesh to a
+/// mesh, and fields of a mesh to a field.
 void expect_names(const fs::path& from, const fs::path& to) {
   if (holds_field(to) && (holds_field(from) || holds_fields(from))) return;
   if (holds_field(from))
@@ -176,6 +194,8 @@ int run(const Arguments& arguments) {
   if (!holds_fields(to) && arguments.has("-sol"))
     throw UsageError("option -sol: expected an output that holds fields, such as .vtu, found " +
                      to.string() + "; convert the field by itself");
+  if (holds_field(to) && join_option(arguments))
+    throw UsageError("option --join: expected an output that is a mesh, found " + to.string());
   meshadapt::WriteOptions form = form_of(arguments, to);
   meshadapt::check_writable(place_of(to));
   meshadapt::Warnings warnings;
@@ -196,7 +216,7 @@ int run(const Arguments& arguments) {
 
 const Command convert_command{
     "convert",
-    "IN OUT [-sol FIELD]",
+    "IN OUT [-sol FIELD] [--join X]",
     "writes a mesh or a field in another format",
     "Meshes in the formats that ductile help lists. Fields: .sol, .solb, to which those at the\n"
     "vertices can be written, too, of a mesh whose format holds fields.",

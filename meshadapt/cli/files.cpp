@@ -11,6 +11,7 @@
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "io/utf8.hpp"
 
 namespace ductile::cli {
 
@@ -98,7 +99,7 @@ meshadapt::AnyField any_field(const meshadapt::NamedField& field, const meshadap
   return {mesh.dimension, mesh.vertex_count(), {field.type}, field.values, mesh.name};
 }
 
-/// All of one file.
+/// All fields at vertices in one file.
 meshadapt::AnyField fields_in(const fs::path& path, meshadapt::Warnings& warnings) {
   if (!holds_fields(path)) return meshadapt::read_field(path, &warnings);
   auto file = meshadapt::read_mesh_with_fields(path, &warnings);
@@ -108,13 +109,13 @@ meshadapt::AnyField fields_in(const fs::path& path, meshadapt::Warnings& warning
   return side_by_side(file.fields, file.mesh);
 }
 
-/// How many entities of a mesh a field has values for.
+/// The number of entities of a mesh that a field has values for.
 std::size_t entity_count(const meshadapt::AnyMesh& mesh, meshadapt::NamedField::Place place) {
   if (place == meshadapt::NamedField::Place::vertices) return mesh.vertex_count();
   return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
-/// A size or a metric on each element, at the vertices: the mean of the logarithms around them.
+/// Moves a size or a metric from elements to vertices: the mean of the logarithms around each.
 template <int Dim>
 meshadapt::AnyField mean_at_vertices(const meshadapt::NamedField& field,
                                      const meshadapt::AnyMesh& mesh) {
@@ -146,7 +147,7 @@ meshadapt::AnyField mean_at_vertices(const meshadapt::NamedField& field,
   return result;
 }
 
-/// At the vertices, wherever it lives.
+/// A metric at the vertices, which may be given there or on elements.
 meshadapt::AnyField metric_at_vertices(const meshadapt::NamedField& field,
                                        const meshadapt::AnyMesh& mesh) {
   if (is_at_vertices(field)) return any_field(field, mesh);
@@ -227,7 +228,7 @@ std::vector<meshadapt::NamedField> read_named_fields(const fs::path& path,
 
 namespace {
 
-/// Those at vertices, without a metric beside others.
+/// The fields at vertices, without a metric beside others.
 std::vector<meshadapt::NamedField> solutions_among(std::vector<meshadapt::NamedField> fields,
                                                    const std::string& source) {
   std::erase_if(fields, [](const auto& field) { return !is_at_vertices(field); });
@@ -298,8 +299,27 @@ std::vector<meshadapt::NamedField> chosen_solutions(const std::vector<std::strin
 void warn_of_loose_vertices(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
                             meshadapt::Warnings& warnings) {
   for (const std::string& loose : meshadapt::check_conformity(executor, mesh))
-    warnings.push_back(mesh.name + ": " + loose +
-                       "; the mesh is not connected there (--join makes one of doubled vertices)");
+    warnings.push_back(
+        mesh.name + ": " + loose + "; the mesh is not connected there" +
+        (loose.find(" hangs: ") == std::string::npos ? " (--join X joins them)" : ""));
+}
+
+std::optional<double> join_option(const Arguments& arguments) {
+  const auto distance = arguments.number("--join");
+  if (distance && !(*distance >= 0 && *distance <= meshadapt::largest_size))
+    refuse_value("--join", "a distance of 0 or more", *arguments.text("--join"));
+  return distance;
+}
+
+std::vector<std::uint32_t> join(meshadapt::AnyMesh& mesh, double distance,
+                                meshadapt::Warnings& warnings) {
+  const std::size_t before = mesh.vertex_count();
+  auto joined = meshadapt::join_vertices(std::move(mesh), distance);
+  mesh = std::move(joined.mesh);
+  warnings.push_back(mesh.name + ": " +
+                     counted(before - joined.kept.size(), "vertex was", "vertices were") +
+                     " joined with others");
+  return std::move(joined.kept);
 }
 
 std::optional<fs::path> json_output(const Arguments& arguments) {
@@ -317,24 +337,9 @@ void put_json(meshadapt::AtomicOutputs& outputs, const fs::path& place, const st
 std::string as_utf8(const std::string& text) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
-    const auto byte = [&](std::size_t i) {
-      return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-    };
-    const unsigned first = byte(at);
-    const std::size_t length = first < 0x80                    ? 1
-                               : first >= 0xC2 && first < 0xE0 ? 2
-                               : first >= 0xE0 && first < 0xF0 ? 3
-                               : first >= 0xF0 && first < 0xF5 ? 4
-                                                               : 0;
-    bool good = length > 0;
-    for (std::size_t i = 1; i < length; ++i) good = good && byte(at + i) >> 6U == 2;
-    if (length > 2) {  // neither too long, nor a surrogate, nor beyond the last character
-      const unsigned second = byte(at + 1);
-      good = good && !(first == 0xE0 && second < 0xA0) && !(first == 0xED && second > 0x9F) &&
-             !(first == 0xF0 && second < 0x90) && !(first == 0xF4 && second > 0x8F);
-    }
-    result += good ? text.substr(at, length) : "?";
-    at += good ? length : 1;
+    const std::size_t length = meshadapt::utf8_length(text, at);
+    result += length > 0 ? text.substr(at, length) : "?";
+    at += std::max<std::size_t>(length, 1);
   }
   return result;
 }

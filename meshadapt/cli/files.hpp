@@ -1,8 +1,9 @@
 /// @file
-/// What the commands share about files: reading a mesh with its metric, the names that outputs get
-/// by default, and warnings on standard error.
+/// Files for all commands: reading a mesh with its metric, default names of outputs, and warnings
+/// on standard error.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,21 +21,21 @@ namespace ductile::cli {
 /// Prints each as "ductile: warning: ..." on standard error, unless `verbosity` is 0.
 void print_warnings(const meshadapt::Warnings& warnings, int verbosity = 1);
 
-/// The metric file beside a mesh: NAME.sol, else NAME.solb, if it is there. Throws InputError where
-/// it is not, because a run was killed while it replaced it.
+/// The metric file beside a mesh: NAME.sol, otherwise NAME.solb, if there is one. Throws InputError
+/// if it is missing because a run was killed while it replaced it.
 std::optional<std::filesystem::path> metric_beside(const std::filesystem::path& mesh);
 
-/// NAME.o.ENDING beside the input, of its format if that can be written, else a .mesh.
+/// NAME.o.ENDING beside the input, in its format if that can be written, otherwise a .mesh.
 std::filesystem::path default_output(const std::filesystem::path& mesh);
 
-/// The same name with the ending of a field: .sol, or .solb for a .meshb.
+/// The name of a mesh with the ending of a field: .sol, or .solb for a .meshb.
 std::filesystem::path field_beside(const std::filesystem::path& mesh);
 
-/// What is read for a word of the command line: "-" is standard input.
+/// The file to read for a word of the command line; "-" is standard input.
 std::filesystem::path input_of(const std::string& word);
 
-/// Where a mesh goes for a word of the command line. "-.ENDING" is standard output, in the format
-/// of that ending, and "-" the same as "-.mesh".
+/// The output for a word of the command line. "-.ENDING" is standard output in the format of that
+/// ending, and "-" is "-.mesh".
 std::filesystem::path output_of(const std::string& word);
 bool is_standard_output(const std::filesystem::path& output);
 /// The file to be written, /dev/stdout for standard output.
@@ -43,14 +44,14 @@ std::filesystem::path place_of(const std::filesystem::path& output);
 /// Throws UsageError unless a mesh can be written to a file of this name.
 void expect_mesh_name(const std::filesystem::path& path);
 
-/// Whether files of this name hold a mesh and fields.
+/// True if files of this name hold a mesh and fields.
 bool holds_fields(const std::filesystem::path& path);
 
-/// The field "metric" that a file has beside its mesh, if it has one: at the vertices, or on
-/// elements, of which vertices get the means.
+/// The field "metric" in the file of a mesh, if there is one: at the vertices, or the means of its
+/// values on the elements around them.
 std::optional<meshadapt::AnyField> metric_in(const meshadapt::MeshWithFields& file);
 
-/// Throws UsageError if an output that is none of its kind would take the place of an input.
+/// Throws UsageError if an output would replace an input.
 void expect_no_input(const std::filesystem::path& output,
                      const std::vector<std::filesystem::path>& inputs);
 
@@ -71,13 +72,13 @@ std::vector<meshadapt::NamedField> read_named_fields(const std::filesystem::path
                                                      const meshadapt::AnyMesh& mesh,
                                                      meshadapt::Warnings& warnings);
 
-/// Of those, the ones at vertices, of which there is at least one, except a metric beside others:
-/// it says what the mesh was adapted to and is no solution. One alone is called like the file.
+/// The fields of a file at vertices, at least one, without a metric beside others: a mesh was
+/// adapted to that, so it is no solution. A single field is called like the file.
 std::vector<meshadapt::NamedField> read_solutions(const std::filesystem::path& path,
                                                   const meshadapt::AnyMesh& mesh,
                                                   meshadapt::Warnings& warnings);
 
-/// Whether a word stands for a file of fields, not for one field by name.
+/// True if a word names a file of fields, not one field.
 bool is_file(const std::string& word);
 
 /// The fields that a metric is made of: `words` are names of fields at the vertices of this mesh,
@@ -88,19 +89,25 @@ std::vector<meshadapt::NamedField> chosen_solutions(const std::vector<std::strin
                                                     const meshadapt::MeshWithFields& mesh,
                                                     meshadapt::Warnings& warnings);
 
-/// Warns of vertices that hang or are doubled, where the mesh is not connected.
+/// Warns of hanging and doubled vertices, where the mesh is not connected.
 void warn_of_loose_vertices(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
                             meshadapt::Warnings& warnings);
 
+/// The value of --join: the distance of vertices that become one. Throws UsageError.
+std::optional<double> join_option(const Arguments& arguments);
+/// Joins vertices within a distance, says how many in a warning, and returns those that are kept.
+std::vector<std::uint32_t> join(meshadapt::AnyMesh& mesh, double distance,
+                                meshadapt::Warnings& warnings);
+
 /// Standard output as the word for a file: "-".
 inline constexpr const char* standard_output = "-";
-/// What --json says: a file, or standard_output.
+/// The value of --json: a file, or standard_output.
 std::optional<std::filesystem::path> json_output(const Arguments& arguments);
 /// Writes to a file as one of the outputs, or to standard output at once.
 void put_json(meshadapt::AtomicOutputs& outputs, const std::filesystem::path& place,
               const std::string& json);
 
-/// Fields at the vertices of a mesh, of which there is at least one, side by side.
+/// The fields at the vertices of a mesh, at least one, as one field.
 meshadapt::AnyField side_by_side(const std::vector<meshadapt::NamedField>& fields,
                                  const meshadapt::AnyMesh& mesh);
 
@@ -109,8 +116,7 @@ std::string names_of(const std::vector<meshadapt::NamedField>& fields);
 
 bool is_at_vertices(const meshadapt::NamedField& field);
 
-/// The text with a '?' for each byte that is not UTF-8, as a file's name may have: for what must
-/// be.
+/// The text with a '?' for each byte that is not UTF-8; names of files may have such bytes.
 std::string as_utf8(const std::string& text);
 
 /// 1234567 as "1,234,567".

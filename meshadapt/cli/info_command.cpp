@@ -10,7 +10,6 @@
 #include "ductile/meshadapt/metric_field.hpp"
 #include "ductile/meshadapt/statistics.hpp"
 #include "files.hpp"
-#include "io/atomic_file.hpp"
 #include "report.hpp"
 #include "run_in_team.hpp"
 
@@ -33,8 +32,8 @@ struct Validity {
   meshadapt::Warnings warnings;
 };
 
-/// As `adapt` does, which takes the sizes that the mesh has where there is no metric. Any metric
-/// was checked as it was read.
+/// Checks what `adapt` would check. Without a metric, `adapt` takes the sizes that the mesh has; a
+/// given metric was checked when it was read.
 Validity check(const Executor& executor, const AnyMesh& mesh, const AnyField* metric) {
   Validity validity;
   try {

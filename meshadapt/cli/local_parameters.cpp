@@ -65,7 +65,7 @@ void warn(const std::string& file, const std::vector<LocalSize>& local_sizes, co
                        ": left out hausd, which is the same for all boundaries here (-hausd)");
 }
 
-/// Bounds that let all be asked for that is allowed somewhere.
+/// Widens the bounds to include all local ones.
 void widen(meshadapt::AdaptOptions& adapt, const std::vector<LocalSize>& local_sizes) {
   for (const LocalSize& local : local_sizes) {
     if (local.smallest > 0) adapt.smallest_size = std::min(adapt.smallest_size, local.smallest);

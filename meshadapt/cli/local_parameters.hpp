@@ -15,14 +15,14 @@
 
 namespace ductile::cli {
 
-/// What the file says, if there is one. Warns of one that was found without being asked for, and of
-/// what in it has no effect. Throws InputError. Thread safety: any thread.
+/// The sizes in the file, if there is one. Warns of a file that was found without -f, and of
+/// parameters without effect. Throws InputError. Thread safety: any thread.
 std::vector<meshadapt::LocalSize> local_parameters(
     const std::optional<std::filesystem::path>& given, const meshadapt::AnyMesh& mesh,
     const meshadapt::AdaptOptions& adapt, meshadapt::Warnings& warnings);
 
-/// Bounds the metric by local bounds and, where there are none, by those in `adapt`, which then
-/// become wide enough for all. Nothing changes without local ones.
+/// Bounds the metric by local bounds and elsewhere by those in `adapt`, which are then widened to
+/// include all. Without local bounds nothing changes.
 void bound_locally(const runtime::Executor& executor, const meshadapt::AnyMesh& mesh,
                    const std::vector<meshadapt::LocalSize>& local_sizes,
                    meshadapt::AnyField& metric, meshadapt::AdaptOptions& adapt);

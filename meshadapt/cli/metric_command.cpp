@@ -52,7 +52,7 @@ constexpr std::array<Option, 16> options{{
     {"-v", "N", "0 says nothing, 1 (default) sums up", "--verbose"},
 }};
 
-/// All that the command line says, checked before any file is read.
+/// The command line, checked before any file is read.
 struct Job {
   std::string operation;
   fs::path mesh, output;
@@ -220,7 +220,7 @@ class Work {
   }
 
  private:
-  /// Throws unless it is one that would be read again.
+  /// Throws InputError unless reading accepts the metric.
   void expect_metric(const AnyField& metric) const {
     try {
       meshadapt::metric_of(metric, mesh_);
@@ -268,7 +268,7 @@ class Work {
     metric_of_ = meshadapt::tensors_of<Dim>(executor_, meshadapt::metric_of(field, mesh_));
   }
 
-  /// Of metrics that are alike in all directions, which bounds and gradation keep.
+  /// The sizes of isotropic metrics; bounds and gradation keep them isotropic.
   AnyField sizes() const {
     std::vector<double> size_of(metric_of_.size());
     runtime::parallel_for(executor_, size_of.size(),

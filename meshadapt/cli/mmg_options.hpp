@@ -1,7 +1,6 @@
 /// @file
-/// Mmg's options that `adapt` has no need of, so that a command line made for Mmg runs: what they
-/// ask for is done anyway, or means nothing here. Those that would change the result are refused,
-/// with what to do instead. The whole of it is in docs/coming-from-mmg.md.
+/// Mmg's options that have no effect on `adapt`, so that a command line made for Mmg runs. Options
+/// that would change the result are refused, with an alternative. docs/coming-from-mmg.md has all.
 #pragma once
 
 #include <array>
@@ -28,11 +27,11 @@ inline constexpr std::array<Option, 14> mmg_options{{{"-d", "", ""},
                                                      {"-rn", "[N]", ""},
                                                      {"-val", "", ""}}};
 
-/// What to do instead of an option of Mmg's that is refused; empty if it has none of that name,
-/// which comes without dashes.
+/// The alternative to an option of Mmg that is refused, by its name without dashes; empty if Mmg
+/// has no such option.
 std::string_view instead_of_mmg_option(std::string_view name);
 
-/// Which of the options above were given, for one warning; empty if none was.
+/// One warning that lists the options above that were given; empty if none was.
 std::string unneeded_mmg_options(const Arguments& arguments);
 
 }  // namespace ductile::cli

@@ -1,5 +1,5 @@
 /// @file
-/// run_in_team: how commands run what takes long.
+/// run_in_team: runs the long part of a command.
 #pragma once
 
 #include "command.hpp"
@@ -9,8 +9,8 @@
 
 namespace ductile::cli {
 
-/// Returns body(executor), an exit status. The executor's threads stay together meanwhile, so that
-/// they give their core away soon when they wait (runtime::with_team), and reuse memory.
+/// Returns body(executor), an exit status. The executor's threads are a team meanwhile
+/// (runtime::with_team), so that idle ones soon sleep, and reuse memory.
 template <class Body>
 int run_in_team(const runtime::ExecutorOptions& options, Body&& body) {
   const runtime::Executor executor(options);

@@ -20,7 +20,7 @@ using meshadapt::AnyMesh;
 using meshadapt::Carrying;
 using meshadapt::NamedField;
 
-/// What files of seven digits make of meshes that are alike: this share of one is not in the other.
+/// Rounding to seven digits leaves this share of a mesh outside of an equal one.
 constexpr double rounding = 1e-6;
 
 void each_element(const AnyMesh& mesh, auto&& visit) {

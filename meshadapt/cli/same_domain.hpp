@@ -1,8 +1,8 @@
 /// @file
-/// Whether a mesh covers the domain of another, found while fields are carried between them. A few
-/// more fields go along: the places of the old vertices, which outside of the old mesh arrive as
-/// those of its closest points, and the sizes of its elements, because the facets of a curved
-/// boundary are off by a part of that.
+/// Checks, while fields are carried between two meshes, that both cover the same domain. More
+/// fields are carried for that: the positions of the old vertices, which arrive as the closest
+/// points of the old mesh, and the sizes of its elements, because facets of a curved boundary are
+/// off by a fraction of that.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@
 
 namespace ductile::cli {
 
-/// Two meshes and what goes from one to the other.
+/// The meshes from and to which fields are carried.
 struct Passage {
   const meshadapt::AnyMesh &from, &to;
 };
 
-/// Appends what is to be carried along to fields of this mesh.
+/// Appends the additional fields to those of this mesh.
 void add_probes(const meshadapt::AnyMesh& mesh, std::vector<meshadapt::NamedField>& fields,
                 std::vector<meshadapt::Carrying>& carrying);
 
@@ -29,8 +29,8 @@ void add_probes(const meshadapt::AnyMesh& mesh, std::vector<meshadapt::NamedFiel
 void expect_same_domain(const Passage& meshes, const meshadapt::TransferredFields& carried,
                         std::size_t first);
 
-/// Warns if the new mesh is larger, where values are the closest ones, or the old one, of which
-/// integrals lose a part.
+/// Warn if the new mesh is larger, where values are the closest ones, or the old one, which costs
+/// integrals a part.
 void warn_of_extension(const Passage& meshes, const meshadapt::TransferReport& report,
                        meshadapt::Warnings& warnings);
 void warn_of_loss(const Passage& meshes, const meshadapt::TransferReport& report,

@@ -1,12 +1,12 @@
 #include "shown_field.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
 
 #include "arguments.hpp"
+#include "io/number_in.hpp"
 
 namespace ductile::cli {
 
@@ -15,11 +15,9 @@ namespace {
 using meshadapt::AnyField;
 using meshadapt::NamedField;
 
-/// From 1; 0: it is no such number.
+/// A number from 1; 0 if the word is none.
 std::size_t number_in(std::string_view word) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc() && end == word.data() + word.size() ? number : 0;
+  return meshadapt::number_in<std::size_t>(word).value_or(0);
 }
 
 const NamedField* find(std::string_view word, const std::vector<NamedField>& fields) {
@@ -29,7 +27,7 @@ const NamedField* find(std::string_view word, const std::vector<NamedField>& fie
   return number >= 1 && number <= fields.size() ? &fields[number - 1] : nullptr;
 }
 
-/// How often component i of a tensor stands in it.
+/// The number of times that component i occurs in a tensor.
 double weight_of(AnyField::Type type, std::size_t i) {
   const bool diagonal = i == 0 || i == 2 || i == 5;  // of a symmetric one
   return type == AnyField::Type::symmetric && !diagonal ? 2 : 1;

@@ -1,5 +1,5 @@
 /// @file
-/// Which field a picture shows, for a word such as "pressure", "2" or "velocity:1".
+/// Finds the field that a picture shows by a word such as "pressure", "2" or "velocity:1".
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace ductile::cli {
 
-/// The field of this name, else the one of this number, from 1, as scalars: of vectors and tensors
-/// the norm, or with ":K" after the name or number the component K, from 1. Throws UsageError if
-/// there is none in `where`.
+/// The field with this name, otherwise the one with this number, from 1, as scalars: the norm of
+/// vectors and tensors or, with ":K" after the name or number, their component K, from 1. Throws
+/// UsageError if `where` has no such field.
 meshadapt::NamedField shown_field(const std::string& by,
                                   const std::vector<meshadapt::NamedField>& fields, int dimension,
                                   const std::string& where);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -10,21 +9,15 @@
 
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
+#include "io/number_in.hpp"
 
 namespace ductile::cli {
 
 namespace {
 
 using meshadapt::AnyMesh;
+using meshadapt::number_in;
 using meshadapt::Vector;
-
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts;
@@ -35,11 +28,11 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-/// "2", or "2/0.5", which only growth is said with.
+/// True for "2", and for "2/0.5", which only a growth can be.
 bool is_numeric(const std::string& text) {
   const auto parts = split(text, '/');
   return parts.size() <= 2 && std::all_of(parts.begin(), parts.end(), [](const std::string& part) {
-           return parse<double>(part).has_value();
+           return number_in<double>(part).has_value();
          });
 }
 
@@ -57,26 +50,26 @@ constexpr std::array<Shape, 5> shapes{{{"point", "X,Y,Z (X,Y in 2D)"},
   throw UsageError("option " + words + ": expected " + expected);
 }
 
-/// H[:GROW[:HMAX]] or H:HMAX/DISTANCE, of which there is at least H.
+/// Reads H[:GROW[:HMAX]] or H:HMAX/DISTANCE.
 void read_growth(const std::string& all, const std::vector<std::string>& fields, double& size,
                  meshadapt::SizeGrowth& growth) {
   const auto is_size = [](double x) {
     return x >= meshadapt::smallest_size && x <= meshadapt::largest_size;
   };
-  size = parse<double>(fields[0]).value_or(0);
+  size = number_in<double>(fields[0]).value_or(0);
   if (!is_size(size)) refuse(all, "a size from 1e-75 to 1e75, found '" + fields[0] + "'");
   if (fields.size() == 1) return;
   const auto parts = split(fields[1], '/');
-  const double first = *parse<double>(parts[0]);
+  const double first = *number_in<double>(parts[0]);
   if (parts.size() == 2) {
-    growth = {.largest = first, .distance = *parse<double>(parts[1])};
+    growth = {.largest = first, .distance = *number_in<double>(parts[1])};
     if (fields.size() > 2 || !(growth.distance > 0) || !std::isfinite(growth.distance))
       refuse(all, "H:HMAX/DISTANCE, with a distance above 0, found '" + fields[1] + "'");
   } else {
     growth.grow = first;
     if (!(first == 0 || first >= 1) || !std::isfinite(first))
       refuse(all, "a growth of 1 or more, or 0 for none, found '" + fields[1] + "'");
-    if (fields.size() == 3) growth.largest = parse<double>(fields[2]).value_or(0);
+    if (fields.size() == 3) growth.largest = number_in<double>(fields[2]).value_or(0);
   }
   if ((parts.size() == 2 || fields.size() == 3) &&
       !(growth.largest >= size && is_size(growth.largest)))
@@ -84,7 +77,7 @@ void read_growth(const std::string& all, const std::vector<std::string>& fields,
                     (parts.size() == 2 ? parts[0] : fields[2]) + "'");
 }
 
-/// The points that numbers give, all of one dimension.
+/// Points from their coordinates.
 std::vector<Vector<3>> points_of(const std::vector<double>& numbers, std::size_t dimension) {
   std::vector<Vector<3>> points(numbers.size() / dimension);
   for (std::size_t i = 0; i < points.size() * dimension; ++i)
@@ -132,7 +125,7 @@ SizeOptions::Words SizeOptions::read(const std::string& option, const std::strin
   } else {
     words.shape = option == "--on" ? "on" : "in";
   }
-  // A name, or that of a file, may have colons: what numbers there are at the end is the rest.
+  // Names may have colons, so that only numbers at the end are the size and its growth.
   std::size_t first = fields.size();
   while (first > named && fields.size() - first < 3 && is_numeric(fields[first - 1])) --first;
   if (first < named || first == fields.size() || split(fields[first], '/').size() > 1)
@@ -150,7 +143,7 @@ SizeOptions::Words SizeOptions::read(const std::string& option, const std::strin
     refuse(words.all, "point, sphere, box, line or file, found '" + words.shape + "'");
   if (words.shape == "file") return words;
   for (const std::string& text : split(words.name, ',')) {
-    const auto number = parse<double>(text);
+    const auto number = number_in<double>(text);
     if (!number || !std::isfinite(*number))
       refuse(words.all, std::string(shape->numbers) + ", found '" + words.name + "'");
     words.numbers.push_back(*number);
@@ -179,7 +172,7 @@ meshadapt::SizePlace SizeOptions::place_of(const Words& words, const AnyMesh& me
   };
   if (words.shape == "on" || words.shape == "in") {
     const int of = words.shape == "in" ? mesh.dimension : mesh.dimension - 1;
-    if (const auto reference = parse<std::int32_t>(words.name))
+    if (const auto reference = number_in<std::int32_t>(words.name))
       return meshadapt::Referenced{of, *reference};
     return meshadapt::Named{words.name};
   }

@@ -1,6 +1,6 @@
 /// @file
-/// Sizes by places as the command line says them: --near sphere:0,0,0,0.1:0.01:1.2, --on wall:0.01,
-/// --in 3:0.05. What is wrong with the words is found before any file is read.
+/// Sizes by places on the command line: --near sphere:0,0,0,0.1:0.01:1.2, --on wall:0.01, --in
+/// 3:0.05. Wrong words are refused before any file is read.
 #pragma once
 
 #include <filesystem>
@@ -16,18 +16,18 @@
 
 namespace ductile::cli {
 
-/// The option's value as a length that a metric may ask for. Throws UsageError.
+/// The value of an option as a size for a metric. Throws UsageError.
 std::optional<double> size_option(const Arguments& arguments, std::string_view name);
 
-/// What --near, --on and --in, or --inside, say, and an option for the size elsewhere. Names and
-/// references are looked up when the mesh is known.
+/// The values of --near, --on, --in and --inside, and of an option for the size elsewhere. Names
+/// and references are looked up when the mesh is known.
 class SizeOptions {
  public:
   SizeOptions() = default;
   /// Throws UsageError.
   SizeOptions(const Arguments& arguments, std::string_view elsewhere);
 
-  /// Whether there are places.
+  /// True if there are places.
   bool any() const { return !words_.empty(); }
 
   /// Files that places are read from.

@@ -15,8 +15,7 @@ namespace ductile::cli {
 
 namespace {
 
-/// Bytes of addresses that may be written, which is what systems limit, used or not. Where they are
-/// not told, 0.
+/// Bytes of writable addresses, used or not, which is what systems limit; 0 if unknown.
 std::size_t writable_addresses() {
   std::ifstream statm("/proc/self/statm");
   std::size_t size = 0, resident = 0, shared = 0, text = 0, unused = 0, data = 0;

@@ -32,7 +32,7 @@ constexpr std::array<Option, 6> options{{
     {"-v", "N", "0 says nothing, 1 (default) sums up", "--verbose"},
 }};
 
-/// All that the command line says, checked before any file is read.
+/// The command line, checked before any file is read.
 struct Job {
   fs::path from, to, output;
   std::vector<std::string> fields;  // files of them, or their names in OLD
@@ -47,8 +47,8 @@ bool is_field_file(const fs::path& path) {
   return path.extension() == ".sol" || path.extension() == ".solb";
 }
 
-/// NEW with fields where its own format holds them, or else that of the file which they are in;
-/// otherwise the fields alone.
+/// NEW with fields, in its own format or that of the file with the fields, if one of them holds
+/// fields; otherwise the fields alone.
 fs::path default_output_of(const Job& job) {
   const auto file = std::find_if(job.fields.begin(), job.fields.end(), is_file);
   const fs::path source = file == job.fields.end() ? job.from : fs::path(*file);
@@ -136,8 +136,9 @@ std::vector<NamedField> chosen_fields(const Job& job, const MeshWithFields& file
   return fields;
 }
 
-/// A metric goes by its values, so that it stays positive definite, and so do whole numbers on
-/// elements, which are marks: a new element gets that of the old one in which its centroid lies.
+/// Chooses how each field is carried. A metric goes by its values, so that it stays positive
+/// definite. Whole numbers on elements are marks and go by value: a new element gets that of the
+/// old one in which its centroid lies.
 std::vector<Carrying> ways(const Job& job, const std::vector<NamedField>& fields) {
   for (const std::string& name : job.by_value)
     if (std::none_of(fields.begin(), fields.end(), [&](const auto& f) { return f.name == name; }))
@@ -176,7 +177,7 @@ std::vector<NamedField> carry(const runtime::Executor& executor, const Job& job,
   return std::move(carried.fields);
 }
 
-/// The fields that NEW has stay, unless others of the same name come.
+/// Keeps the fields of NEW, except those that carried fields of the same name replace.
 void add_own_fields(std::vector<NamedField>& carried, std::vector<NamedField> own) {
   const std::size_t count = carried.size();
   for (NamedField& field : own)
@@ -187,7 +188,7 @@ void add_own_fields(std::vector<NamedField>& carried, std::vector<NamedField> ow
       carried.push_back(std::move(field));
 }
 
-/// Leaves out what a .sol has no place for.
+/// Leaves out fields that a .sol cannot hold.
 void keep_those_at_vertices(const Job& job, std::vector<NamedField>& carried,
                             meshadapt::Warnings& warnings) {
   std::vector<NamedField> others;
@@ -219,7 +220,7 @@ std::string summary(const Job& job, const std::vector<NamedField>& carried,
   return text + "written: " + meshadapt::printable(place_of(job.output).string()) + "\n";
 }
 
-/// One output, that is not complete yet.
+/// Writes the output, which appears on commit().
 void stage(meshadapt::AtomicOutputs& outputs, const Job& job, MeshWithFields& to,
            std::vector<NamedField> carried, meshadapt::Warnings& warnings) {
   using Form = meshadapt::WriteOptions::Form;
@@ -246,7 +247,7 @@ int work(const runtime::Executor& executor, const Job& job) {
   stage(outputs, job, to, std::move(carried), warnings);
   print_warnings(warnings, job.verbosity);
   outputs.commit();
-  // No memory is taken now that the output is there.
+  // From here on no memory is taken, because the output is there.
   std::fputs(said.c_str(), is_standard_output(job.output) ? stderr : stdout);
   return done;
 }

@@ -9,7 +9,6 @@
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
-#include "io/atomic_file.hpp"
 #include "picture/draw.hpp"
 #include "run_in_team.hpp"
 #include "shown_field.hpp"
@@ -31,7 +30,7 @@ constexpr std::array<Option, 6> options{{
     {"--threads", "N", "threads to use (default: the cores this process may use)"},
 }};
 
-/// What is no other word is a field.
+/// Any other word names a field.
 Tint tint_of(const std::string& by) {
   if (by == "quality") return Tint::quality;
   if (by == "size") return Tint::size;
@@ -81,7 +80,8 @@ Job read_job(const Arguments& arguments) {
   return job;
 }
 
-/// Of quality the one that is asked for, of itself also the one in the mesh or beside it.
+/// The metric of -sol, in which quality is measured; to draw a metric, also the one in the file of
+/// the mesh or beside it.
 std::optional<meshadapt::AnyField> metric_of(const Job& job, const meshadapt::MeshWithFields& file,
                                              meshadapt::Warnings& warnings) {
   if (job.scene.tint == Tint::field) return std::nullopt;
@@ -94,7 +94,8 @@ std::optional<meshadapt::AnyField> metric_of(const Job& job, const meshadapt::Me
                               ": expected a metric (-sol) or one beside it or in it, found none");
 }
 
-/// Of the file that is given, else of the mesh, else of the one beside it.
+/// The field to show, from the file of -sol, otherwise from the mesh, otherwise from the file
+/// beside it.
 meshadapt::NamedField field_of(const Job& job, meshadapt::MeshWithFields& file,
                                meshadapt::Warnings& warnings) {
   fs::path where = job.input;

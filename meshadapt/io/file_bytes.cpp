@@ -21,7 +21,7 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// Of a file that is not there, because a process was killed while it replaced it.
+/// Names the copy of a missing file that a process left when it was killed.
 std::string where_it_is(const std::string& name, int code) {
   const auto left = code == ENOENT ? left_of(name) : std::vector<fs::path>();
   return left.empty() ? "" : ", and a run that was ended left " + left.front().string();

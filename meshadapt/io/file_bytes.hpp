@@ -1,5 +1,5 @@
 /// @file
-/// FileBytes: the whole of an input file in memory, as parsers want it.
+/// FileBytes: the bytes of an input file in memory.
 #pragma once
 
 #include <cstddef>

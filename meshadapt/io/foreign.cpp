@@ -1,13 +1,13 @@
-#include "foreign.hpp"
+#include "formats.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "ductile/meshadapt/error.hpp"
+#include "number_reader.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -17,6 +17,8 @@ constexpr const char* by_meshio_hdf =
     "; convert it first, as with meshio convert FILE mesh.vtu, which needs Python's h5py";
 constexpr const char* by_meshio_netcdf =
     "; convert it first, as with meshio convert FILE mesh.vtu, which needs Python's netCDF4";
+constexpr const char* by_meshio_avs =
+    "; convert it first, as with meshio convert --input-format avsucd FILE mesh.vtu";
 constexpr const char* by_gmsh = "; convert it first, as with gmsh FILE -save -o mesh.msh";
 constexpr const char* by_filling =
     ", a surface without tetrahedra; fill it first, as with Gmsh or TetGen, and give that mesh";
@@ -24,105 +26,91 @@ constexpr const char* by_paraview = "; save it as .vtu first, as in ParaView by 
 constexpr const char* by_foam =
     "; convert it first, as with foamToVTK, and split its cells into tetrahedra";
 
-/// A format by what a file begins with, after white space, in any case of letters.
-struct ForeignBeginning {
-  std::string_view begin;
+/// A format by how its files begin, after white space, or by the ending of their names; in any case
+/// of letters.
+struct Foreign {
+  std::string_view sign;
   const char* what;
   const char* advice;
 };
 constexpr std::array beginnings{
-    ForeignBeginning{"MFEM mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
-    ForeignBeginning{"MFEM NC mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
-    ForeignBeginning{"*HEADING", "Abaqus input", by_meshio},
-    ForeignBeginning{"*NODE", "Abaqus input", by_meshio},
-    ForeignBeginning{"*PART", "Abaqus input", by_meshio},
-    ForeignBeginning{"**", "Abaqus input", by_meshio},
-    ForeignBeginning{"CDF\x01", "Exodus or netCDF", by_meshio_netcdf},
-    ForeignBeginning{"CDF\x02", "Exodus or netCDF", by_meshio_netcdf},
-    ForeignBeginning{"CDF\x05", "Exodus or netCDF", by_meshio_netcdf},
-    ForeignBeginning{"@(#)ADF Database", "CGNS (ADF)", by_paraview},
-    ForeignBeginning{"ply\n", "PLY", by_filling},
-    ForeignBeginning{"ply\r", "PLY", by_filling},
-    ForeignBeginning{"OFF\n", "OFF", by_filling},
-    ForeignBeginning{"solid", "STL", by_filling},
-    ForeignBeginning{"mesh3d", "Netgen", by_meshio},
-    ForeignBeginning{"BEGIN BULK", "Nastran", by_meshio},
-    ForeignBeginning{"CEND", "Nastran", by_meshio},
-    ForeignBeginning{"GRID", "Nastran", by_meshio},
-    ForeignBeginning{"$ Nastran", "Nastran", by_meshio},
-    ForeignBeginning{"(0 ", "Fluent", by_paraview},
-    ForeignBeginning{"(2 ", "Fluent", by_paraview},
-    ForeignBeginning{"CONTROL INFO", "Gambit", by_gmsh},
-    ForeignBeginning{"TITLE", "Tecplot", by_meshio},
-    ForeignBeginning{"VARIABLES", "Tecplot", by_meshio},
-    ForeignBeginning{"PK\x03\x04", "a zip archive", "; unpack it first"},
-    ForeignBeginning{"\x1f\x8b", "compressed by gzip", "; unpack it first, as with gunzip"},
-    ForeignBeginning{"version https://git-lfs", "a pointer of Git LFS",
-                     "; fetch it by git lfs pull"},
+    Foreign{"MFEM mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
+    Foreign{"MFEM NC mesh", "a mesh of MFEM", "; write it there by Mesh::PrintVTK first"},
+    Foreign{"*HEADING", "Abaqus input", by_meshio},
+    Foreign{"*NODE", "Abaqus input", by_meshio},
+    Foreign{"*PART", "Abaqus input", by_meshio},
+    Foreign{"**", "Abaqus input", by_meshio},
+    Foreign{"CDF\x01", "Exodus or netCDF", by_meshio_netcdf},
+    Foreign{"CDF\x02", "Exodus or netCDF", by_meshio_netcdf},
+    Foreign{"CDF\x05", "Exodus or netCDF", by_meshio_netcdf},
+    Foreign{"@(#)ADF Database", "CGNS (ADF)", by_paraview},
+    Foreign{"ply\n", "PLY", by_filling},
+    Foreign{"ply\r", "PLY", by_filling},
+    Foreign{"OFF\n", "OFF", by_filling},
+    Foreign{"solid", "STL", by_filling},
+    Foreign{"mesh3d", "Netgen", by_meshio},
+    Foreign{"BEGIN BULK", "Nastran", by_meshio},
+    Foreign{"CEND", "Nastran", by_meshio},
+    Foreign{"GRID", "Nastran", by_meshio},
+    Foreign{"$ Nastran", "Nastran", by_meshio},
+    Foreign{"(0 ", "Fluent", by_paraview},
+    Foreign{"(2 ", "Fluent", by_paraview},
+    Foreign{"CONTROL INFO", "Gambit", by_gmsh},
+    Foreign{"TITLE", "Tecplot", by_meshio},
+    Foreign{"VARIABLES", "Tecplot", by_meshio},
+    Foreign{"PK\x03\x04", "a zip archive", "; unpack it first"},
+    Foreign{"\x1f\x8b", "compressed by gzip", "; unpack it first, as with gunzip"},
+    Foreign{"version https://git-lfs", "a pointer of Git LFS", "; fetch it by git lfs pull"},
 };
 
-/// A format by the ending of a file's name.
-struct ForeignEnding {
-  std::string_view ending;
-  const char* what;
-  const char* advice;
-};
 constexpr std::array endings{
-    ForeignEnding{".inp", "Abaqus input or AVS UCD", by_meshio},
-    ForeignEnding{".avs", "AVS UCD", by_meshio},
-    ForeignEnding{".med", "MED (Salome)", by_meshio_hdf},
-    ForeignEnding{".rmed", "MED (Salome)", by_meshio_hdf},
-    ForeignEnding{".e", "Exodus", by_meshio_netcdf},
-    ForeignEnding{".ex2", "Exodus", by_meshio_netcdf},
-    ForeignEnding{".exo", "Exodus", by_meshio_netcdf},
-    ForeignEnding{".exii", "Exodus", by_meshio_netcdf},
-    ForeignEnding{".cgns", "CGNS", by_paraview},
-    ForeignEnding{".xdmf", "XDMF", by_meshio_hdf},
-    ForeignEnding{".xmf", "XDMF", by_meshio_hdf},
-    ForeignEnding{".h5", "HDF5", by_paraview},
-    ForeignEnding{".hdf5", "HDF5", by_paraview},
-    ForeignEnding{".h5m", "MOAB", by_meshio_hdf},
-    ForeignEnding{".vtkhdf", "VTKHDF", by_paraview},
-    ForeignEnding{".foam", "OpenFOAM", by_foam},
-    ForeignEnding{".stl", "STL", by_filling},
-    ForeignEnding{".obj", "Wavefront OBJ", by_filling},
-    ForeignEnding{".ply", "PLY", by_filling},
-    ForeignEnding{".off", "OFF", by_filling},
-    ForeignEnding{".bdf", "Nastran", by_meshio},
-    ForeignEnding{".nas", "Nastran", by_meshio},
-    ForeignEnding{".fem", "Nastran", by_meshio},
-    ForeignEnding{".unv", "I-deas universal (UNV)", by_gmsh},
-    ForeignEnding{".neu", "Gambit", by_gmsh},
-    ForeignEnding{".cas", "Fluent", by_paraview},
-    ForeignEnding{".cdb", "Ansys", by_gmsh},
-    ForeignEnding{".vol", "Netgen", by_meshio},
-    ForeignEnding{".node", "TetGen", by_meshio},
-    ForeignEnding{".ele", "TetGen", by_meshio},
-    ForeignEnding{".ugrid", "UGRID", by_meshio},
-    ForeignEnding{".mdpa", "Kratos", by_meshio},
-    ForeignEnding{".step", "STEP, a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
-    ForeignEnding{".stp", "STEP, a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
-    ForeignEnding{".brep", "a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
-    ForeignEnding{".geo", "Gmsh's script", "; mesh it first, as with gmsh -3 FILE"},
+    Foreign{".inp", "AVS UCD", by_meshio_avs},
+    Foreign{".avs", "AVS UCD", by_meshio},
+    Foreign{".med", "MED (Salome)", by_meshio_hdf},
+    Foreign{".rmed", "MED (Salome)", by_meshio_hdf},
+    Foreign{".e", "Exodus", by_meshio_netcdf},
+    Foreign{".ex2", "Exodus", by_meshio_netcdf},
+    Foreign{".exo", "Exodus", by_meshio_netcdf},
+    Foreign{".exii", "Exodus", by_meshio_netcdf},
+    Foreign{".cgns", "CGNS", by_paraview},
+    Foreign{".xdmf", "XDMF", by_meshio_hdf},
+    Foreign{".xmf", "XDMF", by_meshio_hdf},
+    Foreign{".h5", "HDF5", by_paraview},
+    Foreign{".hdf5", "HDF5", by_paraview},
+    Foreign{".h5m", "MOAB", by_meshio_hdf},
+    Foreign{".vtkhdf", "VTKHDF", by_paraview},
+    Foreign{".foam", "OpenFOAM", by_foam},
+    Foreign{".stl", "STL", by_filling},
+    Foreign{".obj", "Wavefront OBJ", by_filling},
+    Foreign{".ply", "PLY", by_filling},
+    Foreign{".off", "OFF", by_filling},
+    Foreign{".bdf", "Nastran", by_meshio},
+    Foreign{".nas", "Nastran", by_meshio},
+    Foreign{".fem", "Nastran", by_meshio},
+    Foreign{".unv", "I-deas universal (UNV)", by_gmsh},
+    Foreign{".neu", "Gambit", by_gmsh},
+    Foreign{".cas", "Fluent", by_paraview},
+    Foreign{".cdb", "Ansys", by_gmsh},
+    Foreign{".vol", "Netgen", by_meshio},
+    Foreign{".node", "TetGen", by_meshio},
+    Foreign{".ele", "TetGen", by_meshio},
+    Foreign{".ugrid", "UGRID", by_meshio},
+    Foreign{".mdpa", "Kratos", by_meshio},
+    Foreign{".step", "STEP, a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
+    Foreign{".stp", "STEP, a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
+    Foreign{".brep", "a shape without a mesh", "; mesh it first, as with gmsh -3 FILE"},
+    Foreign{".geo", "Gmsh's script", "; mesh it first, as with gmsh -3 FILE"},
 };
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(), [](char c) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  });
-  return result;
-}
 
 [[noreturn]] void refuse(const FileBytes& bytes, std::string_view what, std::string advice) {
-  // The name makes a command of it that can be copied.
+  // With the name, the advice is a command that can be copied.
   if (const std::size_t at = advice.find("FILE"); at != std::string::npos)
     advice.replace(at, 4, bytes.name);
   throw InputError(bytes.name + ": expected a mesh in a format that is read, found " +
                    std::string(what) + advice);
 }
 
-/// HDF5 holds MED, Exodus, CGNS and more, which names within tell apart.
+/// Names within an HDF5 file tell MED, Exodus, CGNS and others apart.
 void refuse_hdf5(const FileBytes& bytes, std::string_view text) {
   const auto holds = [&](std::string_view name) {
     return text.find(name) != std::string_view::npos;
@@ -167,12 +155,13 @@ void refuse_foreign(const FileBytes& bytes) {
   if (head.find("<dolfin") != std::string_view::npos) refuse(bytes, "a mesh of DOLFIN", by_meshio);
   if (head.find("FoamFile") != std::string_view::npos) refuse(bytes, "OpenFOAM", by_foam);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-  for (const ForeignBeginning& one : beginnings)
-    if (lower(text.substr(0, one.begin.size())) == lower(one.begin))
+  for (const Foreign& one : beginnings)
+    if (lower(text.substr(0, one.sign.size())) == lower(one.sign))
       refuse(bytes, one.what, one.advice);
   const std::string ending = lower(std::filesystem::path(bytes.name).extension().string());
-  for (const ForeignEnding& one : endings)
-    if (ending == one.ending) refuse(bytes, one.what, one.advice);
+  if (ending == ".inp" && text.starts_with('*')) refuse(bytes, "Abaqus input", by_meshio);
+  for (const Foreign& one : endings)
+    if (ending == one.sign) refuse(bytes, one.what, one.advice);
 }
 
 }  // namespace ductile::meshadapt

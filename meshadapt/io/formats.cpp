@@ -4,19 +4,6 @@
 #include <new>
 #include <string>
 
-#include "foreign.hpp"
-#include "gmf_mesh.hpp"
-#include "msh_read.hpp"
-#include "msh_write.hpp"
-#include "spatial_mesh.hpp"
-#include "stl_write.hpp"
-#include "su2_read.hpp"
-#include "su2_write.hpp"
-#include "vtk_read.hpp"
-#include "vtk_write.hpp"
-#include "vtu_read.hpp"
-#include "vtu_write.hpp"
-
 namespace ductile::meshadapt {
 namespace {
 
@@ -30,14 +17,14 @@ MeshWithFields mesh_from_su2(const FileBytes& bytes, Warnings* warnings) {
   return {read_su2(bytes, warnings), {}};
 }
 
-/// Of readers that know three coordinates only.
+/// The reader of a format with three coordinates.
 template <SpatialMesh (*Read)(const FileBytes&, Warnings*)>
 MeshWithFields mesh_from(const FileBytes& bytes, Warnings* warnings) {
   return finish(Read(bytes, warnings), warnings);
 }
 
-// Ending, what it is, is read, is written, holds fields; how it begins, reader, writer. What
-// begins like none of the others is taken for the first.
+// Ending, description, is read, is written, holds fields; detection, reader, writer. A file that no
+// format recognises is read by the first.
 constexpr std::array rows{
     FormatRow{{".mesh", "Medit and Mmg (GMF), text", true, true, false},
               nullptr,
@@ -128,7 +115,7 @@ void write_mesh(AtomicOutputs& outputs, const fs::path& path, const AnyMesh& mes
   const std::string ending(options.format.empty() ? path.extension().string()
                                                   : std::string(options.format));
   const FormatRow* row = row_with(ending);
-  // Whoever says text or binary by another ending than a format's means the first.
+  // With an unknown ending, text or binary means the first format.
   if (row == nullptr && options.form != WriteOptions::Form::by_name) row = rows.data();
   if (row == nullptr || row->write == nullptr)
     throw InputError(path.string() + ": expected a name that ends in " + written_endings() +

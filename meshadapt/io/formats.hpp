@@ -1,15 +1,15 @@
 /// @file
-/// The table of formats (private to io): a new one is a row here and a file that reads or writes
-/// it.
+/// The table of formats, and their readers and writers (private to io): a new format is a row, a
+/// line for its reader or writer here, and a file with that. Any thread.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <span>
 #include <string_view>
 
 #include "ductile/meshadapt/files.hpp"
 #include "file_bytes.hpp"
+#include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
 
@@ -21,5 +21,62 @@ struct FormatRow : MeshFormat {
 };
 
 std::span<const FormatRow> format_rows();
+
+// ---- Detection: whether bytes begin as a file of the format does ----
+
+bool is_msh(std::string_view bytes);
+bool is_su2(std::string_view bytes);
+bool is_vtk(std::string_view bytes);
+bool is_vtu(std::string_view bytes);
+
+/// Throws InputError, naming the format and a conversion that works, if the file begins as one of a
+/// format that is known but not read, or its name ends so.
+void refuse_foreign(const FileBytes& bytes);
+
+// ---- Readers; they throw InputError ----
+
+AnyMesh read_gmf(const FileBytes& bytes, Warnings* warnings);
+
+/// Gmsh's files, versions 2.0 to 2.2 and 4.1, text and binary in either byte order.
+SpatialMesh read_msh(const FileBytes& bytes, Warnings* warnings);
+
+/// Facets get the reference of their marker. A marker whose name is a number has that reference.
+/// Others get the numbers 1, 2, 3 and so on that are still free, in the order of the file, and
+/// their names become names of references. Elements have reference 0.
+AnyMesh read_su2(const FileBytes& bytes, Warnings* warnings);
+
+/// VTK's legacy files with an unstructured grid, versions 1 to 5.1, text and binary.
+SpatialMesh read_vtk(const FileBytes& bytes, Warnings* warnings);
+
+/// VTK's unstructured grids in XML, in all encodings that VTK writes except lz4 and lzma.
+SpatialMesh read_vtu(const FileBytes& bytes, Warnings* warnings);
+
+// ---- Writers; they stage the file and throw InputError ----
+
+void write_gmf(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& options);
+
+/// Versions 2.2 and 4.1, text and binary. References become physical groups and entities of the
+/// geometry with that number; vertices with a reference other than 0 become points.
+void write_msh(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& options);
+
+/// The triangles on the boundary of a mesh of dimension 3, seen from outside, in single precision.
+/// Throws InputError for meshes of dimension 2, too.
+void write_stl(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& options);
+
+/// Each reference of facets becomes a marker, called by its names, several joined by '+', or else
+/// by its number.
+void write_su2(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& options);
+
+/// Version 4.2, which all readers know, text and binary.
+void write_vtk(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& options);
+
+/// With compressed arrays.
+void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
+               const WriteOptions& options);
 
 }  // namespace ductile::meshadapt

@@ -6,10 +6,12 @@
 #include <string>
 #include <utility>
 
+#include "number_reader.hpp"
+
 namespace ductile::meshadapt::gmf {
 namespace {
 
-/// All names in the order of their numbers, from 0; '-' where a number is free.
+/// All names in the order of their numbers, from 0; '-' stands for a free number.
 constexpr std::string_view names_in_order =
     "- MeshVersionFormatted - Dimension Vertices Edges Triangles Quadrilaterals Tetrahedra Prisms "
     "Hexahedra - RequiredTetrahedra Corners Ridges RequiredVertices RequiredEdges "
@@ -84,8 +86,8 @@ constexpr auto name_table = [] {
   return table;
 }();
 
-/// Simple cells of every order ("Prisms", "TrianglesP2", "Hexahedra12") and general ones, but not
-/// data about them ("TrianglesP2Ordering").
+/// True for simple cells of every order ("Prisms", "TrianglesP2", "Hexahedra12") and general ones,
+/// but not for data about them ("TrianglesP2Ordering").
 bool names_other_cells(std::string_view name) {
   if (name.starts_with("Poly") || name.find("Polygon") != std::string_view::npos)
     return !name.starts_with("Sol");
@@ -100,14 +102,7 @@ bool names_other_cells(std::string_view name) {
   return false;
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
-
-/// Whether one letter more, less or other makes the two equal.
+/// True if inserting, removing or replacing one letter makes the two equal.
 bool differ_by_one(std::string_view a, std::string_view b) {
   if (a.size() < b.size()) std::swap(a, b);
   if (a.size() > b.size() + 1) return false;
@@ -141,27 +136,14 @@ std::string_view similar_name(std::string_view name) {
 }
 
 Role role_of(Keyword keyword) {
-  switch (keyword) {
-    case Keyword::version:
-    case Keyword::dimension:
-    case Keyword::end:
-      return Role::frame;
-    case Keyword::vertices:
-    case Keyword::edges:
-    case Keyword::triangles:
-    case Keyword::tetrahedra:
-    case Keyword::required_tetrahedra:
-    case Keyword::corners:
-    case Keyword::ridges:
-    case Keyword::required_vertices:
-    case Keyword::required_edges:
-    case Keyword::required_triangles:
-      return Role::mesh;
-    case Keyword::field_at_vertices:
-      return Role::field;
-    default:
-      return names_other_cells(name_of(keyword)) ? Role::other_cells : Role::other;
-  }
+  using enum Keyword;
+  constexpr std::array of_mesh = {
+      vertices, edges,          triangles,         tetrahedra,         corners,
+      ridges,   required_edges, required_vertices, required_triangles, required_tetrahedra};
+  if (keyword == version || keyword == dimension || keyword == end) return Role::frame;
+  if (keyword == field_at_vertices) return Role::field;
+  if (std::find(of_mesh.begin(), of_mesh.end(), keyword) != of_mesh.end()) return Role::mesh;
+  return names_other_cells(name_of(keyword)) ? Role::other_cells : Role::other;
 }
 
 bool has_count(Keyword keyword) {

@@ -1,6 +1,6 @@
 /// @file
-/// The keywords of GMF: their names in ASCII files, their numbers in binary ones, and what Ductile
-/// does with their sections. Any thread.
+/// The keywords of GMF: their names in text, their numbers in binary files, and the role of their
+/// sections. Any thread.
 #pragma once
 
 #include <string_view>
@@ -26,7 +26,7 @@ enum class Keyword : int {
   field_at_vertices = 62
 };
 
-/// What a section is to a reader.
+/// The role of a section for a reader.
 enum class Role {
   frame,        ///< version, dimension, end
   mesh,         ///< data of AnyMesh
@@ -38,19 +38,19 @@ enum class Role {
 /// "Triangles" for 6; empty if no keyword has that number.
 std::string_view name_of(Keyword keyword);
 
-/// The keyword of that name, Keyword::none if there is none. Names match case and all.
+/// The keyword of that name, in the same case; Keyword::none if there is none.
 Keyword keyword_named(std::string_view name);
 
-/// The name of a section that counts that a mistyped one probably stands for, empty if none comes
-/// close.
+/// The name of a section that is read, or refused, and one letter away from this one; empty if
+/// there is none.
 std::string_view similar_name(std::string_view name);
 
 Role role_of(Keyword keyword);
 
-/// Whether a number of lines follows the keyword.
+/// A number of lines follows the keyword.
 bool has_count(Keyword keyword);
 
-/// Whether the section holds text beside numbers.
+/// The section holds text beside numbers.
 bool has_text(Keyword keyword);
 
 }  // namespace ductile::meshadapt::gmf

@@ -1,161 +1,239 @@
-#include <algorithm>
 #include <cstdint>
 #include <new>
 #include <optional>
 #include <string>
 
-#include "ductile/meshadapt/files.hpp"
-#include "file_bytes.hpp"
-#include "gmf_ascii.hpp"
-#include "gmf_binary.hpp"
-#include "gmf_left_out.hpp"
-#include "gmf_mesh.hpp"
-#include "gmf_sections.hpp"
+#include "formats.hpp"
+#include "gmf_reader.hpp"
 #include "gmf_skip.hpp"
 #include "mesh/flatten.hpp"
 
-namespace ductile::meshadapt {
+namespace ductile::meshadapt::gmf {
 namespace {
 
-using gmf::AsciiCursor;
-using gmf::BinaryCursor;
-using gmf::Keyword;
-using gmf::LeftOut;
-using gmf::Role;
-using gmf::SectionReader;
-using gmf::Target;
+constexpr const char* damaged = "; the file is cut short or damaged, write or copy it again";
 
-// ---- Text ----
-
-void read_version(AsciiCursor& in) {
-  const std::string_view first = in.word();
-  if (first == "View")
-    in.fail(
-        "expected a mesh, found a view of Gmsh's (.pos), which has values but no mesh; give "
-        "a .msh with the field in it, as Gmsh, meshio and ductile write it");
-  if (gmf::keyword_named(first) != Keyword::version)
-    in.fail(
-        "expected MeshVersionFormatted, the beginning of a Medit file, found something else; "
-        "give a .mesh, .meshb, .msh, .vtu, .vtk, .sol or .solb file");
-  in.enter(Keyword::version, 1);
-  const std::int64_t version = in.integer();
-  if (version < 0 || version > 4)  // bamg and FreeFEM write 0
-    in.fail("expected version 1 to 4, found " + std::to_string(version) +
-            "; write the file in one of them");
-}
-
-/// Goes past a section that is not read; refuses one of cells that a mesh here cannot have.
-void leave_out(AsciiCursor& in, const SectionReader<AsciiCursor>& sections, std::string_view name,
-               LeftOut& left_out) {
-  const Keyword keyword = gmf::keyword_named(name);
-  const bool has_count = keyword != Keyword::none && gmf::has_count(keyword);
-  std::optional<std::uint64_t> count;
-  if (has_count) count = gmf::count_ahead(in);
-  if (gmf::role_of(keyword) == Role::other_cells)
-    sections.refuse_other_cells(keyword, count.value_or(1));
-  left_out.add(in.where(), name, count ? " (" + std::to_string(*count) + ")" : "");
-  if (count && gmf::has_text(keyword)) {
-    in.word();
-    gmf::skip_lines(in, *count);
-  }
-  name == "Geometry" ? gmf::skip_geometry(in) : gmf::skip_section(in);
-}
-
-void read_section(AsciiCursor& in, SectionReader<AsciiCursor>& sections, std::string_view word,
-                  LeftOut& left_out) {
-  const Keyword keyword = gmf::keyword_named(word);
-  if (keyword == Keyword::none) {
-    const std::string_view similar = gmf::similar_name(word);
-    if (!similar.empty() || !gmf::is_section_name(word)) in.fail_keyword(word, similar);
-  }
-  if (keyword == Keyword::version)
-    in.fail("expected one MeshVersionFormatted, found a second; remove one");
-  if (keyword == Keyword::dimension) return sections.read_dimension();
-  sections.wants(keyword) ? sections.read(keyword) : leave_out(in, sections, word, left_out);
-}
-
-void read_text(const FileBytes& bytes, const Target& target) {
-  AsciiCursor in(bytes);
-  SectionReader sections(in, target);
-  LeftOut left_out;
-  read_version(in);
-  for (;;) {
-    const std::string_view word = in.word();
-    if (word.empty()) {
-      if (in.ends_within_a_line())
-        in.fail(
-            "expected the keyword End or the end of a line, found the end of the file; the "
-            "file is cut short, write or copy it again");
-      target.warn(in.where() +
-                  "expected the keyword End, found the end of the file; it is "
-                  "complete only if nothing was cut off");
-      break;
-    }
-    if (gmf::keyword_named(word) == Keyword::end) {
-      if (!in.word().empty())
-        in.fail("expected nothing after the keyword End, found more; remove it");
-      break;
-    }
-    read_section(in, sections, word, left_out);
-  }
-  target.warn_of(left_out);
-  sections.finish();
-}
-
-// ---- Binary ----
-
-/// The next section is found by its link, whatever is in this one.
-void leave_out(BinaryCursor& in, SectionReader<BinaryCursor>& sections, Keyword keyword,
-               LeftOut& left_out) {
-  const std::string where = in.where();
-  if (gmf::role_of(keyword) == Role::other_cells)
-    sections.refuse_other_cells(keyword,
-                                gmf::has_count(keyword) ? sections.read_count(keyword) : 1);
-  else if (gmf::has_count(keyword) && in.section_bytes() == 0 && in.chain_ended_without_end())
-    sections.read_count(keyword);  // which is not there: this may have been End
-  const std::string name(gmf::name_of(keyword));
-  left_out.add(where, name.empty() ? "keyword " + std::to_string(in.code()) : name,
-               " (" + std::to_string(in.section_bytes()) + " bytes)");
-}
-
-void read_section(BinaryCursor& in, SectionReader<BinaryCursor>& sections, Keyword keyword,
-                  LeftOut& left_out) {
-  if (keyword == Keyword::dimension) return sections.read_dimension();
-  sections.wants(keyword) ? sections.read(keyword) : leave_out(in, sections, keyword, left_out);
-}
-
-void read_binary(const FileBytes& bytes, const Target& target) {
-  BinaryCursor in(bytes);
-  SectionReader sections(in, target);
-  LeftOut left_out;
-  for (;;) {
-    const Keyword keyword = in.next_section();
-    if (keyword == Keyword::none || keyword == Keyword::end) break;
-    read_section(in, sections, keyword, left_out);
-  }
-  target.warn_of(left_out);
-  if (in.chain_ended_without_end())
-    target.warn(in.where() +
-                "the file ends without the keyword End; it is complete only if "
-                "nothing was cut off");
-  if (const std::size_t left = in.bytes_after_end())
-    in.fail("expected nothing after the keyword End, found " + std::to_string(left) +
-            " bytes; remove them or write the file again");
-  sections.finish();
-}
-
-// ---- Both ----
-
-void read_either(const FileBytes& bytes, const Target& target) {
-  BinaryCursor::recognises(bytes) ? read_binary(bytes, target) : read_text(bytes, target);
+/// The wrong dimension shows as a wrong count of vertices.
+std::string dimension_hint(Keyword keyword) {
+  return keyword == Keyword::vertices ? " or the Dimension" : "";
 }
 
 }  // namespace
 
+void GmfReader::read() {
+  in_.is_binary() ? read_binary() : read_text();
+  finish();
+}
+
+// ---- Text ----
+
+void GmfReader::read_text_version() {
+  const std::string_view first = in_.word();
+  if (first == "View")
+    fail(
+        "expected a mesh, found a view of Gmsh's (.pos), which has values but no mesh; give "
+        "a .msh with the field in it, as Gmsh, meshio and ductile write it");
+  if (keyword_named(first) != Keyword::version)
+    fail(
+        "expected MeshVersionFormatted, the beginning of a Medit file, found something else; "
+        "give a .mesh, .meshb, .msh, .vtu, .vtk, .sol or .solb file");
+  section_.keyword = Keyword::version;
+  const std::int64_t version = integer(true);
+  if (version < 0 || version > 4)  // bamg and FreeFEM write 0
+    fail("expected version 1 to 4, found " + std::to_string(version) +
+         "; write the file in one of them");
+}
+
+/// Goes past a section that is not read; refuses cells that a mesh here cannot have.
+void GmfReader::leave_out_text(std::string_view name) {
+  const Keyword keyword = keyword_named(name);
+  std::optional<std::uint64_t> count;
+  if (keyword != Keyword::none && has_count(keyword))
+    count = number_in<std::uint64_t>(in_.peek_word());
+  if (role_of(keyword) == Role::other_cells) refuse_other_cells(keyword, count.value_or(1));
+  left_out_.add(*this, name, count ? " (" + std::to_string(*count) + ")" : "");
+  if (count && has_text(keyword)) {
+    in_.word();
+    skip_lines(in_, *count);
+  }
+  name == "Geometry" ? skip_geometry(in_) : skip_section(in_);
+}
+
+void GmfReader::read_text_section(std::string_view name) {
+  const Keyword keyword = keyword_named(name);
+  if (keyword == Keyword::none) {
+    const std::string_view similar = similar_name(name);
+    if (!similar.empty() || !is_section_name(name)) fail_keyword(name, similar);
+  }
+  if (keyword == Keyword::version)
+    fail("expected one MeshVersionFormatted, found a second; remove one");
+  if (keyword == Keyword::dimension) return read_dimension();
+  wants(keyword) ? read_section(keyword) : leave_out_text(name);
+}
+
+void GmfReader::read_text() {
+  read_text_version();
+  for (;;) {
+    const std::string_view word = in_.word();
+    if (word.empty()) {
+      if (in_.ends_within_a_line())
+        fail(
+            "expected the keyword End or the end of a line, found the end of the file; the "
+            "file is cut short, write or copy it again");
+      warn(where() +
+           "expected the keyword End, found the end of the file; it is "
+           "complete only if nothing was cut off");
+      break;
+    }
+    if (keyword_named(word) == Keyword::end) {
+      if (!in_.word().empty())
+        fail("expected nothing after the keyword End, found more; remove it");
+      break;
+    }
+    read_text_section(word);
+  }
+  left_out_.tell(target_.warnings);
+}
+
+void GmfReader::fail_keyword(std::string_view found, std::string_view similar) const {
+  const bool is_number = found.find_first_not_of("+-.0123456789eE") == std::string_view::npos;
+  fail("expected a keyword after " + std::string(name_of(section_.keyword)) + ", found " +
+       quoted(found) +
+       (is_number ? "; the section has more lines than its count says, correct that" +
+                        dimension_hint(section_.keyword)
+        : similar.empty() ? "; correct it, or remove the section"
+                          : "; did you mean " + std::string(similar) + "?"));
+}
+
+// ---- Binary ----
+
+bool GmfReader::begins_as_binary(const FileBytes& bytes) {
+  return bytes.size >= 4 && (loaded<std::int32_t>(bytes.begin(), false) == 1 ||
+                             loaded<std::int32_t>(bytes.begin(), true) == 1);
+}
+
+void GmfReader::read_binary_version() {
+  in_.set_binary(in_.integer<std::int32_t>("the number 1") != 1);
+  section_.keyword = Keyword::version;
+  const std::int64_t version = small_integer();
+  if (version < 1 || version > 4)
+    fail("expected version 1 to 4, found " + std::to_string(version) +
+         "; write the file in one of them");
+  single_ = version == 1;
+  far_ = version >= 3;
+  wide_ = version == 4;
+}
+
+Keyword GmfReader::next_section() {
+  section_ = {};
+  in_.set_end(size_);
+  if (ended_ || next_ == 0) return Keyword::none;
+  in_.go_to(next_);
+  code_ = in_.integer<std::int32_t>("a keyword");
+  if (code_ < 1 || code_ > 1000)
+    fail("expected the number of a keyword, found " + std::to_string(code_) + damaged);
+  section_.keyword = static_cast<Keyword>(code_);
+  ended_ = section_.keyword == Keyword::end;
+  if (ended_) return Keyword::end;
+  const std::int64_t next = far_ ? in_.integer<std::int64_t>("the position of the next section")
+                                 : in_.integer<std::int32_t>("the position of the next section");
+  const std::size_t least = in_.position();
+  if (next != 0 &&
+      (next < static_cast<std::int64_t>(least) || static_cast<std::uint64_t>(next) >= size_))
+    fail("expected the position of the next section, from byte " + std::to_string(least) + " to " +
+         std::to_string(size_ - 1) + ", found " + std::to_string(next) + damaged);
+  next_ = static_cast<std::size_t>(next);
+  in_.set_end(next_ == 0 ? size_ : next_);
+  return section_.keyword;
+}
+
+/// The next section is found by its position, whatever is in this one.
+void GmfReader::leave_out_binary(Keyword keyword) {
+  const bool ends_the_chain = next_ == 0 && in_.left() == 0;
+  if (role_of(keyword) == Role::other_cells)
+    refuse_other_cells(keyword, has_count(keyword) ? read_count(keyword) : 1);
+  else if (has_count(keyword) && ends_the_chain)
+    read_count(keyword);  // it is not there: this may have been End
+  const std::string name(name_of(keyword));
+  left_out_.add(*this, name.empty() ? "keyword " + std::to_string(code_) : name,
+                " (" + std::to_string(in_.left()) + " bytes)");
+}
+
+void GmfReader::expect_nothing_after_end() {
+  // A position may follow End; Mmg leaves it out in solutions.
+  const std::size_t left = ended_ ? in_.left() : 0;
+  if (left == 0 || left == (far_ ? 8U : 4U)) return;
+  in_.go_to(in_.position());
+  fail("expected nothing after the keyword End, found " + std::to_string(left) +
+       " bytes; remove them or write the file again");
+}
+
+void GmfReader::expect_section_end() {
+  if (!in_.is_binary() || in_.left() == 0) return;
+  const std::size_t end = in_.position() + in_.left();
+  in_.go_to(in_.position());
+  fail("expected the section to end here, as its count says, found its end at byte " +
+       std::to_string(end) + damaged);
+}
+
+void GmfReader::read_binary() {
+  read_binary_version();
+  for (;;) {
+    const Keyword keyword = next_section();
+    if (keyword == Keyword::none || keyword == Keyword::end) break;
+    if (keyword == Keyword::dimension)
+      read_dimension();
+    else
+      wants(keyword) ? read_section(keyword) : leave_out_binary(keyword);
+  }
+  left_out_.tell(target_.warnings);
+  if (!ended_)
+    warn(where() +
+         "the file ends without the keyword End; it is complete only if nothing was cut off");
+  expect_nothing_after_end();
+}
+
+// ---- Messages ----
+
+std::string GmfReader::where() const {
+  std::string text = in_.where();
+  if (!in_.is_binary() || section_.keyword == Keyword::none) return text;
+  const std::string name(name_of(section_.keyword));
+  return text.replace(text.size() - 2, 2,
+                      ", " + (name.empty() ? "keyword " + std::to_string(code_) : name) + ": ");
+}
+
+void GmfReader::fail_number(const std::string& expected, const std::string& found) const {
+  fail("expected " + expected + " in " + record_name(section_, record_) + ", found " + found +
+       (in_.is_binary() ? damaged : "; correct it"));
+}
+
+void GmfReader::fail_word(const std::string& expected) {
+  const std::string name(name_of(section_.keyword));
+  const std::string what =
+      expected +
+      (section_.numbers() == 0 ? " after " + name : " in " + record_name(section_, record_));
+  if (in_.is_binary())
+    fail("expected " + what + ", found the end of " + (next_ == 0 ? "the file" : "the section") +
+         damaged);
+  in_.take_back();
+  const std::string_view found = in_.peek_word();
+  if (found.empty()) in_.fail_end(what);
+  if (keyword_named(found) != Keyword::none && section_.numbers() != 0)
+    fail("expected " + what + ", found the keyword " + std::string(found) +
+         "; correct the count of " + name + dimension_hint(section_.keyword));
+  fail("expected " + what + ", found " + quoted(found) + "; correct it");
+}
+
+}  // namespace ductile::meshadapt::gmf
+
+namespace ductile::meshadapt {
+
 AnyMesh read_gmf(const FileBytes& bytes, Warnings* warnings) {
   AnyMesh mesh;
   mesh.name = bytes.name;
-  read_either(bytes, {&mesh, nullptr, warnings});
+  const gmf::Target target{&mesh, nullptr, warnings};
+  gmf::GmfReader(bytes, target).read();
   flatten(mesh, warnings);
   return mesh;
 }
@@ -165,7 +243,8 @@ AnyField read_field(const std::filesystem::path& path, Warnings* warnings,
   AnyField field;
   field.name = path.string();
   try {
-    read_either(read_bytes(path), {nullptr, &field, warnings, options.infinite});
+    const gmf::Target target{nullptr, &field, warnings, options.infinite};
+    gmf::GmfReader(read_bytes(path), target).read();
   } catch (const std::bad_alloc&) {
     throw Error(path.string() +
                 ": not enough memory to read the file; allow more or use a larger machine");

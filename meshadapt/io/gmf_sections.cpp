@@ -1,5 +1,3 @@
-#include "gmf_sections.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 #include <type_traits>
 
 #include "ductile/runtime/arrays.hpp"
+#include "gmf_reader.hpp"
 
 namespace ductile::meshadapt::gmf {
 
@@ -18,231 +17,216 @@ static void make_room(std::vector<T>& empty, std::size_t n) {
 
 // ---- Heads ----
 
-template <class Cursor>
-void SectionReader<Cursor>::read_dimension() {
-  in_.enter(Keyword::dimension, 1);
-  const std::int64_t dimension = in_.small_integer();
-  if (target_.dimension() != 0) in_.fail("expected one Dimension, found a second; remove one");
+void GmfReader::read_dimension() {
+  section_ = {.keyword = Keyword::dimension};
+  const std::int64_t dimension = small_integer();
+  if (target_.dimension() != 0) fail("expected one Dimension, found a second; remove one");
   if (dimension != 2 && dimension != 3)
-    in_.fail("expected Dimension 2 or 3, found " + std::to_string(dimension) +
-             "; only these can be adapted");
+    fail("expected Dimension 2 or 3, found " + std::to_string(dimension) +
+         "; only these can be adapted");
   target_.dimension() = static_cast<int>(dimension);
-  in_.leave();
+  expect_section_end();
 }
 
-template <class Cursor>
-std::uint64_t SectionReader<Cursor>::read_count(Keyword keyword) {
-  in_.enter(keyword, 0);
-  const std::int64_t count = in_.count();
+std::uint64_t GmfReader::read_count(Keyword keyword) {
+  section_ = {.keyword = keyword};
+  const std::int64_t count = integer(wide_);
   if (count < 0 || count >= std::numeric_limits<std::uint32_t>::max())
-    in_.fail("expected a count from 0 to 4294967294 of " + std::string(name_of(keyword)) +
-             ", found " + std::to_string(count) + "; correct it");
+    fail("expected a count from 0 to 4294967294 of " + std::string(name_of(keyword)) + ", found " +
+         std::to_string(count) + "; correct it");
   return static_cast<std::uint64_t>(count);
 }
 
-template <class Cursor>
-void SectionReader<Cursor>::expect_once(Keyword keyword) const {
+void GmfReader::expect_once(Keyword keyword) const {
   const std::string name(name_of(keyword));
   if (target_.dimension() == 0)
-    in_.fail("expected Dimension before " + name + ", found none; put it first");
-  if (find(keyword)) in_.fail("expected one section " + name + ", found a second; join them");
+    fail("expected Dimension before " + name + ", found none; put it first");
+  if (find(keyword)) fail("expected one section " + name + ", found a second; join them");
 }
 
-template <class Cursor>
-void SectionReader<Cursor>::refuse_other_cells(Keyword keyword, std::uint64_t count) const {
+void GmfReader::refuse_other_cells(Keyword keyword, std::uint64_t count) const {
   if (count != 0 && target_.mesh)
-    in_.fail("expected edges, triangles and tetrahedra only, found " + std::to_string(count) + " " +
-             std::string(name_of(keyword)) +
-             " (mixed or unsupported elements); split them into linear simplices first");
+    fail("expected edges, triangles and tetrahedra only, found " + std::to_string(count) + " " +
+         std::string(name_of(keyword)) +
+         " (mixed or unsupported elements); split them into linear simplices first");
 }
 
 // ---- Sections ----
 
-template <class Cursor>
-void SectionReader<Cursor>::read(Keyword keyword) {
+void GmfReader::read_section(Keyword keyword) {
   expect_once(keyword);
   const std::uint64_t count = read_count(keyword);
-  in_.enter(keyword, count);
+  section_.count = count;
   if (keyword == Keyword::tetrahedra && count != 0 && target_.dimension() == 2)
-    in_.fail("expected no Tetrahedra in Dimension 2, found " + std::to_string(count) +
-             "; correct the Dimension");
+    fail("expected no Tetrahedra in Dimension 2, found " + std::to_string(count) +
+         "; correct the Dimension");
+  read_records(keyword, count);
+  expect_section_end();
+}
+
+void GmfReader::begin_records(std::uint64_t reals, std::uint64_t integers) {
+  section_.reals = reals;
+  section_.integers = integers;
+  section_.begin = in_.position();
+  const std::uint64_t bytes = reals * (single_ ? 4 : 8) + integers * (wide_ ? 8 : 4);
+  in_.expect_room(section_.count, {section_.numbers(), bytes},
+                  std::string(name_of(section_.keyword)));
+  read_.push_back(section_);
+}
+
+void GmfReader::read_records(Keyword keyword, std::uint64_t count) {
   AnyMesh* const mesh = target_.mesh;
   switch (keyword) {
     case Keyword::field_at_vertices:
-      read_field(count);
-      break;
+      return read_field(count);
     case Keyword::vertices:
-      read_vertices(count);
-      break;
+      return read_vertices(count);
     case Keyword::edges:
-      read_cells(count, mesh->edges);
-      break;
+      return read_cells(count, mesh->edges);
     case Keyword::triangles:
-      read_cells(count, mesh->triangles);
-      break;
+      return read_cells(count, mesh->triangles);
     case Keyword::tetrahedra:
-      read_cells(count, mesh->tetrahedra);
-      break;
-    case Keyword::corners:
-      read_list(count, mesh->corners);
-      break;
-    case Keyword::ridges:
-      read_list(count, mesh->ridges);
-      break;
-    case Keyword::required_vertices:
-      read_list(count, mesh->required_vertices);
-      break;
-    case Keyword::required_edges:
-      read_list(count, mesh->required_edges);
-      break;
-    case Keyword::required_triangles:
-      read_list(count, mesh->required_triangles);
-      break;
+      return read_cells(count, mesh->tetrahedra);
     default:
-      read_list(count, mesh->required_tetrahedra);
-      break;
+      for (const auto& [of_list, indices, marked] : marked_lists)
+        if (keyword == of_list) read_list(count, mesh->*indices);
   }
-  in_.leave();
 }
 
-template <class Cursor>
-void SectionReader<Cursor>::read_vertices(std::uint64_t count) {
+void GmfReader::read_vertices(std::uint64_t count) {
   AnyMesh& mesh = *target_.mesh;
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
-  places_.push_back(in_.enter_records({dimension, 1}));
+  begin_records(dimension, 1);
   make_room(mesh.coordinates, count * dimension);
   make_room(mesh.vertex_reference, count);
   double* coordinate = mesh.coordinates.data();
   for (std::size_t vertex = 0; vertex < count; ++vertex) {
-    in_.record(vertex);
-    for (std::size_t axis = 0; axis < dimension; ++axis) *coordinate++ = read_real();
+    record_ = vertex;
+    for (std::size_t axis = 0; axis < dimension; ++axis) *coordinate++ = read_real(false);
     mesh.vertex_reference[vertex] = read_reference();
   }
 }
 
-template <class Cursor>
 template <int Corners>
-void SectionReader<Cursor>::read_cells(std::uint64_t count, Cells<Corners>& cells) {
-  places_.push_back(in_.enter_records({0, Corners + 1}));
+void GmfReader::read_cells(std::uint64_t count, Cells<Corners>& cells) {
+  begin_records(0, Corners + 1);
   make_room(cells.vertices, count);
   make_room(cells.reference, count);
   for (std::size_t cell = 0; cell < count; ++cell) {
-    in_.record(cell);
+    record_ = cell;
     for (std::uint32_t& vertex : cells.vertices[cell]) vertex = read_index();
     cells.reference[cell] = read_reference();
   }
 }
 
-template <class Cursor>
-void SectionReader<Cursor>::read_list(std::uint64_t count, std::vector<std::uint32_t>& list) {
-  places_.push_back(in_.enter_records({0, 1}));
+void GmfReader::read_list(std::uint64_t count, std::vector<std::uint32_t>& list) {
+  begin_records(0, 1);
   make_room(list, count);
   for (std::size_t entry = 0; entry < count; ++entry) {
-    in_.record(entry);
+    record_ = entry;
     list[entry] = read_index();
   }
 }
 
-template <class Cursor>
-void SectionReader<Cursor>::read_field(std::uint64_t count) {
+void GmfReader::read_field(std::uint64_t count) {
   AnyField& field = *target_.field;
-  const std::int64_t fields = in_.small_integer();
+  const std::int64_t fields = small_integer();
   if (fields < 1 || fields > 1000)
-    in_.fail("expected a number of fields from 1 to 1000, found " + std::to_string(fields) +
-             "; correct it");
+    fail("expected a number of fields from 1 to 1000, found " + std::to_string(fields) +
+         "; correct it");
   for (std::int64_t i = 0; i < fields; ++i) {
-    const std::int64_t type = in_.small_integer();
+    const std::int64_t type = small_integer();
     if (type < 1 || type > 4)
-      in_.fail(
+      fail(
           "expected a field's type, 1 (scalar), 2 (vector), 3 (symmetric) or 4 (matrix), "
           "found " +
           std::to_string(type) + "; correct it");
     field.types.push_back(static_cast<AnyField::Type>(type));
   }
   const std::size_t stride = stride_of(field);
-  places_.push_back(in_.enter_records({stride, 0}));
+  begin_records(stride, 0);
   field.vertex_count = count;
   make_room(field.values, count * stride);
   double* value = field.values.data();
   for (std::size_t vertex = 0; vertex < count; ++vertex) {
-    in_.record(vertex);
-    for (std::size_t component = 0; component < stride; ++component) *value++ = read_value();
+    record_ = vertex;
+    for (std::size_t component = 0; component < stride; ++component)
+      *value++ = read_real(target_.infinite);
   }
 }
 
 // ---- Numbers ----
 
-template <class Cursor>
-std::uint32_t SectionReader<Cursor>::read_index() {
-  const std::int64_t number = in_.integer();
+std::int64_t GmfReader::integer(bool wide) {
+  std::int64_t value = 0;
+  std::int32_t narrow = 0;
+  const bool is_there = wide ? in_.take(value) : in_.take(narrow);
+  if (!is_there) [[unlikely]]
+    fail_word("an integer");
+  return wide ? value : narrow;
+}
+
+std::uint32_t GmfReader::read_index() {
+  const std::int64_t number = integer(wide_);
   if (number < 1 || number >= std::numeric_limits<std::uint32_t>::max()) [[unlikely]]
-    in_.fail_number("an index of at least 1", std::to_string(number));
+    fail_number("an index of at least 1", std::to_string(number));
   return static_cast<std::uint32_t>(number - 1);
 }
 
-template <class Cursor>
-std::int32_t SectionReader<Cursor>::read_reference() {
-  const std::int64_t number = in_.integer();
+std::int32_t GmfReader::read_reference() {
+  const std::int64_t number = integer(wide_);
   if (number != static_cast<std::int32_t>(number)) [[unlikely]]
-    in_.fail_number("a reference of 32 bits", std::to_string(number));
+    fail_number("a reference of 32 bits", std::to_string(number));
   return static_cast<std::int32_t>(number);
 }
 
-template <class Cursor>
-double SectionReader<Cursor>::read_real() {
-  const double number = in_.real();
-  if (!std::isfinite(number)) [[unlikely]]
-    in_.fail_number("a finite number", std::to_string(number));
-  return number;
-}
-
-template <class Cursor>
-double SectionReader<Cursor>::read_value() {
-  if (!target_.infinite) return read_real();
-  const double number = in_.real_or_infinite();
-  if (std::isnan(number)) [[unlikely]]
-    in_.fail_number("a number", std::to_string(number));
-  return number;
+double GmfReader::read_real(bool infinite) {
+  double value = 0;
+  float narrow = 0;
+  const bool is_there = single_ ? in_.take(narrow) : in_.take(value);
+  if (single_) value = static_cast<double>(narrow);
+  if (is_there && (std::isfinite(value) || (infinite && !std::isnan(value)))) [[likely]]
+    return value;
+  const char* const expected = infinite ? "a number" : "a finite number";
+  if (is_there && in_.is_binary()) fail_number(expected, std::to_string(value));
+  fail_word(expected);
 }
 
 // ---- Checks ----
 
-template <class Cursor>
-const Place* SectionReader<Cursor>::find(Keyword keyword) const {
-  for (const Place& place : places_)
-    if (place.keyword == keyword) return &place;
+const Section* GmfReader::find(Keyword keyword) const {
+  for (const Section& section : read_)
+    if (section.keyword == keyword) return &section;
   return nullptr;
 }
 
-template <class Cursor>
-void SectionReader<Cursor>::expect_below(Keyword keyword, const std::uint32_t* indices,
-                                         std::uint64_t per_record, std::size_t limit,
-                                         Keyword counted) const {
-  const Place* const place = find(keyword);
-  if (!place) return;
-  std::uint32_t largest = 0;
-  const std::uint64_t total = place->count * per_record;
-  for (std::uint64_t i = 0; i < total; ++i) largest = std::max(largest, indices[i]);
-  if (total == 0 || largest < limit) return;
-  const auto wrong = static_cast<std::uint64_t>(
-      std::find_if(indices, indices + total, [&](std::uint32_t i) { return i >= limit; }) -
-      indices);
-  const std::size_t record = wrong / per_record;
-  in_.fail_in(*place, record, static_cast<int>(wrong % per_record),
-              "expected an index up to " + std::to_string(limit) + ", the count of " +
-                  std::string(name_of(counted)) + ", in " + record_name(*place, record) +
-                  ", found " + std::to_string(std::uint64_t{indices[wrong]} + 1) +
-                  "; correct the index or the count");
+void GmfReader::expect_below(Keyword keyword, const std::uint32_t* indices,
+                             std::uint64_t per_record, std::size_t limit, Keyword counted) {
+  const Section* const section = find(keyword);
+  if (!section) return;
+  const std::uint64_t total = section->count * per_record;
+  const auto* const wrong =
+      std::find_if(indices, indices + total, [&](std::uint32_t i) { return i >= limit; });
+  if (wrong == indices + total) return;
+  const auto at = static_cast<std::uint64_t>(wrong - indices);
+  section_ = *section;
+  record_ = at / per_record;
+  in_.set_end(size_);  // goes to the number again, for its place in the message
+  in_.go_to(section_.begin);
+  for (std::uint64_t n = record_ * section_.numbers() + at % per_record + 1; n > 0; --n)
+    integer(wide_);
+  fail("expected an index up to " + std::to_string(limit) + ", the count of " +
+       std::string(name_of(counted)) + ", in " + record_name(section_, record_) + ", found " +
+       std::to_string(std::uint64_t{*wrong} + 1) + "; correct the index or the count");
 }
 
-template <class Cursor>
-void SectionReader<Cursor>::finish() const {
+void GmfReader::finish() {
   const Keyword main = target_.mesh ? Keyword::vertices : Keyword::field_at_vertices;
-  const Place* const place = find(main);
+  const Section* const place = find(main);
   if (!place || place->count == 0)
-    in_.fail("expected the section " + std::string(name_of(main)) + ", found " +
-             (place ? "it empty" : "none") +
-             (target_.mesh ? "; give a mesh file" : "; give a file with a field at the vertices"));
+    fail("expected the section " + std::string(name_of(main)) + ", found " +
+         (place ? "it empty" : "none") +
+         (target_.mesh ? "; give a mesh file" : "; give a file with a field at the vertices"));
   if (!target_.mesh) return;
   const AnyMesh& mesh = *target_.mesh;
   const std::size_t vertices = mesh.vertex_count();
@@ -251,23 +235,11 @@ void SectionReader<Cursor>::finish() const {
     const std::uint32_t* first = list.size() ? list.vertices[0].data() : nullptr;
     expect_below(keyword, first, corners, vertices, Keyword::vertices);
   };
-  const auto list = [&](Keyword keyword, const auto& indices, std::size_t limit, Keyword counted) {
-    expect_below(keyword, indices.data(), 1, limit, counted);
-  };
   cells(Keyword::edges, mesh.edges);
   cells(Keyword::triangles, mesh.triangles);
   cells(Keyword::tetrahedra, mesh.tetrahedra);
-  list(Keyword::corners, mesh.corners, vertices, Keyword::vertices);
-  list(Keyword::required_vertices, mesh.required_vertices, vertices, Keyword::vertices);
-  list(Keyword::ridges, mesh.ridges, mesh.edges.size(), Keyword::edges);
-  list(Keyword::required_edges, mesh.required_edges, mesh.edges.size(), Keyword::edges);
-  list(Keyword::required_triangles, mesh.required_triangles, mesh.triangles.size(),
-       Keyword::triangles);
-  list(Keyword::required_tetrahedra, mesh.required_tetrahedra, mesh.tetrahedra.size(),
-       Keyword::tetrahedra);
+  for (const auto& [keyword, indices, marked] : marked_lists)
+    expect_below(keyword, (mesh.*indices).data(), 1, entity_count(mesh, marked), marked);
 }
-
-template class SectionReader<AsciiCursor>;
-template class SectionReader<BinaryCursor>;
 
 }  // namespace ductile::meshadapt::gmf

@@ -1,8 +1,9 @@
 #include "gmf_skip.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <string>
+
+#include "gmf_keywords.hpp"
 
 namespace ductile::meshadapt::gmf {
 namespace {
@@ -15,18 +16,18 @@ bool is_number(std::string_view word) {
          word.find_first_not_of("+-.0123456789eEdD") == std::string_view::npos;
 }
 
-/// Numbers that are none are written as words.
+/// True for words that are written for infinite and undefined numbers.
 bool is_no_number(std::string_view word) {
   std::string lower(word.substr(0, 9));
   for (char& c : lower) c = static_cast<char>(c | 0x20);
   return lower == "nan" || lower == "inf" || lower == "infinity";
 }
 
-/// Whether the next word begins a section: nothing else is in its line, or a number or a string.
-bool section_ahead(const AsciiCursor& in) {
-  AsciiCursor ahead = in;
+/// True if the next word begins a section: nothing, a number or a string follows on its line.
+bool section_ahead(const NumberReader& in) {
+  NumberReader ahead = in;
   if (!is_section_name(ahead.word())) return false;
-  const char next = ahead.rest_of_line_begins_with();
+  const char next = ahead.first_on_line();
   return next == '\0' || is_digit(next) || std::string_view("\"+-.").find(next) < 4;
 }
 
@@ -38,29 +39,21 @@ bool is_section_name(std::string_view word) {
                      [](char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '-'; });
 }
 
-std::optional<std::uint64_t> count_ahead(AsciiCursor& in) {
-  const std::string_view word = in.peek();
-  std::uint64_t count = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
-  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
-  return count;
-}
-
-void skip_lines(AsciiCursor& in, std::uint64_t count) {
-  for (; count > 0 && !in.peek().empty(); --count) {
-    if (keyword_named(in.peek()) != Keyword::none) {
-      AsciiCursor ahead = in;
+void skip_lines(NumberReader& in, std::uint64_t count) {
+  for (; count > 0 && !in.peek_word().empty(); --count) {
+    if (keyword_named(in.peek_word()) != Keyword::none) {
+      NumberReader ahead = in;
       ahead.word();
-      const char next = ahead.rest_of_line_begins_with();
+      const char next = ahead.first_on_line();
       if (next == '\0' || is_digit(next)) return;
     }
     in.skip_line();
   }
 }
 
-void skip_section(AsciiCursor& in) {
+void skip_section(NumberReader& in) {
   for (;;) {
-    const std::string_view next = in.peek();
+    const std::string_view next = in.peek_word();
     if (next.empty() || section_ahead(in)) return;
     if (next.starts_with('"'))
       in.skip_quoted();
@@ -71,12 +64,12 @@ void skip_section(AsciiCursor& in) {
   }
 }
 
-void skip_geometry(AsciiCursor& in) {
-  if (in.peek() == "\"\"") {
+void skip_geometry(NumberReader& in) {
+  if (in.peek_word() == "\"\"") {
     in.word();
-    const Keyword next = keyword_named(in.peek());
+    const Keyword next = keyword_named(in.peek_word());
     if (next == Keyword::version || next == Keyword::dimension)
-      while (!in.peek().empty() && keyword_named(in.word()) != Keyword::end) continue;
+      while (!in.peek_word().empty() && keyword_named(in.word()) != Keyword::end) continue;
   }
   skip_section(in);
 }

@@ -1,3 +1,5 @@
+#include "formats.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -6,78 +8,65 @@
 #include <vector>
 
 #include "core/first_bad.hpp"
-#include "gmf_mesh.hpp"
-#include "gmf_sink.hpp"
-#include "io/atomic_file.hpp"
+#include "gmf_section.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh/finite_values.hpp"
 #include "mesh/wording.hpp"
-#include "spatial_mesh.hpp"
+#include "sink.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
-using gmf::BinarySink;
-using gmf::BinarySizes;
 using gmf::Keyword;
-using gmf::Place;
-using gmf::TextSink;
+using gmf::Section;
 using Form = WriteOptions::Form;
 
-// ---- What is fit for a file ----
+// ---- What fits into a file ----
 
 void expect(bool holds, const std::string& name, const std::string& text) {
-  if (!holds) throw InputError(name + ": cannot be written: " + text);
+  if (!holds) throw InputError(name + ": " + text);
 }
 
-void expect_finite(const std::vector<double>& values, std::size_t stride,
-                   const WriteOptions& options, const std::string& name, const std::string& array) {
-  const double largest = options.version == 1 && options.form == Form::binary
-                             ? double{std::numeric_limits<float>::max()}
-                             : std::numeric_limits<double>::max();
-  const auto wrong = std::find_if(values.begin(), values.end(),
-                                  [&](double value) { return !(std::abs(value) <= largest); });
-  if (wrong == values.end()) return;
-  const auto at = static_cast<std::size_t>(wrong - values.begin());
-  refuse(name +
-         ": cannot be written: expected a finite number within the range of the version at " +
-         Wording(array + "[" + std::to_string(at) + "], vertex " + std::to_string(at / stride),
-                 "vertex " + std::to_string(at / stride + 1)) +
-         ", found " + number(*wrong));
+/// Numbers of version 1 have single precision in binary.
+void expect_range(const std::vector<double>& values, const WriteOptions& options,
+                  const std::string& name) {
+  constexpr double largest = std::numeric_limits<float>::max();
+  if (options.version != 1 || options.form != Form::binary) return;
+  for (const double value : values)
+    expect(std::abs(value) <= largest, name,
+           "expected numbers up to 3.4e38 in version 1 of the format, found " + number(value) +
+               "; write version 2");
 }
 
-struct Indices {
-  const std::uint32_t* data;
-  std::size_t count, per_entity;
-};
-
-void expect_below(const Indices& those, std::size_t limit, const std::string& name,
-                  Keyword keyword) {
-  const auto [indices, count, per_entity] = those;
-  const auto* wrong =
-      std::find_if(indices, indices + count, [&](std::uint32_t i) { return i >= limit; });
-  if (wrong == indices + count) return;
-  const auto at = static_cast<std::size_t>(wrong - indices) / per_entity;
-  const std::string section(gmf::name_of(keyword));
-  refuse(name + ": cannot be written: " + entry(section, section, at) + " names " +
-         index_word(*wrong) + ", beyond the " + std::to_string(limit) + " that there are");
+void expect_fit(const AnyMesh& mesh, const WriteOptions& options) {
+  expect_fit_for_file(mesh, {});
+  expect_range(mesh.coordinates, options, name_of(mesh));
+  expect(mesh.vertex_count() != 0, name_of(mesh), "expected vertices, found none");
+  expect(mesh.dimension == 3 || mesh.tetrahedra.size() == 0, name_of(mesh),
+         "expected no tetrahedra in dimension 2, found some");
+  for (const auto& [keyword, indices, marked] : gmf::marked_lists) {
+    const auto& list = mesh.*indices;
+    const std::size_t limit = entity_count(mesh, marked);
+    const auto wrong =
+        std::find_if(list.begin(), list.end(), [&](std::uint32_t i) { return i >= limit; });
+    const std::string section(gmf::name_of(keyword));
+    if (wrong != list.end())
+      refuse(name_of(mesh) + ": " +
+             entry(section, section, static_cast<std::size_t>(wrong - list.begin())) + " names " +
+             index_word(*wrong) + ", beyond the " + std::to_string(limit) + " that there are");
+  }
 }
 
-// ---- The sections of a mesh ----
-
-struct ListOf {
-  Keyword keyword;
-  const std::vector<std::uint32_t>& indices;
-  std::size_t limit;
-};
-
-std::vector<ListOf> lists_of(const AnyMesh& mesh) {
-  const std::size_t vertices = mesh.vertex_count();
-  return {{Keyword::corners, mesh.corners, vertices},
-          {Keyword::ridges, mesh.ridges, mesh.edges.size()},
-          {Keyword::required_vertices, mesh.required_vertices, vertices},
-          {Keyword::required_edges, mesh.required_edges, mesh.edges.size()},
-          {Keyword::required_triangles, mesh.required_triangles, mesh.triangles.size()},
-          {Keyword::required_tetrahedra, mesh.required_tetrahedra, mesh.tetrahedra.size()}};
+void expect_fit(const AnyField& field, const WriteOptions& options) {
+  expect_values(field);
+  expect_finite(runtime::Executor({.threads = 1}), field);
+  expect_range(field.values, options, name_of(field));
+  expect(field.vertex_count != 0, name_of(field), "expected values at vertices, found none");
+  expect(field.types.size() <= 1000, name_of(field),
+         "expected at most 1000 fields, found " + std::to_string(field.types.size()));
 }
+
+// ---- Sections ----
 
 /// Calls visit(keyword, cells) for each kind of cell.
 template <class Visit>
@@ -88,116 +77,152 @@ void for_each_cells(const AnyMesh& mesh, const Visit& visit) {
 }
 
 template <int Corners>
-Place place_of(Keyword keyword, const Cells<Corners>& cells) {
-  return {keyword, cells.size(), 0, {0, Corners + 1}};
+Section section_of(Keyword keyword, const Cells<Corners>& cells) {
+  return {keyword, cells.size(), 0, Corners + 1};
 }
 
-Place vertices_of(const AnyMesh& mesh) {
-  return {
-      Keyword::vertices, mesh.vertex_count(), 0, {static_cast<std::uint64_t>(mesh.dimension), 1}};
+Section vertices_of(const AnyMesh& mesh) {
+  return {Keyword::vertices, mesh.vertex_count(), static_cast<std::uint64_t>(mesh.dimension), 1};
 }
 
-void expect_fit(const AnyMesh& mesh, const WriteOptions& options, const std::string& name) {
-  expect(mesh.dimension == 2 || mesh.dimension == 3, name,
-         "expected dimension 2 or 3, found " + std::to_string(mesh.dimension));
-  expect(mesh.vertex_count() != 0, name, "the mesh has no vertices");
-  const auto dimension = static_cast<std::size_t>(mesh.dimension);
-  expect(mesh.coordinates.size() == dimension * mesh.vertex_count(), name,
-         "coordinates and references of vertices differ in number");
-  expect_finite(mesh.coordinates, dimension, options, name, "coordinates");
-  for_each_cells(mesh, [&]<int Corners>(Keyword keyword, const Cells<Corners>& cells) {
-    expect(cells.vertices.size() == cells.reference.size(), name,
-           "cells and references differ in number");
-    if (cells.size() != 0)
-      expect_below({cells.vertices[0].data(), Corners * cells.size(), Corners}, mesh.vertex_count(),
-                   name, keyword);
-  });
-  expect(mesh.dimension == 3 || mesh.tetrahedra.size() == 0, name, "tetrahedra in dimension 2");
-  for (const auto& [keyword, indices, limit] : lists_of(mesh))
-    expect_below({indices.data(), indices.size(), 1}, limit, name, keyword);
+Section values_of(const AnyField& field) {
+  return {Keyword::field_at_vertices, field.vertex_count, stride_of(field), 0};
 }
 
-std::vector<Place> sections_of(const AnyMesh& mesh) {
-  std::vector<Place> sections{vertices_of(mesh)};
+std::vector<Section> sections_of(const AnyMesh& mesh) {
+  std::vector<Section> sections{vertices_of(mesh)};
   for_each_cells(mesh, [&](Keyword keyword, const auto& cells) {
-    if (cells.size() != 0) sections.push_back(place_of(keyword, cells));
+    sections.push_back(section_of(keyword, cells));
   });
-  for (const auto& [keyword, indices, limit] : lists_of(mesh))
-    if (!indices.empty()) sections.push_back({keyword, indices.size(), 0, {0, 1}});
+  for (const auto& [keyword, indices, marked] : gmf::marked_lists)
+    sections.push_back({keyword, (mesh.*indices).size(), 0, 1});
+  std::erase_if(sections, [](const Section& section) { return section.count == 0; });
   return sections;
 }
 
-template <class Sink>
-void put_mesh(Sink&& sink, const AnyMesh& mesh) {
-  sink.dimension(mesh.dimension);
-  const Place vertices = vertices_of(mesh);
+/// Sizes of numbers in a binary file of one version.
+struct BinarySizes {
+  int version = 2;
+
+  std::size_t real() const { return version == 1 ? 4 : 8; }
+  std::size_t integer() const { return version == 4 ? 8 : 4; }
+  std::size_t position() const { return version >= 3 ? 8 : 4; }
+  /// Count, head numbers and records.
+  std::size_t contents(const Section& section, std::size_t head_numbers) const {
+    return integer() + 4 * head_numbers +
+           section.count * (section.reals * real() + section.integers * integer());
+  }
+  /// Keyword and position of the next section.
+  std::size_t head() const { return 4 + position(); }
+  /// First and last bytes: two numbers, the section Dimension, the section End.
+  std::size_t frame() const { return 8 + (head() + 4) + head(); }
+};
+
+/// Writes sections number by number. Sizes are known in advance, so a binary section begins with
+/// the position of the next one right away.
+class GmfWriter {
+ public:
+  GmfWriter(Sink& sink, const WriteOptions& options)
+      : sink_(sink), binary_(options.form == Form::binary), sizes_{options.version} {
+    if (!binary_) {
+      sink_.set_text("\n");
+      sink_.write("MeshVersionFormatted " + std::to_string(options.version) + "\n");
+      return;
+    }
+    sink_.set_binary(options.byte_order);
+    sink_.put(std::int32_t{1}, static_cast<std::int32_t>(options.version));
+  }
+
+  void dimension(int dimension) {
+    if (!binary_) return sink_.write("\nDimension " + std::to_string(dimension) + "\n");
+    begin(Keyword::dimension, 4);
+    sink_.put(static_cast<std::int32_t>(dimension));
+  }
+  /// The head numbers follow, then the records.
+  void section(const Section& section, const std::vector<std::int32_t>& head_numbers = {}) {
+    begin(section.keyword, sizes_.contents(section, head_numbers.size()));
+    integer(static_cast<std::int64_t>(section.count));
+    if (!binary_) end_record();
+    for (const std::int32_t number : head_numbers)
+      binary_ ? sink_.put(number) : sink_.write(std::to_string(number) + " ");
+    if (!binary_ && !head_numbers.empty()) sink_.write("\n");
+  }
+  void real(double value) {
+    binary_&& sizes_.version == 1 ? sink_.put(static_cast<float>(value)) : sink_.put(value);
+  }
+  void integer(std::int64_t value) {
+    binary_&& sizes_.version != 4 ? sink_.put(static_cast<std::int32_t>(value)) : sink_.put(value);
+  }
+  void end_record() { sink_.end_record(); }
+  void end() {
+    if (!binary_) return sink_.write("\nEnd\n");
+    sink_.put(static_cast<std::int32_t>(Keyword::end));
+    position(0);
+  }
+
+ private:
+  void begin(Keyword keyword, std::size_t contents) {
+    if (!binary_) return sink_.write("\n" + std::string(gmf::name_of(keyword)) + "\n");
+    const std::size_t next = sink_.size() + sizes_.head() + contents;
+    sink_.put(static_cast<std::int32_t>(keyword));
+    position(next);
+  }
+  void position(std::size_t position) {
+    sizes_.position() == 8 ? sink_.put(static_cast<std::int64_t>(position))
+                           : sink_.put(static_cast<std::int32_t>(position));
+  }
+
+  Sink& sink_;
+  bool binary_;
+  BinarySizes sizes_;
+};
+
+void put_mesh(GmfWriter&& out, const AnyMesh& mesh) {
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
-  sink.section(vertices);
+  out.dimension(mesh.dimension);
+  out.section(vertices_of(mesh));
   for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
-    sink.begin_record(vertices);
     for (std::size_t axis = 0; axis < dimension; ++axis)
-      sink.real(mesh.coordinates[vertex * dimension + axis]);
-    sink.integer(mesh.vertex_reference[vertex]);
-    sink.end_record();
+      out.real(mesh.coordinates[vertex * dimension + axis]);
+    out.integer(mesh.vertex_reference[vertex]);
+    out.end_record();
   }
   for_each_cells(mesh, [&](Keyword keyword, const auto& cells) {
-    const Place section = place_of(keyword, cells);
-    if (cells.size() != 0) sink.section(section);
+    if (cells.size() != 0) out.section(section_of(keyword, cells));
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-      sink.begin_record(section);
-      for (const std::uint32_t vertex : cells.vertices[cell])
-        sink.integer(std::int64_t{vertex} + 1);
-      sink.integer(cells.reference[cell]);
-      sink.end_record();
+      for (const std::uint32_t vertex : cells.vertices[cell]) out.integer(std::int64_t{vertex} + 1);
+      out.integer(cells.reference[cell]);
+      out.end_record();
     }
   });
-  for (const auto& [keyword, indices, limit] : lists_of(mesh)) {
-    const Place section{keyword, indices.size(), 0, {0, 1}};
-    if (!indices.empty()) sink.section(section);
-    for (const std::uint32_t index : indices) {
-      sink.begin_record(section);
-      sink.integer(std::int64_t{index} + 1);
-      sink.end_record();
+  for (const auto& [keyword, indices, marked] : gmf::marked_lists) {
+    const auto& list = mesh.*indices;
+    if (!list.empty()) out.section({keyword, list.size(), 0, 1});
+    for (const std::uint32_t index : list) {
+      out.integer(std::int64_t{index} + 1);
+      out.end_record();
     }
   }
-  sink.end_of_file();
+  out.end();
 }
 
-// ---- The section of a field ----
-
-Place values_of(const AnyField& field) {
-  return {Keyword::field_at_vertices, field.vertex_count, 0, {stride_of(field), 0}};
+/// The number of fields, then their types.
+std::vector<std::int32_t> head_of(const AnyField& field) {
+  std::vector<std::int32_t> head{static_cast<std::int32_t>(field.types.size())};
+  for (const AnyField::Type type : field.types) head.push_back(static_cast<std::int32_t>(type));
+  return head;
 }
 
-void expect_fit(const AnyField& field, const WriteOptions& options, const std::string& name) {
-  expect(field.dimension == 2 || field.dimension == 3, name,
-         "expected dimension 2 or 3, found " + std::to_string(field.dimension));
-  expect(field.vertex_count != 0, name, "the field has no vertices");
-  expect(!field.types.empty() && field.types.size() <= 1000, name,
-         "expected 1 to 1000 fields, found " + std::to_string(field.types.size()));
+void put_field(GmfWriter&& out, const AnyField& field) {
   const std::size_t stride = stride_of(field);
-  expect(field.values.size() == stride * field.vertex_count, name,
-         "expected " + std::to_string(stride) + " values at each vertex, found " +
-             std::to_string(field.values.size()) + " in all");
-  expect_finite(field.values, stride, options, name, "values");
-}
-
-template <class Sink>
-void put_field(Sink&& sink, const AnyField& field) {
-  const Place section = values_of(field);
-  const std::size_t stride = stride_of(field);
-  sink.dimension(field.dimension);
-  sink.section(section, 1 + field.types.size());
-  sink.head_number(static_cast<int>(field.types.size()));
-  for (const AnyField::Type type : field.types) sink.head_number(static_cast<int>(type));
-  sink.end_of_head();
+  out.dimension(field.dimension);
+  out.section(values_of(field), head_of(field));
   for (std::size_t vertex = 0; vertex < field.vertex_count; ++vertex) {
-    sink.begin_record(section);
     for (std::size_t component = 0; component < stride; ++component)
-      sink.real(field.values[vertex * stride + component]);
-    sink.end_record();
+      out.real(field.values[vertex * stride + component]);
+    out.end_record();
   }
-  sink.end_of_file();
+  out.end();
 }
 
 // ---- Form and version ----
@@ -211,7 +236,7 @@ void choose_form(WriteOptions& options, const std::filesystem::path& path) {
     options.form = options.format.ends_with('b') ? Form::binary : Form::ascii;
 }
 
-/// Fields are in files of their own, so their format is no mesh format.
+/// Chooses the format of a field, which is not in the table of mesh formats.
 void expect_ending_of_field(WriteOptions& options, const std::filesystem::path& path) {
   if (options.form != Form::by_name) return;
   const std::string ending = path.extension().string();
@@ -221,18 +246,19 @@ void expect_ending_of_field(WriteOptions& options, const std::filesystem::path& 
   options.format = ending == ".sol" ? ".sol" : ".solb";
 }
 
-int needed_version(const std::vector<Place>& sections, std::size_t head_numbers, Form form) {
+int needed_version(const std::vector<Section>& sections, std::size_t head_numbers, Form form) {
   constexpr std::size_t limit = std::numeric_limits<std::int32_t>::max();
-  std::size_t bytes = BinarySizes{2}.frame();
-  for (const Place& section : sections) {
+  constexpr BinarySizes sizes{2};
+  std::size_t bytes = sizes.frame();
+  for (const Section& section : sections) {
     if (section.count > limit) return 4;
-    bytes += BinarySizes{2}.section(section, head_numbers);
+    bytes += sizes.head() + sizes.contents(section, head_numbers);
   }
   return form == Form::binary && bytes > limit ? 3 : 2;
 }
 
 void choose_version(WriteOptions& options, const std::filesystem::path& path,
-                    const std::vector<Place>& sections, std::size_t head_numbers) {
+                    const std::vector<Section>& sections, std::size_t head_numbers) {
   const int needed = needed_version(sections, head_numbers, options.form);
   if (options.version == 0) options.version = needed;
   if (options.version < needed && needed > 2)
@@ -246,15 +272,11 @@ void write_gmf(AtomicOutputs& outputs, const std::filesystem::path& path, const 
                const WriteOptions& given) {
   WriteOptions options = given;
   choose_form(options, path);
-  expect_fit(mesh, options, path.string());
+  expect_fit(mesh, options);
   choose_version(options, path, sections_of(mesh), 0);
   if (!mesh.names.empty())
     warn_of_lost(options, path, "names of references (" + std::to_string(mesh.names.size()) + ")");
-  OutputFile& out = outputs.stage(path);
-  if (options.form == Form::binary)
-    put_mesh(BinarySink(out, options.version, options.byte_order), mesh);
-  else
-    put_mesh(TextSink(out, options.version), mesh);
+  put_mesh(GmfWriter(outputs.stage(path), options), mesh);
 }
 
 void write_field(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyField& field,
@@ -262,13 +284,9 @@ void write_field(AtomicOutputs& outputs, const std::filesystem::path& path, cons
   WriteOptions options = given;
   expect_ending_of_field(options, path);
   choose_form(options, path);
-  expect_fit(field, options, path.string());
-  choose_version(options, path, {values_of(field)}, 1 + field.types.size());
-  OutputFile& out = outputs.stage(path);
-  if (options.form == Form::binary)
-    put_field(BinarySink(out, options.version, options.byte_order), field);
-  else
-    put_field(TextSink(out, options.version), field);
+  expect_fit(field, options);
+  choose_version(options, path, {values_of(field)}, head_of(field).size());
+  put_field(GmfWriter(outputs.stage(path), options), field);
 }
 
 void write_field(const std::filesystem::path& path, const AnyField& field,

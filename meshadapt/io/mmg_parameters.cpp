@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -9,75 +7,52 @@
 
 #include "ductile/meshadapt/sizes.hpp"
 #include "file_bytes.hpp"
-#include "gmf_ascii.hpp"
+#include "number_reader.hpp"
 
 namespace ductile::meshadapt {
 
 namespace {
 
-std::string lower(std::string_view word) {
-  std::string text(word);
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number value{};
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 class Reader {
  public:
   Reader(const FileBytes& bytes, Warnings* warnings)
-      : bytes_(bytes), cursor_(bytes), warnings_(warnings) {}
+      : bytes_(bytes), in_(bytes, '#'), warnings_(warnings) {}
 
   std::vector<LocalSize> read() {
-    while (!cursor_.peek().empty()) {
-      const std::string_view word = cursor_.word();
+    while (!in_.peek_word().empty()) {
+      const std::string_view word = in_.word();
       const std::string keyword = lower(word);
       if (keyword == "parameters")
         read_parameters();
       else if (keyword == "lsreferences" || keyword == "lsbasereferences")
         leave_out(std::string(word));
       else
-        cursor_.fail("expected Parameters, found '" + std::string(word) + "'");
+        in_.fail("expected Parameters, found " + quoted(word) + "; correct it");
     }
     return std::move(local_sizes_);
   }
 
  private:
-  template <class Number>
-  Number next(const char* expected) {
-    const std::string_view word = cursor_.word();
-    const auto number = parse<Number>(word);
-    if (!number)
-      cursor_.fail(std::string("expected ") + expected + ", found " +
-                   (word.empty() ? "the end of the file" : "'" + std::string(word) + "'"));
-    return *number;
-  }
-
   double size(const char* expected) {
-    const auto value = next<double>(expected);
+    const double value = in_.real(expected);
     if (!std::isfinite(value))
-      cursor_.fail(std::string("expected ") + expected + ", found one that is not finite");
+      in_.fail(std::string("expected ") + expected + ", a finite number; correct it");
     return std::max(value, 0.0);
   }
 
   void read_parameters() {
-    const auto count = next<std::int64_t>("the number of references");
-    if (count < 0) cursor_.fail("expected a number of references of 0 or more");
+    const auto count = in_.integer<std::int64_t>("the number of references");
+    if (count < 0)
+      in_.fail("expected a number of references of 0 or more, found " + std::to_string(count) +
+               "; correct it");
     for (std::int64_t i = 0; i < count; ++i) {
       LocalSize local;
-      local.reference = next<std::int32_t>("a reference");
-      local.dimension = dimension(cursor_.word());
+      local.reference = in_.integer<std::int32_t>("a reference");
+      local.dimension = dimension(in_.word());
       local.smallest = size("hmin");
       local.largest = size("hmax");
       if (local.largest > 0 && local.smallest > local.largest)
-        cursor_.fail("expected hmin not to be above hmax");
+        in_.fail("expected hmin not to be above hmax, found that it is; correct one of them");
       local.hausdorff_tolerance = size("hausd");
       local_sizes_.push_back(local);
     }
@@ -94,23 +69,23 @@ class Reader {
     const std::string kind = lower(word);
     for (std::size_t d = 0; d < kinds.size(); ++d)
       if (kind == kinds[d].one || kind == kinds[d].several) return static_cast<int>(d);
-    cursor_.fail("expected Vertex, Edge, Triangle or Tetrahedron, found '" + std::string(word) +
-                 "'");
+    in_.fail("expected Vertex, Edge, Triangle or Tetrahedron, found " + quoted(word) +
+             "; correct it");
   }
 
-  /// Up to the next keyword that is known. "nosplit" stands among numbers.
+  /// Goes to the next keyword. The word "nosplit" stands among numbers.
   void leave_out(const std::string& word) {
     if (warnings_ != nullptr)
       warnings_->push_back(bytes_.name + ": left out " + word + ", because level sets are not cut");
-    while (!cursor_.peek().empty()) {
-      const std::string_view word_there = cursor_.peek();
-      if (!parse<double>(word_there) && lower(word_there) != "nosplit") return;
-      cursor_.word();
+    while (!in_.peek_word().empty()) {
+      const std::string_view word_there = in_.peek_word();
+      if (!number_in<double>(word_there) && lower(word_there) != "nosplit") return;
+      in_.word();
     }
   }
 
   const FileBytes& bytes_;
-  gmf::AsciiCursor cursor_;
+  NumberReader in_;
   Warnings* warnings_;
   std::vector<LocalSize> local_sizes_;
 };

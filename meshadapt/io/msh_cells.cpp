@@ -6,44 +6,15 @@
 #include <string>
 #include <utility>
 
+#include "cell_shapes.hpp"
+
 namespace ductile::meshadapt {
-namespace {
-
-struct MshShape {
-  int type;
-  int corners;  ///< 0: not taken
-  const char* name;
-};
-constexpr std::array<MshShape, 17> msh_shapes{{{15, 1, "a point"},
-                                               {1, 2, "a line"},
-                                               {2, 3, "a triangle"},
-                                               {4, 4, "a tetrahedron"},
-                                               {3, 0, "a quadrangle"},
-                                               {5, 0, "a hexahedron"},
-                                               {6, 0, "a prism"},
-                                               {7, 0, "a pyramid"},
-                                               {8, 0, "a line of second order"},
-                                               {9, 0, "a triangle of second order"},
-                                               {10, 0, "a quadrangle of second order"},
-                                               {11, 0, "a tetrahedron of second order"},
-                                               {12, 0, "a hexahedron of second order"},
-                                               {13, 0, "a prism of second order"},
-                                               {14, 0, "a pyramid of second order"},
-                                               {16, 0, "a quadrangle of second order"},
-                                               {17, 0, "a hexahedron of second order"}}};
-
-}  // namespace
-
-int msh_corners(const NumberCursor& in, std::int64_t type) {
-  const char* name = "another element";
-  for (const MshShape& shape : msh_shapes) {
-    if (shape.type != type) continue;
-    if (shape.corners > 0) return shape.corners;
-    name = shape.name;
-  }
+int msh_corners(const NumberReader& in, std::int64_t type) {
+  const CellShape shape = shape_of(&CellShape::gmsh, type);
+  if (shape.corners > 0) return shape.corners;
   const bool of_first_order = type == 3 || (type >= 5 && type <= 7);
   in.fail(std::string("expected points, lines, triangles and tetrahedra of first order, found ") +
-          name + " (type " + std::to_string(type) + "); " +
+          shape.name + " (type " + std::to_string(type) + "); " +
           (of_first_order ? "split such elements into simplices first, in Gmsh do not recombine"
                           : "write the mesh in first order, as with gmsh -order 1"));
 }
@@ -110,6 +81,20 @@ void MshCells::finish(int dimension, std::vector<std::int32_t>& reference) {
 }
 
 template <int Corners>
+void MshCells::select(Cells<Corners>& cells, const std::vector<std::size_t>& places) {
+  const auto take = [&](auto& list) {
+    std::decay_t<decltype(list)> taken;
+    taken.reserve(places.size());
+    for (const std::size_t place : places) taken.push_back(list[place]);
+    list = std::move(taken);
+  };
+  take(cells.vertices);
+  take(cells.reference);
+  take(elementary_of_[Corners]);
+  take(numbers_[Corners]);
+}
+
+template <int Corners>
 void MshCells::drop_repeated(Cells<Corners>& cells) {
   if (!repeated_[Corners]) return;
   std::vector<std::pair<std::array<std::uint32_t, Corners>, std::size_t>> sorted;
@@ -131,38 +116,21 @@ void MshCells::drop_repeated(Cells<Corners>& cells) {
     groups.merge(GroupSet(groups_[Corners].set_of(cells.reference[sorted[i].second])));
     set = groups_[Corners].number_of(groups);
   }
-  std::size_t kept = 0;
-  auto& numbers = numbers_[Corners];
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (goes[i]) continue;
-    cells.vertices[kept] = cells.vertices[i];
-    cells.reference[kept] = cells.reference[i];
-    elementary_of_[Corners][kept] = elementary_of_[Corners][i];
-    if (!numbers.empty()) numbers[kept] = numbers[i];
-    ++kept;
-  }
-  cells.vertices.resize(kept);
-  cells.reference.resize(kept);
-  elementary_of_[Corners].resize(kept);
-  if (!numbers.empty()) numbers.resize(kept);
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (!goes[i]) places.push_back(i);
+  select(cells, places);
 }
 
 template <int Corners>
 void MshCells::put_in_order(Cells<Corners>& cells) {
-  const std::vector<std::uint64_t> numbers = numbers_[Corners];
+  const std::vector<std::uint64_t>& numbers = numbers_[Corners];
   if (std::is_sorted(numbers.begin(), numbers.end())) return;
   std::vector<std::size_t> order(numbers.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
-  const Cells<Corners> before = cells;
-  const std::vector<std::int32_t> elementary = elementary_of_[Corners];
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    cells.vertices[i] = before.vertices[order[i]];
-    cells.reference[i] = before.reference[order[i]];
-    elementary_of_[Corners][i] = elementary[order[i]];
-    numbers_[Corners][i] = numbers[order[i]];
-  }
+  select(cells, order);
 }
 
 void MshCells::finish() {

@@ -1,6 +1,6 @@
 /// @file
-/// MshCells: the elements of a Gmsh file as they are collected, whatever the version. What groups
-/// an element is in become its reference when all are there.
+/// MshCells: collects the elements of a Gmsh file of any version. References are made from their
+/// groups when all are known.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 #include <vector>
 
 #include "msh_groups.hpp"
-#include "number_cursor.hpp"
 #include "number_index.hpp"
+#include "number_reader.hpp"
 #include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
 
 /// The shape of Gmsh's elements of a type; throws InputError unless it is a point, line, triangle
 /// or tetrahedron of first order. 1 to 4 corners.
-int msh_corners(const NumberCursor& in, std::int64_t type);
+int msh_corners(const NumberReader& in, std::int64_t type);
 
-/// What Gmsh says about an element, or a block of them.
+/// The groups and the entity of an element, or of a block of elements.
 struct MshGroup {
   GroupSet physical;            ///< groups; none is as 0
   std::int32_t elementary = 0;  ///< entity of the geometry
@@ -28,15 +28,14 @@ struct MshGroup {
 
 class MshCells {
  public:
-  /// `index_of` finds the nodes of the mesh, whose references are there and 0.
-  MshCells(const NumberCursor& in, SpatialMesh& to, const NumberIndex& index_of)
+  /// `index_of` finds the nodes of the mesh, which have reference 0 so far.
+  MshCells(const NumberReader& in, SpatialMesh& to, const NumberIndex& index_of)
       : in_(in), to_(to), index_of_(index_of) {}
 
   /// `nodes` are numbers of `corners` nodes.
   void add(std::uint64_t number, int corners, const std::uint64_t* nodes, const MshGroup& group);
-  /// To be called after the last: gives references, puts elements in the order of their numbers,
-  /// which files list by entities, and joins those that version 2 lists for each group of an
-  /// entity.
+  /// Call it after the last element. It gives references, sorts elements, which files list by
+  /// entities, by their numbers, and joins elements that version 2 lists once for each group.
   void finish();
   /// The numbers of the tetrahedra or, if there are none, the triangles.
   const std::vector<std::uint64_t>& numbers() const {
@@ -48,13 +47,16 @@ class MshCells {
   template <int Corners>
   void append(Cells<Corners>& cells, const std::uint64_t* nodes, const MshGroup& group);
   void finish(int dimension, std::vector<std::int32_t>& reference);
+  /// Keeps the cells at these places, in this order.
+  template <int Corners>
+  void select(Cells<Corners>& cells, const std::vector<std::size_t>& places);
   template <int Corners>
   void drop_repeated(Cells<Corners>& cells);
   template <int Corners>
   void put_in_order(Cells<Corners>& cells);
   void append_number(std::vector<std::size_t>& places, std::size_t corners, std::uint64_t number);
 
-  const NumberCursor& in_;
+  const NumberReader& in_;
   SpatialMesh& to_;
   const NumberIndex& index_of_;
   // [corners][cell of that shape]

@@ -1,8 +1,8 @@
 /// @file
 /// Physical groups of Gmsh and references (private to io). An entity of Gmsh is in any number of
-/// groups, one of a mesh has one reference. Each set of several groups gets a reference of its own,
-/// which has the names of all groups in it; a group without a name is called by its number. So the
-/// names tell what groups a reference stands for, in whatever way the mesh went.
+/// groups, one of a mesh has one reference. Each set of several groups gets a reference of its own
+/// with the names of all its groups; a group without a name is called by its number. The names of
+/// a reference therefore tell its groups, whatever happens to the mesh.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@
 
 namespace ductile::meshadapt {
 
-/// The name of the group that elements without a group are written in, because meshio and MFEM
-/// refuse those; read again, they are in none.
+/// The name of the group in which elements without a group are written, because meshio and MFEM
+/// refuse files where some have none. When read, they are in no group.
 inline constexpr const char* no_group_name = "no group";
 
 using GroupSet = std::set<std::int32_t>;
@@ -25,13 +25,13 @@ using GroupSet = std::set<std::int32_t>;
 /// Gives references to sets of groups, and their names to the mesh. Thread safety: one thread.
 class GroupReferences {
  public:
-  /// A number for the set, to be replaced by its reference in the end; 0 is the empty set.
+  /// Numbers the set; its reference replaces the number in the end. 0 is the empty set.
   std::int32_t number_of(const GroupSet& groups);
   const GroupSet& set_of(std::int32_t number) const {
     return sets_[static_cast<std::size_t>(number)];
   }
-  /// [number of a set] the reference: that of the only group, 0 of none, or a new one. Adds names
-  /// for entities of the dimension.
+  /// [number of a set] its reference: that of its only group, 0 without groups, otherwise a new
+  /// one. Adds names for entities of the dimension.
   std::vector<std::int32_t> references(int dimension, std::vector<ReferenceName>& names) const;
 
  private:
@@ -45,7 +45,7 @@ class GroupsOfReferences {
   explicit GroupsOfReferences(const AnyMesh& mesh);
   /// At least one, except for vertices with reference 0.
   const std::vector<std::int32_t>& of(int dimension, std::int32_t reference) const;
-  /// Those of groups.
+  /// The names of groups.
   const std::vector<ReferenceName>& names() const { return names_; }
 
  private:
@@ -55,7 +55,8 @@ class GroupsOfReferences {
   std::vector<ReferenceName> names_;
 };
 
-/// The groups of a reference as the names tell them: itself, or several.
+/// [dimension, reference] the groups of references with several names, if each name is that of a
+/// group.
 std::map<std::pair<int, std::int32_t>, std::vector<std::int32_t>> joint_groups(
     const std::vector<ReferenceName>& names);
 

@@ -1,4 +1,4 @@
-#include "msh_read.hpp"
+#include "formats.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -48,26 +48,21 @@ void MshReader::read_section(const std::string& name) {
   else if (name == "ElementData")
     return read_data(NamedField::Place::elements, name);
   else {
-    if (name != "Comments") leave_out(name);
+    if (name != "Comments") left_out_.add(in_, name);
     return skip_section(name);
   }
   end_section(name);
 }
 
-/// Lines are counted for the first one only.
-void MshReader::leave_out(const std::string& section, const std::string& note) {
-  left_out_.add(left_out_.warning().empty() ? in_.where() : std::string(), section, note);
-}
-
 void MshReader::skip_section(const std::string& name) {
   in_.set_text();
-  if (!in_.skip_behind("$End" + name)) in_.fail_end(("$End" + name).c_str());
+  if (!in_.skip_behind("$End" + name)) in_.fail_end("$End" + name);
 }
 
 void MshReader::end_section(const std::string& name) {
   in_.set_text();
   const std::string_view word = in_.word();
-  if (word.empty()) in_.fail_end(("$End" + name).c_str());
+  if (word.empty()) in_.fail_end("$End" + name);
   if (word != "$End" + name)
     in_.fail("expected $End" + name + ", found " + quoted(word) +
              "; correct the counts of the section");
@@ -101,13 +96,10 @@ void MshReader::read_format() {
 
 void MshReader::read_names() {
   const std::uint64_t count = size("the number of names");
-  in_.expect_room(count, 3, 4, "names");
+  in_.expect_room(count, {3, 12}, "names");
   for (std::uint64_t i = 0; i < count; ++i) {
     ReferenceName name;
-    name.dimension = in_.integer<int>("the dimension of a group");
-    if (name.dimension < 0 || name.dimension > 3)
-      in_.fail("expected a dimension from 0 to 3, found " + std::to_string(name.dimension) +
-               "; correct it");
+    name.dimension = static_cast<int>(in_.integer_within("the dimension of a group", 0, 3));
     name.reference = number("the number of a group");
     name.name = in_.quoted_text();
     to_.mesh.names.push_back(std::move(name));
@@ -148,8 +140,7 @@ void MshReader::say_what_is_left_out() {
     if (warnings_ && count > 0)
       warnings_->push_back(printable(in_.name() + ": " + std::to_string(count) + text));
   };
-  if (const std::string text = left_out_.warning(); warnings_ && !text.empty())
-    warnings_->push_back(printable(text));
+  left_out_.tell(warnings_);
   warn(between_parts_, " elements between partitions are left out");
   warn(in_parts_, " elements say which partition they are in, which is left out");
 }
@@ -184,16 +175,16 @@ void MshReader::read_data(NamedField::Place place, const std::string& section) {
   const std::size_t wanted = (at_vertices ? node_numbers_ : element_numbers_).size();
   const bool usable = head.components == 1 || head.components == 3 || head.components == 9;
   if (!usable || head.count < wanted || wanted == 0) {
-    leave_out(section, " '" + head.name + "' (" + std::to_string(head.components) +
-                           " components, " + std::to_string(head.count) + " of " +
-                           std::to_string(wanted) + " values)");
+    left_out_.add(in_, section,
+                  " '" + head.name + "' (" + std::to_string(head.components) + " components, " +
+                      std::to_string(head.count) + " of " + std::to_string(wanted) + " values)");
     return skip_section(section);
   }
   const auto components = static_cast<std::size_t>(head.components);
   if (!at_vertices && !element_index_) element_index_ = NumberIndex(element_numbers_);
   SpatialField field{head.name, place, components, {}};
   begin_numbers();
-  in_.expect_room(head.count, 1 + components, 4, "values");
+  in_.expect_room(head.count, {1 + components, 4 + 8 * components}, "values");
   field.values.assign(wanted * components, std::numeric_limits<double>::quiet_NaN());
   for (std::uint64_t i = 0; i < head.count; ++i) {
     const auto number_of_it = static_cast<std::uint64_t>(number("the number of a node or element"));
@@ -204,7 +195,7 @@ void MshReader::read_data(NamedField::Place place, const std::string& section) {
     }
   }
   end_section(section);
-  // Of several steps, the last one is taken.
+  // The last of several steps replaces earlier ones.
   const auto [known, is_new] = field_of_.try_emplace({!at_vertices, head.name}, to_.fields.size());
   if (is_new)
     to_.fields.push_back(std::move(field));

@@ -1,19 +1,20 @@
 /// @file
-/// MshReader: goes through a Gmsh file section by section (private to io). Versions differ in how
-/// sections hold nodes and elements; groups, fields and what surrounds sections are the same.
+/// MshReader: reads a Gmsh file section by section (private to io). Versions differ in how sections
+/// hold nodes and elements; groups, fields and the frames of sections are the same.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "gmf_left_out.hpp"
+#include "left_out.hpp"
 #include "msh_cells.hpp"
-#include "number_cursor.hpp"
 #include "number_index.hpp"
+#include "number_reader.hpp"
 #include "spatial_mesh.hpp"
 
 namespace ductile::meshadapt {
@@ -31,7 +32,6 @@ class MshReader {
  private:
   // ---- Sections ----
   void read_section(const std::string& name);
-  void leave_out(const std::string& section, const std::string& note = "");
   void skip_section(const std::string& name);
   void end_section(const std::string& name);
   void read_format();
@@ -70,21 +70,18 @@ class MshReader {
     if (binary_) in_.set_binary(swapped_);
   }
   std::int32_t number(const char* what) { return in_.integer<std::int32_t>(what); }
-  /// What the format calls a size_t.
+  /// A number that the format calls size_t.
   std::uint64_t size(const char* what) {
     if (in_.is_binary())
       return size_bytes_ == 4 ? in_.integer<std::uint32_t>(what) : in_.integer<std::uint64_t>(what);
-    const auto value = in_.integer<std::int64_t>(what);
-    if (value < 0)
-      in_.fail(std::string("expected ") + what + " from 0, found " + std::to_string(value) +
-               "; correct it");
-    return static_cast<std::uint64_t>(value);
+    constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    return static_cast<std::uint64_t>(in_.integer_within(what, 0, most));
   }
   void read_point() {
     for (int axis = 0; axis < 3; ++axis) to_.mesh.coordinates.push_back(in_.real("a coordinate"));
   }
 
-  NumberCursor in_;
+  NumberReader in_;
   Warnings* warnings_;
   SpatialMesh to_;
   int version_ = 0;  ///< 2 or 4; 0: not known yet
@@ -97,7 +94,7 @@ class MshReader {
   std::optional<NumberIndex> element_index_;  ///< made when it is wanted
   std::map<std::pair<int, std::int32_t>, Entity> entity_of_;
   std::map<std::pair<bool, std::string>, std::size_t> field_of_;  ///< [in cells, name]
-  gmf::LeftOut left_out_;
+  LeftOut left_out_;
   std::size_t between_parts_ = 0, in_parts_ = 0;
 };
 

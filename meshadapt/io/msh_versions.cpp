@@ -14,7 +14,7 @@ void MshReader::read_nodes_2(bool parametric) {
   const std::uint64_t count = size("the number of nodes");
   in_.line();
   begin_numbers();
-  in_.expect_room(count, 4, 7, "nodes");  // 28 bytes in binary
+  in_.expect_room(count, {4, 28}, "nodes");
   for (std::uint64_t i = 0; i < count; ++i) {
     node_numbers_.push_back(static_cast<std::uint64_t>(number("the number of a node")));
     read_point();
@@ -44,7 +44,7 @@ void MshReader::read_elements_2(MshCells& cells) {
   std::uint64_t left = size("the number of elements");
   in_.line();
   begin_numbers();
-  in_.expect_room(left, 2, 4, "elements");
+  in_.expect_room(left, {2, 8}, "elements");
   while (left > 0) {
     std::uint64_t number_of_it = 0, together = 1;
     if (!binary_) number_of_it = static_cast<std::uint64_t>(number("the number of an element"));
@@ -74,13 +74,13 @@ void MshReader::read_entities(bool partitioned) {
   if (partitioned) {
     size("the number of partitions");
     const std::uint64_t ghosts = size("the number of ghost entities");
-    in_.expect_room(ghosts, 2, 4, "ghost entities");
+    in_.expect_room(ghosts, {2, 8}, "ghost entities");
     for (std::uint64_t i = 0; i < 2 * ghosts; ++i) number("a ghost entity");
   }
   std::array<std::uint64_t, 4> count;
   for (std::uint64_t& entities : count) entities = size("the number of entities");
   for (std::size_t dimension = 0; dimension < 4; ++dimension) {
-    in_.expect_room(count[dimension], 5, 4, "entities");
+    in_.expect_room(count[dimension], {5, 20}, "entities");
     for (std::uint64_t i = 0; i < count[dimension]; ++i)
       read_entity(static_cast<int>(dimension), partitioned);
   }
@@ -119,7 +119,7 @@ void MshReader::read_nodes_4() {
     number("an entity");
     const std::int32_t parametric = number("whether there are parameters, 0 or 1");
     const std::uint64_t count = size("a number of nodes");
-    in_.expect_room(count, 4, 7, "nodes");
+    in_.expect_room(count, {4, 24 + size_bytes_}, "nodes");
     for (std::uint64_t i = 0; i < count; ++i) node_numbers_.push_back(size("the number of a node"));
     for (std::uint64_t i = 0; i < count; ++i) {
       read_point();
@@ -138,7 +138,8 @@ void MshReader::read_elements_4(MshCells& cells) {
     const std::int32_t tag = number("an entity");
     const int corners = msh_corners(in_, number("the type of an element"));
     const std::uint64_t count = size("a number of elements");
-    in_.expect_room(count, static_cast<std::uint64_t>(1 + corners), size_bytes_, "elements");
+    const auto numbers = static_cast<std::uint64_t>(1 + corners);
+    in_.expect_room(count, {numbers, numbers * size_bytes_}, "elements");
     const auto found = entity_of_.find({dimension, tag});
     const Entity entity = found == entity_of_.end() ? Entity{} : found->second;
     if (entity.between_parts) between_parts_ += static_cast<std::size_t>(count);

@@ -1,8 +1,8 @@
-#include "msh_write.hpp"
+#include "formats.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -12,40 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "io/atomic_file.hpp"
 #include "msh_groups.hpp"
-#include "spatial_mesh.hpp"
+#include "sink.hpp"
 
 namespace ductile::meshadapt {
 namespace {
-
-/// Numbers as text, a space between, or as bytes.
-class MshSink {
- public:
-  MshSink(OutputFile& out, bool binary) : out_(out), binary_(binary) {}
-
-  void text(std::string_view text) { out_.write(text); }
-  template <class Number>
-  void put(Number number) {
-    char* at = out_.room(widest);
-    if (binary_) {
-      std::copy_n(reinterpret_cast<const char*>(&number), sizeof(Number), at);
-      return out_.advance_to(at + sizeof(Number));
-    }
-    at = std::to_chars(at, at + widest, number).ptr;
-    *at++ = ' ';
-    out_.advance_to(at);
-  }
-  void end_record() {
-    if (!binary_) out_.write("\n");
-  }
-  bool is_binary() const { return binary_; }
-
- private:
-  static constexpr std::size_t widest = 32;
-  OutputFile& out_;
-  bool binary_;
-};
 
 /// Calls visit(dimension, Gmsh's type, cells) for each kind of cell.
 template <class Visit>
@@ -64,8 +35,17 @@ std::size_t element_count(const AnyMesh& mesh) {
   return msh_point_count(mesh) + mesh.edges.size() + mesh.triangles.size() + mesh.tetrahedra.size();
 }
 
-/// Gmsh's files have no way to write a quotation mark or the end of a line in a name.
-void put_names(MshSink& sink, const std::vector<ReferenceName>& names) {
+std::span<const double> point_at(const std::vector<double>& points, std::size_t vertex) {
+  return {&points[3 * vertex], 3};
+}
+
+/// Ends a section whose last part are numbers.
+void end_section(Sink& sink, const std::string& name) {
+  sink.write((sink.is_binary() ? "\n$End" : "$End") + name + "\n");
+}
+
+/// In a name, Gmsh's files can hold neither a quotation mark nor the end of a line.
+void put_names(Sink& sink, const std::vector<ReferenceName>& names) {
   if (names.empty()) return;
   std::string text = "$PhysicalNames\n" + std::to_string(names.size()) + "\n";
   for (const ReferenceName& name : names) {
@@ -75,55 +55,46 @@ void put_names(MshSink& sink, const std::vector<ReferenceName>& names) {
     text += std::to_string(name.dimension) + " " + std::to_string(name.reference) + " \"" + plain +
             "\"\n";
   }
-  sink.text(text + "$EndPhysicalNames\n");
+  sink.write(text + "$EndPhysicalNames\n");
 }
 
 // ---- Version 2.2 ----
 
-void put_nodes_2(MshSink& sink, const AnyMesh& mesh) {
+void put_nodes_2(Sink& sink, const AnyMesh& mesh) {
   const std::vector<double> points = points_in_space(mesh);
-  sink.text("$Nodes\n" + std::to_string(mesh.vertex_count()) + "\n");
-  for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
-    sink.put(static_cast<std::int32_t>(vertex + 1));
-    for (std::size_t axis = 0; axis < 3; ++axis) sink.put(points[3 * vertex + axis]);
-    sink.end_record();
-  }
-  sink.text(sink.is_binary() ? "\n$EndNodes\n" : "$EndNodes\n");
+  sink.write("$Nodes\n" + std::to_string(mesh.vertex_count()) + "\n");
+  for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
+    sink.record(static_cast<std::int32_t>(vertex + 1), point_at(points, vertex));
+  end_section(sink, "Nodes");
 }
 
 /// Elements of one type, one after the other, each with a group and an entity.
 class ElementsIn2 {
  public:
-  explicit ElementsIn2(MshSink& sink) : sink_(sink) {}
+  explicit ElementsIn2(Sink& sink) : sink_(sink) {}
 
   void begin(int type, std::size_t count) {
     type_ = type;
-    if (!sink_.is_binary() || count == 0) return;
-    sink_.put(std::int32_t{type});
-    sink_.put(static_cast<std::int32_t>(count));
-    sink_.put(std::int32_t{2});
+    if (sink_.is_binary() && count > 0)
+      sink_.put(std::int32_t{type}, static_cast<std::int32_t>(count), std::int32_t{2});
   }
   template <std::size_t Corners>
   void put(const std::array<std::uint32_t, Corners>& corners, std::int32_t group,
            std::int32_t entity) {
     sink_.put(++number_);
-    if (!sink_.is_binary()) {
-      sink_.put(std::int32_t{type_});
-      sink_.put(std::int32_t{2});
-    }
-    sink_.put(group);
-    sink_.put(entity);
+    if (!sink_.is_binary()) sink_.put(type_, 2);
+    sink_.put(group, entity);
     for (const std::uint32_t vertex : corners) sink_.put(static_cast<std::int32_t>(vertex + 1));
     sink_.end_record();
   }
 
  private:
-  MshSink& sink_;
+  Sink& sink_;
   int type_ = 0;
   std::int32_t number_ = 0;
 };
 
-/// The vertices with a reference, as cells.
+/// Vertices with a reference, as cells.
 Cells<1> points_of(const AnyMesh& mesh) {
   Cells<1> points;
   for (std::uint32_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
@@ -131,8 +102,8 @@ Cells<1> points_of(const AnyMesh& mesh) {
   return points;
 }
 
-/// Elements in their n-th group, counted from 0: this version has one group for each, so that those
-/// in several are listed again, as Gmsh does.
+/// The cells that have an n-th group, counted from 0. An element of this version has one group, so
+/// that those in several are listed again, as Gmsh does.
 template <int Corners>
 std::vector<std::size_t> in_group(const GroupsOfReferences& groups, const Cells<Corners>& cells,
                                   std::size_t n) {
@@ -142,8 +113,8 @@ std::vector<std::size_t> in_group(const GroupsOfReferences& groups, const Cells<
   return those;
 }
 
-/// All elements come first, so that fields know their numbers; those that are listed again follow.
-void put_elements_2(MshSink& sink, const AnyMesh& mesh, const GroupsOfReferences& groups) {
+/// Puts all elements first, whose numbers fields use; those that are listed again follow.
+void put_elements_2(Sink& sink, const AnyMesh& mesh, const GroupsOfReferences& groups) {
   const Cells<1> points = points_of(mesh);
   std::vector<std::array<std::vector<std::size_t>, 4>> listings;  // [n-th group][dimension]
   for (std::size_t n = 0, count = 1; count > 0; ++n) {
@@ -155,7 +126,7 @@ void put_elements_2(MshSink& sink, const AnyMesh& mesh, const GroupsOfReferences
   std::size_t total = 0;
   for (const auto& listing : listings)
     for (const auto& cells : listing) total += cells.size();
-  sink.text("$Elements\n" + std::to_string(total) + "\n");
+  sink.write("$Elements\n" + std::to_string(total) + "\n");
   ElementsIn2 elements(sink);
   for (std::size_t n = 0; n < listings.size(); ++n) {
     const auto put = [&](int dimension, int type, const auto& cells) {
@@ -169,12 +140,12 @@ void put_elements_2(MshSink& sink, const AnyMesh& mesh, const GroupsOfReferences
     put(0, 15, points);
     for_each_msh_cells(mesh, put);
   }
-  sink.text(sink.is_binary() ? "\n$EndElements\n" : "$EndElements\n");
+  end_section(sink, "Elements");
 }
 
 // ---- Version 4.1 ----
 
-/// The smallest box, least corner first, around what shares a reference.
+/// The bounding box of all cells with one reference; the least corner comes first.
 using EntityBox = std::array<double, 6>;
 
 template <int Corners>
@@ -196,15 +167,10 @@ std::map<std::int32_t, EntityBox> boxes_of(const Cells<Corners>& cells,
   return box_of;
 }
 
-void put_groups(MshSink& sink, const std::vector<std::int32_t>& groups) {
-  sink.put(std::uint64_t{groups.size()});
-  for (const std::int32_t group : groups) sink.put(group);
-}
-
-/// An entity of the geometry for each reference, and one for each point.
-void put_entities(MshSink& sink, const AnyMesh& mesh, const GroupsOfReferences& groups,
+/// Puts an entity of the geometry for each reference and for each point.
+void put_entities(Sink& sink, const AnyMesh& mesh, const GroupsOfReferences& groups,
                   const std::vector<double>& points) {
-  sink.text("$Entities\n");
+  sink.write("$Entities\n");
   sink.put(std::uint64_t{msh_point_count(mesh)});
   std::array<std::map<std::int32_t, EntityBox>, 3> boxes{boxes_of(mesh.edges, points),
                                                          boxes_of(mesh.triangles, points),
@@ -213,20 +179,16 @@ void put_entities(MshSink& sink, const AnyMesh& mesh, const GroupsOfReferences& 
   sink.end_record();
   for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
     if (mesh.vertex_reference[vertex] == 0) continue;
-    sink.put(static_cast<std::int32_t>(vertex + 1));
-    for (std::size_t axis = 0; axis < 3; ++axis) sink.put(points[3 * vertex + axis]);
-    put_groups(sink, groups.of(0, mesh.vertex_reference[vertex]));
-    sink.end_record();
+    const auto& in = groups.of(0, mesh.vertex_reference[vertex]);
+    sink.record(static_cast<std::int32_t>(vertex + 1), point_at(points, vertex),
+                std::uint64_t{in.size()}, in);
   }
   for (std::size_t d = 0; d < boxes.size(); ++d)
     for (const auto& [reference, box] : boxes[d]) {
-      sink.put(reference);
-      for (const double x : box) sink.put(x);
-      put_groups(sink, groups.of(static_cast<int>(d) + 1, reference));
-      sink.put(std::uint64_t{0});
-      sink.end_record();
+      const auto& in = groups.of(static_cast<int>(d) + 1, reference);
+      sink.record(reference, box, std::uint64_t{in.size()}, in, std::uint64_t{0});
     }
-  sink.text(sink.is_binary() ? "\n$EndEntities\n" : "$EndEntities\n");
+  end_section(sink, "Entities");
 }
 
 template <int Corners>
@@ -234,32 +196,20 @@ std::int32_t first_reference(const Cells<Corners>& cells) {
   return cells.size() == 0 ? 0 : cells.reference[0];
 }
 
-/// All in one block, of an entity that there is.
-void put_nodes_4(MshSink& sink, const AnyMesh& mesh, const std::vector<double>& points) {
+/// Puts all nodes in one block, which belongs to an entity of the elements.
+void put_nodes_4(Sink& sink, const AnyMesh& mesh, const std::vector<double>& points) {
   const std::uint64_t count = mesh.vertex_count();
-  sink.text("$Nodes\n");
-  for (const std::uint64_t number : {std::uint64_t{1}, count, std::uint64_t{1}, count})
-    sink.put(number);
-  sink.end_record();
-  sink.put(std::int32_t{mesh.dimension});
-  sink.put(mesh.dimension == 2 ? first_reference(mesh.triangles)
-                               : first_reference(mesh.tetrahedra));
-  sink.put(std::int32_t{0});
-  sink.put(count);
-  sink.end_record();
-  for (std::uint64_t vertex = 1; vertex <= count; ++vertex) {
-    sink.put(vertex);
-    sink.end_record();
-  }
-  for (std::size_t vertex = 0; vertex < count; ++vertex) {
-    for (std::size_t axis = 0; axis < 3; ++axis) sink.put(points[3 * vertex + axis]);
-    sink.end_record();
-  }
-  sink.text(sink.is_binary() ? "\n$EndNodes\n" : "$EndNodes\n");
+  sink.write("$Nodes\n");
+  sink.record(std::uint64_t{1}, count, std::uint64_t{1}, count);
+  const std::int32_t entity =
+      mesh.dimension == 2 ? first_reference(mesh.triangles) : first_reference(mesh.tetrahedra);
+  sink.record(std::int32_t{mesh.dimension}, entity, std::int32_t{0}, count);
+  for (std::uint64_t vertex = 1; vertex <= count; ++vertex) sink.record(vertex);
+  for (std::size_t vertex = 0; vertex < count; ++vertex) sink.record(point_at(points, vertex));
+  end_section(sink, "Nodes");
 }
 
-/// The cells of each reference, in their order. Calls visit(reference, cells of it) in ascending
-/// order of references; without cells not at all.
+/// Calls visit(reference, its cells in their order) for each reference, in ascending order.
 template <class Visit>
 void for_each_block(const std::vector<std::int32_t>& reference, const Visit& visit) {
   std::vector<std::uint32_t> order(reference.size());
@@ -276,34 +226,25 @@ void for_each_block(const std::vector<std::int32_t>& reference, const Visit& vis
   }
 }
 
-/// One block for each entity, as readers expect that keep blocks apart. Numbers are those of the
-/// order of cells, which fields have.
-void put_elements_4(MshSink& sink, const AnyMesh& mesh) {
+/// Puts one block for each entity, because some readers keep blocks apart. Numbers follow the order
+/// of cells, as in fields.
+void put_elements_4(Sink& sink, const AnyMesh& mesh) {
   std::size_t blocks = msh_point_count(mesh);
   for_each_msh_cells(mesh, [&](int, int, const auto& cells) {
     blocks += std::set<std::int32_t>(cells.reference.begin(), cells.reference.end()).size();
   });
   const std::uint64_t count = element_count(mesh);
-  sink.text("$Elements\n");
-  for (const std::uint64_t number : {std::uint64_t{blocks}, count, std::uint64_t{1}, count})
-    sink.put(number);
-  sink.end_record();
-  const auto begin_block = [&](int dimension, std::int32_t entity, int type, std::size_t size) {
-    for (const std::int32_t number : {dimension, entity, type}) sink.put(number);
-    sink.put(std::uint64_t{size});
-    sink.end_record();
-  };
+  sink.write("$Elements\n");
+  sink.record(std::uint64_t{blocks}, count, std::uint64_t{1}, count);
   std::uint64_t number = 0;
   for (std::uint32_t vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
     if (mesh.vertex_reference[vertex] == 0) continue;
-    begin_block(0, static_cast<std::int32_t>(vertex + 1), 15, 1);
-    sink.put(++number);
-    sink.put(std::uint64_t{vertex} + 1);
-    sink.end_record();
+    sink.record(0, static_cast<std::int32_t>(vertex + 1), 15, std::uint64_t{1});
+    sink.record(++number, std::uint64_t{vertex} + 1);
   }
   for_each_msh_cells(mesh, [&](int dimension, int type, const auto& cells) {
     for_each_block(cells.reference, [&](std::int32_t entity, std::span<const std::uint32_t> block) {
-      begin_block(dimension, entity, type, block.size());
+      sink.record(dimension, entity, type, std::uint64_t{block.size()});
       for (const std::uint32_t cell : block) {
         sink.put(number + cell + 1);
         for (const std::uint32_t vertex : cells.vertices[cell]) sink.put(std::uint64_t{vertex} + 1);
@@ -312,28 +253,26 @@ void put_elements_4(MshSink& sink, const AnyMesh& mesh) {
     });
     number += cells.size();
   });
-  sink.text(sink.is_binary() ? "\n$EndElements\n" : "$EndElements\n");
+  end_section(sink, "Elements");
 }
 
 // ---- Fields ----
 
-void put_field(MshSink& sink, const NamedField& field, const AnyMesh& mesh) {
+void put_field(Sink& sink, const NamedField& field, const AnyMesh& mesh) {
   const bool at_vertices = field.place == NamedField::Place::vertices;
   const SpatialField wide = in_space(field, mesh);
   const std::size_t count = wide.values.size() / wide.components;
   const std::string section = at_vertices ? "NodeData" : "ElementData";
   std::string name = field.name;
   std::replace(name.begin(), name.end(), '"', ' ');
-  sink.text("$" + section + "\n1\n\"" + name + "\"\n1\n0\n3\n0\n" +
-            std::to_string(wide.components) + "\n" + std::to_string(count) + "\n");
+  sink.write("$" + section + "\n1\n\"" + name + "\"\n1\n0\n3\n0\n" +
+             std::to_string(wide.components) + "\n" + std::to_string(count) + "\n");
   const std::size_t first = at_vertices ? 1 : 1 + element_count(mesh) - count;
   for (std::size_t i = 0; i < count; ++i) {
-    sink.put(static_cast<std::int32_t>(first + i));
-    for (std::size_t k = 0; k < wide.components; ++k)
-      sink.put(wide.values[i * wide.components + k]);
-    sink.end_record();
+    const std::span values(&wide.values[i * wide.components], wide.components);
+    sink.record(static_cast<std::int32_t>(first + i), values);
   }
-  sink.text((sink.is_binary() ? "\n$End" : "$End") + section + "\n");
+  end_section(sink, section);
 }
 
 void expect_few_enough(const AnyMesh& mesh, const std::filesystem::path& path) {
@@ -354,10 +293,11 @@ void write_msh(AtomicOutputs& outputs, const std::filesystem::path& path, const 
   expect_few_enough(mesh, path);
   warn_of_lost(options, path, beside_cells(mesh));
   const bool binary = options.form == WriteOptions::Form::binary, old = options.version == 2;
-  MshSink sink(outputs.stage(path), binary);
-  sink.text(std::string("$MeshFormat\n") + (old ? "2.2 " : "4.1 ") + (binary ? "1 8\n" : "0 8\n"));
+  Sink& sink = outputs.stage(path);
+  sink.write(std::string("$MeshFormat\n") + (old ? "2.2 " : "4.1 ") + (binary ? "1 8\n" : "0 8\n"));
+  if (binary) sink.set_binary(std::endian::native);
   if (binary) sink.put(std::int32_t{1});
-  sink.text(binary ? "\n$EndMeshFormat\n" : "$EndMeshFormat\n");
+  end_section(sink, "MeshFormat");
   const GroupsOfReferences groups(mesh);
   put_names(sink, groups.names());
   if (old) {

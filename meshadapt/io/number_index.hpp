@@ -1,6 +1,6 @@
 /// @file
-/// NumberIndex: which place in a list a number has, for files that number nodes and cells as they
-/// like. Memory in proportion to the list.
+/// NumberIndex: finds the place of a number in a list, because files number nodes and cells freely.
+/// It takes memory in proportion to the list.
 #pragma once
 
 #include <cstddef>

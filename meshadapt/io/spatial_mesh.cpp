@@ -9,6 +9,7 @@
 #include "mesh/finite_values.hpp"
 #include "mesh/flatten.hpp"
 #include "mesh/indices.hpp"
+#include "utf8.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -19,7 +20,7 @@ void warn(Warnings* warnings, const std::string& text) {
   if (warnings) warnings->push_back(printable(text));
 }
 
-/// Nothing is to be said of files that have three coordinates because there is no other way.
+/// Flattens a mesh, without a warning if it lies in z = 0: these formats have three coordinates.
 void flatten_quietly(AnyMesh& mesh, Warnings* warnings) {
   bool in_plane = true;
   for (std::size_t i = 2; i < mesh.coordinates.size(); i += 3)
@@ -29,7 +30,7 @@ void flatten_quietly(AnyMesh& mesh, Warnings* warnings) {
 
 // ---- Fields that were read ----
 
-/// What a field of so many components is, and which of them make up its own.
+/// The type of a field that is read, and the components of the file that it consists of.
 struct Layout {
   Type type = Type::scalar;
   std::vector<std::size_t> from;  ///< [component]
@@ -48,7 +49,7 @@ std::vector<std::size_t> axes_of(const AnyMesh& mesh) {
 constexpr std::array<std::array<std::size_t, 3>, 3> vtk_symmetric{
     {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}};
 
-/// At the places that count.
+/// True if the tensors at these places are symmetric.
 bool is_symmetric(const SpatialField& field, const std::vector<std::size_t>& places) {
   return std::all_of(places.begin(), places.end(), [&](std::size_t place) {
     const double* t = &field.values[9 * place];
@@ -56,7 +57,7 @@ bool is_symmetric(const SpatialField& field, const std::vector<std::size_t>& pla
   });
 }
 
-/// Without components: the mesh has no place for it.
+/// The layout for a field; without components if the mesh has no place for it.
 Layout layout_of(const SpatialField& field, const std::vector<std::size_t>& places,
                  const AnyMesh& mesh) {
   const std::vector<std::size_t> axes = axes_of(mesh);
@@ -85,7 +86,7 @@ std::string what_is(const SpatialField& field) {
          " '" + field.name + "'";
 }
 
-/// The numbers in the file of what the field is to have values of.
+/// [vertex or element] its number in the file.
 std::vector<std::size_t> places_of(const SpatialField& field, const SpatialMesh& spatial) {
   if (field.place == NamedField::Place::elements)
     return spatial.mesh.dimension == 2 ? spatial.cell_of_triangle : spatial.cell_of_tetrahedron;
@@ -115,7 +116,7 @@ void take_field(MeshWithFields& to, const SpatialField& field, const SpatialMesh
 
 // ---- Fields that are written ----
 
-/// Where component (row, column) of a field stands among those of one place; -1: nowhere.
+/// The index of component (row, column) among those of one place; -1 if there is none.
 int component_at(Type type, int dimension, int row, int column) {
   if (row >= dimension || column >= dimension) return -1;
   if (type == Type::matrix) return row * dimension + column;
@@ -123,30 +124,17 @@ int component_at(Type type, int dimension, int row, int column) {
   return std::max(row, column) * (std::max(row, column) + 1) / 2 + std::min(row, column);
 }
 
-/// Throws unless it is UTF-8 without control characters, which XML can hold.
+/// Throws InputError unless a name is UTF-8 with the characters that XML can hold.
 void expect_text(const std::string& name, std::size_t index) {
-  const auto byte = [&](std::size_t i) {
-    return i < name.size() ? static_cast<unsigned char>(name[i]) : 0U;
-  };
-  for (std::size_t at = 0; at < name.size();) {
-    const unsigned first = byte(at), second = byte(at + 1);
-    const std::size_t length = first < 0x80                    ? 1
-                               : first >= 0xC2 && first < 0xE0 ? 2
-                               : first >= 0xE0 && first < 0xF0 ? 3
-                               : first >= 0xF0 && first < 0xF5 ? 4
-                                                               : 0;
-    bool good = length > 1 || (first >= 0x20 && first != 0x7F);
-    good = good && length > 0;
-    for (std::size_t i = 1; i < length; ++i) good = good && byte(at + i) >> 6U == 2;
-    // Not too long, no surrogate, none beyond the last character, no noncharacter of XML.
-    good = good && !(first == 0xE0 && second < 0xA0) && !(first == 0xED && second > 0x9F) &&
-           !(first == 0xF0 && second < 0x90) && !(first == 0xF4 && second > 0x8F) &&
-           !(first == 0xEF && second == 0xBF && byte(at + 2) > 0xBD);
-    if (!good)
+  for (std::size_t at = 0, length = 0; at < name.size(); at += length) {
+    length = utf8_length(name, at);
+    const auto first = static_cast<unsigned char>(name[at]);
+    const bool is_control = first < 0x20 || first == 0x7F;
+    const std::string_view character(&name[at], length);
+    if (length == 0 || is_control || character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF")
       throw InputError("fields[" + std::to_string(index) +
                        "].name: expected UTF-8 without control characters, found another byte at " +
                        std::to_string(at));
-    at += length;
   }
 }
 

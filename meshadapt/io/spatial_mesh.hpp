@@ -1,6 +1,6 @@
 /// @file
-/// SpatialMesh: a mesh and fields as files have them that know three coordinates only, and cells of
-/// all shapes in one list. finish() makes of it what the library works on.
+/// SpatialMesh: a mesh and fields from a format with three coordinates and one list of cells of all
+/// shapes. finish() turns it into a mesh for the library.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace ductile::meshadapt {
 
-/// A field with as many components as the file says.
+/// A field with the number of components that the file says.
 struct SpatialField {
   std::string name;
   NamedField::Place place = NamedField::Place::vertices;
@@ -36,8 +36,8 @@ struct SpatialMesh {
 /// out, with a warning.
 MeshWithFields finish(SpatialMesh&& spatial, Warnings* warnings);
 
-/// How fields go into a file with three coordinates: scalars as they are, vectors with three
-/// components, tensors with nine, row by row; those that the plane lacks are 0.
+/// Widens a field for a file with three coordinates: scalars stay, vectors get three components,
+/// tensors nine, row by row; components that the plane lacks are 0.
 SpatialField in_space(const NamedField& field, const AnyMesh& mesh);
 
 /// The values of a field of whole numbers, `count` of them, with 0 for those that it lacks; nothing
@@ -52,9 +52,9 @@ std::vector<double> points_in_space(const AnyMesh& mesh);
 /// control characters.
 void expect_fit_for_file(const AnyMesh& mesh, std::span<const NamedField> fields);
 
-/// What a mesh has beside cells and references, for the warning of a format that holds nothing of
-/// it: "required vertices (3), required edges (2)"; empty if nothing. Corners and ridges are not
-/// told of: they are found again by their angles.
+/// Lists data of a mesh beside cells and references, for the warning of a format that cannot hold
+/// them: "required vertices (3), required edges (2)"; empty if there are none. Corners and ridges
+/// are not listed, because they are found again by their angles.
 std::string beside_cells(const AnyMesh& mesh);
 
 /// Adds the warning, if there is something to say.

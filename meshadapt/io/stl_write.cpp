@@ -1,22 +1,20 @@
-#include "stl_write.hpp"
+#include "formats.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <vector>
 
 #include "ductile/meshadapt/fixed_mesh.hpp"
-#include "io/atomic_file.hpp"
-#include "spatial_mesh.hpp"
+#include "sink.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
-/// Seen from outside; of a mesh without tetrahedra, all triangles.
+/// The boundary triangles, seen from outside; without tetrahedra, all triangles.
 std::vector<Facet<3>> stl_sides(const AnyMesh& mesh) {
   if (mesh.tetrahedra.size() == 0) return mesh.triangles.vertices;
   const auto fixed = make_fixed_mesh<3>(runtime::Executor({.threads = 1}), mesh);
@@ -42,23 +40,14 @@ Point normal_of(const std::array<Point, 3>& p) {
   return n;
 }
 
-/// Numbers of a binary STL are little-endian.
-template <class Number>
-void put(OutputFile& out, Number number) {
-  char* const at = out.room(sizeof(Number));
-  std::memcpy(at, &number, sizeof(Number));
-  if (std::endian::native == std::endian::big) std::reverse(at, at + sizeof(Number));
-  out.advance_to(at + sizeof(Number));
-}
-
-void put_side(OutputFile& out, const AnyMesh& mesh, const Facet<3>& side) {
+void put_side(Sink& sink, const AnyMesh& mesh, const Facet<3>& side) {
   std::array<Point, 3> points;
   for (std::size_t i = 0; i < 3; ++i)
     std::copy_n(&mesh.coordinates[3 * std::size_t{side[i]}], 3, points[i].begin());
-  for (const double x : normal_of(points)) put(out, static_cast<float>(x));
+  for (const double x : normal_of(points)) sink.put(static_cast<float>(x));
   for (const Point& point : points)
-    for (const double x : point) put(out, static_cast<float>(x));
-  put(out, std::uint16_t{0});
+    for (const double x : point) sink.put(static_cast<float>(x));
+  sink.put(std::uint16_t{0});
 }
 
 void expect_surface(const AnyMesh& mesh, const std::filesystem::path& path) {
@@ -83,12 +72,13 @@ void write_stl(AtomicOutputs& outputs, const std::filesystem::path& path, const 
   if (sides.size() > std::numeric_limits<std::uint32_t>::max())
     throw InputError(path.string() + ": too many triangles for this format; write another");
   warn_of_lost(options, path, "references and the inside");
-  OutputFile& out = outputs.stage(path);
+  Sink& sink = outputs.stage(path);
   std::string head = "binary STL by Ductile";
   head.resize(80, ' ');
-  out.write(head);
-  put(out, static_cast<std::uint32_t>(sides.size()));
-  for (const auto& side : sides) put_side(out, mesh, side);
+  sink.write(head);
+  sink.set_binary(std::endian::little);
+  sink.put(static_cast<std::uint32_t>(sides.size()));
+  for (const auto& side : sides) put_side(sink, mesh, side);
 }
 
 }  // namespace ductile::meshadapt

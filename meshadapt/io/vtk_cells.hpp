@@ -1,6 +1,6 @@
 /// @file
-/// How a mesh is laid out in VTK's files: tetrahedra, triangles, edges, in this order. References
-/// of elements are in the array "region", those of other cells in "boundary".
+/// The layout of a mesh in VTK's files: tetrahedra, triangles, edges, in this order. References of
+/// elements are in the array "region", those of other cells in "boundary".
 #pragma once
 
 #include <cstddef>
@@ -27,12 +27,12 @@ inline std::size_t cell_count(const AnyMesh& mesh) {
   return mesh.tetrahedra.size() + mesh.triangles.size() + mesh.edges.size();
 }
 
-/// [cell], 0 where it is none of the kind.
+/// [cell] 0 if it is not of the kind.
 struct CellReferences {
   std::vector<std::int32_t> region, boundary;
 };
 
-/// Of a surface in space, triangles are the elements: readers see no more than cells.
+/// Triangles are the elements of a surface in space, because readers see no more than cells.
 inline CellReferences cell_references(const AnyMesh& mesh) {
   CellReferences of;
   const std::uint8_t element = mesh.tetrahedra.size() == 0 ? vtk_triangle : vtk_tetrahedron;
@@ -46,7 +46,7 @@ inline CellReferences cell_references(const AnyMesh& mesh) {
   return of;
 }
 
-/// Names of references as files keep them that have no place for such: "2 10 steel", a line each.
+/// Names of references as VTK's files keep them: "2 10 steel", one on each line.
 inline std::string name_lines(const AnyMesh& mesh) {
   std::string text;
   for (const ReferenceName& name : mesh.names) {

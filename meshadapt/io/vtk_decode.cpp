@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <new>
 
 #include "ductile/meshadapt/error.hpp"
+#include "number_reader.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -27,8 +25,8 @@ constexpr auto value_of_letter = [] {
   return value;
 }();
 
-/// Bytes one after the other, out of raw ones or base64, whose groups of four letters may have been
-/// filled up in between, as VTK does behind the numbers in front.
+/// Takes bytes one after the other from raw ones or from base64. VTK pads base64 in between, behind
+/// the numbers in front.
 class ByteStream {
  public:
   ByteStream(std::string_view encoded, bool base64) : rest_(encoded), base64_(base64) {}
@@ -82,20 +80,10 @@ class ByteStream {
   bool base64_;
 };
 
-template <class Number>
-Number number_at(const char* bytes, bool swapped) {
-  unsigned char raw[sizeof(Number)];
-  std::memcpy(raw, bytes, sizeof(Number));
-  if (swapped) std::reverse(std::begin(raw), std::end(raw));
-  Number number;
-  std::memcpy(&number, raw, sizeof(Number));
-  return number;
-}
-
 std::uint64_t take_head(ByteStream& bytes, const VtkEncoding& encoding) {
   const std::string head = bytes.take(encoding.head_bytes);
-  return encoding.head_bytes == 8 ? number_at<std::uint64_t>(head.data(), encoding.swapped)
-                                  : number_at<std::uint32_t>(head.data(), encoding.swapped);
+  return encoding.head_bytes == 8 ? loaded<std::uint64_t>(head.data(), encoding.swapped)
+                                  : loaded<std::uint32_t>(head.data(), encoding.swapped);
 }
 
 void append_block(std::string& to, const std::string& block, std::size_t size) {
@@ -138,34 +126,30 @@ template <class Number>
 std::vector<double> converted(std::string_view bytes, bool swapped) {
   std::vector<double> values(bytes.size() / sizeof(Number));
   for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = static_cast<double>(number_at<Number>(bytes.data() + i * sizeof(Number), swapped));
+    values[i] = static_cast<double>(loaded<Number>(bytes.data() + i * sizeof(Number), swapped));
   return values;
-}
-
-/// Of a number that no double can hold: 0 if it is too small. Infinite ones are refused where they
-/// matter.
-double beyond_range(std::string_view number) {
-  const std::size_t exponent = number.find_first_of("eE");
-  if (exponent != std::string_view::npos && number.substr(exponent + 1).starts_with('-')) return 0;
-  return number.starts_with('-') ? -HUGE_VAL : HUGE_VAL;
 }
 
 }  // namespace
 
 VtkNumber vtk_number(std::string_view type) {
-  constexpr std::array<std::pair<std::string_view, VtkNumber>, 10> numbers{
-      {{"Float64", {8, true, true}},
-       {"Float32", {4, true, true}},
-       {"Int64", {8, false, true}},
-       {"Int32", {4, false, true}},
-       {"Int16", {2, false, true}},
-       {"Int8", {1, false, true}},
-       {"UInt64", {8, false, false}},
-       {"UInt32", {4, false, false}},
-       {"UInt16", {2, false, false}},
-       {"UInt8", {1, false, false}}}};
-  for (const auto& [name, number] : numbers)
-    if (name == type) return number;
+  struct Named {
+    VtkNumber number;
+    std::string_view names;
+  };
+  constexpr std::array<Named, 10> kinds{
+      {{{8, true, true}, " Float64 double "},
+       {{4, true, true}, " Float32 float "},
+       {{8, false, true}, " Int64 vtktypeint64 vtkIdType64 long "},
+       {{4, false, true}, " Int32 int vtkIdType "},
+       {{2, false, true}, " Int16 short "},
+       {{1, false, true}, " Int8 char "},
+       {{8, false, false}, " UInt64 vtktypeuint64 unsigned_long "},
+       {{4, false, false}, " UInt32 unsigned_int "},
+       {{2, false, false}, " UInt16 unsigned_short "},
+       {{1, false, false}, " UInt8 unsigned_char "}}};
+  for (const auto& [number, names] : kinds)
+    if (names.find(" " + std::string(type) + " ") != std::string_view::npos) return number;
   return {};
 }
 
@@ -206,24 +190,11 @@ std::vector<double> vtk_reals(std::string_view bytes, VtkNumber number, bool swa
 
 std::vector<double> vtk_reals(std::string_view text) {
   std::vector<double> values;
-  const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
-  for (std::size_t at = 0; at < text.size();) {
-    if (is_space(text[at])) {
-      ++at;
-      continue;
-    }
-    double value = 0;
-    const char* const begin = text.data() + at;
-    const auto [after, error] = std::from_chars(begin, text.data() + text.size(), value);
-    if (error == std::errc::result_out_of_range) value = beyond_range({begin, after});
-    if (error == std::errc::invalid_argument ||
-        (after != text.data() + text.size() && !is_space(*after)))
-      throw InputError(
-          "expected a number in an array of format ascii, found another word; correct "
-          "it");
-    values.push_back(value);
-    at += static_cast<std::size_t>(after - begin);
-  }
+  double value = 0;
+  for (NumberReader in(text, ""); !in.peek_word().empty(); values.push_back(value))
+    if (!in.take(value))
+      throw InputError("expected a number in an array of format ascii, found " +
+                       quoted(in.peek_word()) + "; correct it");
   return values;
 }
 

@@ -1,6 +1,6 @@
 /// @file
-/// The numbers of one array in a VTK XML file, however it is encoded: as text, as base64 or raw
-/// bytes, whole or in blocks that zlib compressed (private to io). Any thread.
+/// Decodes the numbers of one array in a VTK file: text, base64 or raw bytes, whole or in blocks
+/// compressed by zlib (private to io). Any thread.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,15 @@
 
 namespace ductile::meshadapt {
 
-/// How a file encodes its arrays.
+/// The encoding of the arrays of a file.
 struct VtkEncoding {
   bool swapped = false;        ///< the other byte order
   bool compressed = false;     ///< by zlib
   std::size_t head_bytes = 4;  ///< of the numbers in front of an array, 4 or 8
 };
 
-/// A kind of number, by its name: "Float64", "UInt8"; 0 bytes if there is none of that name.
+/// A kind of number by its name in XML, "Float64", or in legacy files, "double", where vtkIdType
+/// has 4 bytes; 0 bytes if there is none of that name.
 struct VtkNumber {
   std::size_t bytes = 0;
   bool is_real = false, is_signed = false;

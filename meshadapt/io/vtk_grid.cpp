@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string_view>
 #include <utility>
 
+#include "cell_shapes.hpp"
 #include "ductile/meshadapt/error.hpp"
-#include "number_cursor.hpp"
+#include "number_reader.hpp"
 #include "vtk_cells.hpp"
 
 namespace ductile::meshadapt {
@@ -19,47 +19,19 @@ namespace {
   throw InputError(grid.name + ": " + text);
 }
 
-struct VtkShape {
-  std::int64_t type;
-  std::size_t corners;  ///< 0: not taken
-  const char* name;
-};
-constexpr std::array<VtkShape, 18> vtk_shapes{{{vtk_vertex, 1, "a vertex"},
-                                               {vtk_line, 2, "a line"},
-                                               {vtk_triangle, 3, "a triangle"},
-                                               {vtk_tetrahedron, 4, "a tetrahedron"},
-                                               {2, 0, "a poly-vertex"},
-                                               {4, 0, "a poly-line"},
-                                               {6, 0, "a triangle strip"},
-                                               {7, 0, "a polygon"},
-                                               {8, 0, "a pixel"},
-                                               {9, 0, "a quadrangle"},
-                                               {11, 0, "a voxel"},
-                                               {12, 0, "a hexahedron"},
-                                               {13, 0, "a wedge"},
-                                               {14, 0, "a pyramid"},
-                                               {21, 0, "a quadratic edge"},
-                                               {22, 0, "a quadratic triangle"},
-                                               {24, 0, "a quadratic tetrahedron"},
-                                               {42, 0, "a polyhedron"}}};
-
 std::size_t vtk_corners(const VtkGrid& grid, std::size_t cell) {
-  const char* name = "another cell";
-  for (const VtkShape& shape : vtk_shapes) {
-    if (shape.type != grid.types[cell]) continue;
-    if (shape.corners > 0) return shape.corners;
-    name = shape.name;
-  }
-  fail(grid, "expected vertices, lines, triangles and tetrahedra, found " + std::string(name) +
-                 " (type " + std::to_string(grid.types[cell]) + ") in cell " +
-                 std::to_string(cell + 1) +
+  const CellShape shape = shape_of(&CellShape::vtk, grid.types[cell]);
+  if (shape.corners > 0) return static_cast<std::size_t>(shape.corners);
+  fail(grid, "expected vertices, lines, triangles and tetrahedra, found " +
+                 std::string(shape.name) + " (type " + std::to_string(grid.types[cell]) +
+                 ") in cell " + std::to_string(cell + 1) +
                  "; split such cells into linear simplices first, as ParaView's Tetrahedralize "
                  "does");
 }
 
 // ---- References ----
 
-/// How programs call the array in which they keep references.
+/// Names that programs give to the array of references.
 constexpr std::array<std::string_view, 10> reference_names{
     "reference", "medit:ref",   "gmsh:physical", "CellEntityIds", "CellEntityId",
     "cell_tags", "MaterialIDs", "MaterialIds",   "material",      "Label"};
@@ -72,7 +44,7 @@ bool are_references(const VtkArray& array) {
                      [=](double x) { return x == std::floor(x) && x >= least && x <= most; });
 }
 
-/// Takes the array of that name out, if it is one of references.
+/// Moves the array of that name out, if its values are references.
 bool take_references(std::vector<VtkArray>& arrays, std::string_view name,
                      std::vector<std::int32_t>& references) {
   const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const VtkArray& array) {
@@ -93,7 +65,7 @@ std::vector<std::int32_t> first_references(std::vector<VtkArray>& arrays, std::s
   return std::vector<std::int32_t>(count, 0);
 }
 
-/// [cell], of elements and of all others.
+/// [cell] the references of elements and of all others.
 CellReferences take_cell_references(std::vector<VtkArray>& arrays, std::size_t count) {
   CellReferences of;
   const bool apart = take_references(arrays, "region", of.region);
@@ -173,15 +145,14 @@ void expect_lengths(const VtkGrid& grid) {
                    "; the file is damaged, write it again");
 }
 
-/// "2 10 steel" as a name; what is not like that is no name of a reference.
+/// Takes "2 10 steel" as a name; other lines are no names of references.
 void take_name(AnyMesh& mesh, std::string_view line) {
   ReferenceName name;
-  const char* const end = line.data() + line.size();
-  const auto [after, error] = std::from_chars(line.data(), end, name.dimension);
-  if (error != std::errc{} || after == end || name.dimension < 0 || name.dimension > 3) return;
-  const auto [behind, second] = std::from_chars(after + 1, end, name.reference);
-  if (second != std::errc{} || behind == end) return;
-  name.name.assign(behind + 1, end);
+  NumberReader in(line, "");
+  if (!in.take(name.dimension) || name.dimension < 0 || name.dimension > 3 ||
+      !in.take(name.reference) || in.left() == 0)
+    return;
+  name.name.assign(in.at() + 1, in.left() - 1);
   mesh.names.push_back(std::move(name));
 }
 

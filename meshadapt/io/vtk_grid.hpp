@@ -1,6 +1,5 @@
 /// @file
-/// VtkGrid: an unstructured grid as VTK's files hold it, in XML or not, and the mesh that it is
-/// (private to io). Any thread.
+/// VtkGrid: an unstructured grid as VTK's files hold it, in XML or not (private to io). Any thread.
 #pragma once
 
 #include <cstddef>
@@ -30,9 +29,16 @@ struct VtkGrid {
   std::vector<double> names;  ///< letters of lines "DIMENSION REFERENCE NAME", of references
 };
 
-/// Throws InputError for cells that are none of a simplex mesh, points that there are not, and
-/// arrays that do not fit together. References are those in the arrays "region" and "boundary", or
-/// in one that another program gives such a name; all others become fields.
+/// The mesh of a grid. References are in the arrays "region" and "boundary", or in one array with a
+/// name that other programs give; all other arrays become fields. Throws InputError for cells that
+/// are not simplices, points that do not exist, and arrays whose lengths differ.
 SpatialMesh mesh_of(VtkGrid&& grid);
+
+/// One grid of the pieces that parallel programs write. Points of different pieces are one if they
+/// have the same number in the array "GlobalPointIds" at points or, where a piece lacks it, exactly
+/// the same coordinates; points of one piece are never joined by coordinates. Cells that
+/// "vtkGhostType" marks as copies of another piece's are left out. Throws InputError, with the name
+/// of the file, for pieces that do not fit together.
+VtkGrid joined(const std::string& name, std::vector<VtkGrid>&& pieces);
 
 }  // namespace ductile::meshadapt

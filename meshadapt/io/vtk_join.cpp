@@ -1,4 +1,4 @@
-#include "vtk_join.hpp"
+#include "vtk_grid.hpp"
 
 #include <algorithm>
 #include <array>
@@ -50,7 +50,7 @@ class PieceJoiner {
   }
 
  private:
-  /// A point of a piece, with what tells whether it is the same as another.
+  /// A point of a piece; points with the same key are the same.
   struct Point {
     std::array<double, 3> key;
     std::uint32_t piece = 0;
@@ -115,7 +115,7 @@ class PieceJoiner {
     return points;
   }
 
-  /// Numbers points in the order of pieces, each at its first place.
+  /// Numbers points in the order of pieces; a shared point has its number from the first.
   void find_points() {
     std::vector<Point> points = all_points();
     std::stable_sort(points.begin(), points.end(),
@@ -141,8 +141,8 @@ class PieceJoiner {
       }
   }
 
-  /// Points that a piece has twice at one place, as at a crack, could each be that of another
-  /// piece.
+  /// A piece with two points at one place, for example at a crack, does not tell which of them is
+  /// that of another piece.
   void expect_once_each(const std::vector<Point>& points, std::size_t begin,
                         std::size_t end) const {
     if (has_numbers_ || points[begin].piece == points[end - 1].piece) return;

@@ -1,4 +1,4 @@
-#include "vtu_read.hpp"
+#include "formats.hpp"
 
 #include <bit>
 #include <cmath>
@@ -12,12 +12,11 @@
 #include "ductile/meshadapt/error.hpp"
 #include "vtk_decode.hpp"
 #include "vtk_grid.hpp"
-#include "vtk_join.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
-/// What VTK appends behind the XML: bytes between an underscore and the end.
+/// The bytes that VTK appends behind the XML, between an underscore and the end.
 struct Appended {
   std::string_view bytes;
   bool base64 = false;
@@ -41,7 +40,7 @@ class VtuReader {
 
   // ---- Pieces ----
 
-  /// A piece without points and cells, as ranks write that have nothing, may lack its arrays.
+  /// A piece without points and cells, which a rank without a part writes, may lack its arrays.
   VtkGrid read_pieces(pugi::xml_node file) {
     read_head(file);
     const pugi::xml_node grid = file.child("UnstructuredGrid");
@@ -172,7 +171,7 @@ class VtuReader {
     return indices;
   }
 
-  /// Those of numbers that have values for all.
+  /// The arrays of numbers, all of which must have `count` values.
   std::vector<VtkArray> arrays_of(pugi::xml_node data, std::size_t count) {
     std::vector<VtkArray> arrays;
     for (const pugi::xml_node node : data.children("DataArray")) {

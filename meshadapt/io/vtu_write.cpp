@@ -1,137 +1,200 @@
-#include "vtu_write.hpp"
+#include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <new>
-#include <pugixml.hpp>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "ductile/meshadapt/error.hpp"
-#include "io/atomic_file.hpp"
-#include "spatial_mesh.hpp"
-#include "vtk_array.hpp"
+#include "formats.hpp"
+#include "sink.hpp"
 #include "vtk_cells.hpp"
 
 namespace ductile::meshadapt {
 namespace {
 
-class OutputWriter : public pugi::xml_writer {
+// ---- The text of one array ----
+
+constexpr std::size_t block_size = std::size_t{1} << 20;
+
+void append_base64(std::string& text, std::span<const unsigned char> bytes) {
+  constexpr std::string_view letters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const std::size_t start = text.size();
+  text.resize(start + (bytes.size() + 2) / 3 * 4, '=');
+  char* out = text.data() + start;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0U);
+    for (std::size_t k = 0; k <= count; ++k) out[k] = letters[group >> (18 - 6 * k) & 63U];
+    out += 4;
+  }
+}
+
+/// Appends one compressed block and returns its size.
+std::uint64_t append_compressed(std::vector<unsigned char>& bytes,
+                                std::span<const std::byte> block) {
+  const std::size_t start = bytes.size();
+  uLongf size = compressBound(static_cast<uLong>(block.size()));
+  bytes.resize(start + size);
+  const int result =
+      compress2(bytes.data() + start, &size, reinterpret_cast<const Bytef*>(block.data()),
+                static_cast<uLong>(block.size()), Z_BEST_SPEED);
+  if (result != Z_OK) throw Error("zlib cannot compress an array, probably for want of memory");
+  bytes.resize(start + size);
+  return size;
+}
+
+/// An array as VTK's format "binary" has it: cut into blocks, each compressed by zlib, the table of
+/// their sizes in front, all of it in base64. Numbers have the byte order of this machine.
+std::string vtk_encoded(std::span<const std::byte> array) {
+  // The table: blocks, bytes of a block, bytes of the last one if it is shorter, compressed sizes.
+  std::vector<std::uint64_t> table = {(array.size() + block_size - 1) / block_size, block_size,
+                                      array.size() % block_size};
+  std::vector<unsigned char> compressed;
+  for (std::size_t begin = 0; begin < array.size(); begin += block_size)
+    table.push_back(append_compressed(
+        compressed, array.subspan(begin, std::min(block_size, array.size() - begin))));
+  std::string text;
+  append_base64(text, {reinterpret_cast<const unsigned char*>(table.data()), 8 * table.size()});
+  append_base64(text, compressed);
+  return text;
+}
+
+// ---- Elements of XML ----
+
+constexpr const char* type_name(double) { return "Float64"; }
+constexpr const char* type_name(std::int64_t) { return "Int64"; }
+constexpr const char* type_name(std::int32_t) { return "Int32"; }
+constexpr const char* type_name(std::uint8_t) { return "UInt8"; }
+
+std::string escaped(const std::string& name) {
+  std::string text;
+  for (const char c : name)
+    text += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return text;
+}
+
+std::string attribute(const char* name, const std::string& value) {
+  return std::string(" ") + name + "=\"" + value + "\"";
+}
+
+class VtuWriter {
  public:
-  explicit OutputWriter(OutputFile& out) : out_(out) {}
-  void write(const void* data, std::size_t size) override {
-    out_.write({static_cast<const char*>(data), size});
+  VtuWriter(Sink& sink, const AnyMesh& mesh, std::span<const NamedField> fields)
+      : sink_(sink), mesh_(mesh), fields_(fields) {}
+
+  void write() {
+    constexpr bool little = std::endian::native == std::endian::little;
+    sink_.write("<?xml version=\"1.0\"?>\n");
+    begin("VTKFile", attribute("type", "UnstructuredGrid") + attribute("version", "1.0") +
+                         attribute("byte_order", little ? "LittleEndian" : "BigEndian") +
+                         attribute("header_type", "UInt64") +
+                         attribute("compressor", "vtkZLibDataCompressor"));
+    begin("UnstructuredGrid");
+    put_names();
+    begin("Piece", attribute("NumberOfPoints", std::to_string(mesh_.vertex_count())) +
+                       attribute("NumberOfCells", std::to_string(cell_count(mesh_))));
+    put_data();
+    begin("Points");
+    put_array("Points", 3, points_in_space(mesh_));
+    end("Points");
+    put_cells();
+    end("Piece");
+    end("UnstructuredGrid");
+    end("VTKFile");
   }
 
  private:
-  OutputFile& out_;
-};
+  void begin(const std::string& element, const std::string& attributes = "") {
+    sink_.write(std::string(depth_++, ' ') + "<" + element + attributes + ">\n");
+    names_.clear();
+  }
+  void end(const std::string& element) {
+    sink_.write(std::string(--depth_, ' ') + "</" + element + ">\n");
+  }
 
-const char* type_name(double) { return "Float64"; }
-const char* type_name(std::int64_t) { return "Int64"; }
-const char* type_name(std::int32_t) { return "Int32"; }
-const char* type_name(std::uint8_t) { return "UInt8"; }
+  template <class Number>
+  void put_array(const std::string& name, std::size_t components, const std::vector<Number>& values,
+                 const std::string& attributes = "") {
+    std::string unused = name;  // readers keep one of two arrays with one name
+    for (int i = 2; !names_.insert(unused).second; ++i) unused = name + "_" + std::to_string(i);
+    sink_.write(
+        std::string(depth_, ' ') + "<DataArray" + attribute("type", type_name(Number{})) +
+        attribute("Name", escaped(unused)) +
+        (components > 1 ? attribute("NumberOfComponents", std::to_string(components)) : "") +
+        attribute("format", "binary") + attributes + ">");
+    sink_.write(vtk_encoded(std::as_bytes(std::span(values))));
+    sink_.write("</DataArray>\n");
+  }
 
-// pugixml says by what it returns that there is no memory, and does nothing then.
-void expect_memory(bool there_was) {
-  if (!there_was) throw std::bad_alloc();
-}
+  /// Puts names of references as letters, a line for each, because some readers stop at arrays of
+  /// strings.
+  void put_names() {
+    if (mesh_.names.empty()) return;
+    const std::string text = name_lines(mesh_);
+    begin("FieldData");
+    put_array("names", 1, std::vector<std::uint8_t>(text.begin(), text.end()),
+              attribute("NumberOfTuples", std::to_string(text.size())));
+    end("FieldData");
+  }
 
-pugi::xml_node add_node(pugi::xml_node parent, const char* name) {
-  const pugi::xml_node node = parent.append_child(name);
-  expect_memory(node);
-  return node;
-}
+  void put_data() {
+    begin("PointData");
+    put_array("reference", 1, mesh_.vertex_reference);
+    put_fields(NamedField::Place::vertices, mesh_.vertex_count());
+    end("PointData");
+    const CellReferences references = cell_references(mesh_);
+    begin("CellData");
+    put_array("region", 1, references.region);
+    put_array("boundary", 1, references.boundary);
+    put_fields(NamedField::Place::elements, cell_count(mesh_));
+    end("CellData");
+  }
 
-template <class Value>
-void add_attribute(pugi::xml_node node, const char* name, const Value& value) {
-  expect_memory(node.append_attribute(name).set_value(value));
-}
-
-template <class Number>
-void add_array(pugi::xml_node parent, const std::string& name, std::size_t components,
-               const std::vector<Number>& values) {
-  pugi::xml_node node = add_node(parent, "DataArray");
-  add_attribute(node, "type", type_name(Number{}));
-  add_attribute(node, "Name", name.c_str());
-  if (components > 1) add_attribute(node, "NumberOfComponents", components);  // as VTK does
-  add_attribute(node, "format", "binary");
-  const std::string text = vtk_encoded(std::as_bytes(std::span(values)));
-  expect_memory(node.append_child(pugi::node_pcdata).set_value(text.c_str()));
-}
-
-/// Of two arrays of one name, readers keep one.
-std::string unused_name(pugi::xml_node parent, const std::string& name) {
-  std::string result = name;
-  for (int i = 2; parent.find_child_by_attribute("Name", result.c_str()); ++i)
-    result = name + "_" + std::to_string(i);
-  return result;
-}
-
-void add_points(pugi::xml_node piece, const AnyMesh& mesh) {
-  add_array(add_node(piece, "Points"), "Points", 3, points_in_space(mesh));
-}
-
-void add_cells(pugi::xml_node piece, const AnyMesh& mesh) {
-  std::vector<std::int64_t> connectivity, offsets;
-  std::vector<std::uint8_t> types;
-  for_each_vtk_cells(mesh, [&](const auto& cells, std::uint8_t type) {
-    for (const auto& vertices : cells.vertices) {
-      connectivity.insert(connectivity.end(), vertices.begin(), vertices.end());
-      offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+  /// Elements are the first cells; other cells get NaN, or 0 where numbers are whole.
+  void put_fields(NamedField::Place place, std::size_t count) {
+    for (const NamedField& field : fields_) {
+      if (field.place != place) continue;
+      SpatialField wide = in_space(field, mesh_);
+      if (const auto whole = whole_values(wide, count * wide.components)) {
+        put_array(field.name, wide.components, *whole);
+        continue;
+      }
+      wide.values.resize(count * wide.components, std::numeric_limits<double>::quiet_NaN());
+      put_array(field.name, wide.components, wide.values);
     }
-    types.insert(types.end(), cells.size(), type);
-  });
-  const pugi::xml_node cells = add_node(piece, "Cells");
-  add_array(cells, "connectivity", 1, connectivity);
-  add_array(cells, "offsets", 1, offsets);
-  add_array(cells, "types", 1, types);
-}
+  }
 
-/// Values at vertices, or in elements, which are the first cells; other cells get a value that is
-/// not a number, and 0 where numbers are whole.
-void add_field(pugi::xml_node data, const NamedField& field, const AnyMesh& mesh) {
-  SpatialField wide = in_space(field, mesh);
-  const std::size_t places =
-      field.place == NamedField::Place::elements ? cell_count(mesh) : mesh.vertex_count();
-  const std::string name = unused_name(data, field.name);
-  if (const auto whole = whole_values(wide, places * wide.components))
-    return add_array(data, name, wide.components, *whole);
-  wide.values.resize(places * wide.components, std::numeric_limits<double>::quiet_NaN());
-  add_array(data, name, wide.components, wide.values);
-}
+  void put_cells() {
+    std::vector<std::int64_t> connectivity, offsets;
+    std::vector<std::uint8_t> types;
+    for_each_vtk_cells(mesh_, [&](const auto& cells, std::uint8_t type) {
+      for (const auto& vertices : cells.vertices) {
+        connectivity.insert(connectivity.end(), vertices.begin(), vertices.end());
+        offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+      }
+      types.insert(types.end(), cells.size(), type);
+    });
+    begin("Cells");
+    put_array("connectivity", 1, connectivity);
+    put_array("offsets", 1, offsets);
+    put_array("types", 1, types);
+    end("Cells");
+  }
 
-void add_data(pugi::xml_node piece, const AnyMesh& mesh, std::span<const NamedField> fields) {
-  const pugi::xml_node point_data = add_node(piece, "PointData");
-  add_array(point_data, "reference", 1, mesh.vertex_reference);
-  const pugi::xml_node cell_data = add_node(piece, "CellData");
-  const CellReferences references = cell_references(mesh);
-  add_array(cell_data, "region", 1, references.region);
-  add_array(cell_data, "boundary", 1, references.boundary);
-  for (const NamedField& field : fields)
-    add_field(field.place == NamedField::Place::elements ? cell_data : point_data, field, mesh);
-}
-
-/// Names of references as one text, a line for each, in an array of its bytes: some readers stop at
-/// arrays of strings.
-void add_names(pugi::xml_node grid, const AnyMesh& mesh) {
-  if (mesh.names.empty()) return;
-  const std::string text = name_lines(mesh);
-  const pugi::xml_node data = add_node(grid, "FieldData");
-  add_array(data, "names", 1, std::vector<std::uint8_t>(text.begin(), text.end()));
-  add_attribute(data.first_child(), "NumberOfTuples", text.size());
-}
-
-void add_piece(pugi::xml_node grid, const AnyMesh& mesh, std::span<const NamedField> fields) {
-  add_names(grid, mesh);
-  const pugi::xml_node piece = add_node(grid, "Piece");
-  add_attribute(piece, "NumberOfPoints", mesh.vertex_count());
-  add_attribute(piece, "NumberOfCells", cell_count(mesh));
-  add_data(piece, mesh, fields);
-  add_points(piece, mesh);
-  add_cells(piece, mesh);
-}
+  Sink& sink_;
+  const AnyMesh& mesh_;
+  std::span<const NamedField> fields_;
+  std::size_t depth_ = 0;
+  std::set<std::string> names_;  ///< of arrays of the element that is written
+};
 
 }  // namespace
 
@@ -139,19 +202,7 @@ void write_vtu(AtomicOutputs& outputs, const std::filesystem::path& path, const 
                const WriteOptions& options) {
   expect_fit_for_file(mesh, options.fields);
   warn_of_lost(options, path, beside_cells(mesh));
-  pugi::xml_document document;
-  const pugi::xml_node declaration = document.append_child(pugi::node_declaration);
-  add_attribute(declaration, "version", "1.0");
-  const pugi::xml_node file = add_node(document, "VTKFile");
-  add_attribute(file, "type", "UnstructuredGrid");
-  add_attribute(file, "version", "1.0");
-  add_attribute(file, "byte_order",
-                std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian");
-  add_attribute(file, "header_type", "UInt64");
-  add_attribute(file, "compressor", "vtkZLibDataCompressor");
-  add_piece(add_node(file, "UnstructuredGrid"), mesh, options.fields);
-  OutputWriter writer(outputs.stage(path));
-  document.save(writer, " ");
+  VtuWriter(outputs.stage(path), mesh, options.fields).write();
 }
 
 }  // namespace ductile::meshadapt

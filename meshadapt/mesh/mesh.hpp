@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/instructions.hpp"
 #include "core/quality.hpp"
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/simplex.hpp"
@@ -146,6 +147,8 @@ struct Mesh {
 
   /// A vertex with more elements than this does not move; its edges can still be split.
   static constexpr std::size_t largest_ball = 512;
+
+  Instructions instructions = best_instructions();  ///< for kernels; tests compare them
 
   /// Makes room for this many vertices and elements; set the new ones before anything else reads
   /// the mesh. Thread safety: one caller; runs on the executor.

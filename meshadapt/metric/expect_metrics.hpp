@@ -36,13 +36,14 @@ void expect_metrics(const runtime::Executor& executor, const std::vector<Metric<
          found);
 }
 
-/// The same of a field of one symmetric tensor at each vertex, of which there are all.
+/// The same for a field of one symmetric tensor at each vertex, which has all its values.
 template <int Dim>
-void expect_metric_field(const runtime::Executor& executor, const AnyField& field) {
+void expect_metric_field(const runtime::Executor& executor, const AnyField& field,
+                         const SizeBounds& bounds = {}) {
   const std::size_t bad = first_bad(executor, field.vertex_count, [&](std::size_t v) {
     Metric<Dim> metric;
     std::copy_n(&field.values[v * Metric<Dim>::size], Metric<Dim>::size, metric.m.begin());
-    return !in_range(metric);
+    return !in_range(metric) && !(has_bounds(bounds) && in_range(within_bounds(metric, bounds)));
   });
   if (bad != no_index)
     refuse(name_of(field) + ": " + what_metrics_are + "found another at " + value_at(field, bad) +

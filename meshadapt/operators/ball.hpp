@@ -52,11 +52,14 @@ class VertexBall {
   using Qualities = BallQualities<Dim>;
 
   VertexBall(const Mesh<Dim>& mesh, VertexId vertex)
-      : vertex_(vertex),
+      : instructions_(mesh.instructions),
+        vertex_(vertex),
         origin_(mesh.site_of[vertex].position),
         size_(mesh.elements_of.of(vertex).size()) {
     blocks_.resize((size_ + lane_count - 1) / lane_count, boost::container::default_init);
-    for (std::size_t b = 0; b < blocks_.size(); ++b) fill(mesh, vertex, b);
+    run_with(instructions_, [&] {
+      for (std::size_t b = 0; b < blocks_.size(); ++b) fill(mesh, vertex, b);
+    });
   }
 
   VertexId vertex() const { return vertex_; }
@@ -81,22 +84,7 @@ class VertexBall {
   }
   /// The same; sets the qualities, too.
   Score score(const Site<Dim>& apex, double bound, Qualities& qualities) const {
-    if (!(apex.scale > 0)) return {-1, 0};
-    float worst = 1;
-    double volume = std::numeric_limits<double>::infinity();
-    QualityLanes sum{};
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Judged judged = judge(blocks_[b], apex);
-      worst = std::min(worst, least(judged.quality));
-      volume = std::min(volume, least(judged.determinant));
-      if (!(worst > 0) || worst < bound) return {-1, 0};
-      if (b < Qualities::blocks) qualities.lanes[b] = judged.quality;
-      for (std::size_t l = 0; l < lane_count; ++l)
-        sum[l] += blocks_[b].counts[l] * judged.quality[l];
-    }
-    const float all = total(sum);
-    if (!(all > 0) || std::isinf(all)) return {-1, 0};  // least() may overlook what is no number
-    return {worst, all, volume};
+    return run_with(instructions_, [&] { return score_of_all(apex, bound, qualities); });
   }
 
   /// Is it certain that volumes are positive if the least of them comes out as this with the vertex
@@ -111,7 +99,8 @@ class VertexBall {
   /// Calls visit(i, quality) for each element.
   void visit_qualities(const Site<Dim>& apex, auto&& visit) const {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const QualityLanes quality = judge(blocks_[b], apex).quality;
+      const QualityLanes quality =
+          run_with(instructions_, [&] { return judge(blocks_[b], apex).quality; });
       const std::size_t begin = b * lane_count, end = std::min(size_, begin + lane_count);
       for (std::size_t i = begin; i < end; ++i) visit(i, static_cast<double>(quality[i - begin]));
     }
@@ -122,29 +111,7 @@ class VertexBall {
   /// harder, by the inverse of their qualities. The mean pull, from where the vertex is. As it is
   /// no more than a guess, roots are taken of numbers without a unit, in single precision.
   Vector<Dim> mean_pull(const Site<Dim>& site) const {
-    const Metric<Dim> dual = inverse(site.metric);
-    const double density = metric_volume<Dim>(1, site.scale);
-    LanesOf<Dim> centres{}, normals{};
-    Lanes weights{};
-    for (const Block& block : blocks_)
-      for (std::size_t l = 0; l < lane_count; ++l) {
-        const double weight = block.counts[l] / std::max(0.01F, block.quality[l]);
-        // the geometric mean of the facet's size and 1
-        const double square =
-            contraction(site.metric, tensor_at<Dim>(block.spread, l)) / (2 * Dim - 3);
-        const Vector<Dim> normal = at(block.normal, l), centre = at(block.centre, l);
-        // place = centre + stretch * dual * normal
-        const double stretch = weight * height_over_normal(square, normal, dual, density);
-        for (std::size_t i = 0; i < Dim; ++i) {
-          centres[i][l] += weight * centre.x[i];
-          normals[i][l] += stretch * normal.x[i];
-        }
-        weights[l] += weight;
-      }
-    Vector<Dim> centre, normal;
-    for (std::size_t i = 0; i < Dim; ++i) centre.x[i] = total(centres[i]);
-    for (std::size_t i = 0; i < Dim; ++i) normal.x[i] = total(normals[i]);
-    return (1 / total(weights)) * (centre + product(dual, normal));
+    return run_with(instructions_, [&] { return mean_pull_of_all(site); });
   }
 
   /// Gradient of an element's quality, which is this, by the position of its apex, as if the metric
@@ -181,6 +148,51 @@ class VertexBall {
     if constexpr (Dim == 2) return density * (std::sqrt(0.75F) / std::sqrt(side));
     const double area2 = density * density * squared_length(dual, normal);
     return density * std::sqrt(2.0F / 3 * side / static_cast<float>(area2));
+  }
+
+  Score score_of_all(const Site<Dim>& apex, double bound, Qualities& qualities) const {
+    if (!(apex.scale > 0)) return {-1, 0};
+    float worst = 1;
+    double volume = std::numeric_limits<double>::infinity();
+    QualityLanes sum{};
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Judged judged = judge(blocks_[b], apex);
+      worst = std::min(worst, least(judged.quality));
+      volume = std::min(volume, least(judged.determinant));
+      if (!(worst > 0) || worst < bound) return {-1, 0};
+      if (b < Qualities::blocks) qualities.lanes[b] = judged.quality;
+      for (std::size_t l = 0; l < lane_count; ++l)
+        sum[l] += blocks_[b].counts[l] * judged.quality[l];
+    }
+    const float all = total(sum);
+    if (!(all > 0) || std::isinf(all)) return {-1, 0};  // least() may overlook what is no number
+    return {worst, all, volume};
+  }
+
+  Vector<Dim> mean_pull_of_all(const Site<Dim>& site) const {
+    const Metric<Dim> dual = inverse(site.metric);
+    const double density = metric_volume<Dim>(1, site.scale);
+    LanesOf<Dim> centres{}, normals{};
+    Lanes weights{};
+    for (const Block& block : blocks_)
+      for (std::size_t l = 0; l < lane_count; ++l) {
+        const double weight = block.counts[l] / std::max(0.01F, block.quality[l]);
+        // the geometric mean of the facet's size and 1
+        const double square =
+            contraction(site.metric, tensor_at<Dim>(block.spread, l)) / (2 * Dim - 3);
+        const Vector<Dim> normal = at(block.normal, l), centre = at(block.centre, l);
+        // place = centre + stretch * dual * normal
+        const double stretch = weight * height_over_normal(square, normal, dual, density);
+        for (std::size_t i = 0; i < Dim; ++i) {
+          centres[i][l] += weight * centre.x[i];
+          normals[i][l] += stretch * normal.x[i];
+        }
+        weights[l] += weight;
+      }
+    Vector<Dim> centre, normal;
+    for (std::size_t i = 0; i < Dim; ++i) centre.x[i] = total(centres[i]);
+    for (std::size_t i = 0; i < Dim; ++i) normal.x[i] = total(normals[i]);
+    return (1 / total(weights)) * (centre + product(dual, normal));
   }
 
   struct Judged {
@@ -322,6 +334,7 @@ class VertexBall {
     }
   }
 
+  Instructions instructions_;
   VertexId vertex_;
   Vector<Dim> origin_;  // lanes are relative to it: less is lost by rounding
   std::size_t size_;

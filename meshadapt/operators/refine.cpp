@@ -1,14 +1,12 @@
 #include "operators/refine.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/atomic.hpp"
-#include "ductile/runtime/hash.hpp"
 #include "ductile/runtime/operator.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/worklist.hpp"
@@ -22,88 +20,10 @@ using runtime::PhaseTimer;
 
 namespace {
 
-/// Elements around edges that are noted together.
-constexpr std::size_t together = 32;
 /// Edges whose elements are looked at before other threads would have begun.
 constexpr std::size_t few_to_look_at = 16;
 
-/// Where along a-b its two halves have the same metric length, the size varying geometrically.
-template <int Dim>
-double metric_middle(const Site<Dim>& a, const Site<Dim>& b) {
-  const Vector<Dim> d = b.position - a.position;
-  const double ratio = std::sqrt(squared_length(b.metric, d) / squared_length(a.metric, d));
-  if (std::abs(ratio - 1) < 1e-3) return 0.5;
-  return std::clamp(std::log(0.5 * (1 + ratio)) / std::log(ratio), 0.2, 0.8);
-}
-
-/// Which edge of an element a-b is.
-template <int Dim>
-std::size_t edge_of(const Corners<Dim>& corners, VertexId a, VertexId b) {
-  std::size_t k = 0;
-  for (; k + 1 < Simplex<Dim>::edges; ++k) {
-    const auto [p, q] = ends_of_edge<Dim>(corners, k);
-    if ((p == a && q == b) || (p == b && q == a)) break;
-  }
-  return k;
-}
-
-/// Square of twice the metric area of the triangle that two vectors span.
-template <int Dim>
-double squared_area(const Metric<Dim>& metric, const Vector<Dim>& u, const Vector<Dim>& v) {
-  const double uu = squared_length(metric, u), vv = squared_length(metric, v);
-  const double uv = (uu + vv - squared_length(metric, u - v)) / 2;
-  return uu * vv - uv * uv;
-}
-
-/// Metric length of the least height of a triangle.
-template <int Dim>
-double least_height_of_triangle(const std::array<Vector<Dim>, 3>& p, const Metric<Dim>& metric) {
-  double longest = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    longest = std::max(longest, squared_length(metric, p[(i + 1) % 3] - p[i]));
-  return std::sqrt(std::max(0.0, squared_area(metric, p[1] - p[0], p[2] - p[0])) / longest);
-}
-
-/// Metric length of the least height of an element.
-double least_height(const std::array<Vector<2>, 3>& p, const Site<2>& judge) {
-  return least_height_of_triangle(p, judge.metric);
-}
-double least_height(const std::array<Vector<3>, 4>& p, const Site<3>& judge) {
-  double largest = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vector<3>& origin = p[(i + 1) % 4];
-    largest = std::max(
-        largest, squared_area(judge.metric, p[(i + 2) % 4] - origin, p[(i + 3) % 4] - origin));
-  }
-  return metric_volume<3>(certain_determinant<3>(p), judge.scale) / std::sqrt(largest);
-}
-
-template <int Dim, std::size_t n>
-std::array<Vector<Dim>, n> positions_of(const Mesh<Dim>& mesh,
-                                        const std::array<VertexId, n>& vertices) {
-  std::array<Vector<Dim>, n> positions;
-  for (std::size_t i = 0; i < n; ++i) positions[i] = mesh.site_of[vertices[i]].position;
-  return positions;
-}
-
 }  // namespace
-
-template <int Dim>
-bool Refine<Dim>::splits(const LongEdge& edge) const {
-  Split split;
-  Shell shell;
-  shell_of(mesh_, edge.a, edge.b, shell);
-  if (!locate(edge, shell, split)) return false;
-  return std::all_of(shell.begin(), shell.end(), [&](ElementId element) {
-    Cuts cuts{};
-    const std::size_t k = edge_of<Dim>(mesh_.corners_of[element], edge.a, edge.b);
-    Points points = points_of(element, cuts);
-    points.set_middle(k, split);
-    Pieces<Dim> pieces;
-    Qualities qualities{mesh_.quality_of[element]};
-    return cut(pieces, qualities, k, split, points);
-  });
-}
 
 template <int Dim>
 runtime::RoundsReport Refine<Dim>::run(runtime::UnsetVector<LongEdge> edges) {
@@ -126,194 +46,7 @@ runtime::RoundsReport Refine<Dim>::run(runtime::UnsetVector<LongEdge> edges) {
   return report_;
 }
 
-// ---- Where the new vertices go ----
-
-/// Has what is around edges soon after this one brought into the cache.
-template <int Dim>
-[[gnu::always_inline]] inline void Refine<Dim>::prefetch_shells_after(std::size_t number) const {
-  for (const int stage : {2, 1}) {
-    const std::size_t ahead = number + 3 * static_cast<std::size_t>(stage);
-    if (ahead >= edges_.size()) continue;
-    const auto [a, b] = std::pair(edges_[ahead].a, edges_[ahead].b);
-    prefetch_shell(mesh_, a, b, stage);
-    if (stage == 2) {
-      __builtin_prefetch(&mesh_.host_of[a]);
-      __builtin_prefetch(&mesh_.host_of[b]);
-    } else {
-      prefetch_site(mesh_, a);
-      prefetch_site(mesh_, b);
-      background_.prefetch(mesh_.host_of[a]);
-    }
-  }
-}
-
-/// Sets what becomes of the edges, and which of them cut which elements.
-template <int Dim>
-void Refine<Dim>::plan() {
-  runtime::FreshMemory fresh;
-  splits_.resize_for_overwrite(edges_.size(), fresh);
-  fresh.touch(executor_);
-  refused_in_ = make_filled<std::uint32_t>(executor_, edges_.size());
-  asked_ = make_filled<std::uint8_t>(executor_, edges_.size());
-  auto is_cut = make_filled<std::uint8_t>(executor_, mesh_.element_slots());
-  around_ = runtime::parallel_collect<Around>(
-      executor_, edges_.size(), [&](std::size_t i, auto&& append) {
-        const auto number = static_cast<std::uint32_t>(i);
-        prefetch_shells_after(i);
-        Shell shell;
-        shell_of(mesh_, edges_[i].a, edges_[i].b, shell);
-        refused_in_[i] = !locate(edges_[i], shell, splits_[i]);
-        if (!is_split(number)) return;
-        for (const ElementId element : shell) {
-          runtime::atomic_mark(is_cut[element]);
-          append({element, number});
-        }
-      });
-  if (around_.size() > std::numeric_limits<std::uint32_t>::max())
-    throw std::length_error("more elements around long edges than 32-bit numbers can count");
-  elements_ = MarkedSet(executor_, is_cut);
-  cuts_ = runtime::make_unset_vector<Cuts>(executor_, elements_.size());
-  parallel_for(
-      executor_, elements_.size(), [&](std::size_t place) { cuts_[place].split.fill(0); },
-      few_nanoseconds);
-  around_begin_ = make_filled<std::uint32_t>(executor_, edges_.size());
-  const auto note = [this](std::size_t, std::size_t begin, std::size_t end) {
-    note_splits(begin, end);
-  };
-  runtime::parallel_for_blocks(executor_, around_.size(), together, note, {});
-}
-
-/// Tells elements which of their edges are split, those of a block of around_. Where that is noted
-/// is asked for ahead, block by block, as what is around other blocks may be changing.
-template <int Dim>
-void Refine<Dim>::note_splits(std::size_t begin, std::size_t end) {
-  std::array<ElementId, together> elements;
-  for (std::size_t i = begin; i < end; ++i) {
-    elements[i - begin] = std::exchange(around_[i].place, elements_.place_of(around_[i].place));
-    __builtin_prefetch(&mesh_.corners_of[elements[i - begin]]);
-    __builtin_prefetch(&cuts_[around_[i].place], 1);
-  }
-  for (std::size_t i = begin; i < end; ++i) {
-    const auto [place, number] = around_[i];
-    const LongEdge& edge = edges_[number];
-    const Corners<Dim>& corners = mesh_.corners_of[elements[i - begin]];
-    cuts_[place].split[edge_of<Dim>(corners, edge.a, edge.b)] = number + 1;
-    if (i == 0 || around_[i - 1].number != number)
-      around_begin_[number] = static_cast<std::uint32_t>(i);
-  }
-}
-
-/// False, and little is set, where the edge is refused for what it is or where it lies.
-template <int Dim>
-bool Refine<Dim>::locate(const LongEdge& edge, const Shell& shell, Split& split) const {
-  if (!may_split(edge, shell)) return false;
-  const Site<Dim>& a = mesh_.site_of[edge.a];
-  const Site<Dim>& b = mesh_.site_of[edge.b];
-  // Off the middle by up to 5 %, lest a regular mesh be refined into a regular mesh of worse
-  // qualities, in which no single change is an improvement.
-  const double chance = runtime::mix32(edge.a * 31 + edge.b) * (2.0 / 4294967296.0) - 1;
-  const double t = metric_middle(a, b) + 0.05 * chance;
-  const Vector<Dim> position = (1 - t) * a.position + t * b.position;
-  const auto sample = background_.sample(position, mesh_.host_of[t < 0.5 ? edge.a : edge.b]);
-  split.site = make_site(position, sample.metric);
-  split.host = sample.host;
-  // Where metrics are as thin as rounding is fine, what is between them may be no metric.
-  if (!(split.site.scale > 0)) return false;
-  classify(edge, shell, split);
-  return !shorter_than(a, split.site, rules_.shortest_split) &&
-         !shorter_than(b, split.site, rules_.shortest_split) &&
-         !leads_through_layer(edge, shell, split);
-}
-
-/// Required elements, facets and edges stay as they are.
-template <int Dim>
-bool Refine<Dim>::may_split(const LongEdge& edge, const Shell& shell) const {
-  for (const ElementId e : shell) {
-    if (mesh_.required_element(e)) return false;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      const VertexId opposite = mesh_.corners_of[e][i];
-      if (opposite != edge.a && opposite != edge.b &&
-          mesh_.patches[mesh_.patches_of[e][i]].required)
-        return false;
-    }
-  }
-  if constexpr (Dim == 3) {
-    const CurveId curve = mesh_.curve_of(edge.a, edge.b);
-    if (curve != 0 && mesh_.curves[curve].required) return false;
-  }
-  return true;
-}
-
-template <int Dim>
-void Refine<Dim>::classify(const LongEdge& edge, const Shell& shell, Split& split) const {
-  split.kind = {.class_dimension = Dim};
-  split.entity = 0;
-  split.length = edge.length;
-  split.worst_around = 1;
-  for (const ElementId e : shell) {
-    split.worst_around = std::min(split.worst_around, mesh_.quality_of[e]);
-    if (const PatchId patch = patch_of_edge(mesh_, e, edge.a, edge.b)) {
-      split.entity = patch;
-      split.kind.class_dimension = Dim - 1;
-    }
-  }
-  if constexpr (Dim == 3)
-    if (const CurveId curve = mesh_.curve_of(edge.a, edge.b)) {
-      split.entity = curve;
-      split.kind.class_dimension = 1;
-    }
-  const auto is_fine_or_spans = [&](ElementId e) {
-    return mesh_.quality_of[e] >= rules_.poor_quality || spans_layer(e);
-  };
-  split.in_layer =
-      split.kind.class_dimension < Dim && std::all_of(shell.begin(), shell.end(), is_fine_or_spans);
-  // The references of corners mark points, and are of these only.
-  const auto is_corner = [&](VertexId v) {
-    return mesh_.kind_of[v].corner || mesh_.kind_of[v].required;
-  };
-  const std::int32_t reference = mesh_.reference_of[edge.a];
-  const bool same = reference == mesh_.reference_of[edge.b];
-  split.reference = same && !(is_corner(edge.a) && is_corner(edge.b)) ? reference : 0;
-}
-
-/// Does an element reach from one side of a layer to the other? None of its corners is inside.
-template <int Dim>
-bool Refine<Dim>::spans_layer(ElementId element) const {
-  const Corners<Dim>& corners = mesh_.corners_of[element];
-  return std::none_of(corners.begin(), corners.end(),
-                      [&](VertexId v) { return mesh_.kind_of[v].class_dimension == Dim; });
-}
-
-/// Does an edge lead from one side of a thin layer to the other, or of a thin strip of a patch? A
-/// vertex inside would be in the way of splits of the sides, after which swaps make the edge
-/// shorter.
-template <int Dim>
-bool Refine<Dim>::leads_through_layer(const LongEdge& edge, const Shell& shell,
-                                      const Split& split) const {
-  const int inside = split.kind.class_dimension;
-  const auto on_side = [&](VertexId v) { return mesh_.kind_of[v].class_dimension < inside; };
-  if (inside < 2 || !on_side(edge.a) || !on_side(edge.b)) return false;
-  return std::all_of(shell.begin(), shell.end(), [&](ElementId e) {
-    const Corners<Dim>& corners = mesh_.corners_of[e];
-    if (inside == Dim)
-      return std::all_of(corners.begin(), corners.end(), on_side) &&
-             least_height(positions_of(mesh_, corners), split.site) < rules_.short_edge;
-    for (std::size_t i = 0; i <= Dim; ++i) {
-      if (mesh_.patches_of[e][i] == 0 || corners[i] == edge.a || corners[i] == edge.b) continue;
-      const auto facet = facet_of<Dim>(corners, static_cast<int>(i));
-      if (!std::all_of(facet.begin(), facet.end(), on_side)) return false;
-      if constexpr (Dim == 3)
-        if (!(least_height_of_triangle(positions_of(mesh_, facet), split.site.metric) <
-              rules_.short_edge))
-          return false;
-    }
-    return true;
-  });
-}
-
-// ---- Who refuses ----
-
-/// Has the points of elements soon after the one at this place brought into the cache.
+/// Prefetches the points of elements soon after the one at this place.
 template <int Dim>
 [[gnu::always_inline]] inline void Refine<Dim>::prefetch_points_after(std::size_t place) const {
   constexpr std::size_t ahead = 3;
@@ -325,8 +58,8 @@ template <int Dim>
     __builtin_prefetch(&splits_[std::max(split, 1U) - 1].site);
 }
 
-/// As if edges were split one after the other, the longest first: one is refused only once it is
-/// known which of those before it are.
+/// As if edges were split one after the other, the longest first: an edge is refused only when it
+/// is known which edges before it are refused.
 template <int Dim>
 void Refine<Dim>::refuse() {
   const auto look_ahead = [&](std::size_t place) {
@@ -347,7 +80,7 @@ void Refine<Dim>::refuse() {
   around_begin_ = {};
 }
 
-/// Refuses what elements ask to, but where that may still change; returns the edges refused.
+/// Refuses the edges that elements ask to refuse, except where this may still change; returns them.
 template <int Dim>
 runtime::UnsetVector<std::uint32_t> Refine<Dim>::take_refused() {
   ++round_;
@@ -383,8 +116,8 @@ bool Refine<Dim>::is_asked(std::uint32_t number) const {
   return any;
 }
 
-/// Is this the first edge that the elements around it ask to refuse? What they do with the others
-/// may depend on it.
+/// Is this the first edge that the elements around it ask to refuse? Their other requests may
+/// depend on it.
 template <int Dim>
 bool Refine<Dim>::goes_first(std::uint32_t number) const {
   bool first = true;
@@ -412,7 +145,7 @@ bool Refine<Dim>::first_refused_of(const Cuts& cuts, std::uint32_t number) const
   return true;
 }
 
-/// Cuts an element for trial, and asks to refuse the edges by which it may not be cut.
+/// Tries to cut an element, and asks to refuse the edges along which it may not be cut.
 template <int Dim>
 void Refine<Dim>::look(std::size_t place) {
   const ElementId element = elements_[place];
@@ -463,8 +196,8 @@ static std::array<const Site<Dim>*, Dim + 1> sites_of(
   return sites;
 }
 
-/// Cuts an element into pieces that any rule accepts, whatever came before; false if there are
-/// others.
+/// Cuts an element into pieces that every rule accepts, whatever the element was like; returns
+/// false if one of them is not.
 template <int Dim>
 bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& points) const {
   Pieces<Dim> pieces;
@@ -480,8 +213,8 @@ bool Refine<Dim>::cut_freely(Cuts& cuts, const Order& order, const Points& point
   return true;
 }
 
-/// Cuts pieces along one edge, unless that makes an edge or a quality that the rules refuse; they
-/// stay as they are then.
+/// Cuts pieces along one edge, unless the rules refuse an edge or a quality that this makes; then
+/// the pieces stay as they are.
 template <int Dim>
 bool Refine<Dim>::cut(Pieces<Dim>& pieces, Qualities& qualities, std::size_t edge,
                       const Split& split, const Points& points) const {
@@ -521,8 +254,7 @@ bool Refine<Dim>::keeps_distance(const Pieces<Dim>& pieces, std::size_t edge,
 }
 
 /// Does a corner of a piece lie on another side of a layer, or of a strip of a patch, than the edge
-/// that is cut? How far they are from each other is for the layer to say, and no collapse may join
-/// them.
+/// that is cut? Their distance follows from the layer's thickness, and no collapse may join them.
 template <int Dim>
 bool Refine<Dim>::is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCut corner,
                             const Points& points) const {
@@ -542,8 +274,7 @@ bool Refine<Dim>::is_across(const Piece<Dim>& piece, std::size_t edge, PointOfCu
   return false;
 }
 
-/// Where the metric changes a lot over an element, as it does along overlong edges, its quality
-/// tells little.
+/// Along overlong edges the metric changes so much over an element that its quality means little.
 template <int Dim>
 double Refine<Dim>::least_quality(double before, const Split& split) const {
   if (before < rules_.poor_quality)

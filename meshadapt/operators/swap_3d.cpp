@@ -77,7 +77,7 @@ class RingTriangulation {
     worst_[i][j] = best;
   }
 
-  /// Of the worse of a ring triangle's two elements.
+  /// The squared quality of the worse of a ring triangle's two elements.
   double triangle(std::size_t i, std::size_t k, std::size_t j) const {
     const Base base = make_base({site_[i], site_[j], site_[k]});
     return std::min(squared_quality_over(base, *site_b_, 1),
@@ -181,32 +181,41 @@ std::optional<Replacement<3>> plan_face_swap(const Mesh<3>& mesh, const Swappabl
   return result;
 }
 
+std::optional<Replacement<3>> plan_swap(const Mesh<3>& mesh, const Swappable& item,
+                                        const Shell& shell, const EdgeRange& range) {
+  float worst = 1;
+  for (const ElementId e : shell) worst = std::min(worst, mesh.quality_of[e]);
+  const double bar = Swap<3>::bar(worst);
+  if (item.c != none) {
+    if (shell.size() != 2) return {};
+    return plan_face_swap(mesh, item, shell, bar, range);
+  }
+  Ring ring;
+  if (!ring.close(shell.size(), item.a, item.b,
+                  [&](std::size_t i) { return mesh.corners_of[shell[i]]; }))
+    return {};
+  auto result = triangulate(mesh, item, ring, bar);
+  if (result && accept_edge_removal(mesh, item, shell, ring, *result) &&
+      keeps_lengths(mesh, *result, {item.a, item.b}, range))
+    return result;
+  if (!mesh.surface) return {};
+  return plan_cut_off(mesh, item.a, item.b, shell, ring);
+}
+
 }  // namespace
 
 template <>
 bool Swap<3>::decide(const Swappable& item, const Shell& shell, Plan& plan) const {
-  const auto take = [&](const std::optional<Replacement<3>>& found) {
+  return run_with(mesh_.instructions, [&] {
+    const auto found = plan_swap(mesh_, item, shell, range_);
     if (found) plan = *found;
     return found.has_value();
-  };
-  float worst = 1;
-  for (const ElementId e : shell) worst = std::min(worst, mesh_.quality_of[e]);
-  if (item.c != none)
-    return shell.size() == 2 && take(plan_face_swap(mesh_, item, shell, bar(worst), range_));
-  Ring ring;
-  if (!ring.close(shell.size(), item.a, item.b,
-                  [&](std::size_t i) { return mesh_.corners_of[shell[i]]; }))
-    return false;
-  auto result = triangulate(mesh_, item, ring, bar(worst));
-  if (result && accept_edge_removal(mesh_, item, shell, ring, *result) &&
-      keeps_lengths(mesh_, *result, {item.a, item.b}, range_))
-    return take(result);
-  return mesh_.surface && take(plan_cut_off(mesh_, item.a, item.b, shell, ring));
+  });
 }
 
 namespace {
 
-/// What lengths are compared with at a poor element. Edges that are short for the worst element
+/// Lengths at a poor element are compared with these. Edges that are short for the worst element
 /// around them are hardly ever worth removing, and faces are hardly ever worth piercing by an edge
 /// that is long for the worse element (docs/notebook/tried-in-adaptation.md).
 struct Gauge {
@@ -373,7 +382,8 @@ runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& e
     const auto vertex = static_cast<VertexId>(v);
     const auto ball = mesh.elements_of.of(vertex);
     if (std::any_of(ball.begin(), ball.end(), poor))
-      EdgeSearch(mesh, vertex, after, good_enough, range).run(append);
+      run_with(mesh.instructions,
+               [&] { EdgeSearch(mesh, vertex, after, good_enough, range).run(append); });
   };
   const auto find_faces = [&](std::size_t e, auto&& append) {
     const auto element = static_cast<ElementId>(e);
@@ -381,7 +391,9 @@ runtime::UnsetVector<Swappable> Swap<3>::improvements(const runtime::Executor& e
     const auto is_near = [&](VertexId v) { return near_change[v] != 0; };
     const Corners<3>& corners = mesh.corners_of[e];
     if (std::count_if(corners.begin(), corners.end(), is_near) < 3) return;
-    if (const auto face = face_to_pierce(mesh, element, after, range)) append(*face);
+    const auto face =
+        run_with(mesh.instructions, [&] { return face_to_pierce(mesh, element, after, range); });
+    if (face) append(*face);
   };
   const std::size_t vertices = mesh.vertex_slots();
   const auto find = [&](std::size_t i, auto&& append) {

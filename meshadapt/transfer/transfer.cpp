@@ -6,8 +6,8 @@
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "mesh/finite_values.hpp"
+#include "transfer/conservative_transfer.hpp"
 #include "transfer/places.hpp"
-#include "transfer/projection.hpp"
 #include "transfer/vertex_places.hpp"
 
 namespace ductile::meshadapt {
@@ -40,7 +40,7 @@ TransferredField transfer(const Executor& executor, const FieldOnMesh& from, con
   result.report.vertices_outside = at_vertices.outside;
   if (projection) {
     const JoinParts whole;
-    Projection<Dim> onto(executor, locator, field, new_mesh, whole);
+    ConservativeTransfer<Dim> onto(executor, locator, field, new_mesh, whole);
     result.field.values = onto.run(*projection);
     result.report.volume_outside = onto.coverage().volume_outside;
     result.report.volume_left_out = onto.coverage().volume_left_out;

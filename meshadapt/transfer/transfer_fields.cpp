@@ -13,9 +13,9 @@
 #include "ductile/meshadapt/transfer.hpp"
 #include "mesh/array_lengths.hpp"
 #include "mesh/wording.hpp"
+#include "transfer/conservative_transfer.hpp"
 #include "transfer/element_fields.hpp"
 #include "transfer/places.hpp"
-#include "transfer/projection.hpp"
 #include "transfer/vertex_places.hpp"
 
 namespace ductile::meshadapt {
@@ -111,7 +111,7 @@ class FieldCarrier {
         if (join_) join_(at_vertices.values, field.stride, Joining::first);
         return std::move(at_vertices.values);
       }
-      Projection<Dim> onto(executor_, locator_, field, new_mesh_, join_);
+      ConservativeTransfer<Dim> onto(executor_, locator_, field, new_mesh_, join_);
       values = onto.run({});
       coverage = onto.coverage();
     }

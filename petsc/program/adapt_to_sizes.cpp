@@ -4,10 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "adapt/sizes_again.hpp"
 #include "distributed/migrate.hpp"
 #include "distributed/parts_geometry.hpp"
-#include "ductile/meshadapt/metric_field.hpp"
 #include "first_rank.hpp"
 
 namespace ductile::petsc {
@@ -16,31 +14,32 @@ using runtime::Executor;
 
 namespace {
 
-/// The adapted mesh on the first rank, with the sizes of its places; none, on all ranks, if it
-/// already was adapted to about these.
-std::optional<Part> lacking(const Communicator& comm, const Executor& executor, const Input& input,
-                            const Part& part) {
+/// The adapted mesh on the first rank, with its next metric; none, on all ranks, if it is final.
+std::optional<Part> next(const Communicator& comm, const Executor& executor, Input& input,
+                         const Part& part, int pass) {
   Part all = gather_on_first(comm, executor, part);
-  bool has_all = false;
+  bool is_final = false;
   on_first_rank(comm, [&] {
-    const AnyMesh mesh = mesh_for_file(all, input.file.kept);
-    const meshadapt::SizeBounds bounds{input.job.adapt.smallest_size, input.job.adapt.largest_size};
-    const AnyField asked = meshadapt::size_field(executor, mesh, *input.sizes);
-    has_all = meshadapt::has_sizes(executor, all.wanted, asked.values, bounds.smallest);
-    if (!has_all) all.wanted = meshadapt::metric_of(asked, mesh, bounds);
+    meshadapt::MeshWithMetric now{mesh_for_file(all, input.file.kept), all.wanted};
+    const AnyField* metric = input.places->next(
+        {executor, pass, now.mesh, [&]() -> const meshadapt::MeshWithMetric& { return now; }});
+    is_final = metric == nullptr;
+    if (!is_final) all.wanted = *metric;
   });
-  from_first_rank(comm, has_all);
-  if (has_all) return std::nullopt;
+  from_first_rank(comm, is_final);
+  if (is_final) return std::nullopt;
   return all;
 }
 
 }  // namespace
 
-AdaptedParts adapt_to_sizes(const Communicator& comm, const Executor& executor, const Input& input,
+AdaptedParts adapt_to_sizes(const Communicator& comm, const Executor& executor, Input& input,
                             AdaptPartsOptions options) {
+  const bool by_places = input.job.places.any();
+  if (by_places && comm.size() == 1) options.source = &*input.places;
   AdaptedParts parts = adapt_parts(comm, executor, input.file.part, options);
-  for (int times = 1; input.job.places.any() && times < meshadapt::most_times; ++times) {
-    const auto again = lacking(comm, executor, input, parts.part);
+  for (int pass = 1; by_places && comm.size() > 1; ++pass) {
+    const auto again = next(comm, executor, input, parts.part, pass);
     if (!again) break;
     auto& make = options.adapt.make;  // distances are measured from the first mesh
     if (make.hausdorff_tolerance > 0 && !make.geometry)

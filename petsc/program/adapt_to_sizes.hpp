@@ -9,9 +9,9 @@
 
 namespace ductile::petsc {
 
-/// Adapts the mesh to its metric. The first rank, which gathers the adapted mesh, evaluates sizes
-/// by places again, as meshadapt::adapt_to_sizes() does. Throws AgreedError. Collective.
+/// Adapts the mesh to its metric. The first rank, which gathers the adapted mesh, asks for the next
+/// sizes by places. Throws AgreedError. Collective.
 AdaptedParts adapt_to_sizes(const Communicator& comm, const runtime::Executor& executor,
-                            const Input& input, AdaptPartsOptions options);
+                            Input& input, AdaptPartsOptions options);
 
 }  // namespace ductile::petsc

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "adapt/sizes_again.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
 #include "files.hpp"
@@ -92,7 +91,9 @@ void read_files(Input& input, const Executor& executor) {
   AdaptJob& job = input.job;
   cli::AdaptInput read = cli::read_input(executor, job, input.warnings);
   AnyMesh& mesh = read.file.mesh;
-  if (job.places.any()) input.sizes = meshadapt::lasting(mesh, read.sizes);
+  if (job.places.any())
+    input.places.emplace(mesh, read.sizes,
+                         meshadapt::SizeBounds{job.adapt.smallest_size, job.adapt.largest_size});
   if (job.adapt.make.complete_boundary) meshadapt::list_boundary(executor, mesh);
   auto metric =
       meshadapt::metric_of(read.metric, mesh, {job.adapt.smallest_size, job.adapt.largest_size});

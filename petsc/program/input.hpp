@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
+#include "adapt/sizes_by_places.hpp"
 #include "adapt_job.hpp"
 #include "distributed/communicator.hpp"
 #include "distributed/file_part.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "ductile/meshadapt/sizes.hpp"
 #include "ductile/runtime/executor.hpp"
 
 namespace ductile::petsc {
@@ -28,8 +28,8 @@ struct Input {
   std::filesystem::path output;
   Form form = Form::gathered;
   FilePart file;
-  std::optional<meshadapt::Sizes> sizes;  // by places, to be evaluated on adapted meshes
-  std::optional<Part> geometry;           // the mesh of -geometry
+  std::optional<meshadapt::SizesByPlaces> places;
+  std::optional<Part> geometry;  // the mesh of -geometry
   std::vector<meshadapt::NamedField> fields;
   std::vector<std::size_t> field_count_of;  // [file given by --field]
   meshadapt::Warnings warnings;

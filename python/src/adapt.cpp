@@ -1,5 +1,5 @@
 /// @file
-/// Adaptation: its options and report, and Python's part in its progress.
+/// Adaptation: options, report, and the progress function.
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -27,8 +27,8 @@ using meshadapt::AnyField;
 using meshadapt::AnyMesh;
 using meshadapt::KernelReport;
 
-/// Whether a progress function wants to go on: it returns None, or anything that Python or numpy
-/// takes for true.
+/// True if a progress function wants to continue: it returned None or a value that is true in
+/// Python.
 bool is_true(const py::object& answer) {
   if (answer.is_none()) return true;
   const int truth = PyObject_IsTrue(answer.ptr());
@@ -36,9 +36,9 @@ bool is_true(const py::object& answer) {
   return truth == 1;
 }
 
-/// Called without the interpreter's lock, after each step: asks Python's function, if there is one,
-/// whether to go on, and raises KeyboardInterrupt if the user has pressed Ctrl-C. The lock is taken
-/// for that, and without a function at most 50 times a second.
+/// Called without the interpreter's lock after each step. Asks the progress function, if there is
+/// one, whether to continue; raises KeyboardInterrupt if the user has pressed Ctrl-C. This takes
+/// the lock, without a progress function at most 50 times a second.
 class Progress {
  public:
   explicit Progress(py::object function) : function_(std::move(function)) {}
@@ -59,11 +59,11 @@ class Progress {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Rows of an array, and what they are; without them the mesh keeps its sizes, or gets those of
-/// curved boundaries.
+/// Rows of an array and their type. Without a metric, the mesh keeps its sizes, or gets those from
+/// curvature.
 using GivenMetric = std::optional<std::tuple<Given<double>, AnyField::Type>>;
 
-/// What adapt(executor, options) gives, with Python's function as its progress.
+/// Returns the result of adapt(executor, options), with Python's function as progress.
 template <class Adapt>
 py::tuple adapted_by(const AnyMesh& mesh, Adapt&& adapt, AdaptOptions options,
                      const runtime::ExecutorOptions& threads, const py::object& progress) {
@@ -72,9 +72,9 @@ py::tuple adapted_by(const AnyMesh& mesh, Adapt&& adapt, AdaptOptions options,
   AdaptedMesh adapted = work(threads, [&](const runtime::Executor& executor) {
     AdaptedMesh result = adapt(executor, options);
     for (const std::string& loose : meshadapt::check_conformity(executor, mesh))
-      result.report.warnings.push_back(loose +
-                                       "; the mesh is not connected there (joined() makes one of"
-                                       " doubled vertices)");
+      result.report.warnings.push_back(
+          loose + "; the mesh is not connected there" +
+          (loose.find(" hangs: ") == std::string::npos ? " (joined() joins them)" : ""));
     return result;
   });
   const Shape shape{signed_size(adapted.mesh.vertex_count()),

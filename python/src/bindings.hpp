@@ -1,6 +1,6 @@
 /// @file
-/// What the parts of the Python module share: arrays of numpy as views of what C++ holds, vectors
-/// of C++ as arrays of numpy, neither of which copies, and work without the interpreter's lock.
+/// Shared by the parts of the Python module: numpy views of C++ memory, vectors moved into numpy
+/// arrays (neither copies), and work without the interpreter's lock.
 #pragma once
 
 #include <cstdint>
@@ -20,20 +20,21 @@ namespace ductile::python {
 namespace py = pybind11;
 
 using Shape = std::vector<py::ssize_t>;
-/// An array that C++ reads where it is; one of another type or layout is refused, so the package
-/// converts it first.
+/// An array that C++ reads in place. Arrays of another type or layout are refused; the package
+/// converts them first.
 template <class T>
 using Given = py::array_t<T, py::array::c_style>;
 
 void bind_mesh(py::module_& module);
 void bind_adapt(py::module_& module);
-void bind_geometry(py::module_& module);  // before bind_adapt(), whose options have one
+void bind_geometry(py::module_& module);  // before bind_adapt(), whose options refer to it
 void bind_metric(py::module_& module);
 void bind_transfer(py::module_& module);
 
 inline py::ssize_t signed_size(std::size_t size) { return static_cast<py::ssize_t>(size); }
 
-/// What numpy calls a type: indices are unsigned in C++ and signed here, so that none is -1.
+/// The type of elements in numpy. Indices are unsigned in C++ and signed here, so that `none` is
+/// -1.
 template <class T>
 struct Shown {
   using Type = T;
@@ -43,7 +44,7 @@ struct Shown<std::uint32_t> {
   using Type = std::int32_t;
 };
 
-/// An array that shows memory of `owner`, which lives at least as long; it cannot be written to.
+/// A read-only array over memory of `owner`, which it keeps alive.
 template <class T>
 py::array view(const py::object& owner, const T* data, const Shape& shape) {
   using Type = typename Shown<T>::Type;
@@ -52,7 +53,7 @@ py::array view(const py::object& owner, const T* data, const Shape& shape) {
   return shown;
 }
 
-/// An array that owns what was a vector. A shape without entries: one dimension.
+/// Moves a vector into an array. An empty shape means one dimension.
 template <class T>
 py::array take(std::vector<T>&& values, Shape shape = {}) {
   if (shape.empty()) shape = {signed_size(values.size())};
@@ -67,18 +68,17 @@ std::vector<T> copied(const Given<T>& array) {
   return {array.data(), array.data() + array.size()};
 }
 
-/// One tensor or size or whatever `type` is at each of `array`'s rows.
+/// A field with one value of this type per row of the array.
 inline meshadapt::AnyField field_of(const Given<double>& array, meshadapt::AnyField::Type type,
                                     int dimension, const char* name) {
   return {dimension, static_cast<std::size_t>(array.shape(0)), {type}, copied(array), name};
 }
 
-/// The same sizes for this mesh: Python says "facets" and "cells", whose dimensions follow from the
-/// mesh.
+/// The sizes for this mesh: sets the dimensions of places given as "facets" or "cells".
 meshadapt::Sizes sizes_for(const meshadapt::AnyMesh& mesh, meshadapt::Sizes sizes);
 
-/// body(executor) without the interpreter's lock, so that other threads of Python go on. Threads of
-/// the executor stay together meanwhile.
+/// Calls body(executor) without the interpreter's lock, so that other Python threads can run. The
+/// executor's threads stay together meanwhile.
 template <class Body>
 auto work(const runtime::ExecutorOptions& options, Body&& body) {
   const py::gil_scoped_release unlocked;

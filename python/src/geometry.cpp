@@ -1,5 +1,5 @@
 /// @file
-/// Geometry: what curved boundaries are like, made once and passed to every adaptation.
+/// Geometry: a smooth model of curved boundaries, made once and passed to every adaptation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,8 +22,8 @@ namespace {
 using meshadapt::Geometry;
 using meshadapt::GeometryPoint;
 
-/// A function of Python for what C++ calls on any thread: one caller at a time has the interpreter.
-/// It goes with the last geometry that has it, maybe where nobody has the interpreter.
+/// Wraps a Python function so that C++ can call it on any thread: each call takes the interpreter's
+/// lock. The function is released, also under the lock, with the last geometry that uses it.
 meshadapt::SurfaceFunction surface_function(std::int32_t reference, py::function given) {
   const std::shared_ptr<py::function> function(new py::function(std::move(given)),
                                                [](py::function* old) {
@@ -51,8 +51,7 @@ std::shared_ptr<Geometry> make_geometry(
   });
 }
 
-/// Positions, normals and references of the closest points; where there is none within reach, NaN
-/// and 0.
+/// Positions, normals and references of the closest points; NaN and 0 if none is within reach.
 py::tuple closest(const Geometry& geometry, const Given<double>& points, double reach,
                   const runtime::ExecutorOptions& threads) {
   const auto d = static_cast<std::size_t>(geometry.dimension());

@@ -1,5 +1,5 @@
 /// @file
-/// Meshes: made of arrays and files, their arrays as views, checks and statistics.
+/// Meshes: made from arrays and files, read through views, checked and measured.
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,7 +32,7 @@ std::span<const T> span_of(const Given<T>& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-/// Their vertices, and their references, which are given for all or for none.
+/// Corners and references of cells; references are empty or one per cell.
 template <class Index>
 using GivenCells = std::tuple<Given<Index>, Given<std::int32_t>>;
 
@@ -72,7 +72,7 @@ py::array entries(const py::object& self, const std::vector<T>& values) {
   return view(self, values.data(), {signed_size(values.size())});
 }
 
-/// An array property: a view that choose(mesh) makes.
+/// An array property: the view that choose(self, mesh) returns.
 template <class Choose>
 auto shown(Choose choose) {
   return [choose](const py::object& self) { return choose(self, self.cast<const AnyMesh&>()); };
@@ -145,7 +145,7 @@ void set_names(AnyMesh& mesh, const Names& names) {
 
 // ---- Files ----
 
-/// (name, on elements?, values), of several components with a row for each entity.
+/// (name, on elements?, values); values with several components have a row per entity.
 using Fields = std::vector<std::tuple<std::string, bool, py::array>>;
 
 py::array rows(std::vector<double>&& values, std::size_t components) {
@@ -246,7 +246,7 @@ void bind_statistics(py::module_& module) {
       .def_property_readonly("share_in_range", &MeshStatistics::share_in_range);
 }
 
-/// A metric as an AnyField for C++, or none if the caller gave none.
+/// The given metric as an AnyField, or none.
 struct MaybeMetric {
   MaybeMetric(const AnyMesh& mesh, const std::optional<Given<double>>& given) {
     if (given) field = field_of(*given, AnyField::Type::symmetric, mesh.dimension, "metric");

@@ -1,6 +1,6 @@
 /// @file
-/// Metrics: of solutions, of meshes and of sizes, and what is done to them. In Python they are
-/// arrays with a symmetric tensor in each row, in the order of AnyField.
+/// Metrics: of solutions, of meshes and of sizes, and operations on them. In Python a metric is an
+/// array with a symmetric tensor in each row, in the order of AnyField.
 #include <string>
 #include <utility>
 
@@ -77,13 +77,14 @@ void bind_solution_metric(py::module_& module) {
   });
 }
 
-// ---- What is done to metrics ----
+// ---- Operations on metrics ----
 
 AnyField tensors(const Given<double>& rows, int dimension, const char* name) {
   return field_of(rows, AnyField::Type::symmetric, dimension, name);
 }
 
-/// change(executor, tensors as C++ has them) changes the rows of an array, which is copied.
+/// Copies the rows of an array to tensors, calls change(executor, tensors), and returns them as
+/// rows.
 template <int Dim, class Change>
 py::array changed(const AnyField& given, Change&& change) {
   return array_of(work({}, [&](const Executor& executor) {
@@ -138,7 +139,7 @@ void bind_operations(py::module_& module) {
 
 // ---- Sizes ----
 
-/// Of dimensions that the mesh says: of its facets, of its cells.
+/// Dimensions that depend on the mesh: that of its facets, and that of its cells.
 constexpr int of_facets = -1, of_cells = -2;
 
 AnyField sizes_at(const AnyMesh& mesh, const Sizes& given, const ExecutorOptions& threads) {

@@ -1,6 +1,6 @@
 /// @file
-/// The module ductile._ductile: the C++ library as it is. The package around it checks and converts
-/// arguments, and has the documentation.
+/// The module ductile._ductile: the C++ library, unchanged. The Python package around it checks and
+/// converts arguments, and has the documentation.
 #include <exception>
 
 #include "bindings.hpp"
@@ -11,7 +11,7 @@ namespace ductile::python {
 
 namespace {
 
-/// ductile.InputError is a ductile.Error and a ValueError.
+/// Registers the exceptions: InputError is an Error and a ValueError.
 void bind_errors(py::module_& module) {
   auto& error = py::register_exception<meshadapt::Error>(module, "Error", PyExc_RuntimeError);
   auto& input = py::register_exception<meshadapt::InputError>(
@@ -34,7 +34,7 @@ void bind_executor(py::module_& module) {
 }  // namespace ductile::python
 
 PYBIND11_MODULE(_ductile, module) {
-  using namespace ductile::python;  // NOLINT: the macro makes a function of the module's own
+  using namespace ductile::python;  // NOLINT: the macro defines a function of its own
   module.attr("version") = DUCTILE_VERSION;
   bind_errors(module);
   bind_executor(module);

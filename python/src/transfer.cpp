@@ -1,5 +1,5 @@
 /// @file
-/// From one mesh to another: where vertices, facets and elements come from, and fields.
+/// Transfer between meshes: origins of vertices, facets and elements, and fields.
 #include <tuple>
 #include <utility>
 
@@ -27,8 +27,8 @@ py::tuple origins(const AnyMesh& before, const AnyMesh& after) {
                         take(std::move(found.weight), shape));
 }
 
-/// What the rows of an array are, whether they belong to cells or to vertices, whether integrals
-/// are kept.
+/// The type of the rows of an array, whether they belong to cells (else to vertices), and whether
+/// integrals are kept.
 using How = std::tuple<AnyField::Type, bool, bool>;
 
 py::tuple transfer(const AnyMesh& before, const AnyMesh& after, const Given<double>& values,

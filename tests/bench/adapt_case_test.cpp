@@ -47,7 +47,7 @@ TEST(AdaptCase, StartsFromAValidMeshWithAPositiveDefiniteMetric) {
   }
 }
 
-/// A mesh that is fine everywhere, and more so at y = 0.
+/// A fine mesh, finer still towards y = 0.
 meshadapt::AnyMesh fine_mesh(const Executor& executor, int dimension) {
   meshadapt::AnyMesh mesh = make_case(executor, dimension == 2 ? "uni2d@20" : "uni3d@20").start;
   if (dimension == 2)
@@ -81,8 +81,8 @@ TEST(AdaptCase, HasTheElementCountsOfTheTable) {
   EXPECT_EQ(element_count(make_case(executor, "cube-linear").start), 162U);
 }
 
-/// A mesh that is adapted to the formula again and again comes to have about as many elements as
-/// its complexity promises.
+/// Adapting to the formula again and again gives about the number of elements that its complexity
+/// predicts.
 TEST(AdaptCase, LeadsToAsManyElementsAsItsComplexityPromises) {
   const Executor executor({.threads = 2});
   AdaptCase made = make_case(executor, "psi2d@0.01");
@@ -143,7 +143,7 @@ TEST(AdaptCase, IsNotSoundOnceTheDomainIsLeft) {
   }
 }
 
-// ---- Values that were worked out by hand ----
+// ---- Values computed by hand ----
 
 TEST(Formulas, LayersHaveThePublishedSizes) {
   const Metric<2> on_circle = circle_metric({{0.75, 0.5}});
@@ -156,7 +156,7 @@ TEST(Formulas, LayersHaveThePublishedSizes) {
   EXPECT_NEAR(cube_linear_metric({{0, 0, 1}})(2, 2), 100, 1e-9);
 }
 
-/// The metric length of steps as long as the sizes, along the short axis and across it.
+/// Steps as long as the sizes, along the short axis and across it, have metric length 1.
 TEST(Formulas, TurningMetricsTurn) {
   const Metric<2> flat = turning_metric(meshadapt::Vector<2>{{0.4, 0.2}});
   const double turn = 1.5 * 0.4 + 0.5 * 0.2, c = std::cos(turn), s = std::sin(turn);

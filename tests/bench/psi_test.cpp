@@ -7,7 +7,7 @@
 namespace ductile::bench {
 namespace {
 
-/// Second differences of psi around a place beside the jump.
+/// Second differences of psi at a place away from the jump.
 PsiHessian second_differences(double x, double y, double phase) {
   constexpr double h = 1e-4;
   const auto at = [&](int i, int j) { return psi(x + i * h, y + j * h, phase); };

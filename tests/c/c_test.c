@@ -255,6 +255,47 @@ static void test_solution_metric(void) {
   ductile_mesh_destroy(mesh);
 }
 
+/** Two squares side by side, whose common side is there twice, `gap` apart. */
+static ductile_mesh* make_two_squares(double gap) {
+  const double x[] = {0, 0, 1, 0, 1, 1, 0, 1, 1 + gap, 0, 2, 0, 2, 1, 1 + gap, 1};
+  const int32_t corners[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7},
+                references[] = {1, 2, 3, 4, 5, 6, 7, 8};
+  ductile_mesh* mesh = NULL;
+  EXPECT(ductile_mesh_create(2, &mesh) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_vertices(mesh, 8, x, references) == DUCTILE_OK);
+  EXPECT(ductile_mesh_set_elements(mesh, 4, corners, NULL) == DUCTILE_OK);
+  return mesh;
+}
+
+static void test_joining(void) {
+  for (int i = 0; i < 4; ++i) {
+    const double gap = i == 0 ? 0 : pow(10, -3 * i);
+    ductile_mesh* mesh = make_two_squares(gap);
+    const int64_t facets = ductile_mesh_count(mesh, DUCTILE_FACETS);
+    int32_t kept[8];
+    EXPECT(ductile_mesh_join_vertices(mesh, -1, kept) == DUCTILE_WRONG_INPUT);
+    EXPECT(ductile_mesh_join_vertices(mesh, NAN, NULL) == DUCTILE_WRONG_INPUT);
+    EXPECT(ductile_mesh_join_vertices(mesh, 1.5, NULL) == DUCTILE_WRONG_INPUT);
+    EXPECT(strstr(ductile_last_error(), "no farther apart than the tolerance") != NULL);
+    EXPECT(ductile_mesh_join_vertices(NULL, 0, NULL) == DUCTILE_WRONG_INPUT);
+    EXPECT(ductile_mesh_join_vertices(mesh, gap / 2, NULL) == DUCTILE_OK);
+    EXPECT(ductile_mesh_count(mesh, DUCTILE_VERTICES) == (i == 0 ? 6 : 8));
+    if (i == 0) ductile_mesh_destroy(mesh), mesh = make_two_squares(gap);
+    EXPECT(ductile_mesh_join_vertices(mesh, 1.5 * gap, kept) == DUCTILE_OK);
+    EXPECT(ductile_mesh_count(mesh, DUCTILE_VERTICES) == 6);
+    EXPECT(ductile_mesh_count(mesh, DUCTILE_ELEMENTS) == 4);
+    EXPECT(ductile_mesh_count(mesh, DUCTILE_FACETS) == facets - 1);
+    const int32_t expected[] = {0, 1, 2, 3, 5, 6};
+    EXPECT(memcmp(kept, expected, sizeof expected) == 0);
+    for (int v = 0; v < 6; ++v)
+      EXPECT(ductile_mesh_references(mesh, DUCTILE_VERTICES)[v] == expected[v] + 1);
+    ductile_mesh* adapted = NULL;
+    EXPECT(ductile_adapt(mesh, 1, NULL, NULL, &adapted) == DUCTILE_OK);
+    ductile_mesh_destroy(adapted);
+    ductile_mesh_destroy(mesh);
+  }
+}
+
 static void test_names(void) {
   ductile_mesh *mesh = make_square(), *adapted = NULL, *read = NULL;
   int kind = 0;
@@ -456,6 +497,7 @@ int main(void) {
   test_options();
   test_adaptation();
   test_solution_metric();
+  test_joining();
   test_names();
   test_sizes();
   test_geometry();

@@ -10,7 +10,7 @@
 namespace ductile::campaign {
 namespace {
 
-/// Leaves out elements that are not kept, and vertices that then have none.
+/// Removes the elements that are not kept, and vertices that no element has afterwards.
 void filter(Mesh& mesh, const std::vector<char>& kept) {
   Cells elements;
   std::vector<int> number(mesh.points.size(), -1);
@@ -77,7 +77,7 @@ class GridMaker {
       mesh.elements().add(rising ? Cell{a, c, d, -1} : Cell{b, c, d, -1}, 1);
       return;
     }
-    // Six tetrahedra, one for each order in which the axes are walked from corner to corner.
+    // Six tetrahedra, one for each order of the axes on the way to the opposite corner.
     std::array<int, 3> order = {0, 1, 2};
     do {
       std::array<int, 3> corner = cell;
@@ -100,7 +100,8 @@ class GridMaker {
   std::array<int, 3> cells_;
 };
 
-/// Vertices whose elements no facets connect, and ends of boundary edges of more than two facets.
+/// Vertices whose elements are not connected across facets, and ends of boundary edges with more
+/// than two facets.
 std::set<int> non_manifold_vertices(const Mesh& mesh, const std::vector<Facet>& facets) {
   const auto& elements = mesh.elements().corners;
   Groups groups(elements.size() * 4);
@@ -153,8 +154,8 @@ struct Void {
   double share;
 };
 
-/// Puts the corners of a void at random places in its tetrahedron, each nearer to the corner that
-/// it belongs to the larger the share, if that leaves all elements around it positive.
+/// Moves the corners of a void to random places in its tetrahedron, if all elements around it stay
+/// positive. The larger the void's share, the closer each stays to its corner of the tetrahedron.
 void distort_void(Random& random, Mesh& mesh, const Void& hole) {
   const std::vector<Point> alike(
       mesh.points.begin() + static_cast<std::ptrdiff_t>(hole.first_point), mesh.points.end());
@@ -261,7 +262,7 @@ void hollow(Mesh& mesh, std::size_t element, double share, Random* random) {
   }
   for (const Cell& facet : facets_of_element(mesh, outer)) {
     std::array<int, 3> v = {facet[0], facet[1], facet[2]};
-    std::sort(v.begin(), v.end());  // sides that two facets share are cut along the same diagonal
+    std::sort(v.begin(), v.end());  // a side is cut along the same diagonal for both of its facets
     const std::array<Cell, 3> parts = {{{v[0], v[1], v[2], inner[v[2]]},
                                         {v[0], v[1], inner[v[1]], inner[v[2]]},
                                         {v[0], inner[v[0]], inner[v[1]], inner[v[2]]}}};

@@ -19,8 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 const std::array<const char*, 5> names = {"right", "refused", "wrong", "crash", "timeout"};
 
-/// What a worker says of a case, on one line: number, verdict, seconds, closed, rested, kind,
-/// fault.
+/// A worker's report of a case, on one line: number, verdict, seconds, closed, rested, kind, fault.
 struct Line {
   std::uint64_t number = 0;
   int verdict = 0;
@@ -44,7 +43,7 @@ Line line_of(const std::string& text) {
   return line;
 }
 
-/// Faults of one kind read the same but for numbers.
+/// Returns the fault without its numbers, so that faults of one kind are equal.
 std::string kind_of_fault(const std::string& fault) {
   std::string kind;
   for (std::size_t i = 0; i < fault.size() && kind.size() < 150; ++i) {
@@ -97,7 +96,8 @@ Line try_number(const Campaign& campaign, std::uint64_t number) {
   return line;
 }
 
-/// Every so many cases from the worker's own on, until time is over.
+/// Tries every n-th case, from the worker's own number on, until time is over; n is the number of
+/// workers.
 void work(const Campaign& campaign, int worker, Clock::time_point end, std::FILE* out) {
   for (auto i = static_cast<std::uint64_t>(worker); i < campaign.count;
        i += static_cast<std::uint64_t>(campaign.workers)) {
@@ -162,7 +162,7 @@ class Summary {
   double slowest_ = 0;
 };
 
-/// Starts the workers; their lines come through one pipe.
+/// Starts the workers; all write their lines to one pipe.
 std::FILE* start_workers(const Campaign& campaign, std::vector<pid_t>& children) {
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(60 * campaign.minutes));

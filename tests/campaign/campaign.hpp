@@ -1,5 +1,5 @@
 /// @file
-/// A campaign: trials one after the other on all cores until time is over, with a summary.
+/// A campaign: runs trials on all cores until time is over, and prints a summary.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ struct Campaign {
   std::uint64_t seed = 1;
   double minutes = 1;
   std::uint64_t first = 0;           ///< number of the first case
-  std::uint64_t count = UINT64_MAX;  ///< how many at most
+  std::uint64_t count = UINT64_MAX;  ///< largest number of cases
   std::string kind;                  ///< only cases of this kind; all if empty
   std::filesystem::path folder;      ///< failing cases stay here
   int workers = 1;                   ///< processes side by side
-  double restless_allowed = 0.05;    ///< share of those adapted three times
+  double restless_allowed = 0.05;    ///< share of the cases adapted three times
 };
 
-/// Runs it and prints what was found. Returns whether all was right.
+/// Runs the campaign and prints the result. Returns true if no trial failed.
 bool run_campaign(const Campaign& campaign);
 
 }  // namespace ductile::campaign

@@ -18,7 +18,7 @@ struct Kind {
   const char* name;
   Shape (*shape)(Random&);
   Asks asks = Asks::anything;
-  double tolerant = 0.3;  ///< the share with -hausd, of bodies that are curved
+  double tolerant = 0.3;  ///< share of cases with -hausd, if the body is curved
 };
 
 const std::array<Kind, 17> kinds = {{{"random", random_body},
@@ -53,7 +53,7 @@ class CaseMaker {
 
   Case make() {
     Shape shape = kind_.shape(random_);
-    // A map may turn elements, or push one side of a void through the other.
+    // A map may invert elements, or push one side of a void through the other.
     const auto failed = [&] {
       return !all_positive(shape.mesh) || !check_overlaps(shape.mesh).empty();
     };
@@ -84,7 +84,7 @@ class CaseMaker {
     return std::find(case_.options.begin(), case_.options.end(), word) != case_.options.end();
   }
 
-  // ---- Where it is and what is listed ----
+  // ---- Place, and listed facets ----
 
   void put_somewhere(bool robust) {
     if (is("few-digits")) {
@@ -122,7 +122,7 @@ class CaseMaker {
       if (mesh().facets().reference[i] == 1) required.push_back(static_cast<int>(i));
   }
 
-  // ---- What is asked for ----
+  // ---- Metric ----
 
   void choose_metric() {
     switch (kind_.asks) {
@@ -160,11 +160,12 @@ class CaseMaker {
   void ask_for_one_size() {
     metric_ = uniform_metric(random_, mesh());
     double size = metric_.size;
-    // Where sides face each other, sizes from their distance to that of the body are the hard ones.
+    // Where sides face each other, sizes between their distance and the size of the body are the
+    // hard ones.
     if (faces_itself()) size = scale_ * random_.power(std::min(-0.3, std::log10(length_) + 0.3), 0);
     size = std::max(size, metric_.size);
     if (is("short-required")) {
-      // As long as the edges of the bottom are, but for the short one.
+      // The size is about the length of the bottom's edges, except the short one.
       size = random_.uniform(0.9, 1.1) * scale_ / static_cast<double>(bottom_count());
       case_.promise.longest_edge = 2;
     }
@@ -177,8 +178,8 @@ class CaseMaker {
     return mesh().dimension == 2 ? count - 1 : std::round(std::sqrt(count / 2));
   }
 
-  /// Bounds of no sense: they may be refused, by a line that names them, or keep to sizes that can
-  /// be read again.
+  /// Sets extreme bounds: the program may refuse them by a message that names them, or adapt within
+  /// sizes that can be read again.
   void extreme_bounds() {
     const double power = random_.uniform(60, 308);
     if (random_.chance(0.5)) option("-hmin", number(std::pow(10, -power)));
@@ -219,7 +220,7 @@ class CaseMaker {
       if (has(word)) case_.rests = false;
   }
 
-  /// What boundaries are measured from, and sizes that come from how they are curved.
+  /// Chooses the geometry that boundaries are measured from, and sizes from curvature.
   void choose_geometry() {
     if (case_.promise.tolerance <= 0) return;
     if (random_.chance(0.35)) option("-geometry", "in.mesh");
@@ -233,12 +234,12 @@ class CaseMaker {
   void choose_gradation() {
     const bool both = case_.promise.tolerance > 0 && is("inclusion");
     if (!random_.chance(both ? 0.7 : faces_itself() ? 0.08 : 0.2)) return;
-    // With a tolerance, sizes at curved boundaries follow from it; more elements than a campaign
-    // has time for are not asked for.
+    // With a tolerance, gradation spreads the sizes of curved boundaries. Skip it if that gives
+    // more elements than a campaign has time for.
     const double least = box_of(mesh().points).extent() * (mesh().dimension == 2 ? 1e-4 : 3e-3);
     if (case_.promise.tolerance > 0 && case_.promise.tolerance < least) return;
-    // Nor where neighbours ask for thin elements in different directions: gradation then makes them
-    // thin in all of these.
+    // Skip it also where neighbours ask for thin elements in different directions, because
+    // gradation then makes elements thin in all of these.
     const bool differ = !metric_.smooth && mesh().dimension == 3;
     if (case_.promise.tolerance > 0 && (differ || is("strong"))) return;
     option("-hgrad", number(metric_.smooth ? random_.pick({1.05, 1.3, 1.3, 2.0, 5.0})

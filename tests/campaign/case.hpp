@@ -1,6 +1,6 @@
 /// @file
 /// Case: one random adaptation, made from a seed alone: a mesh, perhaps a metric, the options of
-/// `ductile adapt`, and what must hold of the outcome.
+/// `ductile adapt`, and the properties that the outcome must have.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,19 @@ struct Case {
   std::optional<Field> metric;
   std::vector<std::string> options;  ///< of `ductile adapt`, without files and --threads
   Promise promise;
-  /// A message that has one of these words in it may take the place of a mesh.
+  /// A message that contains one of these words is accepted instead of a mesh.
   std::vector<std::string> refusals;
-  /// The same before it was rounded; the number of elements must be about the same.
+  /// The mesh before rounding; it must lead to about the same number of elements.
   std::optional<Mesh> unrounded;
-  bool deterministic = true;  ///< the same bytes are expected at any number of threads
-  bool rests = true;          ///< adapting the result again is expected to change little
+  bool deterministic = true;  ///< the result must have the same bytes at any number of threads
+  bool rests = true;          ///< adapting the result again must change little
 };
 
 /// The names of all kinds of cases.
 std::vector<std::string> kind_names();
 
-/// The case of this number; numbers that follow each other go through all kinds. If `kind` is
-/// given, all are of that.
+/// Makes the case of this number; consecutive numbers go through all kinds. If `kind` is given, all
+/// cases are of that kind.
 Case make_case(std::uint64_t seed, std::uint64_t number, const std::string& kind = "");
 
 }  // namespace ductile::campaign

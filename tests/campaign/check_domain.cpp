@@ -24,7 +24,7 @@ ByReference volumes(const Mesh& mesh) {
   return sums;
 }
 
-/// Measures of the boundary and of what is listed, by reference.
+/// Measures of the boundary and of listed facets, by reference.
 ByReference boundary_measures(const Mesh& mesh) {
   ByReference sums;
   for (const Facet& facet : facets_of(mesh)) {
@@ -38,7 +38,7 @@ ByReference boundary_measures(const Mesh& mesh) {
   return sums;
 }
 
-/// Measure of all boundary and all interfaces, listed or not.
+/// Measure of the whole boundary and all interfaces, listed or not.
 double skin(const Mesh& mesh) {
   double sum = 0;
   for (const Facet& facet : facets_of(mesh)) {
@@ -83,7 +83,7 @@ Faults check_domain(const Mesh& before, const Mesh& after, const Promise& promis
   const double stray = 4e-10 + 20 * rounding + 6 * moved;
   compare("volume", volume, volumes(b), 1e-9 * total + stray * area, faults);
   const ByReference skin_of = boundary_measures(a);
-  // Where the boundary may move, only that it is there is known: wrinkles may go.
+  // A boundary that may move only has to exist, because wrinkles may be removed.
   const double edges = static_cast<double>(before.facets().size());
   const double allowed = moved > 0 ? 1e300 : 1e-8 * area + 1e3 * rounding * edges + 1e-9;
   compare("boundary", skin_of, boundary_measures(b), allowed, faults);

@@ -10,8 +10,8 @@
 namespace ductile::campaign {
 namespace {
 
-/// Is the tensor positive definite, or would be but for the rounding of its components? Where sizes
-/// differ by 1e8, that is all that doubles can say of the largest one.
+/// Is the tensor positive definite up to the rounding of its components? If sizes differ by 1e8,
+/// doubles cannot tell more about the largest one.
 bool is_metric(const double* metric, int dimension) {
   Tensor raised{};
   const int count = dimension == 2 ? 3 : 6;
@@ -24,8 +24,8 @@ bool is_metric(const double* metric, int dimension) {
   return is_positive_definite(raised.data(), dimension);
 }
 
-/// Is a size of `metric` shorter than `size` (sign -1), or longer (sign 1), by more than rounding?
-/// So it is unless sign (1/size^2 (1 - sign .002) - metric) is negative definite.
+/// Is a size of `metric` shorter (sign -1) or longer (sign 1) than `size`, beyond rounding? False
+/// if sign (1/size^2 (1 - sign .002) - metric) is negative definite.
 bool beyond(const double* metric, int dimension, double size, int sign) {
   Tensor rest{};
   const int count = dimension == 2 ? 3 : 6;
@@ -58,7 +58,7 @@ void check_definite(const Field& metric, const Promise& promise, Faults& faults)
   report("metric", too_large, "sizes above -hmax", faults);
 }
 
-/// Edges that no kernel may change: required ones and those between two required vertices.
+/// Edges that no kernel may change: required ones, and those between two required vertices.
 std::set<std::array<int, 2>> fixed_edges(const Mesh& mesh) {
   std::set<std::array<int, 2>> fixed;
   for (const auto& [name, corners] : {std::pair<const char*, int>{"RequiredEdges", 2},

@@ -9,15 +9,16 @@
 namespace ductile::campaign {
 namespace {
 
-// Both sides of a crack may overlap by rounding, and by twice what the program says it allows.
-constexpr double depth_allowed = 5e-10;  // of the extent
+// The sides of a crack may overlap by rounding, and by twice the tolerance of the program's own
+// check.
+constexpr double depth_allowed = 5e-10;  // as a share of the extent
 
 struct Boxed {
   Cell corners;
   Box box;
 };
 
-/// All pairs (i, j) of boxes that meet, i from the one list and j from the other, in order of i.
+/// Visits all pairs (i, j) of boxes that meet, i from `ones`, j from `others`, in order of i.
 template <class Visit>
 void visit_meeting(const std::vector<Boxed>& ones, const std::vector<Boxed>& others, Visit visit) {
   std::vector<std::size_t> order(others.size());
@@ -35,7 +36,7 @@ void visit_meeting(const std::vector<Boxed>& ones, const std::vector<Boxed>& oth
   }
 }
 
-/// How deep the point lies in the element, measured across its facets; negative outside.
+/// Depth of the point in the element, measured across its facets; negative outside.
 double depth(const Mesh& mesh, const Cell& element, const Point& point) {
   double least = 1e300;
   for (const Cell& facet : facets_of_element(mesh, element)) {
@@ -74,12 +75,12 @@ bool share_a_corner(const Cell& a, const Cell& b) {
   });
 }
 
-/// The share of a segment from p to q, signed distances p and q of a line or plane, before it.
+/// The point where the segment from p to q meets a line or plane at signed distances at_p and at_q.
 Point where(const Point& p, const Point& q, double at_p, double at_q) {
   return p + (at_p / (at_p - at_q)) * (q - p);
 }
 
-/// Does edge p q go through segment a b, by more than what is allowed? In the plane.
+/// Does edge p q cross segment a b by more than the allowed depth? In 2D.
 bool crosses(const Point& p, const Point& q, const Point& a, const Point& b) {
   if (orientation(a, b, p) * orientation(a, b, q) >= 0) return false;
   if (orientation(p, q, a) * orientation(p, q, b) >= 0) return false;
@@ -90,7 +91,7 @@ bool crosses(const Point& p, const Point& q, const Point& a, const Point& b) {
                    std::abs(off(b, p, q))}) > depth_allowed;
 }
 
-/// Does edge p q go through triangle a b c, by more than what is allowed?
+/// Does edge p q cross triangle a b c by more than the allowed depth?
 bool crosses(const Mesh& mesh, const Point& p, const Point& q, const Cell& triangle) {
   const Point &a = corner(mesh, triangle, 0), &b = corner(mesh, triangle, 1),
               &c = corner(mesh, triangle, 2);
@@ -105,7 +106,7 @@ bool crosses(const Mesh& mesh, const Point& p, const Point& q, const Cell& trian
                    distance_to_segment(hit, b, c), distance_to_segment(hit, c, a)}) > depth_allowed;
 }
 
-/// Edges of elements that go through facets of the boundary.
+/// Number of edges of elements that cross facets of the boundary.
 std::size_t count_crossings(const Mesh& mesh) {
   std::vector<Boxed> facets, edges;
   for (const Facet& facet : facets_of(mesh))

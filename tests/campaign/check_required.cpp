@@ -6,8 +6,8 @@
 namespace ductile::campaign {
 namespace {
 
-/// A cell by where its corners are, so that it is found however vertices are numbered. Where sides
-/// touch, several cells have one place.
+/// Identifies a cell by the positions of its corners, because vertices may be renumbered. Where
+/// sides touch, several cells share a place.
 using Place = std::vector<Point>;
 
 Place place_of(const Mesh& mesh, const Cell& cell) {
@@ -23,7 +23,7 @@ struct Found {
   bool marked = false;
 };
 
-/// What the list `name` names, as cells with references.
+/// Cells with this number of corners and their references; vertices if it is 1.
 Cells named(const Mesh& mesh, int corners) {
   if (corners > 1) return mesh.cells_of(corners);
   Cells points;

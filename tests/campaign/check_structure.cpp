@@ -51,7 +51,7 @@ void check_elements(const Mesh& mesh, Faults& faults) {
   report("structure", mesh.points.size() - used.size(), "vertices of no element", faults);
 }
 
-/// Two elements on the same side of their facet see it turned the same way.
+/// Are two of the facet's elements on the same side? They then see it with the same orientation.
 bool on_one_side(const Mesh& mesh, const Facet& facet) {
   int even = 0;
   for (const int element : facet.elements)

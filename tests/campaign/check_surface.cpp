@@ -40,7 +40,7 @@ double distance(const Mesh& mesh, const std::vector<Piece>& surface, const Point
   return nearest;
 }
 
-/// Corners, middles of edges, the centre, and points between these.
+/// Sample points of a facet: corners, midpoints of edges, the centre, and points between these.
 std::vector<Point> samples(const Mesh& mesh, const Cell& facet) {
   const auto corners = static_cast<std::size_t>(mesh.dimension);
   const Point middle = centre(mesh, facet);
@@ -54,13 +54,13 @@ std::vector<Point> samples(const Mesh& mesh, const Cell& facet) {
   return points;
 }
 
-/// The largest distance of `from` to the surface of the same reference in `to`.
+/// The largest distance of samples of `from` to the surface of the same reference in `to`.
 double farthest(const Mesh& from, const Mesh& to) {
   const auto targets = pieces(to);
   double worst = 0;
   for (const auto& [reference, surface] : pieces(from)) {
     const auto target = targets.find(reference);
-    if (target == targets.end()) continue;  // check_domain says so
+    if (target == targets.end()) continue;  // check_domain reports that
     for (const Piece& piece : surface)
       for (const Point& point : samples(from, piece.corners))
         worst = std::max(worst, distance(to, target->second, point));
@@ -83,10 +83,11 @@ Faults check_surface(const Mesh& before, const Mesh& after, const Promise& promi
   const Mesh a = normalised(before, box), b = normalised(after, box);
   const double exact = 1e-9 + 20 * relative_rounding(box) + 4 * promise.rounding / box.extent();
   const double moved = promise.tolerance / box.extent();
-  // Facets may be as far from a smooth model of the old ones as that may be from these.
+  // New facets may be one tolerance from a smooth model that is itself one tolerance from the old
+  // facets.
   expect(farthest(b, a), exact + 2.0002 * moved, "the new boundary is off the old one", faults);
-  // What is promised is one way; the other way round it holds up to what corners of less than
-  // -ar degrees cut off, a few times as much.
+  // Only the distance from new to old is promised. The reverse also includes corners of less than
+  // -ar degrees that were cut off, which is a few times as much.
   expect(farthest(a, b), exact + 4 * moved, "the old boundary is off the new one", faults);
   return faults;
 }

@@ -1,5 +1,5 @@
-// A checker that cannot fail is worth nothing: for every fault that it claims to see, a mesh that
-// has it, and one that differs by nothing else and is fine.
+// A checker that cannot fail is worthless: for every fault that it claims to detect there is a mesh
+// with that fault, and one that differs in nothing else and is sound.
 
 #include <gtest/gtest.h>
 
@@ -180,7 +180,7 @@ TEST_P(Checker, SeesRegionsThatChange) {
 }
 
 TEST_P(Checker, SeesWhereTheBoundaryMeetsItself) {
-  // Cells of a chequerboard of two by two: they meet at a vertex in 2D, along an edge in 3D.
+  // Cells of a 2 x 2 chequerboard meet at a vertex in 2D, along an edge in 3D.
   Random random(1);
   Grid grid;
   grid.dimension = GetParam();
@@ -305,7 +305,7 @@ TEST_P(Checker, SeesMetricsThatAreNone) {
   Field bad = good;
   bad.values[1] = 4 * (1 + 1e-14);
   EXPECT_TRUE(mentions(check_metric(good_, bad, {}), "1 tensors that are not positive definite"));
-  bad.values[1] = 4;  // singular, but for what rounding may have taken
+  bad.values[1] = 4;  // singular, within what rounding may cause
   EXPECT_EQ(check_metric(good_, bad, {}), Faults{});
   EXPECT_TRUE(mentions(check_metric(good_, good, {.shortest_size = 0.51}), "sizes below -hmin"));
   EXPECT_TRUE(mentions(check_metric(good_, good, {.largest_size = 0.49}), "sizes above -hmax"));
@@ -337,7 +337,7 @@ TEST(ExactSigns, TellDefiniteTensorsFromSingularOnes) {
   std::array<double, 6> tensor = singular;
   EXPECT_FALSE(is_positive_definite(tensor.data(), 2));
   EXPECT_FALSE(is_positive_definite(tensor.data(), 3));
-  tensor[1] = std::nextafter(4, 0);  // definite, but for all that doubles could say of it
+  tensor[1] = std::nextafter(4, 0);  // definite by the last bit
   EXPECT_TRUE(is_positive_definite(tensor.data(), 2));
   EXPECT_TRUE(is_positive_definite(tensor.data(), 3));
 }

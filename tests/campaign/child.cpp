@@ -20,14 +20,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A machine that others use as well may give a program a part of a core only.
+// Wall-clock limit over processor-time limit: on a shared machine a program may get part of a core
+// only.
 constexpr double wall_factor = 5;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// In the child, which only has to become the program.
+/// Runs in the child: replaces it by the program.
 [[noreturn]] void become(const std::vector<std::string>& words, const std::filesystem::path& folder,
                          int errors, double limit_s) {
   std::vector<char*> arguments;
@@ -47,7 +48,7 @@ double seconds_since(Clock::time_point begin) {
   _exit(127);
 }
 
-/// Reads until the child closes its end or time is over. Returns whether it closed in time.
+/// Reads until the child closes its end or time runs out. Returns whether it closed in time.
 bool read_all(int pipe, Clock::time_point begin, double limit_s, std::string& text) {
   std::array<char, 4096> buffer;
   for (;;) {

@@ -16,7 +16,7 @@ T determinant(const std::array<std::array<T, 3>, 3>& m) {
   return m[0][0] * a - m[0][1] * b + m[0][2] * c;
 }
 
-/// As the determinant, all terms taken positive: what rounding errors are in proportion to.
+/// The determinant with all terms taken positive; rounding errors are proportional to it.
 double permanent(const std::array<std::array<double, 3>, 3>& m) {
   const auto size = [&](int i, int j) {
     return std::abs(m[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
@@ -39,8 +39,7 @@ int sign(const std::array<const Point*, 4>& points) {
   const auto m = rows<double>(points);
   const double value = determinant(m);
   const double terms = permanent(m);
-  // Some 20 roundings of 1.1e-16 each; products that leave the range of normal numbers do not
-  // count.
+  // About 20 roundings of 1.1e-16 each, if no product leaves the range of normal numbers.
   if (std::isfinite(terms) && terms > 1e-280 && std::abs(value) > 1e-14 * terms)
     return value > 0 ? 1 : -1;
   return determinant(rows<Rational>(points)).sign();
@@ -49,8 +48,8 @@ int sign(const std::array<const Point*, 4>& points) {
 }  // namespace
 
 int orientation(const Point& a, const Point& b, const Point& c) {
-  // A third direction out of the plane makes the area a volume. It is as long as the others are,
-  // so that doubles decide at every scale.
+  // A third direction out of the plane makes the area a volume. It is as long as the others, so
+  // that doubles decide at every scale.
   const double up = std::max(
       {std::abs(b[0] - a[0]), std::abs(b[1] - a[1]), std::abs(c[0] - a[0]), std::abs(c[1] - a[1])});
   const Point flat_a = {a[0], a[1], 0}, flat_b = {b[0], b[1], 0}, flat_c = {c[0], c[1], 0};

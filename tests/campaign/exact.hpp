@@ -1,6 +1,6 @@
 /// @file
-/// Signs that rounding cannot change: of the volume of an element, and of a symmetric tensor's
-/// definiteness. Doubles decide where their error cannot matter, rational numbers otherwise.
+/// Signs that rounding cannot change: of an element's volume, and definiteness of a symmetric
+/// tensor. Doubles decide where their error cannot matter, rational numbers otherwise.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 /// @file
-/// Facets of the elements of a mesh, found by sorting: which elements each has and whether it is
-/// listed. From them follow the boundary, interfaces and what is connected.
+/// Facets of the elements of a mesh, found by sorting: the elements of each, and whether it is
+/// listed. The boundary, interfaces and connectivity follow from them.
 #pragma once
 
 #include <array>
@@ -18,22 +18,22 @@ Key key_of(const Cell& cell);
 
 struct Facet {
   Key key;
-  Cell corners;               ///< as one of its elements has them, seen from outside
+  Cell corners;               ///< in outward order of one of its elements
   std::vector<int> elements;  ///< usually one or two
   std::vector<int> listed;    ///< indices among the facets of the file
   bool on_boundary() const { return elements.size() == 1; }
 };
 
-/// All facets of elements, and those listed that belong to none, in ascending order of keys.
+/// All facets of elements, and listed ones that belong to no element, in ascending order of keys.
 std::vector<Facet> facets_of(const Mesh& mesh);
 
 /// The facets of one element, seen from outside.
 std::vector<Cell> facets_of_element(const Mesh& mesh, const Cell& element);
 
-/// All pairs of corners of cells that have `corners` of them, each once, in ascending order.
+/// All pairs of corners of cells with `corners` corners, each once, in ascending order.
 std::vector<std::array<int, 2>> edges_of(const std::vector<Cell>& cells, int corners);
 
-/// Sets that are joined and counted.
+/// Union-find: sets that are joined and counted.
 class Groups {
  public:
   explicit Groups(std::size_t count) : parent_(count) {

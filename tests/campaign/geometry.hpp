@@ -25,7 +25,7 @@ inline Point cross(const Point& a, const Point& b) {
 }
 inline double norm(const Point& a) { return std::sqrt(dot(a, a)); }
 
-/// Where all points lie, and how far apart at most along an axis.
+/// The bounding box of points, and its largest extent along an axis.
 struct Box {
   Point low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
 
@@ -72,7 +72,7 @@ inline const Point& corner(const Mesh& mesh, const Cell& cell, std::size_t i) {
   return mesh.points[static_cast<std::size_t>(cell[i])];
 }
 
-/// Length, area or volume of a cell of 2, 3 or 4 corners; negative for turned tetrahedra.
+/// Length, area or volume of a cell of 2, 3 or 4 corners; negative for inverted tetrahedra.
 inline double measure(const Mesh& mesh, const Cell& cell) {
   const Point a = corner(mesh, cell, 1) - corner(mesh, cell, 0);
   if (cell[2] < 0) return norm(a);
@@ -99,7 +99,7 @@ inline double distance_to_segment(const Point& p, const Point& a, const Point& b
   return norm(p - (a + t * ab));
 }
 
-/// To the nearest point of the triangle, its inside included.
+/// Distance to the nearest point of the triangle, including its interior.
 inline double distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
   const Point normal = cross(b - a, c - a);
   const double length = norm(normal);
@@ -111,7 +111,7 @@ inline double distance_to_triangle(const Point& p, const Point& a, const Point& 
   return above ? std::min(rim, std::abs(dot(p - a, normal)) / length) : rim;
 }
 
-/// The mesh moved to the origin and scaled to an extent of 1 by the box of another.
+/// The mesh, moved and scaled so that `box` starts at the origin and has an extent of 1.
 inline Mesh normalised(Mesh mesh, const Box& box) {
   for (Point& point : mesh.points) point = point - box.low;
   const double extent = box.extent();
@@ -120,7 +120,7 @@ inline Mesh normalised(Mesh mesh, const Box& box) {
   return mesh;
 }
 
-/// Rounding of coordinates in proportion to the extent.
+/// Rounding error of coordinates, relative to the extent.
 inline double relative_rounding(const Box& box) {
   double largest = 0;
   for (std::size_t i = 0; i < 3; ++i)

@@ -32,7 +32,7 @@ constexpr std::array<cli::Option, 12> options{{
     {"--help", "", "says this and lists the kinds", "-h"},
 }};
 
-/// Of an option that may be as large as can be.
+/// Value of an option that may be any 64-bit number.
 std::uint64_t count(const cli::Arguments& arguments, const char* name, std::uint64_t otherwise) {
   const auto value = arguments.text(name);
   if (!value) return otherwise;

@@ -1,6 +1,6 @@
 /// @file
-/// What the campaign works on: meshes and fields as plain arrays, of a dimension known at run time.
-/// Nothing in this folder includes a header of the library, so that a fault there cannot hide here.
+/// Meshes and fields of the campaign as plain arrays, of a dimension known at run time. No file of
+/// this folder includes a header of the library, so that a fault there cannot hide here.
 #pragma once
 
 #include <array>

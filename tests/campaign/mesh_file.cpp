@@ -106,7 +106,7 @@ int read_header(Words& words) {
   return dimension;
 }
 
-/// Indices start at 1 in the file and at 0 here; what is out of range is for the checker to see.
+/// Indices start at 1 in the file and at 0 here. Indices out of range are left to the checker.
 void read_cells(Words& words, Cells& cells, int corners) {
   for (std::size_t left = words.count(); left > 0; --left) {
     Cell cell = {-1, -1, -1, -1};

@@ -1,6 +1,6 @@
 /// @file
-/// The campaign's own reader and writer of GMF text files. The reader is strict: what it does not
-/// know, the program should not have written.
+/// The campaign's own reader and writer of GMF text files. The reader is strict: it refuses
+/// whatever the program should not have written.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace ductile::campaign {
 
-/// The file is not what the format says.
+/// Thrown if the file breaks the format.
 struct BadFile : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

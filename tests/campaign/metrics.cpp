@@ -11,7 +11,7 @@
 namespace ductile::campaign {
 namespace {
 
-using TensorAt = std::function<Tensor(const Point&)>;  // of a point of the unit cube
+using TensorAt = std::function<Tensor(const Point&)>;  // at a point of the unit cube
 
 class MetricMaker {
  public:
@@ -40,8 +40,8 @@ class MetricMaker {
   }
 
  private:
-  /// By which lengths are to be multiplied, so that the number of elements, the length of the
-  /// longest edge and, in 3D, the area of the boundary in the metric stay in bounds.
+  /// The factor for all lengths that keeps the number of elements, the longest edge and, in 3D, the
+  /// area of the boundary within bounds, all measured in the metric.
   double scaling() {
     const bool flat = mesh_.dimension == 2;
     double complexity = 0, volume = 0;
@@ -110,7 +110,7 @@ Point random_sizes(Random& random, double largest_ratio) {
   return {random.power(-range, 0), random.power(-range, 0), random.power(-range, 0)};
 }
 
-/// Thin across a sphere, wide along it.
+/// Small sizes across a sphere, large ones along it.
 TensorAt layer(const Mesh& mesh, Random& random, double thin) {
   const Point middle = mesh.dimension == 2 ? Point{0.5, 0.5, 0} : Point{0.5, 0.5, 0.5};
   const double radius = random.uniform(0.2, 0.5);
@@ -127,7 +127,7 @@ TensorAt layer(const Mesh& mesh, Random& random, double thin) {
   };
 }
 
-/// Axes that turn with place.
+/// Axes that turn with position.
 TensorAt turning(const Mesh& mesh, Random& random, double ratio) {
   const double turns = random.uniform(0.5, 6), phase = random.uniform(0, 6);
   const Point sizes = {1 / ratio, 1, mesh.dimension == 2 ? 1 : random.pick({1.0, 1 / ratio})};
@@ -214,7 +214,7 @@ MetricCase strong_metric(Random& random, const Mesh& mesh) {
   const Point sizes = {1 / ratio, 1, random.pick({1.0, 1 / ratio})};
   MetricCase made =
       maker.make([&](const Point&) { return in_dimension(mesh, axes, sizes); }, false);
-  // Rounding of turned tensors may take the smaller eigenvalue away.
+  // Rounding of rotated tensors may remove the smaller eigenvalue.
   if (!aligned && ratio > 1e6) made.refusals = {"positive definite", "anisotropy", "differ by"};
   return made;
 }

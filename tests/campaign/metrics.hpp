@@ -1,6 +1,6 @@
 /// @file
-/// Random metrics on a mesh: sizes and tensors of many kinds, scaled so that the right answer has
-/// some tens to some thousands of elements.
+/// Random metrics on a mesh: sizes and tensors of many kinds, scaled to between some tens and some
+/// thousands of elements.
 #pragma once
 
 #include <string>
@@ -14,20 +14,20 @@ namespace ductile::campaign {
 struct MetricCase {
   Field field;
   bool smooth = true;  ///< sizes grow slowly enough for any -hgrad
-  double size = 1;     ///< about what edges are asked for, the geometric mean over the mesh
-  /// The smallest size along an axis; what -hmin may be near.
+  double size = 1;     ///< about the edge length asked for: the geometric mean over the mesh
+  /// The smallest size along an axis; -hmin may be close to it.
   double smallest = 1;
-  bool unlimited = false;             ///< some sizes have no limit: -hmax has to give one
-  std::vector<std::string> refusals;  ///< what the program may say instead of adapting
+  bool unlimited = false;             ///< some sizes are infinite, so -hmax must be given
+  std::vector<std::string> refusals;  ///< words of accepted refusals
 };
 
-/// Any kind: sizes or tensors; constant, graded, turning, in layers, with jumps, as noise.
+/// A metric of any kind: sizes or tensors; constant, graded, turning, in layers, with jumps, noise.
 MetricCase random_metric(Random& random, const Mesh& mesh);
 
-/// Sizes that differ by up to 1e8, exactly that among them.
+/// Sizes that differ by up to, and sometimes exactly, 1e8.
 MetricCase strong_metric(Random& random, const Mesh& mesh);
 
-/// Sizes without a limit at some or all vertices: eigenvalues 0, sizes 1e300 or infinite.
+/// No limit on sizes at some or all vertices: eigenvalues 0, sizes 1e300 or infinite.
 MetricCase unlimited_metric(Random& random, const Mesh& mesh);
 
 /// One size everywhere.

@@ -22,7 +22,7 @@ double rounded_to(double x, int digits) {
   return std::atof(text.data());
 }
 
-/// Of the edges of the boundary some, in 3D, as lines.
+/// Lists some of the boundary's edges as lines, in 3D.
 void list_lines(Random& random, Mesh& mesh) {
   std::vector<Cell> boundary;
   for (const Cell& facet : mesh.facets().corners) boundary.push_back(facet);
@@ -91,7 +91,7 @@ double put_with_few_digits(Random& random, Mesh& mesh, Mesh& exact, double& roun
   const double away = scale * random.pick({0.0, 1.0, 100.0});
   map(mesh, [&](const Point& x) { return x + away * offset; });
   exact.points = mesh.points;
-  // Of the mesh itself, beside those that tell where it is.
+  // Digits of the mesh itself, in addition to those of its offset.
   const int way = random.below(3), digits = random.between(4, 10) + (away > scale ? 2 : 0);
   const double step = std::pow(10, std::floor(std::log10(scale * random.power(-6, -3))));
   rounding = 0;

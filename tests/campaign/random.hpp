@@ -35,7 +35,7 @@ class Random {
     return std::sqrt(-2 * std::log(u)) * std::cos(6.283185307179586 * unit());
   }
   Point point() { return {unit(), unit(), unit()}; }
-  /// Orthonormal axes, turned to the right hand; in 2D the last is z.
+  /// Random right-handed orthonormal axes; in 2D the last one is z.
   std::array<Point, 3> axes(int dimension) {
     if (dimension == 2) {
       const double turn = uniform(0, 6.283185307179586);

@@ -1,6 +1,6 @@
 /// @file
-/// Random bodies to adapt, of the kinds that were seen to be hard. About as large as the unit cube;
-/// where they are put, what is listed and required, and the metric are chosen afterwards.
+/// Random bodies to adapt, of kinds that proved hard, about as large as the unit cube. Place,
+/// listed and required entities and the metric are chosen afterwards.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ namespace ductile::campaign {
 
 struct Shape {
   Mesh mesh;
-  double length = 0.01;   ///< near which a tolerance (-hausd) is most demanding
+  double length = 0.01;   ///< the length at which a tolerance (-hausd) is most demanding
   bool curved = false;    ///< a tolerance makes a difference
   bool touching = false;  ///< vertices coincide, or nearly
-  /// Extreme sizes and places are asked of bodies that can bear them.
+  /// Only robust bodies get extreme sizes and places.
   bool robust = true;
 };
 

@@ -98,8 +98,8 @@ bool warp(Random& random, Mesh& mesh) {
   }
 }
 
-/// Of a point of the square (or cube) from -1 to 1, in the first `axes` axes: the rings of squares
-/// inside `round` become circles (or spheres), and those outside change to squares.
+/// Maps a point of the square (or cube) from -1 to 1, in the first `axes` axes: concentric squares
+/// inside `round` become circles (or spheres), and those outside change back to squares.
 Point rounded(const Point& x, std::size_t axes, double round) {
   double largest = 0, square = 0;
   for (std::size_t i = 0; i < axes; ++i) {
@@ -245,8 +245,7 @@ Shape short_edges(Random& random) {
   const int count = dimension == 2 ? random.between(4, 12) : random.between(2, 4);
   shape.mesh = make_grid(random, even_grid(dimension, {count, count, count}));
   const double gap = random.power(-6, -2);
-  // One edge of the bottom gets a vertex close to its end; the rest of the mesh knows nothing of
-  // it.
+  // One edge of the bottom gets a vertex close to its end; the rest of the mesh stays as it is.
   std::vector<std::array<int, 2>> bottom;
   for (const auto& edge : edges_of(shape.mesh.elements().corners, dimension + 1)) {
     const auto low = static_cast<std::size_t>(dimension - 1);

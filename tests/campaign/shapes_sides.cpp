@@ -9,7 +9,7 @@
 namespace ductile::campaign {
 namespace {
 
-/// A plate or strip with `layers` across its last axis.
+/// A plate (2D: strip) with these layers across its last axis.
 Grid plate_grid(Random& random, int dimension, const std::vector<double>& layers) {
   Grid grid;
   grid.dimension = dimension;
@@ -32,7 +32,7 @@ bool bend(Random& random, Mesh& mesh, double share) {
   });
 }
 
-/// The elements with a vertex in common with the one of index `element`, itself among them.
+/// Indices of the elements that share a vertex with this one, including itself.
 std::set<std::size_t> neighbours(const Mesh& mesh, std::size_t element) {
   const Cell& own = mesh.elements().corners[element];
   std::set<std::size_t> found;
@@ -42,7 +42,7 @@ std::set<std::size_t> neighbours(const Mesh& mesh, std::size_t element) {
   return found;
 }
 
-/// Up to `count` tetrahedra are made hollow, by preference side by side.
+/// Hollows up to `count` tetrahedra, preferably adjacent ones.
 void hollow_some(Random& random, Mesh& mesh, int count) {
   std::size_t last =
       static_cast<std::size_t>(random.below(static_cast<int>(mesh.elements().size())));
@@ -56,12 +56,12 @@ void hollow_some(Random& random, Mesh& mesh, int count) {
         close ? *at
               : static_cast<std::size_t>(random.below(static_cast<int>(mesh.elements().size()))));
   }
-  // hollow() renumbers what comes after the element, so that the last goes first.
+  // hollow() renumbers the elements after this one, so the last one goes first.
   for (const std::size_t element : chosen)
     hollow(mesh, element, random.uniform(0.2, 0.97), random.chance(0.8) ? &random : nullptr);
 }
 
-/// Cells (i, j) of which no two are neighbours, none at the rim.
+/// Random cells (i, j), none at the rim, no two of them neighbours.
 std::set<std::array<int, 2>> scattered(Random& random, const Grid& grid, int count) {
   const int nx = static_cast<int>(grid.lines[0].size()) - 1;
   const int ny = grid.dimension == 2 ? 3 : static_cast<int>(grid.lines[1].size()) - 1;
@@ -126,7 +126,7 @@ Patch random_patch(Random& random, const Grid& grid, double height, bool to_the_
   return patch;
 }
 
-/// On which side of the plane at `height` each vertex's elements lie, -1 or 1; 0 for both.
+/// [vertex] Side of the plane at `height` on which its elements lie, -1 or 1; 0: both.
 std::vector<int> sides_of(const Mesh& mesh, double height, std::size_t across) {
   std::vector<int> side(mesh.points.size(), 2);
   for (const Cell& element : mesh.elements().corners) {

@@ -88,7 +88,7 @@ PartTopology part_topology(const Mesh& mesh, const std::vector<Facet>& facets,
   return part;
 }
 
-/// Edges of the boundary with other than two facets, in 3D.
+/// Edges of the boundary whose number of facets is not two, in 3D.
 std::vector<Cell> non_manifold_edges(const Mesh& mesh, const std::vector<Facet>& facets) {
   std::map<std::array<int, 2>, int> count;
   if (mesh.dimension == 3)
@@ -101,7 +101,7 @@ std::vector<Cell> non_manifold_edges(const Mesh& mesh, const std::vector<Facet>&
   return found;
 }
 
-/// Vertices whose elements form several fans that no facet connects.
+/// Vertices whose elements form several fans not connected by facets.
 std::set<int> vertices_of_several_fans(const Mesh& mesh, const std::vector<Facet>& facets) {
   const auto& elements = mesh.elements().corners;
   const auto corners = static_cast<std::size_t>(mesh.corner_count());

@@ -13,9 +13,9 @@
 namespace ductile::campaign {
 namespace {
 
-constexpr double moved_at_rest = 0.02;  // of the elements
+constexpr double moved_at_rest = 0.02;  // share of the elements
 constexpr double growth_allowed =
-    1.5;  // of the number of elements, from the first to the last call
+    1.5;  // ratio of the numbers of elements after the last and the first call
 constexpr std::size_t few_elements = 50;
 
 std::string contents(const std::filesystem::path& path) {
@@ -25,7 +25,7 @@ std::string contents(const std::filesystem::path& path) {
   return all.str();
 }
 
-/// Elements by where their corners are, in ascending order.
+/// Elements as positions of their corners, in ascending order.
 std::vector<std::vector<Point>> places(const Mesh& mesh) {
   std::vector<std::vector<Point>> all;
   for (const Cell& element : mesh.elements().corners) {
@@ -134,7 +134,7 @@ class Trial {
 
   // ---- Checking ----
 
-  /// Reads what was written and checks it against the input, after `calls` calls.
+  /// Reads the output of call number `calls` and checks it against the input.
   bool check(const std::string& name, int calls, Mesh& adapted) {
     Promise promise = case_.promise;
     promise.tolerance *= calls;
@@ -153,7 +153,7 @@ class Trial {
     return faults.empty();
   }
 
-  /// Rounding of coordinates may not make another number of elements.
+  /// Rounding coordinates must not change the number of elements.
   void check_unrounded(const Mesh& adapted) {
     if (!case_.unrounded) return;
     prefix_ = "unrounded: ";
@@ -190,7 +190,7 @@ class Trial {
     prefix_.clear();
   }
 
-  /// Adapts the result again, twice, and then little should change.
+  /// Adapts the result twice more; the last call should change little.
   void check_closure(const Mesh& first) {
     Mesh before = first, after;
     std::string name = "out";

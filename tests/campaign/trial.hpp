@@ -1,5 +1,5 @@
 /// @file
-/// One trial: a case is written to files, the program adapts it, and what it wrote is checked.
+/// One trial: writes a case to files, runs the program on it, and checks the output.
 #pragma once
 
 #include <filesystem>
@@ -22,11 +22,11 @@ struct Outcome {
   Faults faults;        ///< a line each; what was wrong, or the message of a refusal
   double seconds = 0;   ///< of the longest run
   bool rested = true;   ///< the third call changed less than 2 % of elements
-  bool closed = false;  ///< was adapted again, so that `rested` says something
+  bool closed = false;  ///< was adapted again, so `rested` is valid
 };
 
 /// Runs the case in `folder`, which keeps all files and a script `run.sh` that repeats the calls.
-/// `seed` decides what is checked beyond the first call.
+/// `seed` decides which checks follow the first call.
 Outcome try_case(const Case& tried, std::uint64_t seed, const std::filesystem::path& folder,
                  const Settings& settings);
 

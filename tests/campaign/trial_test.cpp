@@ -1,5 +1,5 @@
-// Files, child processes, cases and trials of the campaign: programs that do everything wrong are
-// found out, and what the generators make is sound.
+// Files, child processes, cases and trials of the campaign: wrong programs are detected, and the
+// generators make sound cases.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ class CampaignTrial : public testing::Test {
     std::ofstream(folder_ / name) << text;
   }
 
-  /// The verdict on a program that is this script; $2 is the input, $4 the output.
+  /// The verdict on a program that consists of this script; $2 is the input, $4 the output.
   Outcome try_script(const std::string& script, const Case& tried) const {
     write("program", "#!/bin/sh\n" + script);
     fs::permissions(folder_ / "program", fs::perms::owner_all);
@@ -40,7 +40,7 @@ class CampaignTrial : public testing::Test {
                     {.program = folder_ / "program", .limit_s = 0.5, .all_checks = true});
   }
 
-  /// One that a copy of the input is a right answer to.
+  /// A case for which a copy of the input is a right answer.
   static Case copied_case() {
     Case tried = make_case(5, 0, "few-digits");
     tried.unrounded.reset();
@@ -129,7 +129,7 @@ TEST_F(CampaignTrial, RefusalsAreOfTheKindDeclared) {
 }
 
 TEST_F(CampaignTrial, RestlessProgramsAreNotAtRest) {
-  // The second and third call give another mesh of the same domain than the one they get.
+  // The second and third call return another mesh of the same domain than their input.
   const Case tried = copied_case();
   Mesh other = tried.mesh;
   Random random(1);

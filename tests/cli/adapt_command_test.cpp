@@ -64,7 +64,7 @@ TEST(AdaptCommand, TakesMmgsOptions) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-// Sanitizers take more memory, and larger files, for themselves than limits here would leave them.
+// Sanitizers need more memory and larger files than these limits leave them.
 TEST(AdaptCommand, FailsCleanlyWhenMemoryRunsOut) {
   const Folder folder;
   folder.add_example("waves3d");
@@ -77,7 +77,7 @@ TEST(AdaptCommand, FailsCleanlyWhenMemoryRunsOut) {
   EXPECT_EQ(folder.file_count(), 2U);
 }
 
-/// Of which threads hold 500 MB for their stacks.
+/// Threads reserve 500 MB of addresses for their stacks.
 TEST(AdaptCommand, DoesNotTakeAddressesForMemory) {
   const Folder folder;
   folder.add_example("waves2d");
@@ -129,7 +129,8 @@ TEST(AdaptCommand, AdaptsToSizesByPlacesThatTheMeshDoesNotShow) {
     EXPECT_EQ(outcome.status, 0) << words << ": " << outcome.err;
     return meshadapt::read_mesh(folder.path() / "b.meshb").triangles.size();
   };
-  // A size of 0.01 that grows by 0.26 per unit of length asks for so many triangles around a point.
+  // The number of triangles around a point for a size of 0.01 that grows by 0.26 per unit of
+  // length.
   const std::size_t around = elements("-hsiz .5 --near point:.3,.6:.01");
   EXPECT_GT(around, 200U);
   EXPECT_LT(around, 1000U);
@@ -273,7 +274,7 @@ TEST(AdaptCommand, LeavesOutEdgesOfNoElementAsInfoSays) {
   EXPECT_EQ(meshadapt::read_mesh(folder.path() / "box.o.mesh").edges.size(), 0U);
 }
 
-/// Writes u.sol, a scalar x + y and a vector, at the vertices of a mesh there.
+/// Writes u.sol, a scalar x + y and a vector, at the vertices of a mesh in the folder.
 void add_field(const Folder& folder, const std::string& mesh_name) {
   const auto mesh = meshadapt::read_mesh(folder.path() / mesh_name);
   const auto dimension = static_cast<std::size_t>(mesh.dimension);

@@ -1,6 +1,6 @@
 /// @file
-/// What `ductile adapt` takes and says of it: which metric is in force, metrics of solutions, sizes
-/// on elements, meshes that are not connected, requests that are too large.
+/// Inputs of `ductile adapt` and messages about them: the metric in force, metrics of solutions,
+/// sizes on elements, meshes that are not connected, requests that are too large.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ NamedField field_of(const AnyMesh& mesh, const std::string& name, Place place, a
   return field;
 }
 
-/// The mesh and another one behind its right side, which do not share vertices.
+/// Returns the mesh together with another one at its right side; the two share no vertices.
 AnyMesh beside(AnyMesh mesh, const AnyMesh& other) {
   const auto shift = static_cast<std::uint32_t>(mesh.vertex_count());
   const auto d = static_cast<std::size_t>(mesh.dimension);
@@ -106,6 +106,56 @@ TEST_P(AdaptInputs, JoinsDoubledVerticesWithinATolerance) {
   EXPECT_EQ(coarse.status, 2);
   EXPECT_TRUE(contains(coarse.err, "no farther apart than the tolerance")) << coarse.err;
   EXPECT_FALSE(folder_.has("no.mesh"));
+}
+
+TEST_P(AdaptInputs, NamesTheOptionThatJoinsOnlyForDoubledVertices) {
+  const auto hint_beside = [&](const char* fault) {
+    const std::string told = folder_.run("info a.mesh").err;
+    const std::size_t at = told.find(fault);
+    EXPECT_NE(at, std::string::npos) << told;
+    return contains(told.substr(at, told.find('\n', at) - at), "--join");
+  };
+  for (const int n : {1, 2, 3}) {
+    write("a.mesh", beside(grid(dimension_, n), grid(dimension_, 2 * n)));
+    EXPECT_FALSE(hint_beside(" hangs: "));
+    EXPECT_TRUE(hint_beside(" is at the place of vertex "));
+  }
+}
+
+/// Whatever the format, the mesh is connected and fields have the values of vertices that stay.
+TEST_P(AdaptInputs, ConvertsWithDoubledVerticesJoined) {
+  const AnyMesh once = grid(dimension_, 3);
+  const AnyMesh twice = beside(once, once);
+  const std::size_t side = dimension_ == 2 ? 4 : 16, elements = dimension_ == 2 ? 36 : 324;
+  std::vector<double> of_vertex(twice.vertex_count()), of_element(elements);
+  for (std::size_t v = 0; v < of_vertex.size(); ++v)
+    of_vertex[v] = twice.coordinates[v * static_cast<std::size_t>(dimension_)];
+  for (std::size_t e = 0; e < of_element.size(); ++e) of_element[e] = static_cast<double>(e);
+  using Place = NamedField::Place;
+  const auto scalar = AnyField::Type::scalar;
+  ASSERT_EQ(elements, dimension_ == 2 ? twice.triangles.size() : twice.tetrahedra.size());
+  write("twice.vtu", twice,
+        {{"x", scalar, of_vertex, Place::vertices}, {"e", scalar, of_element, Place::elements}});
+  for (const char* out : {"a.vtu", "a.vtk", "a.msh", "a.mesh", "a.meshb", "a.su2"}) {
+    const Outcome outcome = folder_.run("convert twice.vtu --join 1e-9 " + std::string(out));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, std::to_string(side) + " vertices were joined")) << out;
+    const auto file = meshadapt::read_mesh_with_fields(folder_.path() / out);
+    const AnyMesh& mesh = file.mesh;
+    EXPECT_EQ(mesh.vertex_count(), twice.vertex_count() - side) << out;
+    EXPECT_FALSE(contains(folder_.run("info " + std::string(out)).err, "not connected")) << out;
+    for (const NamedField& field : file.fields)
+      for (std::size_t i = 0; i < field.values.size(); ++i)
+        EXPECT_EQ(field.values[i], field.name == "x"
+                                       ? mesh.coordinates[i * static_cast<std::size_t>(dimension_)]
+                                       : static_cast<double>(i))
+            << out << field.name;
+  }
+  for (const char* wrong : {"-1", "x", "inf"})
+    EXPECT_EQ(folder_.run("convert twice.vtu b.mesh --join " + std::string(wrong)).status, 2);
+  EXPECT_TRUE(contains(folder_.run("convert twice.vtu b.sol --join 0").err, "option --join"));
+  EXPECT_EQ(folder_.run("convert twice.vtu b.mesh --join 0.9").status, 2);
+  EXPECT_FALSE(folder_.has("b.mesh"));
 }
 
 TEST_P(AdaptInputs, SaysWhichMetricAndBoundsAreInForce) {
@@ -184,7 +234,7 @@ TEST_P(AdaptInputs, SizesOnElementsAreUsed) {
 }
 
 TEST_P(AdaptInputs, RequestsThatCannotBeNumberedAreRefusedInOneLine) {
-  // Needles: long, so thin that the integral of the density says nothing.
+  // Needles so thin that the integral of the density is no estimate of the number of elements.
   for (const double thin : {1e-3, 1e-9, 1e-12}) {
     AnyMesh mesh = grid(dimension_, 1);
     for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)

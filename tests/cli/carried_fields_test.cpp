@@ -14,7 +14,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Writes a field at the vertices of waves2d.mesh: this one of their coordinates, or both.
+/// Writes a field at the vertices of waves2d.mesh: one of their coordinates, or both.
 void add_field(const Folder& folder, const std::string& name, std::size_t first,
                std::size_t count) {
   using meshadapt::AnyField;
@@ -56,7 +56,7 @@ TEST(CarriedFields, GoEachIntoAFileOfItsOwnAsIfItWereAlone) {
   }
 }
 
-/// A loop puts solutions into the file of the adapted mesh, which has its metric, too.
+/// The file of an adapted mesh may hold solutions beside its metric.
 TEST(CarriedFields, KeepTheirNamesAndLeaveTheMetricOut) {
   using meshadapt::NamedField;
   const Folder folder;

@@ -1,4 +1,4 @@
-// Files as other programs and users write them, through the whole program.
+// Files written by other programs and users, processed by the whole program.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ bool contains(const std::string& text, const std::string& part) {
 
 std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
-/// A unit square of n x n cells, cut into triangles; what is drawn differs as a seed says.
+/// A unit square of n x n cells, cut into triangles; the seed decides random choices.
 class Square {
  public:
   Square(int n, unsigned seed) : n_(n), random_(seed) {}
@@ -33,7 +33,7 @@ class Square {
     return text;
   }
 
-  /// Some triangles are turned, if asked for.
+  /// Triangles of the cells; with `turn`, some are inverted.
   std::string triangles(bool turn = false) {
     std::string text = "Triangles\n" + std::to_string(2 * n_ * n_) + "\n";
     for (int i = 0; i < n_; ++i)
@@ -44,7 +44,7 @@ class Square {
     return text;
   }
 
-  /// Each as often as said, in either direction.
+  /// Boundary edges, each listed `times` times, in either direction.
   std::string edges(int times = 1) {
     std::string text = "Edges\n" + std::to_string(4 * n_ * times) + "\n";
     for (int time = 0; time < times; ++time)

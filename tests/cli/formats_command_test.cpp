@@ -13,7 +13,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Does what it is told to without a warning.
+/// Expects success without a warning.
 void expect_done(const Folder& folder, const std::string& words) {
   const Outcome outcome = folder.run(words);
   EXPECT_EQ(outcome.status, 0) << words << "\n" << outcome.err;
@@ -27,7 +27,7 @@ class FormatsCommand : public testing::Test {
     std::filesystem::copy_file(std::string(DUCTILE_TEST_FILES) + "/square-41-text.msh",
                                folder_.path() / "part.msh");
   }
-  /// Where they all are.
+  /// Expects that the mesh has all names.
   void expect_names(const std::string& mesh) const {
     const std::string info = folder_.run("info " + mesh).out;
     for (const char* part : {"3 (corner): 1", "5 (wall): ", "10 (steel): ", "20 (soft rubber): ",
@@ -52,7 +52,8 @@ TEST_F(FormatsCommand, AdaptKeepsNamesInEveryFormatThatHoldsThem) {
     expect_done(folder_, "adapt part.msh -hsiz .1 -v 0 -o " + output);
     EXPECT_EQ(folder_.file_count(), 2U) << output;  // the metric is in it
     expect_names(output);
-    // So it is adapted to that without a word, and has it when it is told to a third.
+    // The file is therefore adapted to that metric without a message, and has it if named as -sol,
+    // too.
     expect_done(folder_, "adapt " + output + " -o again.msh -v 1");
     expect_done(folder_, "info " + output + " -sol " + output);
     for (const std::string& name : {std::string("again.msh"), output})

@@ -1,6 +1,6 @@
 /// @file
-/// Kills the program at each step of giving names to its outputs, and at random moments: what is
-/// there afterwards is of one run, and a reader notices where something is missing.
+/// Kills the program at each step of renaming its outputs, and at random moments: the remaining
+/// files belong to one run, and a reader notices if some are missing.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace {
 
 using Contents = std::map<std::string, std::string>;
 
-/// A folder with the outputs of a first run, of which a second one writes others.
+/// A folder with the outputs of a first run, which a second run overwrites.
 class Killed : public testing::Test {
  protected:
   Killed() {
@@ -38,13 +38,14 @@ class Killed : public testing::Test {
     for (const auto& [name, bytes] : old_) folder_.write(name, bytes);
   }
 
-  /// All old or all new.
+  /// Expects that all files are old or all are new.
   void expect_a_unit(const std::string& where) const {
     const Contents now = contents_of(folder_);
     EXPECT_TRUE(now == old_ || now == new_) << where << ": " << now.size() << " files";
   }
 
-  /// All that is there is of the run that the mesh is of, and what is not can be found.
+  /// Expects that all files are of the same run as the mesh, and that `adapt` refuses the mesh if
+  /// its metric is missing.
   void expect_no_mixture(const std::string& where) const {
     const Contents now = contents_of(folder_);
     ASSERT_TRUE(now.contains("o.mesh")) << where;
@@ -73,24 +74,21 @@ class Killed : public testing::Test {
 
 TEST_F(Killed, AtEachStepLeavesFilesOfOneRun) {
   const std::string count_file = folder_.path().string() + ".count";
-  for (const char* named : {"", "1"}) {
-    Environment steps{{"LD_PRELOAD", DUCTILE_KILLING_STEPS}, {"DUCTILE_KILL_COUNT", count_file}};
-    if (*named != 0) steps["DUCTILE_NAMED"] = named;
-    put_old_ones_back();
-    ASSERT_EQ(wait_for(spawn(folder_, command("0.2"), steps)), 0);
-    const int count = std::stoi(folder_.read(count_file));
-    ASSERT_GT(count, 8);
-    for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT})
-      for (int at = 1; at <= count; ++at) {
-        const std::string where = "signal " + std::to_string(number) + " at step " +
-                                  std::to_string(at) + " of " + std::to_string(count) + named;
-        put_old_ones_back();
-        steps["DUCTILE_KILL_AT"] = std::to_string(at);
-        steps["DUCTILE_KILL_WITH"] = std::to_string(number);
-        EXPECT_EQ(wait_for(spawn(folder_, command("0.2"), steps)), -number) << where;
-        expect_right_after(number, where);
-      }
-  }
+  Environment steps{{"LD_PRELOAD", DUCTILE_KILLING_STEPS}, {"DUCTILE_KILL_COUNT", count_file}};
+  put_old_ones_back();
+  ASSERT_EQ(wait_for(spawn(folder_, command("0.2"), steps)), 0);
+  const int count = std::stoi(folder_.read(count_file));
+  ASSERT_GT(count, 8);
+  for (const int number : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT})
+    for (int at = 1; at <= count; ++at) {
+      const std::string where = "signal " + std::to_string(number) + " at step " +
+                                std::to_string(at) + " of " + std::to_string(count);
+      put_old_ones_back();
+      steps["DUCTILE_KILL_AT"] = std::to_string(at);
+      steps["DUCTILE_KILL_WITH"] = std::to_string(number);
+      EXPECT_EQ(wait_for(spawn(folder_, command("0.2"), steps)), -number) << where;
+      expect_right_after(number, where);
+    }
 }
 
 TEST_F(Killed, AtRandomMomentsLeavesFilesOfOneRun) {
@@ -98,11 +96,10 @@ TEST_F(Killed, AtRandomMomentsLeavesFilesOfOneRun) {
   const auto start = std::chrono::steady_clock::now();
   wait_for(spawn(folder_, command("0.2")));
   const auto usual = std::chrono::steady_clock::now() - start;
-  const Environment named{{"LD_PRELOAD", DUCTILE_KILLING_STEPS}, {"DUCTILE_NAMED", "1"}};
   for (int i = 0; i < 200; ++i) {
     put_old_ones_back();
     const int number = i % 3 == 0 ? SIGKILL : i % 3 == 1 ? SIGTERM : SIGINT;
-    const pid_t child = spawn(folder_, command("0.2"), i % 2 == 0 ? named : Environment{});
+    const pid_t child = spawn(folder_, command("0.2"));
     std::this_thread::sleep_for(usual * (random() % 1000) / 1000);
     ::kill(child, number);
     const auto status = wait_for(child);

@@ -1,5 +1,6 @@
 /// @file
-/// The limit on memory: it is of the program's own, and what cannot be met is refused at once.
+/// The limit on memory counts the program's own memory; a request that exceeds it is refused at
+/// once.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -54,7 +55,7 @@ TEST_F(Memory, IsRefusedOnlyWhereItIsTooLittle) {
   }
 }
 
-/// By the machine's memory where no limit is given.
+/// Without -m the machine's memory is the limit.
 TEST_F(Memory, IsRefusedBeforeTheWork) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(adapt("t.mesh -hsiz 0.0012"), 1) << errors_of(folder_);

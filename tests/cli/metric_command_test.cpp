@@ -106,7 +106,7 @@ TEST(MetricCommand, MakesAMetricForElementsOrAnError) {
   EXPECT_NEAR(scene.complexity<2>("m.solb"), meshadapt::complexity_of_elements(2, 5000), 1e-2);
   EXPECT_EQ(scene.folder.run(make + "-o coarse.sol --error 0.02 --norm inf").status, 0);
   EXPECT_EQ(scene.folder.run(make + "-o fine.sol --error 0.005 --norm inf").status, 0);
-  // Four times the error is twice the size, but for what the extent of the mesh bounds.
+  // Four times the error means twice the sizes, except where the extent of the mesh bounds them.
   EXPECT_NEAR(scene.complexity<2>("fine.sol") / scene.complexity<2>("coarse.sol"), 4, 0.2);
 }
 

@@ -39,8 +39,8 @@ TEST(MmgOptions, AreTakenWithOneWarningAndChangeNothing) {
   EXPECT_EQ(folder.read("mmg.mesh"), folder.read("plain.mesh"));
 }
 
-/// Sizes at a frozen boundary far coarser than the metric asks for, unless they are asked not to
-/// be.
+/// The frozen boundary is far coarser than the metric asks for. -hgradreq spreads its sizes, unless
+/// that is turned off.
 TEST(MmgOptions, HgradreqTakesSizesFromWhatIsRequired) {
   const Folder folder;
   folder.add_example("waves2d");
@@ -59,7 +59,8 @@ TEST(MmgOptions, HgradreqTakesSizesFromWhatIsRequired) {
       << wrong.err;
 }
 
-/// Beside the mesh, or given: local bounds take the place of others, for boundaries and regions.
+/// Local bounds from a file, beside the mesh or given, replace the global ones on boundaries and
+/// regions.
 TEST(MmgOptions, LocalParametersBoundSizesByReference) {
   const Folder folder;
   folder.add_example("waves2d");
@@ -93,7 +94,7 @@ TEST(MmgOptions, LocalParametersBoundSizesByReference) {
   EXPECT_TRUE(contains(folder.run("adapt waves2d.mesh -f given.mmg2d").err, "found tetrahedra"));
 }
 
-/// A number after -rn belongs to it, a mesh does not.
+/// A number after -rn is its argument, the name of a mesh is not.
 TEST(MmgOptions, LeaveTheMeshWhereANumberMayBeMissing) {
   const Folder folder;
   folder.add_example("waves2d");
@@ -101,7 +102,7 @@ TEST(MmgOptions, LeaveTheMeshWhereANumberMayBeMissing) {
   EXPECT_EQ(folder.run("adapt -rn 1 waves2d.mesh -noinsert -nomove -noswap -o o.mesh").status, 0);
 }
 
-/// Whatever metric lies beside the mesh.
+/// The sizes of the mesh count even if a metric lies beside it.
 TEST(MmgOptions, OptimKeepsTheSizesThatTheMeshHas) {
   const Folder folder;
   folder.add_example("waves2d");

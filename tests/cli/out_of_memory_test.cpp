@@ -1,6 +1,6 @@
 /// @file
-/// Fails the program's requests for memory in turn, as curl's tests do: each once, and all from
-/// each one on. With DUCTILE_EVERY_ALLOCATION in the environment, all of them; otherwise a sample.
+/// Fails the program's requests for memory as curl's tests do: each one alone, and all from each
+/// one on. With DUCTILE_EVERY_ALLOCATION in the environment, all requests; otherwise a sample.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 struct Case {
   const char* name;
   const char* words;
-  /// The library that draws may lose a letter, and does not tell.
+  /// The drawing library may lose a letter without reporting it.
   bool may_differ = false;
 };
 
@@ -45,7 +45,7 @@ class OutOfMemory : public testing::TestWithParam<Case> {
       if (!inputs.contains(name)) std::filesystem::remove(folder_.path() / name);
   }
 
-  /// All requests, or many of them.
+  /// The numbers of all requests, or of a sample of 40.
   static std::vector<long> chosen(long count) {
     constexpr std::size_t many = 40;
     std::vector<long> numbers(static_cast<std::size_t>(count));
@@ -75,7 +75,7 @@ TEST_P(OutOfMemory, EndsWithALineOrTheRightOutput) {
   ASSERT_EQ(run("once", 0), 0) << errors_of(folder_);
   const Contents right = contents_of(folder_);
   const long count = std::atol(folder_.read(count_file()).c_str());
-  ASSERT_GT(count, 20) << "nothing was counted";
+  ASSERT_GT(count, 20) << "no request was counted";
   long refused = 0;
   for (const char* how : {"once", "on"})
     for (const long at : chosen(count)) {

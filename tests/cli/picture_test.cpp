@@ -78,8 +78,8 @@ TEST(Scene, ShowsOnlyTheFrontOfASolid) {
   const AnyMesh mesh = two_tetrahedra();
   const Camera camera = camera_along(1);
   const Panel panel = surface_panel(mesh, camera);
-  // Seen from the right, the front and above: of the six facets, the faces at y = 0 and the slanted
-  // ones that look that way; never the shared one.
+  // From the right, the front and above, the faces at y = 0 and the slanted ones that face the
+  // camera are visible; the shared one never is.
   EXPECT_GE(panel.faces.size(), 3U);
   EXPECT_LE(panel.faces.size(), 4U);
 }
@@ -93,8 +93,8 @@ TEST(Scene, CutsThroughTheMiddle) {
     for (const Face& face : panel.faces)
       if (face.colour == quality_colour(0.1) || face.colour == quality_colour(0.9))
         section += area(face);
-    // At x = 1/2 and y = 1/2 two triangles of area 1/8; at z = 0 the shared facet. A
-    // projection shrinks it by the cosine.
+    // The cuts at x = 1/2 and y = 1/2 are two triangles of area 1/8 each; the cut at z = 0 is the
+    // shared facet. Projection shrinks the area by the cosine.
     const double expected = axis == 2 ? 0.5 : 0.25;
     EXPECT_NEAR(section, expected * std::abs(camera.towards[axis]), 1e-12) << axis;
   }
@@ -144,7 +144,7 @@ TEST(Scene, ShowsTheMetricInTheCut) {
   }
 }
 
-/// Whether a point is in an ellipse, up to its edge.
+/// Is the point inside the ellipse?
 bool is_in(const UnitEllipse& e, const Point& p) {
   const double x = p.x - e.centre.x, y = p.y - e.centre.y, area = e.u.x * e.v.y - e.u.y * e.v.x;
   return std::hypot((x * e.v.y - y * e.v.x) / area, (y * e.u.x - x * e.u.y) / area) < 1;
@@ -182,7 +182,7 @@ TEST(Ellipses, AreManyAndNeverOneOnAnother) {
       for (const UnitEllipse& b : chosen.drawn) {
         if (&a == &b || std::hypot(a.centre.x - b.centre.x, a.centre.y - b.centre.y) > 0.4 * extent)
           continue;
-        for (double t = -1; t <= 1; t += 0.125)  // the long axes say enough
+        for (double t = -1; t <= 1; t += 0.125)  // testing the long axes is enough
           EXPECT_FALSE(is_in(b, {a.centre.x + t * a.u.x, a.centre.y + t * a.u.y}));
       }
     }

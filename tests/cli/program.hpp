@@ -1,5 +1,5 @@
 /// @file
-/// Runs the real program in a folder of its own and tells what it said.
+/// Runs the real program in a folder of its own and returns its output.
 #pragma once
 
 #include <filesystem>

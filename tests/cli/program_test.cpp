@@ -37,7 +37,7 @@ TEST(Program, SuggestsOptionsOnlyWhereTheyAreClose) {
 
 TEST(Program, InfoWarnsOfBoundariesThatCross) {
   const Folder folder;
-  const auto info = [&](const char* tip) {  // of the first of two triangles
+  const auto info = [&](const char* tip) {  // edits the first of two triangles
     folder.write("m.mesh", "MeshVersionFormatted 2\nDimension 2\nVertices 6\n0 0 0\n0 1 0\n" +
                                std::string(tip) +
                                " 0.4 0\n1 0 0\n2 0 0\n1 1 0\n"

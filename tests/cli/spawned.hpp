@@ -1,5 +1,5 @@
 /// @file
-/// Runs the real program without a shell, so that what is set in the environment meets it alone.
+/// Runs the real program without a shell, so that environment variables affect the program only.
 #pragma once
 
 #include <sys/types.h>
@@ -19,11 +19,11 @@ using Environment = std::map<std::string, std::string>;
 /// `err` beside the folder. Words are separated by single spaces.
 pid_t spawn(const Folder& folder, const std::string& words, const Environment& more = {});
 
-/// How it ended: its exit status, or minus the signal that ended it. Nothing if it takes longer
-/// than so many seconds; then it is killed.
+/// Returns the exit status, or minus the signal that ended the child. Returns nothing, and kills
+/// it, if it takes longer than `seconds`.
 std::optional<int> wait_for(pid_t child, double seconds = 60);
 
-/// What it has written on standard error since spawn().
+/// The program's standard error since spawn().
 std::string errors_of(const Folder& folder);
 
 /// Adds a square of 8 triangles, s.mesh with s.sol, and two tetrahedra, t.mesh.

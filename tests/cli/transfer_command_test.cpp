@@ -1,6 +1,6 @@
 /// @file
-/// `ductile transfer` on random meshes and fields: what is written is what the library carries, and
-/// meshes of other domains are refused.
+/// `ductile transfer` on random meshes and fields: its output equals the library's result, and
+/// meshes of different domains are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ AnyMesh random_mesh(Random& random, int dimension, int n) {
   return mesh;
 }
 
-/// Two meshes of the unit square or cube, and fields on the old one, in the folder in many formats.
+/// Writes two meshes of the unit square or cube, and fields on the first, in many formats.
 class Case {
  public:
   explicit Case(std::uint64_t seed) : random_(seed) {
@@ -86,7 +86,7 @@ class Case {
     EXPECT_EQ(outcome.err, "") << words;
   }
 
-  /// What the library carries, under the names that are given, and nothing else but `own`.
+  /// Expects the library's result under the given names, and no other fields except `own`.
   void expect_fields(const std::string& file, const std::vector<std::string>& names,
                      const std::vector<Carrying>& how, std::size_t own = 0) const {
     SCOPED_TRACE(file);
@@ -189,12 +189,12 @@ TEST(TransferCommand, SaysWhatDoesNotFit) {
   EXPECT_TRUE(contains(folder.run("transfer old.vtu - -o -.vtk < new.mesh").out, "CELL_DATA"));
 }
 
-/// One of the domains that are not the same.
+/// Two meshes whose domains may be changed to differ.
 struct Domains {
   AnyMesh from, to;
 };
 
-/// How the program ends, and what it says in either way.
+/// The program's exit status, and its message for each way of transfer.
 struct End {
   int status;
   std::string conservatively, by_value;
@@ -237,11 +237,12 @@ TEST(TransferCommand, RefusesMeshesThatStickOut) {
     expect_transfer({0, "", ""}, same, shift(small));
     const std::string refused = " outside of old.vtu; give a mesh of the same domain, or --extend";
     expect_transfer({2, refused, refused}, same, shift(large));
-    // A part of the old domain: what is lost is told, unless no integral is asked for.
+    // The new mesh covers a part of the old domain: the loss is reported only if integrals are to
+    // be kept.
     expect_transfer({0, "; integrals lose what is there", ""}, same, [&](Domains& domains) {
       for (double& x : domains.to.coordinates) x = 0.1 + 0.7 * x;
     });
-    // A hole that only elements fill.
+    // The old domain has a hole that the new one fills with elements.
     const std::string share = dimension == 2 ? " % of its area lies" : " % of its volume lies";
     expect_transfer({2, share, share}, same, [&](Domains& domains) {
       test::Grid grid = test::unit_grid(dimension, 3);

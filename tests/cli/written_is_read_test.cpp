@@ -1,7 +1,7 @@
 /// @file
-/// Whatever `adapt`, `metric` and `convert` write, `info`, `adapt` and `metric` read again: meshes
-/// and metrics of any scale, stretched up to the bound, with options up to theirs. What is too much
-/// is refused, and nothing else.
+/// `info`, `adapt` and `metric` read all that `adapt`, `metric` and `convert` write: meshes and
+/// metrics of any scale, anisotropic up to the bound, with options up to theirs. Only requests
+/// beyond the limits are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -86,7 +86,7 @@ class ExtremeCase {
   int successes() const { return successes_; }
 
  private:
-  /// Sizes or tensors, the same on the whole or not, that ask for few elements.
+  /// Sizes or tensors, uniform or not, that ask for few elements.
   AnyField extreme_metric(const AnyMesh& mesh) {
     const bool far = chance(random_, 0.3);
     const double coarse = std::min(9e74, scale_ * power_of_10(random_, -0.3, far ? 40 : 1));
@@ -121,7 +121,7 @@ class ExtremeCase {
     return words;
   }
 
-  /// True if it did what was asked for; what it refuses it says so of, in one line.
+  /// Runs the program; returns true if it succeeded. Expects a message if it refused.
   bool succeeds(const std::string& words) {
     const Outcome outcome = folder_.run(words);
     EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << words << "\n" << outcome.err;
@@ -147,7 +147,7 @@ class ExtremeCase {
   int successes_ = 0;
 };
 
-/// At least a third of what is tried shall succeed, for there to be something to read.
+/// At least a third of the calls must succeed, so that there is something to read.
 template <class Act>
 void expect_all_read(std::uint64_t seed, const Act& act) {
   Random random(seed);

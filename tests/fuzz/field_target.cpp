@@ -1,5 +1,6 @@
-// Any bytes as a file of fields: read or refused in words; what is read is written and read again
-// to the same thing; as a metric it is refused, or positive definite and accepted again.
+// Any bytes as a file of fields: the file is read, or refused by a message. Fields that are read
+// must survive writing and reading; as a metric they are refused, or positive definite and accepted
+// again.
 
 #include <cmath>
 #include <cstring>
@@ -17,8 +18,9 @@ using meshadapt::AnyMesh;
 using meshadapt::WriteOptions;
 
 void expect_whole(const AnyField& field) {
-  expect(field.dimension == 2 || field.dimension == 3, "the dimension");
-  expect(field.values.size() == field.vertex_count * stride_of(field), "the number of values");
+  expect(field.dimension == 2 || field.dimension == 3, "the dimension is neither 2 nor 3");
+  expect(field.values.size() == field.vertex_count * stride_of(field),
+         "the number of values does not fit the vertices");
   for (const double value : field.values) expect(std::isfinite(value), "a value is not finite");
 }
 
@@ -39,7 +41,7 @@ void expect_round_trip(const AnyField& field, std::size_t choice) {
          "other values after writing and reading");
 }
 
-/// Vertices of the field's dimension, as many as it has values for.
+/// A mesh of the field's dimension with as many vertices as the field has values for.
 AnyMesh mesh_of(const AnyField& field) {
   AnyMesh mesh;
   mesh.dimension = field.dimension;

@@ -1,6 +1,6 @@
-// Any bytes as a mesh file for one reader of the table of formats, that of DUCTILE_FUZZED: read or
-// refused in words; what is read is written and read again to the same thing, in one of all
-// formats, checked, and made into a mesh that can be adapted.
+// Any bytes as a mesh file for one reader of the table of formats, chosen by DUCTILE_FUZZED: the
+// file is read, or refused by a message. A mesh that is read must survive writing and reading in
+// each of the formats, is checked, and becomes a Mesh if it can be adapted.
 
 #include <algorithm>
 #include <array>
@@ -35,7 +35,7 @@ void expect_list(const std::vector<std::uint32_t>& list, std::size_t limit) {
 
 void expect_whole(const AnyMesh& mesh, std::size_t bytes, bool compressed) {
   const std::size_t vertices = mesh.vertex_count();
-  expect(mesh.dimension == 2 || mesh.dimension == 3, "the dimension");
+  expect(mesh.dimension == 2 || mesh.dimension == 3, "the dimension is neither 2 nor 3");
   expect(vertices > 0, "no vertices");
   expect(mesh.coordinates.size() == vertices * static_cast<std::size_t>(mesh.dimension),
          "the number of coordinates");
@@ -52,7 +52,7 @@ void expect_whole(const AnyMesh& mesh, std::size_t bytes, bool compressed) {
   const std::size_t held = 8 * mesh.coordinates.capacity() + 12 * mesh.edges.vertices.capacity() +
                            16 * mesh.triangles.vertices.capacity() +
                            20 * mesh.tetrahedra.vertices.capacity();
-  // What zlib compressed may be a thousand times as large.
+  // Data compressed by zlib may be a thousand times as large.
   expect(held < 4096 + (compressed ? 16000 : 16) * bytes, "memory out of proportion to the file");
 }
 
@@ -61,17 +61,17 @@ void expect_same(const AnyMesh& mesh, const MemoryFile& file) {
   expect(again.coordinates.size() == mesh.coordinates.size() &&
              std::memcmp(again.coordinates.data(), mesh.coordinates.data(),
                          8 * mesh.coordinates.size()) == 0,
-         "other coordinates after writing and reading");
+         "coordinates differ after writing and reading");
   again.name = mesh.name;
-  again.coordinates = mesh.coordinates;  // -0 == 0 was decided bit by bit
-  expect(again == mesh, "another mesh after writing and reading");
+  again.coordinates = mesh.coordinates;  // compared bit by bit above; -0 == 0 here
+  expect(again == mesh, "the mesh differs after writing and reading");
 }
 
-/// In a form that the input chooses.
+/// Writes and reads in a form that the input chooses.
 void expect_round_trip(AnyMesh mesh, std::size_t choice) {
   static MemoryFile file;
   file.set(nullptr, 0);
-  mesh.names.clear();  // not all may be in all files
+  mesh.names.clear();  // not every file can hold all names
   WriteOptions options;
   options.format = ".mesh";
   options.form = choice % 2 == 0 ? WriteOptions::Form::ascii : WriteOptions::Form::binary;
@@ -82,9 +82,9 @@ void expect_round_trip(AnyMesh mesh, std::size_t choice) {
   expect_same(mesh, file);
 }
 
-/// The same in a format that knows cells and references only, and three coordinates.
+/// The same in a format that holds only cells and references, and three coordinates.
 void expect_round_trip_in_space(AnyMesh mesh, std::size_t choice) {
-  if (mesh.dimension == 2 && mesh.triangles.size() == 0) return;  // in no plane then
+  if (mesh.dimension == 2 && mesh.triangles.size() == 0) return;  // it would lie in no plane
   static MemoryFile file;
   file.set(nullptr, 0);
   for (auto* list : {&mesh.corners, &mesh.ridges, &mesh.required_vertices, &mesh.required_edges,
@@ -122,7 +122,7 @@ void make(const AnyMesh& mesh) {
   }
 }
 
-/// Beyond that, areas and volumes are no numbers, and nothing is adapted.
+/// False if areas and volumes would overflow; such meshes are not adapted.
 bool is_in_scale(const AnyMesh& mesh) {
   return std::all_of(mesh.coordinates.begin(), mesh.coordinates.end(),
                      [](double x) { return std::abs(x) <= 1e50; });
@@ -133,7 +133,8 @@ void use(const AnyMesh& mesh) {
   expect_messages(faults);
   if (faults.empty()) {
     const auto domain = meshadapt::check_domain(executor(), mesh, mesh);
-    expect(domain.empty() || !is_in_scale(mesh), "a mesh whose domain is not its own");
+    expect(domain.empty() || !is_in_scale(mesh),
+           "check_domain() finds that a mesh differs from itself");
     expect_messages(meshadapt::check_boundary(executor(), mesh));
   }
   meshadapt::measure(executor(), mesh, nullptr);
@@ -149,7 +150,7 @@ const meshadapt::FormatRow& fuzzed_row() {
   fail("no format " DUCTILE_FUZZED);
 }
 
-/// Whatever the bytes begin with, they go to the reader of the format.
+/// Uses the reader of the chosen format whatever the bytes begin with.
 AnyMesh read(const MemoryFile& file, meshadapt::Warnings& warnings) {
   return fuzzed_row().read(meshadapt::read_bytes(file.path()), &warnings).mesh;
 }

@@ -1,6 +1,6 @@
-// Any bytes as numbers of a metric and of the options that go with it, on a small mesh, in C++:
-// what is out of range is refused in words, what is accepted is accepted again after bounds and
-// gradation, and a mesh that was adapted to it is one.
+// Any bytes as numbers of a metric and of options, on a small mesh, in C++: numbers out of range
+// are refused by a message, an accepted metric is accepted again after bounds and gradation, and a
+// mesh adapted to it is valid.
 
 #include <cmath>
 #include <cstring>
@@ -21,7 +21,7 @@ using meshadapt::AnyMesh;
 
 constexpr double most_elements = 300;  // so that thousands of inputs a second are tried
 
-/// Numbers from bytes; when they are used up, they begin again.
+/// Numbers from bytes, which repeat when they are used up.
 class Numbers {
  public:
   Numbers(const std::uint8_t* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
@@ -31,7 +31,7 @@ class Numbers {
     ++at_;
     return value;
   }
-  /// A plain number, one of any size, or the bits of a double as they come.
+  /// A plain number, one of any size, or a double from arbitrary bits.
   double number() {
     const unsigned way = byte();
     if (way < 96) return static_cast<double>(byte()) / 64 - (way < 16 ? 1 : 0);
@@ -67,7 +67,7 @@ AnyField some_field(Numbers& numbers, const AnyMesh& mesh) {
   const std::size_t stride = stride_of(field);
   for (std::size_t i = 0; i < field.vertex_count * stride; ++i)
     field.values.push_back(alike && i >= stride ? field.values[i - stride] : numbers.number());
-  // Mostly tensors that are definite: random components hardly ever are.
+  // Mostly definite tensors, because random components hardly ever give one.
   if (numbers.byte() % 8 != 0 && stride > 1)
     for (std::size_t i = 0; i < field.values.size(); ++i) {
       const std::size_t component = i % stride;
@@ -85,7 +85,7 @@ double elements_asked_for(const AnyMesh& mesh, const AnyField& metric) {
          meshadapt::complexity_of_elements(Dim, 1);
 }
 
-/// Bounds and gradation as numbers say; what they leave must be a metric still.
+/// Applies bounds and gradation of any values; the result must still be a metric.
 template <int Dim>
 void change(Numbers& numbers, const AnyMesh& mesh, const AnyField& metric) {
   auto tensors = meshadapt::tensors_of<Dim>(executor(), metric);
@@ -122,11 +122,11 @@ meshadapt::AdaptOptions some_options(Numbers& numbers) {
 void adapt(Numbers& numbers, const AnyMesh& mesh, const AnyField& metric) {
   const meshadapt::AdaptOptions options = some_options(numbers);
   try {
-    // A smaller number of elements than the metric asks for is all that bounds may lead to here.
+    // Only bounds that reduce the number of elements are allowed here, to keep runs short.
     if (options.largest_size > 0 && options.largest_size < 0.2) return;
     if (options.gradation >= 1 && options.gradation < 1.2) return;
     const auto adapted = meshadapt::adapt(executor(), mesh, metric, options);
-    expect(meshadapt::check_mesh(executor(), adapted.mesh).empty(), "an adapted mesh is no mesh");
+    expect(meshadapt::check_mesh(executor(), adapted.mesh).empty(), "an adapted mesh is not valid");
     expect(meshadapt::check_domain(executor(), mesh, adapted.mesh, options.make.hausdorff_tolerance)
                .empty(),
            "an adapted mesh has another domain");
@@ -136,7 +136,7 @@ void adapt(Numbers& numbers, const AnyMesh& mesh, const AnyField& metric) {
   }
 }
 
-/// Tensors that no file may hold, straight from C++: refused as well.
+/// Expects that tensors which no file may hold are refused, too, if they come from C++.
 void expect_refusal(const AnyMesh& mesh, const AnyField& metric) {
   try {
     meshadapt::adapt(executor(), mesh, metric, {});

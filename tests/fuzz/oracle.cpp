@@ -14,7 +14,7 @@ void fail(const std::string& why) {
 }
 
 void expect_message(const std::string& text) {
-  expect(!text.empty(), "a message without words");
+  expect(!text.empty(), "an empty message");
   if (text.size() > 2000) fail("a message without end: " + text.substr(0, 200));
   for (const unsigned char c : text)
     if (c < ' ' || c == 0x7f) fail("a control character in a message: " + text);
@@ -39,7 +39,7 @@ MemoryFile::MemoryFile() : file_(memfd_create("input", 0)) {
 MemoryFile::~MemoryFile() { close(file_); }
 
 void MemoryFile::set(const std::uint8_t* bytes, std::size_t size) {
-  // Who writes to the path goes on where this file stands.
+  // A writer to the path continues at this file's position, so that must be the beginning.
   if (ftruncate(file_, 0) != 0 || lseek(file_, 0, SEEK_SET) != 0 ||
       pwrite(file_, bytes, size, 0) != static_cast<ssize_t>(size))
     fail("no memory for the input");

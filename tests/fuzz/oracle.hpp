@@ -1,6 +1,6 @@
 /// @file
-/// What every input of a fuzzer is held to: files in memory, messages of one line, and an end with
-/// words where something does not hold.
+/// Requirements on every input of a fuzzer: files in memory, one-line messages, and an abort with a
+/// message if a requirement is broken.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,18 @@
 
 namespace ductile::fuzz {
 
-/// Ends the program, so that libFuzzer keeps the input.
+/// Aborts, so that libFuzzer keeps the input.
 [[noreturn]] void fail(const std::string& why);
 
 inline void expect(bool holds, const char* why) {
   if (!holds) fail(why);
 }
 
-/// One line, not empty, without control characters, not endless.
+/// Expects one line: not empty, without control characters, of limited length.
 void expect_message(const std::string& text);
 void expect_messages(const meshadapt::Warnings& lines);
 
-/// Of an error about a file: names it first.
+/// The same for an error about a file, whose message must begin with the path.
 void expect_message_of(const std::string& path, const std::string& text);
 
 /// A file in memory.
@@ -42,7 +42,7 @@ class MemoryFile {
   std::string path_;
 };
 
-/// On one thread.
+/// An executor of one thread.
 const runtime::Executor& executor();
 
 }  // namespace ductile::fuzz

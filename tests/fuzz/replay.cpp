@@ -1,5 +1,5 @@
-// In place of libFuzzer, for builds without it: tries the files named, and a number of damaged
-// copies of each, always the same ones. replay COPIES FILE...
+// Replaces libFuzzer in builds without it: tries the named files, and a number of damaged copies of
+// each, the same in every run. replay COPIES FILE...
 
 #include <cstdint>
 #include <cstdio>
@@ -19,7 +19,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 void try_bytes(const Bytes& bytes) { LLVMFuzzerTestOneInput(bytes.data(), bytes.size()); }
 
-/// With some bytes changed, doubled, taken out, or the end cut off.
+/// Changes, doubles or removes some bytes, or cuts the end off.
 Bytes damaged(Bytes bytes, std::mt19937_64& random) {
   for (auto changes = 1 + random() % 4; changes > 0 && !bytes.empty(); --changes) {
     const auto at = static_cast<std::ptrdiff_t>(random() % bytes.size());

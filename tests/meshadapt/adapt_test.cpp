@@ -149,7 +149,7 @@ TEST_P(Adapt, MeetsAUniformSize) {
   EXPECT_GT(statistics.quality.min, dimension() == 2 ? 0.3 : 0.05);
 }
 
-/// Edges of `along` but for one direction, oblique to the mesh, in which they are `across`.
+/// Asks for edges of length `along`, and `across` in one direction, oblique to the mesh.
 AnyField sheets(const AnyMesh& mesh, double along, double across) {
   const std::array<double, 3> normal =
       mesh.dimension == 2 ? std::array{0.8, 0.6, 0.0} : std::array{2. / 3, 1. / 3, 2. / 3};
@@ -163,7 +163,7 @@ AnyField sheets(const AnyMesh& mesh, double along, double across) {
   return field;
 }
 
-/// With a closed crack inside, whose sides have their rim in common, and reference 9.
+/// A mesh with a closed crack inside, whose sides share their rim and have reference 9.
 AnyMesh cracked(int dimension) {
   AnyMesh mesh = test::make_grid(test::unit_grid(dimension, 4));
   const auto axes = static_cast<std::size_t>(dimension);
@@ -226,7 +226,7 @@ TEST_P(Adapt, LeavesClosedCracksOpen) {
     }
 }
 
-/// In which nearly all elements of the mesh are slivers.
+/// Nearly all elements of the mesh are slivers in this metric.
 TEST_P(Adapt, ComesToAMetricFarFromTheMesh) {
   const AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), dimension() == 2 ? 10 : 3));
   const AnyField metric = dimension() == 2 ? sheets(mesh, 0.5, 2e-4) : sheets(mesh, 0.7, 0.7 / 200);
@@ -239,8 +239,8 @@ TEST_P(Adapt, ComesToAMetricFarFromTheMesh) {
   expect_identical(adapted, adapt(Executor({.threads = 3}), mesh, metric));
 }
 
-/// In a mesh of flat and of large elements, what lies between its own metric and one of few
-/// elements may ask for a hundred thousand, as it does here in 3D.
+/// In a mesh of flat and of large elements, a metric between the mesh's own and a coarse one may
+/// ask for a hundred thousand elements; here it would in 3D.
 TEST_P(Adapt, MakesNoDetourByManyElements) {
   AnyMesh mesh = test::make_grid(test::unit_grid(dimension(), 4));
   for (double& x : mesh.coordinates)  // all but the last layers are thin
@@ -256,8 +256,8 @@ TEST_P(Adapt, MakesNoDetourByManyElements) {
   EXPECT_EQ(test::joined(check_domain(Executor({.threads = 1}), mesh, adapted.mesh)), "");
 }
 
-/// Sizes at a plane of vertices jump to large ones at the next: the first call may not make many
-/// times the elements of the last, which knows the metric at the vertices of the one before.
+/// Sizes at a plane of vertices jump to large ones at the next. The first call may not make many
+/// times the elements of the last, which knows the metric at the vertices of the previous mesh.
 TEST_P(Adapt, MakesAThinLayerInACoarseMeshAtOnce) {
   const int axis = dimension() - 1;
   const double thin = dimension() == 2 ? 1e-5 : 1e-4;
@@ -294,7 +294,7 @@ TEST_P(Adapt, RefusesToMakeMoreElementsThanCanBeCounted) {
         << size;
 }
 
-/// All elements in the layer are slivers, whatever is done.
+/// The elements in the layer remain slivers, whatever kernels do.
 TEST_P(Adapt, SplitsTheSidesOfAThinLayer) {
   test::Grid grid = test::unit_grid(dimension(), dimension() == 2 ? 4 : 3);
   grid.lines[dimension() - 1] = {0, 0.25, 0.49995, 0.50005, 0.75, 1};
@@ -321,7 +321,7 @@ TEST_P(Adapt, CoarsensABoxToLittleMoreThanItsCorners) {
   EXPECT_TRUE(faults.empty()) << test::joined(faults);
 }
 
-/// The elements as sets of places, which do not depend on numbering.
+/// The elements as sets of positions, which do not depend on numbering.
 std::set<std::vector<std::vector<double>>> places(const AnyMesh& mesh) {
   std::set<std::vector<std::vector<double>>> result;
   const auto d = static_cast<std::size_t>(mesh.dimension);

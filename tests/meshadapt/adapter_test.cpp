@@ -41,12 +41,14 @@ void check_after_each_kernel(const Executor& executor, const test::RandomCase& r
                        << test::joined(faults);
     return true;
   };
-  Adapter<Dim> adapter(executor, options, std::move(mesh), std::move(neighbours), metric_of);
+  AdaptReport report;
+  Adapter<Dim> adapter(executor, options,
+                       {std::move(mesh), std::move(neighbours), std::move(metric_of)}, report);
   driver = &adapter;
   const auto faults = check_mesh(executor, adapter.mesh());
   sound = faults.empty();
   EXPECT_TRUE(sound) << "at the start" << test::joined(faults);
-  adapter.run();
+  adapter.run(Effort::as_needed);
 }
 
 TEST(Adapter, EachKernelLeavesTheMeshSound) {
@@ -63,8 +65,8 @@ TEST(Adapter, EachKernelLeavesTheMeshSound) {
   }
 }
 
-/// A random arc of one region or two, rippled, with listed ridges or none, and random metrics; what
-/// is curved may change.
+/// A random arc of one or two regions, rippled, with or without listed ridges, and a random metric;
+/// curved parts may change.
 test::RandomCase random_arc(std::uint64_t seed) {
   test::Random random(seed);
   const int dimension = seed % 2 == 0 ? 2 : 3, n = dimension == 2 ? 16 : 6;

@@ -14,7 +14,7 @@ namespace {
 
 using runtime::Executor;
 
-/// Elements in random order, so that lists are made of what lies far apart.
+/// A mesh whose elements are in random order, so that the elements of a list are far apart.
 template <int Dim>
 AnyMesh shuffled() {
   AnyMesh mesh = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 60 : 12));
@@ -78,7 +78,7 @@ TYPED_TEST(AdjacencyTest, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-/// Three triangles at an edge; the second and the third are of one region.
+/// Three triangles share an edge; the second and the third belong to one region.
 TEST(Adjacency, KnowsWhereThreeElementsMeet) {
   AnyMesh mesh;
   mesh.dimension = 2;

@@ -50,7 +50,7 @@ struct Scene {
   }
 };
 
-/// A point in a random element, and the metric there by the definition.
+/// Chooses a point in a random element, and computes the metric there by the definition.
 template <int Dim>
 Metric<Dim> brute_force(const Scene<Dim>& scene, Random& random, Vector<Dim>& point) {
   const auto& corners = scene.mesh.corners_of[test::below(random, scene.mesh.element_slots())];
@@ -90,7 +90,7 @@ TYPED_TEST(BackgroundIn, GivesTheMetricOfAVertexThere) {
   }
 }
 
-/// Whose barycentric weights are no numbers.
+/// The barycentric weights of such an element are not finite.
 TYPED_TEST(BackgroundIn, GivesAMetricWhereAnElementIsFlatByRounding) {
   constexpr int Dim = TypeParam::value;
   Random random(11);
@@ -128,8 +128,8 @@ TYPED_TEST(BackgroundIn, TakesAPointOutsideToBeInTheClosestElement) {
   }
 }
 
-/// Points of a facet of the outer boundary, moved straight out of the unit box, are closest to
-/// where they came from.
+/// Points of a facet of the outer boundary, moved straight out of the unit box, have their old
+/// positions as closest points.
 TYPED_TEST(BackgroundIn, GivesAPointOutsideTheMetricOfTheClosestPoint) {
   constexpr int Dim = TypeParam::value;
   Random random(6);
@@ -156,8 +156,9 @@ TYPED_TEST(BackgroundIn, GivesAPointOutsideTheMetricOfTheClosestPoint) {
   EXPECT_GT(scene.background->bytes(), before);
 }
 
-/// A layer of a size at the middle of the box, in elements of 1/6 in which it jumps to 0.03:
-/// between the vertices it grows linearly, and the background knows how many elements that is.
+/// The size jumps from a small one in the middle of the box to 0.03 one element (1/6) away. It
+/// grows linearly between the vertices, and the background estimates the number of elements
+/// accordingly.
 TYPED_TEST(BackgroundIn, LetsSizesGrowLinearlyWhereTheyJump) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 2});
@@ -186,7 +187,7 @@ TYPED_TEST(BackgroundIn, LetsSizesGrowLinearlyWhereTheyJump) {
       const auto sample = background.sample(point, 0);
       EXPECT_LT(difference(at_distance(distance), sample.metric), 1e-6) << thin << ' ' << distance;
     }
-    // Across: 1/size, integrated; the other sizes are 0.05.
+    // Layers across: the integral of 1/size. The other sizes are 0.05.
     const double layers =
         2 * (std::log(0.03 / thin) / (6 * (0.03 - thin)) + (0.5 - 1.0 / 6) / 0.03);
     EXPECT_NEAR(background.complexity(executor) / (layers * std::pow(20, Dim - 1)), 1, 1e-3)

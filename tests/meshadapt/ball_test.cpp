@@ -23,7 +23,7 @@ class BallOf : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(BallOf, Dimensions);
 
-/// A jiggled grid with a metric at each vertex that has nothing to do with its neighbours'.
+/// A jiggled grid with an unrelated random metric at each vertex.
 template <int Dim>
 Mesh<Dim> wild_mesh(Random& random) {
   AnyMesh any = test::make_grid(test::unit_grid(Dim, 4));
@@ -41,7 +41,7 @@ Mesh<Dim> wild_mesh(Random& random) {
   return mesh;
 }
 
-/// The same vertex not far away, with the metric of another one.
+/// The site of a vertex moved a little, with the metric of another vertex.
 template <int Dim>
 Site<Dim> moved(const Mesh<Dim>& mesh, VertexId vertex, Random& random, double furthest) {
   Site<Dim> site = mesh.site_of[test::below(random, mesh.vertex_slots())];
@@ -50,7 +50,7 @@ Site<Dim> moved(const Mesh<Dim>& mesh, VertexId vertex, Random& random, double f
   return site;
 }
 
-/// The qualities around a vertex by the definition.
+/// The qualities of the elements around a vertex, by the definition.
 template <int Dim>
 std::vector<double> qualities_by_definition(const Mesh<Dim>& mesh, VertexId vertex,
                                             const Site<Dim>& apex) {
@@ -111,7 +111,7 @@ TYPED_TEST(BallOf, KnowsTheQualitiesThatThereAre) {
   }
 }
 
-/// A mesh squeezed along its last axis and turned, so that determinants lose digits.
+/// A mesh compressed along its last axis and rotated, so that determinants lose digits.
 template <int Dim>
 Mesh<Dim> squeezed(Mesh<Dim> mesh, double factor) {
   for (Site<Dim>& site : mesh.site_of) {
@@ -124,8 +124,8 @@ Mesh<Dim> squeezed(Mesh<Dim> mesh, double factor) {
   return mesh;
 }
 
-/// Near the facet of one of its elements, and of those in line with it, a vertex makes volumes of
-/// which rounding leaves nothing but their order of magnitude.
+/// Near the facet of one of its elements, or of one in line with it, a vertex gives volumes that
+/// are no larger than rounding errors.
 TYPED_TEST(BallOf, IsCertainOnlyOfVolumesThatArePositive) {
   constexpr int Dim = TypeParam::value;
   Random random(36);
@@ -201,7 +201,7 @@ TYPED_TEST(BallOf, GivesTheGradientsOfQualities) {
   }
 }
 
-/// Regular elements with edges of length 1 around a vertex pull it to where it was.
+/// Regular elements with edges of length 1 pull the moved vertex back to its old position.
 TEST(Ball, PullsToWhereElementsAreRegular) {
   AnyMesh any = test::make_grid(test::unit_grid(2, 2));
   Neighbours<2> neighbours;

@@ -9,7 +9,7 @@
 namespace ductile::meshadapt::box_mesh_test {
 namespace {
 
-/// The axis along which a side is at one end, and where it is there.
+/// Checks that each side lies at the right end of its axis and has this number of facets.
 template <int Dim>
 void expect_sides(const AnyMesh& mesh, const std::array<double, Dim>& extent,
                   const std::vector<std::size_t>& facets_on_side) {

@@ -50,8 +50,9 @@ struct Scene {
   Simplices<Dim> simplices() const { return {corners_of, position_of}; }
 };
 
-/// The squared distance to what some points span, by projections onto lines between two of what is
-/// left and the closest so far: Gilbert's method, which knows nothing of facets.
+/// Squared distance from the point to the simplex by Gilbert's method, which uses no facets:
+/// projects onto segments between the closest point so far and the corner farthest towards
+/// the point.
 template <int Dim>
 double squared_distance_to(const std::array<Vector<Dim>, Dim + 1>& corner,
                            const Vector<Dim>& point) {
@@ -129,7 +130,7 @@ TYPED_TEST(BoxTreeIn, APointThatIsNoNumberGetsAnElement) {
   EXPECT_LT(tree.closest(point).element, scene.corners_of.size());
 }
 
-/// Boxes that meet, overlap, touch or hold each other.
+/// The boxes are disjoint, overlap, touch or contain each other.
 TYPED_TEST(BoxTreeIn, TheIndexFindsTheBoxesThatMeetAnother) {
   constexpr int Dim = TypeParam::value;
   Random random(5);

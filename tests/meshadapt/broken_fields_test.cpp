@@ -1,6 +1,6 @@
 /// @file
-/// Every public function that takes a field, with fields that are broken in random ways: it refuses
-/// them by an InputError that names an array and speaks of no file or option, and never crashes.
+/// Calls every public function that takes a field with randomly broken fields. It must refuse them
+/// by an InputError that names an array and mentions no file or option, and never crash.
 #include <gtest/gtest.h>
 
 #include <algorithm>

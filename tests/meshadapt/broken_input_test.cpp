@@ -1,6 +1,6 @@
 /// @file
-/// Every public function that takes tensors, numbers, options or names, with such as are wrong in
-/// random ways: it refuses them by an InputError, and never crashes.
+/// Calls every public function that takes tensors, numbers, options or names with randomly wrong
+/// ones. It must refuse them by an InputError, and never crash.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -1,6 +1,6 @@
 /// @file
-/// Every public function that takes a mesh, with meshes that are broken in random ways: it refuses
-/// them by an InputError that names an array and speaks of no file or option, and never crashes.
+/// Calls every public function that takes a mesh with randomly broken meshes. It must refuse them
+/// by an InputError that names an array and mentions no file or option, and never crash.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ template <class Dimension>
 class BrokenMeshesIn : public testing::Test {};
 TYPED_TEST_SUITE(BrokenMeshesIn, test::Dimensions, );
 
-/// What of a mesh is broken, and so which functions can tell.
+/// The broken part of a mesh, which decides which functions can detect it.
 enum class Part { vertices, positions, elements, references, facets, lists };
 
 template <class Cells>
@@ -96,7 +96,7 @@ AnyMesh broken_mesh(Random& random, Part part) {
   return mesh;
 }
 
-/// A function of a mesh and what it looks at.
+/// A function of a mesh, and the parts of the mesh that it reads.
 struct OfMesh {
   const char* name;
   std::function<void(const AnyMesh&)> call;
@@ -109,7 +109,7 @@ const PartSet of_domain{Part::vertices, Part::elements, Part::references, Part::
 const PartSet all_parts{Part::vertices,   Part::positions, Part::elements,
                         Part::references, Part::facets,    Part::lists};
 
-/// Those that make metrics and meshes of it, check it or measure it.
+/// Functions that make metrics and meshes from a mesh, check it or measure it.
 template <int Dim>
 std::vector<OfMesh> functions_of_meshes() {
   const auto whole = std::make_shared<AnyMesh>(small_mesh<Dim>());
@@ -146,7 +146,7 @@ std::vector<OfMesh> functions_of_meshes() {
   };
 }
 
-/// Those that take fields with it, and those that write it.
+/// Functions that also take fields, and functions that write the mesh.
 template <int Dim>
 std::vector<OfMesh> functions_of_meshes_and_more(const std::filesystem::path& folder) {
   const auto scalars = [](const AnyMesh& mesh) {
@@ -236,7 +236,7 @@ TYPED_TEST(BrokenMeshesIn, CheckMeshSaysThatAMeshIsBroken) {
   }
 }
 
-/// Wherever the point is, and wherever the walk starts.
+/// The walk starts anywhere and looks for any point.
 TYPED_TEST(BrokenMeshesIn, AWalkLeavesNoArray) {
   constexpr int Dim = TypeParam::value;
   const AnyMesh any = small_mesh<Dim>();

@@ -1,6 +1,7 @@
 /// @file
-/// What a program that calls adapt() may count on: it can be cancelled, prints nothing, works in a
-/// forked child, says what required entities hold, and meets sizes that a coarse mesh did not show.
+/// Guarantees to programs that call adapt(): it can be cancelled, prints nothing, works in a forked
+/// child, reports edges held by required entities, and finds sizes that a coarse mesh does not
+/// show.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -48,9 +49,10 @@ TEST(Callers, MayCancelAfterAnyStep) {
   for (wanted = 0; wanted < all; wanted += 3) {
     steps = 0;
     EXPECT_THROW(adapt(executor, mesh, metric, options), Cancelled) << wanted;
-    EXPECT_EQ(steps, wanted + 1) << "it is not asked again";
+    EXPECT_EQ(steps, wanted + 1) << "progress was called after it had cancelled";
   }
-  EXPECT_EQ(adapt(executor, mesh, metric).mesh, expected) << "nothing is left behind";
+  EXPECT_EQ(adapt(executor, mesh, metric).mesh, expected)
+      << "a cancelled run has changed the next one";
 }
 
 TEST(Callers, GetWhatTheirProgressThrows) {
@@ -88,7 +90,7 @@ std::size_t hash_of(const AnyMesh& mesh) {
          5 * bytes(mesh.edges.vertices);
 }
 
-/// What a forked child computes; 0 if it does not come back.
+/// The result of compute() in a forked child; 0 if the child does not return.
 template <class Compute>
 std::size_t in_child(const Compute& compute) {
   int ends[2];
@@ -117,10 +119,10 @@ TEST(Callers, MayForkAndAdaptInTheChild) {
   const AnyMesh mesh = box_mesh<2>({1, 1}, {20, 20});
   const AnyField metric = sizes(mesh, 0.03);
   const auto work = [&] { return hash_of(adapt(executor, mesh, metric).mesh); };
-  const std::size_t expected = work();  // by threads that children do not have
+  const std::size_t expected = work();  // on threads that the children do not have
   EXPECT_EQ(in_child(work), expected);
   EXPECT_EQ(in_child([&] { return in_child(work); }), expected) << "child of a child";
-  bool done = false;  // amid of an adaptation, by the thread that leads its team
+  bool done = false;  // a child is forked during an adaptation, by the leader of its team
   const AdaptOptions options{.progress = [&](const AdaptProgress&) {
     if (!std::exchange(done, true)) {
       EXPECT_EQ(in_child(work), expected);
@@ -159,7 +161,7 @@ TEST(Callers, GetToKnowHowManyLongEdgesRequiredEntitiesHold) {
   std::size_t held = 0;
   for (std::uint64_t seed = 0; seed < test::trials(20); ++seed) {
     const test::RandomCase random = test::random_case(seed);
-    if (random.options.make.lock_boundary) continue;  // which holds what is not listed, too
+    if (random.options.make.lock_boundary) continue;  // locks facets that are not listed, too
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + random.what);
     const AdaptedMesh adapted =
         adapt(Executor({.threads = 2}), random.mesh, random.metric, random.options);
@@ -173,7 +175,7 @@ TEST(Callers, GetToKnowHowManyLongEdgesRequiredEntitiesHold) {
     held += adapted.report.held_long_edges;
   }
   if (test::trials(20) >= 20) {
-    EXPECT_GT(held, 100U);  // which fewer need not have
+    EXPECT_GT(held, 100U);  // fewer trials need not reach it
   }
 }
 
@@ -181,11 +183,11 @@ TEST(Callers, GetToKnowHowManyShortEdgesRequiredEntitiesHold) {
   const Executor executor({.threads = 2});
   AnyMesh mesh = box_mesh<2>({1, 1}, {40, 40});
   const AnyField metric = sizes(mesh, 0.2);
-  EXPECT_EQ(adapt(executor, mesh, metric).report.held_short_edges, 0U) << "nothing is required";
+  EXPECT_EQ(adapt(executor, mesh, metric).report.held_short_edges, 0U) << "no edge is required yet";
   for (std::uint32_t e = 0; e < mesh.edges.size(); ++e)
     if (mesh.edges.reference[e] == Side::left) mesh.required_edges.push_back(e);
   const AdaptReport report = adapt(executor, mesh, metric).report;
-  EXPECT_GE(report.held_short_edges, 40U);  // those of the side, and a few that lead to others
+  EXPECT_GE(report.held_short_edges, 40U);  // edges of the side, and a few others
   EXPECT_LE(report.held_short_edges, 50U);
   EXPECT_EQ(report.held_long_edges, 0U);
   const AnyMesh box = box_mesh<3>({1, 1, 1}, {4, 4, 4});
@@ -197,7 +199,7 @@ TEST(Callers, GetToKnowHowManyShortEdgesRequiredEntitiesHold) {
 
 // ---- Sizes by places ----
 
-/// A mesh of few cells and a size near a place that no vertex is near, or one at a vertex.
+/// A coarse mesh with a size near a place that is far from all vertices, or at a vertex.
 struct HiddenSize {
   AnyMesh mesh;
   Sizes sizes;
@@ -218,7 +220,7 @@ HiddenSize random_hidden_size(std::uint64_t seed) {
   SizePlace place = Ball{hidden.at, 0};
   if (kind == 1) place = AxisBox{hidden.at, hidden.at + Vector<3>{{0.02, 0.01, 0.01}}};
   if (kind == 2) place = Polyline{{hidden.at, hidden.at + Vector<3>{{0.05, 0.05, 0}}}};
-  if (kind >= 3) {  // a vertex of a mesh that is too fine, which need not stay
+  if (kind >= 3) {  // a vertex of a mesh that is too fine, which may be removed
     const std::size_t vertex = test::below(random, hidden.mesh.vertex_count());
     for (int axis = 0; axis < d; ++axis)
       hidden.at[axis] =
@@ -228,13 +230,13 @@ HiddenSize random_hidden_size(std::uint64_t seed) {
     hidden.mesh.names = {{0, 9, "spot"}, {d, 1, "spot"}};
     hidden.size = 0.3;
     place = Referenced{0, 9};
-    if (kind == 4) place = Named{"spot"};  // all elements, too
+    if (kind == 4) place = Named{"spot"};  // the name also covers all elements
   }
   hidden.sizes.add(place, hidden.size);
   return hidden;
 }
 
-/// The longest edge of the elements around the vertex that is nearest to a place.
+/// The longest edge of the elements around the vertex nearest to a place.
 template <int Dim>
 double longest_edge_near(const AnyMesh& mesh, const Vector<3>& place) {
   Vector<Dim> at;
@@ -259,7 +261,7 @@ double longest_edge_near(const AnyMesh& mesh, const Vector<3>& place) {
 
 TEST(Callers, MeetSizesThatACoarseMeshDidNotShow) {
   const Executor one({.threads = 1}), two({.threads = 2});
-  constexpr double near = 3;  // times the size, which grows from the place
+  constexpr double near = 3;  // in units of the size, which grows from the place
   std::size_t missed = 0;
   for (std::uint64_t seed = 0; seed < test::trials(16); ++seed) {
     SCOPED_TRACE(seed);
@@ -274,7 +276,7 @@ TEST(Callers, MeetSizesThatACoarseMeshDidNotShow) {
     missed += longest_edge_near(adapt(two, mesh, seen).mesh, at) > near * size ? 1 : 0;
   }
   if (test::trials(16) >= 24) {
-    EXPECT_GT(missed, 3U) << "that there is something to meet";
+    EXPECT_GT(missed, 3U) << "a single adapt() finds the sizes, too, so the test proves nothing";
   }
 }
 
@@ -282,7 +284,7 @@ TEST(Callers, GetWarningsOfEachTimeAndMayCancelAnyTime) {
   AnyMesh mesh = box_mesh<2>({1, 1}, {2, 2});
   Sizes sizes{.elsewhere = 0.5};
   sizes.add(Ball{{0.3, 0.6}, 0}, 0.01);
-  std::swap(mesh.triangles.vertices[0][0], mesh.triangles.vertices[0][1]);  // turned, and told of
+  std::swap(mesh.triangles.vertices[0][0], mesh.triangles.vertices[0][1]);  // inverted
   const Executor executor({.threads = 2});
   int falls = 0, last = 0;
   AdaptOptions options{.progress = [&](const AdaptProgress& now) {
@@ -292,14 +294,14 @@ TEST(Callers, GetWarningsOfEachTimeAndMayCancelAnyTime) {
   }};
   const AdaptReport report = adapt_to_sizes(executor, mesh, sizes, options).report;
   EXPECT_EQ(report.warnings.size(), 1U);
-  EXPECT_GE(falls, 1) << "it is told of more than one time";
+  EXPECT_GE(falls, 1) << "progress was reported for one adaptation only";
   int steps = 0;
   options.progress = [&](const AdaptProgress&) { return ++steps < 40; };
   EXPECT_THROW(adapt_to_sizes(executor, mesh, sizes, options), Cancelled);
   EXPECT_EQ(steps, 40);
   sizes.add(Ball{{0.3, 0.6}, -1}, 0.01);
   EXPECT_THROW(adapt_to_sizes(executor, mesh, sizes), InputError);
-  // As often if boundaries may move; once, if the sizes are there.
+  // Adapts again also if boundaries may move, but only once if the mesh shows all sizes.
   falls = last = 0;
   options.progress = [&](const AdaptProgress& now) {
     falls += now.iteration < last ? 1 : 0;
@@ -312,7 +314,7 @@ TEST(Callers, GetWarningsOfEachTimeAndMayCancelAnyTime) {
   EXPECT_GE(falls, 1);
   options.progress = {};
   options.make.hausdorff_tolerance = 0;
-  options.largest_size = 0.1;  // which is finer than what is asked for
+  options.largest_size = 0.1;  // finer than the sizes
   const Sizes even{.elsewhere = 0.2};
   EXPECT_EQ(adapt_to_sizes(executor, mesh, even, options).mesh,
             adapt(executor, mesh, metric_of(size_field(executor, mesh, even), mesh), options).mesh);

@@ -14,7 +14,7 @@ namespace {
 
 TEST(Numbering, CountsInTheOrderOfFirstMeetings) {
   test::Random random(7);
-  // As many as are hashed, one less, one more, and many more; hashes that clash are among them.
+  // As many as are hashed, one less, one more, and many more; some hashes collide.
   for (const std::size_t different : {1, 12, 191, 192, 193, 400}) {
     std::vector<VertexId> known;
     Numbering numbering;
@@ -47,7 +47,7 @@ class Neighbourhood : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(Neighbourhood, Dimensions);
 
-/// Vertices on the boundary and on an interface included, in any order of numbers.
+/// Covers vertices on the boundary and on an interface, numbered in any order.
 TYPED_TEST(Neighbourhood, IsVisitedWhole) {
   constexpr int Dim = TypeParam::value;
   constexpr int n = Dim == 2 ? 12 : 6;

@@ -103,7 +103,7 @@ TEST(CheckMesh, FindsWhatIsWrongWithFacetsAndEdges) {
   EXPECT_FINDS(any, "the dimension is 4");
 }
 
-/// Triangles around vertex 0, more than are compared one with another.
+/// Triangles around vertex 0, more than are compared pairwise.
 AnyMesh fan(std::uint32_t spokes) {
   AnyMesh any;
   any.dimension = 2;
@@ -122,7 +122,7 @@ TEST(CheckMesh, LooksAtVerticesOfManyFacets) {
   AnyMesh any = fan(100);
   EXPECT_EQ(test::joined(check_mesh(executor, any)), "");
   any.edges.add({0, 51}, 1);
-  EXPECT_EQ(test::joined(check_mesh(executor, any)), "");  // an edge inside may be listed
+  EXPECT_EQ(test::joined(check_mesh(executor, any)), "");  // an interior edge may be listed
   any.edges.add({51, 0}, 1);
   EXPECT_FINDS(any, "a facet of triangle 51 is listed twice");
   any = fan(100);
@@ -242,7 +242,8 @@ TEST(CheckDomain, FindsRegionsThatChanged) {
     const std::string found = test::joined(check_domain(executor, before, after));
     EXPECT_NE(found.find("elements of reference 1 measure 0.4"), std::string::npos) << found;
     EXPECT_NE(found.find("elements of reference 2 measure 0.5"), std::string::npos) << found;
-    // An element is 1/32 of the square, 1/384 of the cube; half of it has a boundary of 3 or 4.
+    // An element is 1/32 of the square, 1/384 of the cube; each half has a boundary of measure 3 or
+    // 4.
     const double element = dimension == 2 ? 1.0 / 32 : 1.0 / 384, boundary = dimension == 2 ? 3 : 4;
     EXPECT_NE(test::joined(check_domain(executor, before, after, 0.99 * element / boundary)), "");
     EXPECT_EQ(test::joined(check_domain(executor, before, after, 1.01 * element / boundary)), "");
@@ -272,7 +273,7 @@ TEST(CheckDomain, ExpectsReference0OfWhatWasNotListed) {
       facets.reference.resize(1);
     };
     dimension == 2 ? leave_one(before.edges) : leave_one(before.triangles);
-    // An interface is not boundary, and need not be listed.
+    // An interface is no boundary and need not be listed.
     const auto drop_interface = [&](auto& facets, double half) {
       std::size_t kept = 0;
       for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -296,7 +297,7 @@ TEST(CheckDomain, ExpectsReference0OfWhatWasNotListed) {
   }
 }
 
-/// Two elements that have an edge in common, or two of their own there: in 2D a vertex.
+/// Two elements that share an edge (2D: a vertex), or have an edge each at the same place.
 AnyMesh two_at_an_edge(int dimension, bool common) {
   AnyMesh mesh;
   mesh.dimension = dimension;
@@ -368,7 +369,7 @@ TEST(CheckDomain, AllowsForRoundingFarFromTheOriginAndInThinDomains) {
       if (i % stride == stride - 1) before.coordinates[i] *= thickness;
       before.coordinates[i] += offset;
     }
-    AnyMesh after = before;  // half of the bottom as the next numbers have it
+    AnyMesh after = before;  // with the next representable coordinates on half of the bottom
     const double bottom = offset;
     for (std::size_t i = stride - 1; i < after.coordinates.size(); i += 2 * stride)
       if (after.coordinates[i] == bottom) after.coordinates[i] = std::nextafter(bottom, 2 * bottom);
@@ -380,8 +381,8 @@ TEST(CheckDomain, AllowsForRoundingFarFromTheOriginAndInThinDomains) {
   }
 }
 
-/// A tetrahedron, or in 2D a triangle, of height 1 over a flat base, and another like it on top,
-/// whose tip points down and reaches this far into the first.
+/// A tetrahedron (2D: triangle) of height 1 over a flat base, and an inverted one above it, whose
+/// tip reaches into the first by `depth`.
 AnyMesh two_with_tips(int dimension, double depth) {
   AnyMesh mesh;
   mesh.dimension = dimension;
@@ -414,12 +415,12 @@ TEST(CheckBoundary, FindsFacetsThatCross) {
   }
 }
 
-/// Two elements on a common slanted line or plane, with no vertex in common. One has a corner in
-/// the middle of the other's facet, which is this deep in that.
+/// Two elements at a common slanted line or plane, without common vertices. A corner of one lies in
+/// the middle of the other's facet, at this depth inside.
 AnyMesh closed_crack(int dimension, double depth) {
   AnyMesh mesh;
   mesh.dimension = dimension;
-  const double in = 1.0 / 3 - depth;  // on the diagonal, where the sum of coordinates is 1
+  const double in = 1.0 / 3 - depth;  // on the diagonal, where the coordinates sum to 1
   if (dimension == 2) {
     mesh.coordinates = {0, 0, 1, 0, 0, 1, 0.5 - depth, 0.5 - depth, 1.5, -0.5, 1, 1, -0.5, 1.5};
     mesh.triangles = {{{0, 1, 2}, {3, 4, 5}, {3, 5, 6}}, {0, 0, 0}};

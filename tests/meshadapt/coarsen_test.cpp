@@ -21,7 +21,8 @@ class CoarsenIn : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(CoarsenIn, Dimensions);
 
-/// A random mesh, half of them with curved boundaries, coarsened until no rule lets a vertex go.
+/// A random mesh, with curved boundaries for half of the seeds, coarsened until no rule allows a
+/// collapse.
 template <int Dim>
 struct Coarsened {
   Mesh<Dim> mesh;
@@ -74,7 +75,7 @@ TYPED_TEST(CoarsenIn, MovesNoVertexAndTakesNoCorner) {
   }
 }
 
-/// With strict rules, edges that come are not longer, elements not worse than they allow.
+/// With strict rules, new edges are not longer and new elements not worse than the rules allow.
 TYPED_TEST(CoarsenIn, MakesNoLongEdgesAndNoPoorElements) {
   constexpr int Dim = TypeParam::value;
   Rules strict;
@@ -92,7 +93,7 @@ TYPED_TEST(CoarsenIn, MakesNoLongEdgesAndNoPoorElements) {
       if (after.mesh.corners_of[e] == before.mesh.corners_of[e]) continue;
       for (const VertexId v : after.mesh.corners_of[e]) {
         if (contains(before.mesh.corners_of[e], v)) continue;
-        for (const VertexId other : after.mesh.corners_of[e])  // v took the place of one that went
+        for (const VertexId other : after.mesh.corners_of[e])  // v replaced a removed vertex
           EXPECT_TRUE(other == v || !contains(before.mesh.corners_of[e], other) ||
                       after.mesh.length(v, other) <= strict.stretched_edge * (1 + 1e-9));
       }

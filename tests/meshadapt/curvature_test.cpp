@@ -20,7 +20,8 @@ using runtime::Executor;
 const Executor executor({.threads = 2});
 constexpr double asked = 10;
 
-/// Sizes are asked to be 10 everywhere; those that curved boundaries leave, within this tolerance.
+/// Asks for sizes of 10 everywhere and returns the metric bounded by curvature, within this
+/// tolerance.
 template <int Dim>
 std::vector<Metric<Dim>> bounded(const AnyMesh& any, double tolerance) {
   Neighbours<Dim> neighbours;
@@ -36,8 +37,8 @@ double size_along(const Metric<Dim>& metric, const Vector<Dim>& direction) {
   return norm(direction) / std::sqrt(squared_length(metric, direction));
 }
 
-/// Calls visit(v, radius, along) for each vertex of an arc (see test::bend) that is on one of its
-/// two curved sides, with the direction in which these bend.
+/// Calls visit(v, radius, along) for each vertex on the two curved sides of an arc (see
+/// test::bend), with the direction along which these bend.
 template <int Dim>
 void each_on_curved_sides(const AnyMesh& any, auto&& visit) {
   for (std::size_t v = 0; v < any.vertex_count(); ++v) {
@@ -70,7 +71,8 @@ void takes_sizes_from_arcs(int n) {
     ++count;
   });
   const auto left = std::count(metric_of.begin(), metric_of.end(), isotropic<Dim>(asked));
-  EXPECT_EQ(static_cast<std::size_t>(left) + count, any.vertex_count()) << "all else is as it was";
+  EXPECT_EQ(static_cast<std::size_t>(left) + count, any.vertex_count())
+      << "sizes elsewhere have changed";
   EXPECT_GT(count, 20U);
 }
 
@@ -89,7 +91,7 @@ TEST(CurvedSizes, AreNotSmallerThanTheEdgesThere) {
   });
 }
 
-/// A cube of cells under a map of its points.
+/// A grid of n^3 cells, with its vertices mapped by `map`.
 AnyMesh mapped(int n, auto&& map) {
   AnyMesh any = test::make_grid(test::unit_grid(3, n));
   for (std::size_t at = 0; at < any.coordinates.size(); at += 3) {
@@ -99,7 +101,7 @@ AnyMesh mapped(int n, auto&& map) {
   return any;
 }
 
-/// Between two spheres: 2 degrees of longitude and latitude a cell.
+/// The domain lies between two spheres; a cell covers 2 degrees of longitude and latitude.
 TEST(CurvedSizes, AreThoseOfASphere) {
   const AnyMesh any = mapped(12, [](double x, double y, double z) {
     const double radius = 1 + x, u = 0.4 * (y - 0.5), v = 0.4 * (z - 0.5);
@@ -119,7 +121,7 @@ TEST(CurvedSizes, AreThoseOfASphere) {
   EXPECT_GT(count, 20U);
 }
 
-/// In the middle of what is z = 1 in the cube.
+/// The metric in the middle of the side that is z = 1 in the cube.
 Metric<3> metric_on_top(const AnyMesh& any, double tolerance) {
   const auto metric_of = bounded<3>(any, tolerance);
   std::size_t middle = 0;
@@ -132,7 +134,7 @@ Metric<3> metric_on_top(const AnyMesh& any, double tolerance) {
   return metric_of[middle];
 }
 
-/// Curvatures of 0.8 and -0.2: sizes are bounded whichever way it bends.
+/// The curvatures are 0.8 and -0.2; sizes are bounded whatever the sign.
 TEST(CurvedSizes, AreThoseOfASaddle) {
   const AnyMesh any = mapped(16, [](double x, double y, double z) {
     const double u = x - 0.5, v = y - 0.5;
@@ -144,7 +146,7 @@ TEST(CurvedSizes, AreThoseOfASaddle) {
   EXPECT_NEAR(size_along(metric, {{0, 0, 1}}) / std::sqrt(8 * 0.004 / 0.8), 1, 0.05);
 }
 
-/// The outside of a torus of radii 1 and 0.4, along x and y.
+/// The top is the outside of a torus with radii 1 and 0.4, along x and y.
 TEST(CurvedSizes, AreThoseOfATorus) {
   const AnyMesh any = mapped(16, [](double x, double y, double z) {
     const double u = x - 0.5, v = y - 0.5, r = 0.2 + 0.2 * z, from_axis = 1 + r * std::cos(u);
@@ -155,7 +157,7 @@ TEST(CurvedSizes, AreThoseOfATorus) {
   EXPECT_NEAR(size_along(metric, {{0, 1, 0}}) / std::sqrt(8 * 0.002 * 1.4), 1, 0.05);
 }
 
-/// A circle on a flat lid, between two references: nothing but the curve bends there.
+/// A circle on a flat lid separates two references: only the curve bends there.
 TEST(CurvedSizes, AreThoseOfACurve) {
   AnyMesh any = test::truncated_cone(12, 1);
   const auto is_inside = [&](const auto& corners) {
@@ -172,7 +174,7 @@ TEST(CurvedSizes, AreThoseOfACurve) {
     const auto p = position_in<3>(any, v);
     const double radius = std::hypot(p[0], p[1]);
     if (p[2] < 1 - 1e-9 || std::abs(radius - 0.5) > 1e-6) continue;
-    // Edges there are longer than chords: 24 of them make the circle.
+    // The limit is generous, because the input has only 24 edges around the circle.
     EXPECT_LT(size_along(metric_of[v], {{-p[1], p[0], 0}}), 0.3);
     EXPECT_GT(size_along(metric_of[v], {{0, 0, 1}}), 0.9 * asked);
     ++count;
@@ -182,7 +184,7 @@ TEST(CurvedSizes, AreThoseOfACurve) {
 
 // ---- Sizes from curvature alone ----
 
-/// Lengths of edges on the mantle of a cylinder around the z axis, along it and around it.
+/// Mean lengths of edges on the mantle of a cylinder, along the z axis and around it.
 struct MantleEdges {
   double along = 0, around = 0;  // means
   std::size_t facets = 0;
@@ -207,8 +209,8 @@ MantleEdges mantle_edges(const AnyMesh& any) {
   return found;
 }
 
-/// Around it chords of 0.28, along it as long as asked for: a few edges of about 1, where equal
-/// sizes of 0.28 would make 2 pi / (0.28^2 sqrt(3) / 4) = 185 facets or more.
+/// Around the cylinder chords are 0.28, along it edges are as long as asked for: a few of about 1.
+/// Equal sizes of 0.28 would make 2 pi / (0.28^2 sqrt(3) / 4) = 185 facets or more.
 TEST(CurvedSizes, AloneMakeACylinderOfLongElements) {
   const AnyMesh any = test::truncated_cone(16, 1);
   AdaptOptions options;
@@ -239,8 +241,8 @@ TEST(CurvedSizes, AloneLeaveABoxAsCoarseAsMayBe) {
   EXPECT_THROW(adapt(executor, any, coarsest_metric(any), options), InputError);
 }
 
-/// A tube thicker than the edges that its outside must have: in sizes that grow inwards elements
-/// are better than in those asked for.
+/// The tube is thicker than the edges on its outside: if sizes grow inwards, elements are better
+/// than in the requested sizes.
 TEST(CurvedSizes, MakeBetterShapesWithGradation) {
   AnyMesh any = test::make_grid(test::unit_grid(3, 10));
   test::bend(any, 2);

@@ -35,7 +35,7 @@ AnyMesh arc(int dimension, int n, double angle) {
   return mesh;
 }
 
-/// Least and greatest distance from the z axis of the facets with a reference, in their points.
+/// Least and greatest distance from the z axis of sample points of the facets with a reference.
 template <int Dim>
 std::array<double, 2> radii_in(const AnyMesh& mesh, std::int32_t reference) {
   std::array<double, 2> radii{1e9, 0};
@@ -118,7 +118,7 @@ TEST_P(CurvedBoundary, IsReportedByItsEdges) {
   AdaptOptions options;
   for (const double tolerance : {0.0, 1e-4}) {
     options.make.hausdorff_tolerance = tolerance;
-    for (const double size : {1e-9, 1e9}) {  // in which all edges are long, or short
+    for (const double size : {1e-9, 1e9}) {  // all edges are long, or short
       options.iterations = 1;
       options.insert = false;
       const AdaptedMesh result = adapt(executor, mesh, constant_metric(mesh, size), options);
@@ -158,7 +158,7 @@ TEST_P(CurvedBoundary, IsRefinedOnItsFacets) {
   EXPECT_GT(found.share_in_range(), 0.9);
 }
 
-/// But for rounding.
+/// Flat parts stay where they are, up to rounding.
 TEST_P(CurvedBoundary, KeepsWhatIsFlat) {
   const AnyMesh mesh = arc(dimension(), dimension() == 2 ? 40 : 10, 1.5);
   const Executor executor({.threads = 2});
@@ -186,13 +186,13 @@ TEST_P(CurvedBoundary, KeepsWhatIsFlat) {
   EXPECT_NEAR(farthest(result.mesh, 0, 4), farthest(mesh, 0, 4), 1e-12);
 }
 
-/// Two arcs, one around the other, that meet at one end only. Nothing may close the gap.
+/// Two arcs, one around the other, meet at one end only. Nothing may close the gap.
 TEST_P(CurvedBoundary, DoesNotCrossANarrowGap) {
   test::Grid grid = test::unit_grid(dimension(), dimension() == 2 ? 24 : 10);
   grid.lines[0] = {0, 0.2, 0.4, 0.41, 0.6, 0.8, 1};
   grid.region = [](const test::Cell& cell) { return cell[0] == 2 && cell[1] != 0 ? 0 : 1; };
   AnyMesh mesh = test::make_grid(grid);
-  // The walls of the gap get references of their own.
+  // Gives the walls of the gap references of their own.
   const auto in_gap = [&](const auto& vertices) {
     const auto size = static_cast<std::size_t>(dimension());
     return std::all_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) {
@@ -217,7 +217,8 @@ TEST_P(CurvedBoundary, DoesNotCrossANarrowGap) {
   }
 }
 
-/// Largest distance of the vertices of facets with a reference from a radius.
+/// Largest difference between `radius` and the distance from the axis of vertices of facets with a
+/// reference.
 template <int Dim>
 double vertices_off(const AnyMesh& mesh, std::int32_t reference, double radius) {
   const auto& facets = test::facets<Dim>(mesh);
@@ -231,7 +232,7 @@ double vertices_off(const AnyMesh& mesh, std::int32_t reference, double radius) 
   return most;
 }
 
-/// Each call has what the one before left, and sizes that are small elsewhere.
+/// Each call adapts the result of the previous one, to sizes that are small elsewhere.
 TEST_P(CurvedBoundary, StaysWhereItIsInManyCalls) {
   constexpr double tolerance = 4e-3;
   constexpr int calls = 10;
@@ -282,9 +283,9 @@ TEST_P(CurvedBoundary, GivesTheSameBytesAtEachThreadCount) {
   }
 }
 
-/// By how many degrees edges of one reference turn at most where they meet, in 2D.
+/// Largest angle, in degrees, between consecutive edges with a reference, in 2D.
 double greatest_turn(const AnyMesh& mesh, std::int32_t reference) {
-  std::map<std::uint32_t, std::vector<Vector<2>>> away;  // [vertex], along edges
+  std::map<std::uint32_t, std::vector<Vector<2>>> away;  // [vertex], directions of its edges
   for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
     if (mesh.edges.reference[e] != reference) continue;
     const auto [a, b] = mesh.edges.vertices[e];
@@ -298,7 +299,7 @@ double greatest_turn(const AnyMesh& mesh, std::int32_t reference) {
   return std::acos(least) * 180 / std::numbers::pi;
 }
 
-/// Arcs of ellipses, some as small as 4 tolerances, with sizes that change from call to call.
+/// Arcs of ellipses, some with radii of only 4 tolerances, and sizes that change from call to call.
 TEST(CurvedBoundaries, AreSmoothForTheNextCallIfTheyWere) {
   const Executor executor({.threads = 2});
   test::Random random(4);
@@ -333,8 +334,8 @@ double volume_of(const AnyMesh& mesh) {
   return volume;
 }
 
-/// A part of a shell, one cell thick, whose outside has a radius of 1: between two angles from its
-/// axis, or around it up to an angle.
+/// A part of a shell, one cell thick, with an outer radius of 1: a bowl around its axis, or a
+/// piece between two angles from it.
 AnyMesh shell(int n, double thickness, bool is_bowl) {
   test::Grid grid = test::unit_grid(3, n);
   grid.lines[2] = {0, 1};
@@ -351,7 +352,8 @@ AnyMesh shell(int n, double thickness, bool is_bowl) {
   return mesh;
 }
 
-/// Thinner than a few times the tolerance, in facets whose chords are about as far off as that.
+/// The shells are thinner than a few tolerances, and the chords of their facets are about as far
+/// off.
 TEST(CurvedBoundaries, OfThinShellsLoseNothingInManyCalls) {
   test::Random random(55);
   const Executor executor({.threads = 2});

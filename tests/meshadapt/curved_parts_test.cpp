@@ -30,7 +30,7 @@ namespace {
 using runtime::Executor;
 using Point = Vector<3>;
 
-// ---- How far a point is from the true surface of a part; a reference is that of the facet ----
+// ---- Distance of a point from the true surface of a part, given the reference of its facet ----
 
 double off_plate(const Point& p, std::int32_t reference) {
   return reference == 7 ? std::abs(std::hypot(p[0], p[1]) - 0.4) : 0;
@@ -47,7 +47,8 @@ double off_rounded_box(const Point& p, std::int32_t) {
 double off_torus(const Point& p, std::int32_t) {
   return std::abs(std::hypot(std::hypot(p[0], p[1]) - 1, p[2]) - 0.35);
 }
-/// From the closest of many points, then to both sides by less and less.
+/// Starts at the closest of many points of the ellipse and searches both sides with shrinking
+/// steps.
 double off_ellipse(double x, double y, double a, double b) {
   const auto distance = [&](double at) {
     return std::hypot(x - a * std::cos(at), y - b * std::sin(at));
@@ -69,10 +70,11 @@ double off_plate2d(const Point& p, std::int32_t reference) {
 
 struct Part {
   const char* name;
-  double tolerance;  // more than chords of its coarse mesh are off, so that it is smooth there
-  double size;       // edges that are asked for
-  double (*off)(const Point&, std::int32_t);  // null if that is not known
-  // Of the tolerance: how far facets of its coarse mesh may get without a geometry.
+  double tolerance;  // more than the error of chords of its coarse mesh, which is therefore smooth
+  double size;       // length of edges
+  double (*off)(const Point&, std::int32_t);  // null if the surface is not known
+  // Largest distance of facets from the surface without a geometry, in tolerances, from the coarse
+  // mesh.
   double most_off = 1.4;
 };
 constexpr std::array parts{
@@ -105,7 +107,7 @@ void each_facet(const AnyMesh& mesh, auto&& visit) {
   mesh.dimension == 2 ? each(mesh.edges) : each(mesh.triangles);
 }
 
-/// How far points of facets are from the true surface at most.
+/// Largest distance of points of facets from the true surface.
 double off_surface(const Part& part, const AnyMesh& mesh) {
   double most = 0;
   each_facet(mesh, [&](const auto& corners, std::int32_t reference) {
@@ -140,7 +142,7 @@ std::set<std::int32_t> references_of(const AnyMesh& mesh) {
   return references;
 }
 
-/// Sizes of a front that moves from call to call.
+/// Sizes with a front that moves from call to call.
 AnyField front(const AnyMesh& mesh, double size, int call) {
   AnyField sizes{mesh.dimension, mesh.vertex_count(), {AnyField::Type::scalar}, {}, "sizes"};
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
@@ -180,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(Parts, CurvedPart,
 
 TEST_P(CurvedPart, StaysWhatItIsInTenCalls) {
   // Chords of the wall of the plate's hole come close to its sides, so that they are flat in the
-  // next model. The ellipse has a least radius of 5 X and no corners.
+  // next model. The ellipse has a least radius of five tolerances and no corners.
   const double most_off = has_geometry() ? 1.3 : fine() ? 1.4 : part().most_off;
   const AnyMesh start = read(part(), fine());
   const AdaptOptions options = options_on(start);
@@ -199,7 +201,7 @@ TEST_P(CurvedPart, StaysWhatItIsInTenCalls) {
   EXPECT_NEAR(volume_of(mesh) / first, 1, fine() ? 0.003 : 0.015);
 }
 
-/// Facets of one reference are required; they have to be there afterwards, to the bit.
+/// Facets of one reference are required; they must remain exactly as they were.
 TEST_P(CurvedPart, LeavesRequiredFacetsAlone) {
   AnyMesh start = read(part(), fine());
   const bool flat = start.dimension == 2;

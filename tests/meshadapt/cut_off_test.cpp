@@ -20,7 +20,7 @@ std::optional<Replacement<3>> planned(const Mesh<3>& mesh) {
   return plan_cut_off(mesh, 0, 1, shell, ring);
 }
 
-/// A slice with two facets on a smooth patch, above the edge 0-1, that may be cut off.
+/// A slice above the edge 0-1, with two facets on a smooth patch, that may be cut off.
 Mesh<3> with_flat_slice() { return test::half_orange(executor, 0.01, 0.03); }
 
 TEST(CutOff, TakesASliceAwayAndLeavesItsPatchOnWhatWasBelow) {
@@ -66,7 +66,7 @@ TEST(CutOff, LeavesCurves) {
   EXPECT_FALSE(planned(mesh));
 }
 
-/// A facet of a patch at the edge, which would come to lie on the boundary.
+/// The facet at the edge belongs to a patch that would come to lie on the boundary.
 TEST(CutOff, LeavesAnEdgeOfAPatch) {
   auto mesh = with_flat_slice();
   const Corners<3> corners = mesh.corners_of[3];
@@ -78,7 +78,7 @@ TEST(CutOff, LeavesAnEdgeOfAPatch) {
   EXPECT_FALSE(planned(mesh));
 }
 
-/// Both triangles have to be close to the patch, whichever it is that is not.
+/// Both triangles must be close to the patch; each of them is tested.
 TEST(CutOff, ASmoothQuadrilateralStaysCloseOnBothSides) {
   const auto mesh = with_flat_slice();
   const auto close = [&](const std::array<VertexId, 4>& corners, PatchId patch) {

@@ -81,7 +81,7 @@ TYPED_TEST(DefaultMetricIn, RefusesAMeshThatIsNotComplete) {
   EXPECT_THROW(implied_metric(wrong), InputError);
 }
 
-/// Rotated, so that what is thin is along no axis, and rounding shows.
+/// The mesh is rotated, so that its thin direction is along no axis and rounding has an effect.
 TYPED_TEST(DefaultMetricIn, OfElementsAsFlatAsRoundingIsAMetric) {
   constexpr int Dim = TypeParam::value;
   for (const double thickness : {1e-6, 1e-8, 1e-10, 1e-13}) {
@@ -99,8 +99,8 @@ TYPED_TEST(DefaultMetricIn, OfElementsAsFlatAsRoundingIsAMetric) {
   }
 }
 
-/// A grid whose cells are `aspect` times as wide as high, jiggled and turned; with `layers` they
-/// get thinner by this factor each towards one side.
+/// A grid with cells `aspect` times as wide as high, jiggled and rotated. Layers get thinner by the
+/// factor `layers` each towards one side.
 template <int Dim>
 AnyMesh stretched_grid(test::Random& random, double aspect, double layers = 1) {
   const int n = Dim == 2 ? 16 : 5;
@@ -115,7 +115,8 @@ AnyMesh stretched_grid(test::Random& random, double aspect, double layers = 1) {
   return any;
 }
 
-/// `kept` is how many times as many elements there may be, or as few.
+/// Adapts to the mesh's own metric; the number of elements may grow or shrink at most by the factor
+/// `kept`.
 template <int Dim>
 void expect_kept(const AnyMesh& mesh, const AdaptOptions& options, double kept) {
   const AdaptedMesh adapted = adapt(executor, mesh, default_metric(executor, mesh), options);
@@ -162,7 +163,7 @@ TYPED_TEST(DefaultMetricIn, KeepsStretchedMeshesWithinLimits) {
   }
 }
 
-/// Elements get better shapes, as in all directions alike, and there are no more of them.
+/// Elements get better shapes, as in an isotropic metric, without an increase in number.
 TYPED_TEST(DefaultMetricIn, IsIsotropicWhereTheMeshIs) {
   constexpr int Dim = TypeParam::value;
   test::Random random(14);
@@ -182,7 +183,7 @@ TYPED_TEST(DefaultMetricIn, IsIsotropicWhereTheMeshIs) {
   }
 }
 
-/// Elements that rounding takes all volume from count for nothing.
+/// Elements whose volume is lost to rounding are ignored.
 TYPED_TEST(DefaultMetricIn, IsAMetricWhereElementsAreFlat) {
   constexpr int Dim = TypeParam::value;
   test::Random random(15);

@@ -24,7 +24,7 @@ class EdgesIn : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(EdgesIn, Dimensions);
 
-/// The edges of the elements that changed after an epoch.
+/// The edges of elements that changed after an epoch.
 template <int Dim>
 std::set<Edge> edges_changed(const Mesh<Dim>& mesh, std::uint32_t after) {
   std::set<Edge> edges;
@@ -38,11 +38,11 @@ std::set<Edge> edges_changed(const Mesh<Dim>& mesh, std::uint32_t after) {
 std::set<Edge> ends_of(std::span<const LongEdge> edges) {
   std::set<Edge> ends;
   for (const LongEdge& edge : edges) ends.emplace(edge.a, edge.b);
-  EXPECT_EQ(ends.size(), edges.size()) << "some were found twice";
+  EXPECT_EQ(ends.size(), edges.size()) << "some edges were found twice";
   return ends;
 }
 
-/// Regions bring edges on interfaces, which both their triangles know to be on a patch.
+/// Regions give edges on interfaces, which elements on both sides find on a patch.
 TYPED_TEST(EdgesIn, AreFoundOnceNextToAnyChanges) {
   constexpr int Dim = TypeParam::value;
   constexpr int n = Dim == 2 ? 12 : 6;
@@ -80,7 +80,7 @@ Mesh<Dim> jiggled_grid_in_a_metric(int n) {
   return mesh;
 }
 
-/// What is decided from bounds of lengths is what lengths say.
+/// Decisions from bounds on lengths agree with the lengths themselves.
 TYPED_TEST(EdgesIn, AreLongOrShortAsTheirLengthsSay) {
   constexpr int Dim = TypeParam::value;
   const auto mesh = jiggled_grid_in_a_metric<Dim>(6);
@@ -114,7 +114,7 @@ TYPED_TEST(EdgesIn, AreLongOrShortAsTheirLengthsSay) {
   }
 }
 
-/// Moves a few vertices, as a kernel does that takes notice of what it changes.
+/// Moves a few vertices, and marks the change as a kernel does.
 template <int Dim>
 void change(Mesh<Dim>& mesh, test::Random& random) {
   for (VertexId v = 0; v < mesh.vertex_slots(); ++v) {
@@ -124,7 +124,7 @@ void change(Mesh<Dim>& mesh, test::Random& random) {
   }
 }
 
-/// What is known from the scans before is as good as what is measured now.
+/// Edges known from earlier scans are as good as edges measured now.
 TYPED_TEST(EdgesIn, AreKnownFromScanToScan) {
   constexpr int Dim = TypeParam::value;
   const typename EdgeSurvey<Dim>::Limits limits{.shorter = 0.9, .longer = 1.1};
@@ -151,7 +151,7 @@ TYPED_TEST(EdgesIn, AreKnownFromScanToScan) {
   }
 }
 
-/// Vertices that move without notice, and other limits, call for measuring anew.
+/// If vertices move without notice, or limits change, edges must be measured again.
 TYPED_TEST(EdgesIn, AreMeasuredAnewWhenForgotten) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 1});
@@ -167,7 +167,7 @@ TYPED_TEST(EdgesIn, AreMeasuredAnewWhenForgotten) {
   EXPECT_GT(long_edges(executor, mesh, survey, 1, 0).size(), found.size());
 }
 
-/// Leaves out elements, none of them at a curve, whose vertices stay.
+/// Removes elements, none of them at a curve; their vertices stay.
 template <int Dim>
 void remove_some(const Executor& executor, Mesh<Dim>& mesh, test::Random& random) {
   for (Corners<Dim>& corners : mesh.corners_of) {
@@ -179,7 +179,7 @@ void remove_some(const Executor& executor, Mesh<Dim>& mesh, test::Random& random
   rebuild_elements_of(executor, mesh);
 }
 
-/// Elements that are gone have no edges, and those that get their numbers have their own.
+/// Removed elements have no edges, and elements that take over their numbers have their own.
 TYPED_TEST(EdgesIn, AreThoseOfAMeshThatShrinks) {
   constexpr int Dim = TypeParam::value;
   const typename EdgeSurvey<Dim>::Limits limits{.shorter = 0.8, .longer = 0.8};

@@ -1,6 +1,6 @@
 /// @file
-/// What the end of a run leaves: lengths within the rules wherever these let it, also next to
-/// required edges that are far shorter than their size.
+/// The result of a run: lengths are within the rules wherever these allow, also next to required
+/// edges that are far shorter than their size.
 #include <gtest/gtest.h>
 
 #include "ductile/meshadapt/adapt.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using runtime::Executor;
 
-/// Longer ones are refused next to elements that are thin because a required edge is short.
+/// Some longer edges stay, next to elements that are thin because a required edge is short.
 void expect_no_edge_above(double limit, int dimension, std::uint64_t cases) {
   const Executor executor({.threads = 1});
   for (std::uint64_t seed = 0; seed < cases; ++seed) {

@@ -1,6 +1,6 @@
 /// @file
-/// Faces that are flat except for noise that the digits of their coordinates do not show, as after
-/// rounding and scaling: a warning tells of them, and of nothing that bends or is flat.
+/// Faces that are flat except for noise that the digits of their coordinates do not reveal, as
+/// after rounding and scaling: a warning reports them, but not faces that are curved or flat.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using test::Random;
 
 const Executor executor({.threads = 2});
 
-/// What a program might do to numbers that it read, after which their digits tell nothing.
+/// Transforms coordinates as a program might, so that their digits reveal nothing.
 AnyMesh moved_on(AnyMesh mesh, Random& random) {
   if (test::chance(random, 0.4)) {
     test::place(mesh, random, 1, 10);
@@ -46,7 +46,7 @@ double extent(const AnyMesh& mesh) {
   return most;
 }
 
-/// The tolerance that a warning of noise names; 0 without such a warning.
+/// The tolerance named in the warning about noise; 0 without such a warning.
 double tolerance_told(const AdaptedMesh& adapted) {
   for (const std::string& warning : adapted.report.warnings)
     if (const auto at = warning.find("-hausd "); at != std::string::npos)
@@ -60,7 +60,7 @@ AdaptedMesh coarsened(const AnyMesh& mesh, double size, double tolerance) {
   return adapt(executor, mesh, constant_metric(mesh, size), options);
 }
 
-/// A warning tells how far such faces are from flat, and taking its advice coarsens them.
+/// The warning gives the faces' distance from flat; following its advice coarsens them.
 TEST(FlatNoise, IsToldWhereDigitsDoNotShowIt) {
   int trials = 0, told = 0;
   for (auto seed = test::first_trial(); seed < test::end_of_trials(60); ++seed) {
@@ -90,7 +90,7 @@ TEST(FlatNoise, IsToldWhereDigitsDoNotShowIt) {
   EXPECT_GE(10 * told, 9 * trials);
 }
 
-/// Boxes that are flat, and ones that bend, be it only a little.
+/// The boxes are flat, or bend, some of them only a little.
 TEST(FlatNoise, IsNotToldOfWhatBendsOrIsFlat) {
   for (auto seed = test::first_trial(); seed < test::end_of_trials(60); ++seed) {
     Random random(seed);

@@ -22,7 +22,7 @@ using runtime::Executor;
 using test::Random;
 using test::uniform;
 
-/// The same triangles in space; along `axis` they lie at heights that `height()` gives.
+/// The same triangles in space, with the heights of `height()` along `axis`.
 template <class Height>
 AnyMesh in_space(const AnyMesh& flat, std::size_t axis, Height height) {
   AnyMesh mesh = flat;
@@ -41,7 +41,8 @@ AnyMesh random_flat(Random& random) {
   return mesh;
 }
 
-/// Rounding of doubles or floats where the plane is, of sines of pi, or of a few digits.
+/// A random error: none, or the rounding of doubles or floats at this height, of sines of pi, or of
+/// a few digits.
 double rounding_of(Random& random, double at, double scale) {
   switch (random() % 4) {
     case 0:
@@ -112,7 +113,7 @@ TEST(Flatten, SaysThatASurfaceIsOne) {
 
 TEST(Flatten, LooksAtTrianglesAndEdgesAlone) {
   AnyMesh mesh = in_space(test::make_grid(test::unit_grid(2, 2)), 1, [](std::size_t) { return 4; });
-  mesh.coordinates.insert(mesh.coordinates.end(), {7, 8, 9});  // a vertex of nothing
+  mesh.coordinates.insert(mesh.coordinates.end(), {7, 8, 9});  // no triangle has this vertex
   mesh.vertex_reference.push_back(0);
   AnyMesh in_air = mesh;
   flatten(mesh);
@@ -134,7 +135,7 @@ TEST(Flatten, LeavesMeshesOfTetrahedraAndOfDimension2Alone) {
   EXPECT_EQ(flat, flat_before);
 }
 
-/// Tensors of a field in space are those of the plane that the mesh lies in.
+/// Tensors of a field in space become those of the plane that the mesh lies in.
 TEST(Flatten, MetricsFollow) {
   using Type = AnyField::Type;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -142,7 +143,7 @@ TEST(Flatten, MetricsFollow) {
         in_space(test::make_grid(test::unit_grid(2, 1)), axis, [](std::size_t) { return 0.5; });
     flatten(mesh);
     ASSERT_EQ(mesh.dimension, 2);
-    // In the axes of the plane 4 1 9, across it 100.
+    // The tensor is 4 1 9 in the axes of the plane, and 100 across it.
     const std::vector<std::vector<double>> tensor_of = {
         {100, 0, 4, 0, 1, 9}, {4, 0, 100, 1, 0, 9}, {4, 1, 9, 0, 1e-12, 100}};
     AnyField field{3, 4, {Type::symmetric}, {}, "a.sol"};

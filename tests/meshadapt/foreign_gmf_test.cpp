@@ -1,5 +1,5 @@
-// GMF as other programs write it: whatever is between the sections that are read is left out, with
-// one warning, and changes nothing of what is read.
+// GMF files of other programs: unknown content between sections is skipped, with one warning, and
+// does not affect the sections that are read.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ const auto& any_of(Random& random, const List& list) {
 
 // ---- Random sections of a text ----
 
-/// A word that no keyword is, nor close to one.
+/// A word that is no keyword, nor close to one.
 std::string random_name(Random& random) {
   const std::array<std::string, 10> known = {
       "Identifier",          "SubDomainFromMesh",     "VertexOnGeometricVertex",
@@ -92,7 +92,7 @@ std::string random_section(Random& random, const std::string& newline) {
   return text;
 }
 
-/// The parts of a text that begin with a keyword each.
+/// The parts of a text, each beginning with a keyword.
 std::vector<std::string> sections_of(const std::string& text) {
   std::vector<std::string> sections;
   std::size_t begin = 0;
@@ -135,7 +135,7 @@ TEST(ForeignGmf, LeavesOutWhateverIsBetweenSectionsOfAText) {
 
 // ---- Random sections of a binary file ----
 
-/// Writes and reads numbers as a version and a byte order have them.
+/// Writes and reads numbers in a version and a byte order.
 struct Coding {
   int version;
   std::endian order;
@@ -187,8 +187,8 @@ std::string file_of(const std::string& head, const std::vector<BinarySection>& s
   return file + coding.bytes(54, 4) + coding.bytes(0, coding.link());
 }
 
-/// With a number that no keyword has, one that is not used, or one of ParMmg's, whose sections are
-/// none of those that others have under these numbers.
+/// A section with a number that no keyword has, one that is not used, or one of ParMmg's, whose
+/// sections differ from other programs' sections of these numbers.
 BinarySection random_binary_section(Random& random) {
   const std::array<std::uint64_t, 6> unused = {60, 20, 76, 70, 71, 73};
   BinarySection section{random() % 2 ? any_of(random, unused) : 500 + below(random, 500), ""};
@@ -236,9 +236,9 @@ TEST(ForeignGmf, LeavesOutMeshSectionsAndOthersBesideAField) {
   EXPECT_TRUE(warnings[0].ends_with("left out: Identifier, Origin, Iterations")) << warnings[0];
 }
 
-// ---- As certain programs write ----
+// ---- Files of particular programs ----
 
-/// Where its geometry has no file of its own, bamg puts it into that of the mesh, to its End.
+/// If the geometry has no file of its own, bamg writes it into the mesh file, up to its own End.
 TEST(ForeignGmf, GoesPastAGeometryInTheFileOfAMesh) {
   const test::TemporaryFolder folder;
   const std::string triangle =

@@ -17,7 +17,7 @@ using Form = WriteOptions::Form;
 using Place = NamedField::Place;
 using Type = AnyField::Type;
 
-// ---- What is written is read ----
+// ---- Files that are written are read ----
 
 NamedField random_named(const AnyMesh& mesh, Type type, Place place, unsigned seed) {
   const std::size_t count = place == Place::vertices ? mesh.vertex_count()
@@ -27,7 +27,7 @@ NamedField random_named(const AnyMesh& mesh, Type type, Place place, unsigned se
           test::random_field(mesh.dimension, count, {type}, seed).values, place};
 }
 
-/// Cells, references and names of every kind that formats with three coordinates hold.
+/// A mesh with all kinds of cells, references and names that formats with three coordinates hold.
 MeshWithFields random_file(int dimension, std::size_t size, unsigned seed) {
   MeshWithFields file{test::random_mesh(dimension, size, seed), {}};
   AnyMesh& mesh = file.mesh;
@@ -101,7 +101,7 @@ TEST(Formats, ReadWhatTheyWrite) {
       }
 }
 
-/// meshio, for one, makes a block of cells of each block in a file.
+/// meshio and others turn each block of a file into a block of cells.
 TEST(Formats, WriteOneBlockForEachEntityOfGmsh) {
   const test::TemporaryFolder folder;
   AnyMesh mesh = box_mesh<2>({1, 1}, {6, 6});
@@ -143,7 +143,7 @@ TEST(Formats, KeepReferencesThatAreAllZeroAndNoFields) {
     write_mesh(path, mesh, options);
     AnyMesh found = read_mesh(path);
     found.name = mesh.name;
-    found.corners = mesh.corners;  // which have no place there
+    found.corners = mesh.corners;  // the format has no corners
     EXPECT_EQ(found, mesh) << way.ending << way.version;
   }
 }
@@ -208,7 +208,7 @@ TEST(Formats, WriteTheSurfaceAsStl) {
       volume += cross * x[3 + k] / 6;
     }
   }
-  EXPECT_NEAR(area, 6, 1e-5);  // so normals point outwards, and so are the corners turned
+  EXPECT_NEAR(area, 6, 1e-5);  // so normals point outwards, and corners are ordered accordingly
   EXPECT_NEAR(volume, 1, 1e-5);
   EXPECT_NE(test::complaint([&] {
               write_mesh(folder / "b.stl", box_mesh<2>({1, 1}, {2, 2}));
@@ -227,7 +227,7 @@ TEST(Formats, AreInOneTable) {
   EXPECT_EQ(format_of("a.xyz"), nullptr);
 }
 
-// ---- What other programs wrote ----
+// ---- Files of other programs ----
 
 MeshWithFields foreign(const std::string& name, Warnings* warnings = nullptr) {
   return read_mesh_with_fields(std::string(DUCTILE_TEST_FILES) + "/" + name, warnings);
@@ -344,7 +344,7 @@ TEST(Formats, ReadVtksFiles) {
   }
 }
 
-// ---- What cannot be read ----
+// ---- Files that cannot be read ----
 
 TEST(Formats, RefuseInWords) {
   const auto says = [](const std::string& name) { return test::complaint([&] { foreign(name); }); };

@@ -27,8 +27,8 @@ using runtime::Executor;
 
 constexpr double radius = 0.5;
 
-/// A disk or ball of this radius around the origin, made of a cube's cells. Its boundary is one
-/// piece, or six, or four, each with a reference of its own.
+/// A disk or ball around the origin, made from the cells of a square or cube. Its boundary is one
+/// piece, or four (3D: six), each with its own reference.
 AnyMesh ball(int dimension, int n, bool in_one_piece) {
   AnyMesh mesh = test::make_grid(test::unit_grid(dimension, n));
   const auto d = static_cast<std::size_t>(dimension);
@@ -59,7 +59,7 @@ double norm_in_plane(const AnyMesh& mesh, std::size_t vertex) {
   return std::hypot(mesh.coordinates[3 * vertex], mesh.coordinates[3 * vertex + 1]);
 }
 
-/// How far vertices on the boundary are from the sphere at most.
+/// Largest distance of boundary vertices from the sphere.
 double off_sphere(const AnyMesh& mesh) {
   std::set<std::uint32_t> boundary;
   const auto add = [&](const auto& facets) {
@@ -71,7 +71,7 @@ double off_sphere(const AnyMesh& mesh) {
   return most;
 }
 
-/// Times the dimension's factorial.
+/// Volume times the factorial of the dimension.
 template <int Dim>
 double scaled_volume_in(const AnyMesh& mesh) {
   double sum = 0;
@@ -86,7 +86,7 @@ double volume_of(const AnyMesh& mesh) {
   return mesh.dimension == 2 ? scaled_volume_in<2>(mesh) : scaled_volume_in<3>(mesh);
 }
 
-/// Sizes of a front that moves from call to call.
+/// Sizes with a front that moves from call to call.
 AnyField front(const AnyMesh& mesh, int call) {
   AnyField sizes{mesh.dimension, mesh.vertex_count(), {AnyField::Type::scalar}, {}, "sizes"};
   const auto d = static_cast<std::size_t>(mesh.dimension);
@@ -187,7 +187,7 @@ TEST_P(GeometryOf, AnotherDomainIsRefused) {
 TEST_P(GeometryOf, PartsNeedNoneOfItsCurves) {
   const Executor executor({.threads = 2});
   const AnyMesh mesh = start(true);
-  AnyMesh inner = mesh;  // with nothing curved near that of the geometry
+  AnyMesh inner = mesh;  // has no curved boundary near that of the geometry
   for (double& x : inner.coordinates) x *= 0.1;
   AdaptOptions options;
   options.make.hausdorff_tolerance = tolerance;
@@ -276,7 +276,7 @@ TEST_P(GeometryOf, ABoxHasNothingThatIsCurved) {
             test::bits(adapt(executor, mesh, metric, without).mesh.coordinates));
 }
 
-/// A disk of a reference of its own on top of a box: a curve bends, but no patch.
+/// A disk on top of a box has a reference of its own: its curve bends, but no patch does.
 TEST(Geometry, OfACircleOnAFlatSideFitsItsMesh) {
   AnyMesh mesh = test::make_grid(test::unit_grid(3, 8));
   for (std::size_t at = 0; at < mesh.coordinates.size(); at += 3) {

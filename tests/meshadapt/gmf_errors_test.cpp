@@ -1,5 +1,5 @@
-// Files that are wrong: each kind of fault gives an InputError that names file, place and fault,
-// and no sequence of bytes does anything worse.
+// Invalid files: each kind of fault gives an InputError that names file, place and fault, and no
+// sequence of bytes does anything worse.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ std::string replaced(std::string text, const std::string& part, const std::strin
 
 class GmfErrors : public testing::Test {
  protected:
-  /// What read_mesh says about this content, without the folder's name.
+  /// The error of read_mesh for this content, without the folder's name.
   std::string mesh_complaint(const std::string& bytes) {
     test::put_bytes(folder_ / "bad.mesh", bytes);
     return base_name(test::complaint([&] { read_mesh(folder_ / "bad.mesh"); }));
@@ -63,14 +63,14 @@ class GmfErrors : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-/// The complaint begins with the place and contains the fault.
+/// Expects that the complaint begins with the place and contains the fault.
 void expect_says(const std::string& complaint, const std::string& place, const std::string& fault) {
   EXPECT_TRUE(complaint.starts_with(place)) << complaint;
   EXPECT_NE(complaint.find(fault), std::string::npos) << complaint;
   EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
 }
 
-// ---- Files as such ----
+// ---- Missing, empty and special files ----
 
 TEST_F(GmfErrors, NameWhatCannotBeRead) {
   const auto complaint = [&](const std::string& name) {
@@ -120,7 +120,7 @@ TEST_F(GmfErrors, NameTheLineAndFaultOfAText) {
       // Numbers
       {"0 1 0 1", "0 nan 0 1", "bad.mesh:7: ", "finite number in Vertices 3 of 4, found 'nan'"},
       {"0 1 0 1", "0 -inf 0 1", "bad.mesh:7: ", "found '-inf'"},
-      {"0 1 0 1", "0 1e309 0 1", "bad.mesh:7: ", "below 1.8e308 in Vertices 3 of 4, found '1e309'"},
+      {"0 1 0 1", "0 1e309 0 1", "bad.mesh:7: ", "finite number in Vertices 3 of 4, found '1e309'"},
       {"0 1 0 1", "0 1,5 0 1", "bad.mesh:7: ", "found '1,5'"},
       {"0 1 0 1", "0 0x1 0 1", "bad.mesh:7: ", "found '0x1'"},
       {"0 1 0 1", "0 1 0 1.5", "bad.mesh:7: ", "an integer in Vertices 3 of 4, found '1.5'"},
@@ -215,7 +215,7 @@ TEST_F(GmfErrors, TakeNoSignForANumber) {
   }
 }
 
-// ---- What is odd but understood ----
+// ---- Unusual but valid ----
 
 TEST_F(GmfErrors, AcceptFreeFormText) {
   const std::string text =
@@ -308,25 +308,26 @@ TEST_F(GmfBinaryErrors, NameTheByteAndSection) {
     std::string place, says;
   } const faults[] = {
       {4, 5, "bad.mesh: byte 4, ", "version 1 to 4, found 5"},
-      {8, 0, "bad.mesh: byte 8, ", "number of a keyword, found 0"},
-      {8, 77777, "bad.mesh: byte 8, ", "number of a keyword, found 77777"},
+      {8, 0, "bad.mesh: byte 8: ", "number of a keyword, found 0"},
+      {8, 77777, "bad.mesh: byte 8: ", "number of a keyword, found 77777"},
       {12, 21, "bad.mesh: byte 20, Dimension: ", "found its end at byte 21"},
       {12, 8, "bad.mesh: byte 12, Dimension: ", "position of the next section"},
       {12, -1, "bad.mesh: byte 12, Dimension: ", "found -1"},
       {12, 1 << 30, "bad.mesh: byte 12, Dimension: ", "from byte 16 to 199, found 1073741824"},
-      {16, 7, "bad.mesh: byte 20, Dimension: ", "found 7"},
-      {20, 3, "bad.mesh: byte 32, Dimension: ", "found a second"},
+      {16, 7, "bad.mesh: byte 16, Dimension: ", "found 7"},
+      {20, 3, "bad.mesh: byte 28, Dimension: ", "found a second"},
       {24, 20, "bad.mesh: byte 24, Vertices: ", "position of the next section"},
       {24, 200, "bad.mesh: byte 24, Vertices: ", "position of the next section"},
-      {28, 5, "bad.mesh: byte 32, Vertices: ", "5 Vertices of 28 bytes, found room for 4"},
+      {28, 5,
+       "bad.mesh: byte 28: ", "at most 4 Vertices in the rest of the section, found a count of 5"},
       {28, 3, "bad.mesh: byte 116, Vertices: ", "found its end at byte 144"},
-      {28, -4, "bad.mesh: byte 32, Vertices: ", "found -4"},
-      {28, 1 << 30, "bad.mesh: byte 32, Vertices: ", "found room for 4"},
+      {28, -4, "bad.mesh: byte 28, Vertices: ", "found -4"},
+      {28, 1 << 30, "bad.mesh: byte 28: ", "at most 4 Vertices"},
       {60 + 4, 0x7ff80000, "bad.mesh: byte 60, Vertices: ", "finite number in Vertices 2 of 4"},
       {60 + 4, 0x7ff00000, "bad.mesh: byte 60, Vertices: ", "found inf"},
-      {144, 10, "bad.mesh: byte 156, Hexahedra: ", "1 Hexahedra (mixed"},
+      {144, 10, "bad.mesh: byte 152, Hexahedra: ", "1 Hexahedra (mixed"},
       {160, 7, "bad.mesh: byte 160, Tetrahedra: ", "in Tetrahedra 1 of 1, found 7"},
-      {160, 0, "bad.mesh: byte 156, Tetrahedra: ", "at least 1 in Tetrahedra 1 of 1, found 0"},
+      {160, 0, "bad.mesh: byte 160, Tetrahedra: ", "at least 1 in Tetrahedra 1 of 1, found 0"},
       {188, 5, "bad.mesh: byte 188, RequiredVertices: ", "found 5"},
       {192, 55, "bad.mesh: byte 200, TrianglesOnGeometricTriangles: ", ""},
   };

@@ -1,5 +1,5 @@
-// Thousands of damaged files: each is read or refused with an InputError, and no allocation is
-// large beside the file. Meant for the address and undefined-behaviour sanitizers.
+// Thousands of damaged files: each is read, or refused by an InputError, and no allocation is large
+// compared to the file. Meant for the address and undefined-behaviour sanitizers.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ void* memory_or_null(std::size_t size) {
 
 }  // namespace
 
-// Clang's thread sanitizer brings an operator new of its own; there, no request is seen.
+// Clang's thread sanitizer replaces operator new itself, so requests cannot be observed there.
 #if defined(__clang__) && defined(__has_feature)
 #if __has_feature(thread_sanitizer)
 #define DUCTILE_REQUESTS_UNSEEN
@@ -37,7 +37,7 @@ void* memory_or_null(std::size_t size) {
 #ifndef DUCTILE_REQUESTS_UNSEEN
 void* operator new(std::size_t size) { return allocate(size); }
 void* operator new[](std::size_t size) { return allocate(size); }
-// By this std::stable_sort asks for memory.
+// std::stable_sort requests memory by this operator.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return memory_or_null(size);
 }
@@ -53,7 +53,7 @@ namespace {
 using Form = WriteOptions::Form;
 using Type = AnyField::Type;
 
-/// Changes a few bytes, or takes some out, doubles some, or cuts the end off.
+/// Changes, removes or doubles a few bytes, or cuts the end off.
 std::string damaged(std::string bytes, bool is_text, std::mt19937_64& random) {
   const auto below = [&](std::size_t limit) { return static_cast<std::size_t>(random() % limit); };
   const std::string likely = "0123456789 -+.eE\n#nEx";

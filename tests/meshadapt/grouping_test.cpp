@@ -12,7 +12,7 @@ namespace {
 
 using Items = std::vector<std::vector<std::uint32_t>>;  // [item], its keys
 
-/// Items that have up to four keys each, in the order of the first, or in any.
+/// Items with up to four keys each, sorted by the first, or in random order.
 Items random_items(test::Random& random, std::size_t count, std::uint32_t keys, bool in_order) {
   Items items(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -23,10 +23,10 @@ Items random_items(test::Random& random, std::size_t count, std::uint32_t keys, 
   return items;
 }
 
-/// [key], the items that have it, in order.
+/// [key] Its items, in order.
 Items grouped(const Items& items, std::uint32_t keys, int threads) {
   const runtime::Executor executor({.threads = threads});
-  std::vector<std::uint32_t> count_of(keys, 7);  // set anew
+  std::vector<std::uint32_t> count_of(keys, 7);  // must be overwritten
   Grouping grouping(executor, GroupingBounds::even(executor, items.size(), keys), count_of,
                     [&items](std::uint32_t item, auto&& visit) {
                       for (const std::uint32_t key : items[item]) visit(key);

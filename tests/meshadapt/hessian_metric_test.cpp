@@ -160,7 +160,7 @@ AnyField fronts(const AnyMesh& any) {
   return field;
 }
 
-/// The first of the fields.
+/// The first field as scalars.
 AnyField scalars(const AnyField& field) { return scalar_field(field.dimension, scalars_of(field)); }
 
 TYPED_TEST(HessianMetricIn, OfSeveralFieldsSuitsAll) {
@@ -174,7 +174,7 @@ TYPED_TEST(HessianMetricIn, OfSeveralFieldsSuitsAll) {
   const auto error =
       solution_metric(executor, scene.any, fronts<Dim>(scene.any), {.goal = {.error = 0.01}});
   EXPECT_TRUE(error.fit.reached);
-  EXPECT_LE(error.fit.error, 0.01 * (1 + 1e-6));  // finer, where the other field asks for it
+  EXPECT_LE(error.fit.error, 0.01 * (1 + 1e-6));  // smaller where the other field rules
   EXPECT_GT(error.fit.error, 0.005);
   AnyField other = fronts<Dim>(scene.any);
   other.values.pop_back();
@@ -191,7 +191,8 @@ TYPED_TEST(HessianMetricIn, EstimatesTheErrorOfAFieldAsTheFitDoes) {
   }
 }
 
-/// Of which the second is hardly there: to share the complexity with it, the first must be coarser.
+/// The second field varies in a thin layer only. Sharing the complexity makes the first coarser,
+/// but no size may exceed the extent of the mesh.
 TYPED_TEST(HessianMetricIn, OfSeveralFieldsAsksForNoSizeLargerThanTheMesh) {
   constexpr int Dim = TypeParam::value;
   const Scene<Dim> scene;
@@ -206,7 +207,7 @@ TYPED_TEST(HessianMetricIn, OfSeveralFieldsAsksForNoSizeLargerThanTheMesh) {
   }
 }
 
-/// In any direction, with an offset, and with rounding of the sums that it is.
+/// The function is linear in any direction, with an offset and the rounding of its sum.
 TYPED_TEST(HessianMetricIn, OfALinearFieldIsUniform) {
   constexpr int Dim = TypeParam::value;
   Random random(11);
@@ -237,7 +238,7 @@ TYPED_TEST(HessianMetricIn, OfALinearFieldIsUniform) {
   }
 }
 
-/// However little it is, as long as it is more than rounding.
+/// The curvature counts however small it is, if it exceeds rounding.
 TYPED_TEST(HessianMetricIn, SeesTheCurvatureOfAFieldThatIsNearlyLinear) {
   constexpr int Dim = TypeParam::value;
   const Scene<Dim> scene;
@@ -255,7 +256,7 @@ TYPED_TEST(HessianMetricIn, SeesTheCurvatureOfAFieldThatIsNearlyLinear) {
   EXPECT_GT(anisotropy, 5);
 }
 
-/// The first bad one of the field, not one that its Hessian spreads to.
+/// The message names the first bad vertex of the field, not one that its Hessian spreads to.
 TYPED_TEST(HessianMetricIn, NamesTheVertexWithAValueThatIsNoNumber) {
   constexpr int Dim = TypeParam::value;
   const Scene<Dim> scene;
@@ -270,7 +271,7 @@ TYPED_TEST(HessianMetricIn, NamesTheVertexWithAValueThatIsNoNumber) {
   }
 }
 
-/// On a mesh that is still coarse, grading after the fact would make 10 times as many elements.
+/// On a mesh that is still coarse, grading afterwards would make 10 times as many elements.
 TYPED_TEST(HessianMetricIn, ReachesAComplexityWithGradation) {
   constexpr int Dim = TypeParam::value;
   const AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 20 : 8));
@@ -302,8 +303,8 @@ TYPED_TEST(HessianMetricIn, ReachesAComplexityWithGradation) {
   }
 }
 
-/// Whatever the field and the growth: the complexity is met, no size is below its bound, and
-/// grading again finds nothing to do, at any number of threads.
+/// For any field and growth, the complexity is reached, no size is below its bound, and grading
+/// again changes nothing, at any number of threads.
 TYPED_TEST(HessianMetricIn, ReachesAComplexityWithAnyGradationOfAnyField) {
   constexpr int Dim = TypeParam::value;
   const AnyMesh any = test::make_grid(test::unit_grid(Dim, Dim == 2 ? 20 : 7));

@@ -61,7 +61,8 @@ TYPED_TEST(HessianIn, LeastSquaresAreExactForQuadraticsOnAnyMesh) {
     for (std::size_t v = 0; v < any.vertex_count(); ++v) any.coordinates[v * Dim] *= stretch;
     const auto mesh = make_fixed_mesh<Dim>(executor, any);
     const Quadratic<Dim> exact(random);
-    // Stretched so that values change as much along the thin direction as along the others.
+    // The function is stretched so that it changes as much along the thin direction as along the
+    // others.
     const auto function = [&](Vector<Dim> p) {
       p[0] /= stretch;
       return exact(p);
@@ -172,8 +173,8 @@ TYPED_TEST(HessianIn, CopesWithMeshesTooCoarseForAQuadratic) {
     }
 }
 
-/// A corner whose vertices all lie on the axes, up to `off`, except for those of the last layer:
-/// what a flat field leaves there. Each layer has a vertex on each axis, and is a prism.
+/// A corner whose vertices all lie on the axes, up to `off`, except those of the last layer; a flat
+/// field leads to such meshes. Each layer has a vertex on each axis and is a prism.
 template <int Dim>
 AnyMesh corner_on_axes(Random& random, int layers, double off) {
   AnyMesh any;
@@ -195,7 +196,7 @@ AnyMesh corner_on_axes(Random& random, int layers, double off) {
   };
   add([](std::size_t i) { return i; });
   for (std::size_t first = 1; first + 2 * Dim <= any.vertex_count(); first += Dim)
-    for (std::size_t skip = 0; skip < Dim; ++skip)  // corners of one layer, then of the next
+    for (std::size_t skip = 0; skip < Dim; ++skip)  // the corners of one layer, then of the next
       add([&](std::size_t i) { return i < Dim - skip ? first + i : first + i + Dim - 1; });
   elements_in<Dim>(any).reference.assign(elements.size(), 0);
   return any;

@@ -29,7 +29,7 @@ TYPED_TEST(Hilbert, TheTableKnowsTheCurve) {
     }
 }
 
-/// Of all cells of a square or cube, each has its own place, and the next one is a neighbour.
+/// Each cell of a square or cube has its own position, and the next cell is a neighbour.
 TYPED_TEST(Hilbert, GoesFromNeighbourToNeighbour) {
   constexpr int Dim = TypeParam::value, bits = 4;
   using Cell = std::array<std::uint32_t, Dim>;
@@ -48,7 +48,7 @@ TYPED_TEST(Hilbert, GoesFromNeighbourToNeighbour) {
   }
 }
 
-/// The sanitizers see whether such a coordinate is converted to a whole number.
+/// Sanitizers report if a coordinate that is not finite is converted to an integer.
 TYPED_TEST(Hilbert, EveryPointHasAKey) {
   constexpr int Dim = TypeParam::value;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();

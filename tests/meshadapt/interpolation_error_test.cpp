@@ -10,8 +10,8 @@
 #include "ductile/meshadapt/hessian_metric.hpp"
 #include "support/meshes.hpp"
 
-// Everything together, as a simulation uses it: a function is sampled, its Hessian recovered, the
-// metric fitted, the mesh adapted, and again. The interpolation error must fall as N^(-2/d).
+// A whole loop as a simulation runs it: a function is sampled, its Hessian recovered, the metric
+// fitted, the mesh adapted, and again. The interpolation error must fall as N^(-2/d).
 
 namespace ductile::meshadapt::interpolation_error_test {
 namespace {
@@ -35,8 +35,8 @@ std::vector<double> sampled(const FixedMesh<Dim>& mesh) {
   return value_of;
 }
 
-/// The L^2 norm of the difference between the function and what is linear between its values at
-/// the corners, by a rule with the middles of all edges and the centre.
+/// The L^2 norm of the error of linear interpolation, by a quadrature with the midpoints of all
+/// edges and the centre.
 template <int Dim>
 double interpolation_error(const FixedMesh<Dim>& mesh) {
   const auto value_of = sampled(mesh);
@@ -86,7 +86,7 @@ double order(const Result& coarse, const Result& fine) {
   return std::log(coarse.error / fine.error) / std::log(fine.elements / coarse.elements);
 }
 
-// In 3D, too: as N^(-2/3), along a layer that is bent in all directions.
+// In 3D the error falls as N^(-2/3), along a layer that is bent in all directions.
 TEST(InterpolationError, FallsAtTheOptimalRateInSpace) {
   const Result coarse = adapted_to<3>(8000, Recovery::least_squares);
   const Result fine = adapted_to<3>(32000, Recovery::least_squares);
@@ -137,7 +137,7 @@ class RandomField {
   Vector<Dim> across_, centre_;
 };
 
-/// The root of the mean square at the middles of edges: what linear interpolation misses there.
+/// Root mean square of the interpolation error at the midpoints of edges.
 template <int Dim>
 double missed(const FixedMesh<Dim>& mesh, const RandomField<Dim>& f) {
   double sum = 0;
@@ -153,7 +153,7 @@ double missed(const FixedMesh<Dim>& mesh, const RandomField<Dim>& f) {
 
 struct Loop {
   double elements = 0, grown = 1.1, count = 0.15;
-  int calls = 0, settled = 0;  ///< from which call on counts are to be met
+  int calls = 0, settled = 0;  ///< counts must be met from call `settled` on
 };
 
 template <int Dim>

@@ -1,6 +1,6 @@
 /// @file
-/// What the tests of files share: a folder that goes away, random meshes and fields, and the text
-/// of the error that a call throws.
+/// Shared by the tests of files: a temporary folder, random meshes and fields, and the text of the
+/// error that a call throws.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 
 namespace ductile::meshadapt::test {
 
-/// A new folder, removed with all that is in it.
+/// A new folder, removed with its contents at destruction.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -53,7 +53,7 @@ inline std::string get_bytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What `call` complains about; the test fails if it does not throw an InputError.
+/// The message of the InputError that `call` throws; the test fails if it throws none.
 template <class Call>
 std::string complaint(const Call& call) {
   try {
@@ -64,11 +64,11 @@ std::string complaint(const Call& call) {
     ADD_FAILURE() << "not an InputError: " << error.what();
     return {};
   }
-  ADD_FAILURE() << "nothing thrown";
+  ADD_FAILURE() << "expected an InputError, nothing was thrown";
   return {};
 }
 
-/// Finite doubles of every magnitude, zeros of both signs and denormals among them.
+/// A finite double of any magnitude, including zeros of both signs and denormals.
 inline double random_double(std::mt19937_64& random) {
   for (;;) {
     const auto value = std::bit_cast<double>(random());
@@ -77,7 +77,7 @@ inline double random_double(std::mt19937_64& random) {
   }
 }
 
-/// A mesh with something in every section; indices are in range, more is not promised. With
+/// A mesh with entries in every section. Indices are in range; otherwise it need not be valid. With
 /// `as_float`, coordinates are floats.
 inline AnyMesh random_mesh(int dimension, std::size_t size, unsigned seed, bool as_float = false) {
   std::mt19937_64 random(seed);

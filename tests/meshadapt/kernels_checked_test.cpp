@@ -1,6 +1,5 @@
 /// @file
-/// Runs the kernels that run_rounds runs under the checks of their contracts, see
-/// checked_rounds.hpp.
+/// Runs the kernels of run_rounds under the checks of checked_rounds.hpp.
 #include <gtest/gtest.h>
 
 #include "operators/coarsen.hpp"

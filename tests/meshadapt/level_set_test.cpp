@@ -1,6 +1,6 @@
 /// @file
-/// Adapts meshes whose boundary has thin facets that turn by anything: what is cut out of a grid,
-/// and what steps are lower than the tolerance.
+/// Adapts meshes whose boundary has thin facets at large angles to their neighbours: meshes cut out
+/// of a grid, and meshes with steps lower than the tolerance.
 #include "support/level_set.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ AdaptedMesh adapted(const AnyMesh& mesh, double size, double tolerance, int thre
   return result;
 }
 
-/// The lengths of the sides of all triangles.
+/// Lengths of the edges of all triangles.
 std::vector<double> sides(const AnyMesh& mesh) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& corners : mesh.triangles.vertices)
@@ -59,7 +59,7 @@ double farthest_from(const AnyMesh& mesh, const test::Level& distance) {
   return most;
 }
 
-/// Of one sphere five grids make surfaces alike.
+/// Expects that cutting one sphere out of five grids gives similar numbers of facets.
 void expect_alike(double least, double noise) {
   constexpr double size = 0.2, tolerance = 0.01;
   std::vector<std::size_t> counts;
@@ -111,7 +111,7 @@ TEST(LevelSet, RandomGridsStayValid) {
   }
 }
 
-// ---- What stays ----
+// ---- Features that stay ----
 
 double volume(const AnyMesh& mesh) {
   double sum = 0;
@@ -122,7 +122,7 @@ double volume(const AnyMesh& mesh) {
   return sum;
 }
 
-/// Of a grid, all triangles with reference 1.
+/// A grid whose boundary facets all have reference 1.
 AnyMesh in_one_piece(const test::Grid& grid) {
   AnyMesh mesh = test::make_grid(grid);
   auto& facets = grid.dimension == 2 ? mesh.edges.reference : mesh.triangles.reference;
@@ -130,7 +130,7 @@ AnyMesh in_one_piece(const test::Grid& grid) {
   return mesh;
 }
 
-/// The length of the triangles' sides that lie on the edges of the unit cube, each once.
+/// Total length of the triangles' edges that lie on edges of the unit cube.
 double length_on_edges(const AnyMesh& mesh) {
   const auto on_edge = [](const Vector<3>& p) {
     const auto ends =
@@ -150,7 +150,7 @@ double length_on_edges(const AnyMesh& mesh) {
   return sum;
 }
 
-/// Its sides are rough by less than the tolerance, where thin facets turn by 60 degrees.
+/// The cube's sides are rough by less than the tolerance; thin facets turn by 60 degrees there.
 TEST(LevelSet, ARoughCubeKeepsItsEdges) {
   test::Grid grid;
   grid.dimension = 3;
@@ -179,8 +179,8 @@ TEST(LevelSet, AThinPlateKeepsItsRim) {
   }
 }
 
-/// A bent plate of several materials: at a rim that ends at a side between two of them, facets
-/// lower than the tolerance are turned as one side of the plate in the geometry.
+/// A bent plate of several materials. At a rim next to a side between two materials, facets lower
+/// than the tolerance are oriented as one side of the plate in the geometry.
 TEST(LevelSet, AThinPlateOfManyMaterialsFitsItsOwnGeometry) {
   for (const double thickness : {0.002, 0.005, 0.03}) {
     SCOPED_TRACE(thickness);
@@ -208,7 +208,7 @@ TEST(LevelSet, AThinPlateOfManyMaterialsFitsItsOwnGeometry) {
   }
 }
 
-/// Four terraces on a block.
+/// A block with four terraces.
 AnyMesh terraces(double step) {
   test::Grid grid = test::unit_grid(3, 8);
   grid.lines[2] = {0, 0.25, 0.5, 0.5 + step};
@@ -226,7 +226,7 @@ TEST(LevelSet, StepsHigherThanTheToleranceStay) {
 
 // ---- Voxels ----
 
-/// Of the triangles at each of their sides, by its ends.
+/// The normals of the triangles at each edge, by the edge's ends.
 using SideNormals = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Vector<3>>>;
 SideNormals normals_at_sides(const AnyMesh& mesh) {
   SideNormals normals;
@@ -239,12 +239,12 @@ SideNormals normals_at_sides(const AnyMesh& mesh) {
   return normals;
 }
 
-/// Does the boundary turn by 45 degrees or more between these?
+/// Is the angle between these normals 45 degrees or more?
 bool is_sharp(const std::vector<Vector<3>>& normals) {
   return normals.size() != 2 || dot(normals[0], normals[1]) < std::sqrt(0.5);
 }
 
-/// How many sides of triangles are sharp.
+/// Number of sharp edges of the triangles.
 std::size_t sharp_sides(const AnyMesh& mesh) {
   const SideNormals normals = normals_at_sides(mesh);
   return static_cast<std::size_t>(std::count_if(
@@ -265,7 +265,7 @@ std::size_t sharp_corners(const AnyMesh& mesh) {
       }));
 }
 
-/// A ball of radius 1 out of cubes of this size, or a disk of squares, somewhere in their grid.
+/// A ball of radius 1 made of cubes of this size (2D: a disk of squares), somewhere in their grid.
 AnyMesh voxels(int dimension, double size, test::Random& random) {
   test::Grid grid;
   grid.dimension = dimension;
@@ -283,7 +283,7 @@ AnyMesh voxels(int dimension, double size, test::Random& random) {
   return in_one_piece(grid);
 }
 
-/// An equilateral triangle of the size asked for fits 322 times.
+/// The ideal number of equilateral triangles is 322.
 TEST(LevelSet, VoxelsBecomeTheSphereThatTheyApproximate) {
   test::Random random(11);
   for (const double size : {0.08, 0.07, 0.06}) {
@@ -294,7 +294,7 @@ TEST(LevelSet, VoxelsBecomeTheSphereThatTheyApproximate) {
   }
 }
 
-/// Of sharp sides.
+/// Total length of sharp edges.
 double sharp_length(const AnyMesh& mesh) {
   double sum = 0;
   for (const auto& [ends, normals] : normals_at_sides(mesh))
@@ -303,8 +303,8 @@ double sharp_length(const AnyMesh& mesh) {
   return sum;
 }
 
-/// A block with a slope instead of its upper side, towards which its sides are turned by 73 to 107
-/// degrees. Its edges have a length of 10.12.
+/// A block whose upper side is a slope, at angles of 73 to 107 degrees to the other sides. Its
+/// edges have a total length of 10.12.
 TEST(LevelSet, ASlopeOfVoxelsHasAlmostStraightRims) {
   for (const int n : {24, 32}) {
     SCOPED_TRACE(n);
@@ -314,11 +314,11 @@ TEST(LevelSet, ASlopeOfVoxelsHasAlmostStraightRims) {
       return at(2) < 0.3 * at(0) + 0.17 * at(1) ? 1 : 0;
     };
     const AnyMesh result = adapted(in_one_piece(grid), 0.15, 2.0 / n).mesh;
-    EXPECT_LT(sharp_length(result), 1.32 * 10.12);  // 1.36 and 1.40 if sides are across a gap
+    EXPECT_LT(sharp_length(result), 1.32 * 10.12);  // 1.36, 1.40 with sides across a gap
   }
 }
 
-/// A regular polygon with edges of the size asked for has 21.
+/// A regular polygon with edges of the requested size has 21.
 TEST(LevelSet, PixelsBecomeTheCircleThatTheyApproximate) {
   test::Random random(12);
   for (const double size : {0.15, 0.1, 0.06}) {

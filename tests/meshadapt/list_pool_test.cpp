@@ -96,7 +96,7 @@ TEST(ListPool, GrowsAndForgets) {
   EXPECT_EQ(pool.of(1).size(), 1U);
   EXPECT_TRUE(pool.of(3).empty());
   for (const std::uint32_t lists :
-       {3U, 50000U, 100U}) {  // by one thread, by all, fewer than before
+       {3U, 50000U, 100U}) {  // on one thread, on all, fewer than before
     pool.reset(executor, lists);
     ASSERT_EQ(pool.size(), lists);
     for (std::uint32_t i = 0; i < lists; ++i) {

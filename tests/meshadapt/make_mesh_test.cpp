@@ -25,7 +25,7 @@ struct Made {
   std::vector<std::string> warnings;
 };
 
-/// Makes the mesh and checks all but its qualities, which need a metric.
+/// Makes the mesh and checks everything except qualities, which need a metric.
 template <int Dim>
 Made<Dim> make(const AnyMesh& any, const MakeMeshOptions& options = {}) {
   const Executor executor({.threads = 2});
@@ -64,7 +64,7 @@ std::string complaint(const AnyMesh& any, const MakeMeshOptions& options = {}) {
 AnyMesh square(int n) { return test::make_grid(test::unit_grid(2, n)); }
 AnyMesh cube(int n) { return test::make_grid(test::unit_grid(3, n)); }
 
-// ---- What lies where ----
+// ---- Classification ----
 
 TEST(MakeMesh, FindsTheSidesAndCornersOfASquare) {
   const auto made = make<2>(square(4));
@@ -139,7 +139,7 @@ TEST(MakeMesh, JoinsFacetsThatTurnLittleIfCurvedBoundariesMayChange) {
 }
 
 TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
-  for (const double angle : {1.5 * 0.78, 1.5 * 0.79})  // two cells: 45 degrees are 0.785
+  for (const double angle : {1.5 * 0.78, 1.5 * 0.79})  // of two cells; 45 degrees: 0.785
     for (const int dimension : {2, 3}) {
       const AnyMesh any = bent(dimension, 2, 2 * angle / 1.5);
       const auto fixed =
@@ -152,7 +152,7 @@ TEST(MakeMesh, KeepsFacetsApartThatTurnMuch) {
 }
 
 TEST(MakeMesh, TellsRidgesByTheAngleGiven) {
-  const AnyMesh flat = bent(2, 4, 1.3), solid = bent(3, 4, 1.3);  // by 18.6 degrees a cell
+  const AnyMesh flat = bent(2, 4, 1.3), solid = bent(3, 4, 1.3);  // 18.6 degrees per cell
   for (const double angle : {18.0, 19.0, 89.0}) {
     const MakeMeshOptions options{.hausdorff_tolerance = 0.01, .ridge_angle = angle};
     const bool joined = angle > 18.6;
@@ -168,7 +168,7 @@ TEST(MakeMesh, RefusesTolerancesAndAnglesThatAreNone) {
     EXPECT_THROW(make<2>(square(2), {.ridge_angle = angle}), InputError) << angle;
 }
 
-/// At the rims of its lid and its base.
+/// The closed curves are the rims of the cone's lid and base.
 TEST(MakeMesh, ClosedCurvesKeepThreeVertices) {
   const auto made = make<3>(test::truncated_cone(6, 0.5), {.hausdorff_tolerance = 0.01});
   const auto count = vertices_by_class_dimension(made.mesh);
@@ -177,7 +177,7 @@ TEST(MakeMesh, ClosedCurvesKeepThreeVertices) {
   EXPECT_EQ(count[0] + count[1], 2 * 24);
 }
 
-/// Whatever number of edges is left between the curves of an arc.
+/// The arcs are recognised whatever the number of edges between their ends.
 TEST(MakeMesh, ArcsBendAsAWhole) {
   for (int n = 3; n <= 12; ++n) {
     const auto made = make<3>(test::truncated_cone(n, 0.5), {.hausdorff_tolerance = 0.01});
@@ -187,7 +187,7 @@ TEST(MakeMesh, ArcsBendAsAWhole) {
   }
 }
 
-/// A drop: a closed curve of edges that all turn little but in one corner.
+/// A drop: a closed curve whose edges turn little, except at one corner.
 TEST(MakeMesh, ACornerOfASmoothPatchStays) {
   constexpr int n = 24;
   AnyMesh any;
@@ -220,10 +220,11 @@ TEST(MakeMesh, RequiredEntitiesFixTheirVertices) {
   EXPECT_EQ(vertices_by_class_dimension(make<2>(square(4), {.lock_boundary = true}).mesh)[0], 16);
 }
 
-/// Lines that only rounding or a far-away vertex without elements could make look flat.
+/// A side bends by more than rounding. A far-away vertex without elements must not make it count as
+/// flat.
 TEST(MakeMesh, AnUnusedVertexFarAwayDoesNotFlattenTheBoundary) {
   AnyMesh any = square(4);
-  any.coordinates[1] -= 1e-6 / 3;  // with all digits, so it is meant
+  any.coordinates[1] -= 1e-6 / 3;  // all digits are used, so the bend is intended
   any.coordinates.insert(any.coordinates.end(), {1e9, 1e9});
   any.vertex_reference.push_back(0);
   const auto made = make<2>(any);
@@ -232,8 +233,8 @@ TEST(MakeMesh, AnUnusedVertexFarAwayDoesNotFlattenTheBoundary) {
   EXPECT_NE(made.warnings[0].find("belong to no element"), std::string::npos);
 }
 
-/// A slit from the middle of the left side to the centre: its sides have vertices of their own but
-/// share the tip, which neither side may be slid past.
+/// A slit from the middle of the left side to the centre. Its sides have different vertices but
+/// share the tip, over which neither side may slide.
 TEST(MakeMesh, TheTipOfASlitIsACorner) {
   test::Grid grid = test::unit_grid(2, 4);
   grid.region = [](const test::Cell& cell) { return cell[0] < 2 && cell[1] >= 2 ? 2 : 1; };
@@ -270,7 +271,7 @@ TEST(MakeMesh, TheTipOfASlitIsACorner) {
   EXPECT_EQ(made.mesh.kind_of[middle_twin].class_dimension, 1);
 }
 
-// ---- What is wrong ----
+// ---- Invalid meshes ----
 
 TEST(MakeMesh, ReorientsAMeshThatIsInvertedAsAWhole) {
   for (AnyMesh any : {square(3), cube(2)}) {
@@ -282,8 +283,8 @@ TEST(MakeMesh, ReorientsAMeshThatIsInvertedAsAWhole) {
   }
 }
 
-/// Vertices that lie beyond a facet of an element; elements that are only listed the other way
-/// round are turned, see repaired_meshes_test.
+/// The vertices lie beyond a facet of an element. Elements that are only listed with the wrong
+/// orientation are repaired, see repaired_meshes_test.
 TEST(MakeMesh, RefusesAnInvertedElement) {
   AnyMesh flat = square(3), solid = cube(3);
   const auto move_inner = [](AnyMesh& mesh, double to) {
@@ -363,7 +364,7 @@ TEST(MakeMesh, RefusesOrCompletesAnUnlistedBoundary) {
   }
 }
 
-/// Meshes that were put together of pieces have vertices twice where these meet.
+/// Meshes assembled from pieces have doubled vertices where these meet.
 TEST(MakeMesh, NamesVerticesAtOnePlaceWhereABoundaryIsNotListed) {
   const auto give_twin = [](auto& elements, std::uint32_t vertex, std::uint32_t twin) {
     for (auto& corners : elements)
@@ -390,7 +391,7 @@ TEST(MakeMesh, NamesVerticesAtOnePlaceWhereABoundaryIsNotListed) {
   }
 }
 
-/// As some mesh generators write construction lines, with end points that nothing else has.
+/// Some mesh generators write construction lines whose end points belong to nothing else.
 TEST(MakeMesh, LeavesOutEdgesOfNoTetrahedron) {
   AnyMesh any = cube(2);
   test::list_ridges(any);

@@ -43,7 +43,7 @@ Arrays<Index> take_arrays(const AnyMesh& mesh, Random& random, double share) {
   return arrays;
 }
 
-/// How often each facet is to be listed, found by looking at all pairs of elements and facets.
+/// Number of times each facet must be listed, found by comparing all pairs of elements and facets.
 template <int Dim>
 std::map<Facet<Dim>, int> expected_facets(const AnyMesh& mesh) {
   std::map<Facet<Dim>, int> expected;
@@ -53,7 +53,7 @@ std::map<Facet<Dim>, int> expected_facets(const AnyMesh& mesh) {
   return expected;
 }
 
-/// Corners that turn as seen from outside of an element that has them.
+/// Are the facet's corners in the order that is outward from an element that has it?
 template <int Dim>
 bool is_outward(const AnyMesh& mesh, const Facet<Dim>& facet,
                 const std::vector<ElementId>& around) {
@@ -98,7 +98,7 @@ void try_case(const AnyMesh& mesh, Random& random) {
   for (const auto& [corners, left] : expected) EXPECT_EQ(left, 0);
 }
 
-/// Shapes with holes and regions, elements turned the wrong way round, in three widths of indices.
+/// The shapes have holes, regions and inverted elements; indices have three widths.
 TEST(MeshFromArrays, ListsTheBoundaryAndInterfacesThatAreNotGiven) {
   for (std::uint64_t seed = test::first_trial(); seed < test::end_of_trials(60); ++seed) {
     Random random(seed);
@@ -135,7 +135,7 @@ TEST(MeshFromArrays, IsAMeshToAdaptWhoseFacetsKeepTheirReferences) {
             1);
 }
 
-/// What() of a square made of these arrays.
+/// The error for a mesh made from these arrays; empty if there is none.
 std::string message(const std::vector<double>& points, const std::vector<long>& triangles,
                     const std::vector<long>& edges = {},
                     const std::vector<std::int32_t>& edge_reference = {}, int dimension = 2) {

@@ -191,8 +191,8 @@ TYPED_TEST(MeshIn, ListsAreTheSameAtEachThreadCount) {
   }
 }
 
-/// A mesh with regions, ridges, corners and required entities, numbered row by row; of those inside
-/// its regions every seventh element is gone.
+/// A mesh with regions, ridges, corners and required entities, numbered row by row. Every seventh
+/// of the elements inside its regions is deleted.
 template <int Dim>
 Mesh<Dim> with_gaps() {
   const int cells = Dim == 2 ? 40 : 10;
@@ -215,7 +215,7 @@ Mesh<Dim> with_gaps() {
   return mesh;
 }
 
-/// As the mesh's arrays say, once they are in order.
+/// Expects that the arrays equal those of a mesh that has been renumbered.
 template <int Dim>
 void expect_same(const MeshWithMetric& apart, const Mesh<Dim>& mesh) {
   const AnyMesh& any = apart.mesh;

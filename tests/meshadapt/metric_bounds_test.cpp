@@ -1,5 +1,5 @@
-// Values of a field that are no metric by themselves, because they say "no limit here": bounds on
-// sizes hold before they are judged.
+// Values of a field that are no metric by themselves, because they stand for "no limit": bounds on
+// sizes are applied before validation.
 
 #include <gtest/gtest.h>
 
@@ -39,15 +39,14 @@ PrincipalAxes<Dim> random_axes(Random& random) {
   return principal_axes(any);
 }
 
-/// With so many digits.
+/// The value rounded to this number of digits.
 double rounded(double value, int digits) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return std::atof(text);
 }
 
-/// A tensor with eigenvalues for sizes from 0.05 to 0.5, some of which are 0 instead, or next to
-/// it.
+/// A tensor with sizes from 0.05 to 0.5, some of whose eigenvalues are replaced by 0 or nearly 0.
 template <int Dim>
 Metric<Dim> random_singular(Random& random) {
   auto axes = random_axes<Dim>(random);
@@ -55,7 +54,7 @@ Metric<Dim> random_singular(Random& random) {
   const std::size_t zeros = 1 + random() % Dim;
   const double next_to_zero = chance(random, 0.5) ? 0 : std::pow(10, uniform(random, -300, -20));
   for (std::size_t i = 0; i < zeros; ++i) axes.value[i] = next_to_zero;
-  if (chance(random, 0.3))  // in the axes of space
+  if (chance(random, 0.3))  // axis-parallel
     for (std::size_t i = 0; i < Dim; ++i) {
       axes.vector[i] = {};
       axes.vector[i].x[i] = 1;
@@ -88,7 +87,7 @@ AnyField random_field(Random& random, std::size_t vertices, std::vector<bool>& e
   return field;
 }
 
-/// Whether the value at a vertex can be taken as it is.
+/// Is the value at a vertex a metric without bounds?
 bool is_metric_by_itself(const AnyField& field, std::size_t vertex) {
   const std::size_t stride = stride_of(field);
   AnyMesh point;

@@ -79,7 +79,7 @@ TEST(MetricField, AllowsWhatIsStretchedWithinReason) {
   EXPECT_NO_THROW(metric_of(field_of(2, Type::symmetric, {ratio * ratio, 0, 1}), mesh_of(2, 1)));
   EXPECT_NO_THROW(
       metric_of(field_of(3, Type::symmetric, {1, 0, ratio, 0, 0, ratio * ratio}), mesh_of(3, 1)));
-  // Rotated by 45 degrees, as far as double can tell such a tensor.
+  // Rotated by 45 degrees, as exactly as doubles can represent such a tensor.
   const double large = 1e14;
   EXPECT_NO_THROW(
       metric_of(field_of(2, Type::symmetric, {(large + 1) / 2, (large - 1) / 2, (large + 1) / 2}),

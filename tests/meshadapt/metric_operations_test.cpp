@@ -39,7 +39,7 @@ Vector<Dim> random_direction(Random& random) {
   return 1 / norm(d) * d;
 }
 
-/// Eigenvectors of a random tensor, so an orthonormal basis; sizes spread over `anisotropy`.
+/// A metric with random axes and sizes that differ by up to `anisotropy`.
 template <int Dim>
 Metric<Dim> random_metric(Random& random, double anisotropy) {
   Metric<Dim> any;
@@ -51,7 +51,7 @@ Metric<Dim> random_metric(Random& random, double anisotropy) {
   return compose(axes);
 }
 
-/// What rounding of its components can change of d' M d.
+/// Change of d' M d that rounding of the components may cause.
 template <int Dim>
 double rounding_of(const Metric<Dim>& metric, const Vector<Dim>& d) {
   double sum = 0;
@@ -217,8 +217,8 @@ Mesh<Dim> grid_mesh(std::uint32_t n) {
                         neighbours, warnings);
 }
 
-/// Ratio of squared lengths, less 1, by which the bound is broken worst along any edge, both ways,
-/// in the axes of either metric and in the edge's direction.
+/// Ratio of squared lengths minus 1 where the bound is violated most: over all edges, both ways, in
+/// the axes of either metric and in the edge's direction.
 template <int Dim>
 double worst_excess(const Mesh<Dim>& mesh, const std::vector<Metric<Dim>>& metric_of,
                     double factor) {
@@ -246,7 +246,7 @@ double worst_excess(const Mesh<Dim>& mesh, const std::vector<Metric<Dim>>& metri
   return worst;
 }
 
-/// Coarse, but for a few vertices with random metrics.
+/// A coarse metric, except at a few vertices with random metrics.
 template <int Dim>
 std::vector<Metric<Dim>> spots(std::size_t vertices, std::uint64_t seed, double anisotropy) {
   Random random(seed);
@@ -285,7 +285,7 @@ TYPED_TEST(MetricOperations, GradationIsTheSameOnBothKindsOfMesh) {
   Mesh<Dim> mesh = grid_mesh<Dim>(cells<Dim>);
   const auto fixed =
       make_fixed_mesh<Dim>(executor, take_apart(executor, grid_mesh<Dim>(cells<Dim>)).mesh);
-  renumber(executor, mesh);  // as it is when taken apart
+  renumber(executor, mesh);  // the order that results from taking it apart
   auto metric_of = spots<Dim>(mesh.vertex_slots(), 7, 20);
   auto other_of = metric_of;
   limit_gradation(executor, metric_of, mesh, {.factor = 1.3});
@@ -313,7 +313,7 @@ TYPED_TEST(MetricOperations, GradationOfSizesFollowsTheDistance) {
   metric_of[0] = isotropic<Dim>(0.01);
   const double factor = 1.5;
   limit_gradation(Executor({.threads = 1}), metric_of, mesh, {.factor = factor, .tolerance = 0});
-  // Along an edge a size h grows by h times l ln(factor), and l is its length over h.
+  // Along an edge of length |pq| and metric length l = |pq| / h, a size h grows by h l ln(factor).
   for (std::uint32_t i = 0; i <= cells<Dim>; ++i) {
     const double size = 0.01 + std::log(factor) * i / cells<Dim>;
     EXPECT_NEAR(1 / std::sqrt(metric_of[i].m[0]), size, 1e-9);
@@ -369,10 +369,10 @@ TYPED_TEST(MetricOperations, GradationOfStretchedSizesFollowsTheMixedLaw) {
     const double edge = 1.0 / cells<Dim>, rate = std::log(factor);
     for (std::uint32_t i = 0; i <= cells<Dim>; ++i) {
       EXPECT_NEAR(1 / std::sqrt(metric_of[i](0, 0)), across, 1e-9) << factor << ' ' << i;
-      const double found = 1 / std::sqrt(metric_of[i](1, 1));  // less, if it came by another way
+      const double found = 1 / std::sqrt(metric_of[i](1, 1));  // less if from another path
       EXPECT_LT(found, along * (1 + 1e-9)) << factor << ' ' << i;
       EXPECT_GT(found, i == 0 ? 0.099 : 1.2 * across)
-          << factor << ' ' << i << ": what spreads stays stretched";
+          << factor << ' ' << i << ": the sizes along have lost their stretch";
       const double g = 1 + edge / across * rate, g_along = 1 + edge / along * rate;
       across *= g;
       along *= std::pow(g, 7.0 / 8) * std::pow(g_along, 1.0 / 8);
@@ -395,7 +395,7 @@ TYPED_TEST(MetricOperations, GradationIsTheSameAtEachThreadCount) {
   }
 }
 
-/// Many intersections of stretched metrics do not add up to sizes that nobody asked for.
+/// Many intersections of anisotropic metrics must not add up to sizes that no metric asked for.
 TYPED_TEST(MetricOperations, GradationComesToAnEndOnWildMetrics) {
   constexpr int Dim = TypeParam::value;
   const Mesh<Dim> mesh = grid_mesh<Dim>(cells<Dim>);
@@ -442,7 +442,7 @@ TYPED_TEST(MetricOperations, SayWhatIsWrong) {
   EXPECT_THROW(limit_gradation(executor, metric_of, mesh), InputError);
 }
 
-/// The fastest growth of sizes per unit of metric length along an edge of what adapt() made.
+/// Fastest growth of sizes per unit of metric length along an edge of an adapted mesh.
 double fastest_growth(const AdaptedMesh& adapted) {
   const auto size = [&](std::uint32_t v) { return 1 / std::sqrt(adapted.metric.values[3 * v]); };
   double fastest = 0;

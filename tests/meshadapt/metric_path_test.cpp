@@ -22,7 +22,7 @@ class MetricPathIn : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(MetricPathIn, Dimensions);
 
-/// A jiggled grid whose metric asks for sizes along the first axis so many times smaller.
+/// A jiggled grid and a metric whose sizes along the first axis are smaller by a factor.
 template <int Dim>
 struct Scene {
   Executor executor;
@@ -52,7 +52,7 @@ struct Scene {
   }
 };
 
-/// How much the first size is stretched against the others, on average, as a logarithm.
+/// Mean logarithm of the ratio of the second size to the first.
 template <int Dim>
 double log_stretch(const std::vector<Metric<Dim>>& log_metrics) {
   double sum = 0;
@@ -87,7 +87,7 @@ TYPED_TEST(MetricPathIn, EndsAtTheMetricThatWasThere) {
   EXPECT_EQ(scene.log_metrics(), wanted);
 }
 
-/// From a metric in which the mesh is about isotropic, in equal steps.
+/// The path starts at a metric in which the mesh is about isotropic, and has equal steps.
 TYPED_TEST(MetricPathIn, StretchesByTheSameInEachStep) {
   constexpr int Dim = TypeParam::value;
   Scene<Dim> scene(2, 200);
@@ -101,7 +101,7 @@ TYPED_TEST(MetricPathIn, StretchesByTheSameInEachStep) {
   }
 }
 
-/// The number of elements that a step asks for.
+/// Compares the number of elements that each step asks for.
 TYPED_TEST(MetricPathIn, AsksForLittleMoreThanEitherEnd) {
   constexpr int Dim = TypeParam::value;
   for (const double size : {0.02, 0.2, 2.0}) {

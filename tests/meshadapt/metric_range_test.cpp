@@ -1,5 +1,5 @@
 /// @file
-/// Whatever metric the library returns it takes again, at the ends of what metrics may be.
+/// The library accepts every metric that it returns, also at the limits of its range.
 #include "metric/metric_range.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class MetricRangeIn : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(MetricRangeIn, Dimensions, );
 
-/// Of this size on the whole, stretched up to the bound, along axes of the space or turned.
+/// A metric of about this size with a stretch up to the bound, axis-parallel or rotated.
 template <int Dim>
 Metric<Dim> extreme_metric(Random& random, double size) {
   const double stretch = chance(random, 0.4) ? 1e8 : std::pow(10, uniform(random, 0, 8));
@@ -63,7 +63,7 @@ TYPED_TEST(MetricRangeIn, BringsWhatRoundingMadeOfAMetricBack) {
   }
 }
 
-/// A grid of one cell or few, of any scale, and a metric that asks for about as much.
+/// A grid of one or a few cells, of any scale, and a metric that asks for about as many elements.
 template <int Dim>
 struct Extreme {
   AnyMesh mesh;
@@ -74,7 +74,7 @@ struct Extreme {
     for (double& x : mesh.coordinates) x *= scale;
     const double longest = scale * std::pow(10, uniform(random, 0.3, chance(random, 0.3) ? 25 : 1));
     metric = test::metric_field<Dim>(mesh, [&](std::uint32_t) {
-      // Not so stretched that there would be millions of elements.
+      // Limits the stretch, which could otherwise lead to millions of elements.
       const double stretch = std::min(1e8, std::pow(10, uniform(random, 0, 1.5)) * longest / scale);
       std::array<double, Dim> sizes;
       sizes.fill(longest / stretch);

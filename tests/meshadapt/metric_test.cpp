@@ -37,12 +37,13 @@ TYPED_TEST(MetricIn, TheExponentialUndoesTheLogarithm) {
     }
 }
 
-/// By the definition: of the eigenvalues. Turned by little or much, nearly or quite isotropic.
+/// Compares with the definition by eigenvalues, for tensors rotated a little or a lot, isotropic or
+/// nearly so.
 TYPED_TEST(MetricIn, TheExponentialIsThatOfTheEigenvalues) {
   constexpr int Dim = TypeParam::value;
   Random random(5);
   for (int trial = 0; trial < 2000; ++trial) {
-    const double lowest = test::chance(random, 0.2) ? -170 : -18;  // whose squares are subnormal
+    const double lowest = test::chance(random, 0.2) ? -170 : -18;  // subnormal squares
     const double spread = std::pow(10.0, uniform(random, lowest, 1));
     Metric<Dim> log_metric = uniform(random, -20, 20) * isotropic<Dim>(1);
     for (double& entry : log_metric.m)
@@ -54,8 +55,8 @@ TYPED_TEST(MetricIn, TheExponentialIsThatOfTheEigenvalues) {
   EXPECT_EQ(exponential(Metric<Dim>{}), isotropic<Dim>(1));
 }
 
-/// At 1e8 the entries of a turned metric cannot hold its smallest eigenvalue any more; along the
-/// axes they can.
+/// At an anisotropy of 1e8 the entries of a rotated metric no longer determine its smallest
+/// eigenvalue; those of an axis-parallel one do.
 TYPED_TEST(MetricIn, TheLogarithmIsFiniteUpToTheLargestAnisotropy) {
   constexpr int Dim = TypeParam::value;
   Random random(2);

@@ -31,7 +31,7 @@ double extent(const AnyMesh& mesh) {
   return largest;
 }
 
-/// The corners of a cell by where they are, in ascending order.
+/// Positions of a cell's corners, in ascending order.
 template <int Dim, std::size_t N>
 std::vector<std::array<double, Dim>> places(const AnyMesh& mesh,
                                             const std::array<std::uint32_t, N>& corners) {
@@ -41,7 +41,7 @@ std::vector<std::array<double, Dim>> places(const AnyMesh& mesh,
   return all;
 }
 
-/// Compares what was found with what is found by places, of meshes without vertices at one place.
+/// Compares the origins with those found by position, for meshes without coincident vertices.
 template <int Dim>
 void expect_by_places(const AnyMesh& before, const AnyMesh& after, const Origins& found) {
   std::map<std::array<double, Dim>, VertexId> vertex_at;
@@ -72,7 +72,7 @@ void expect_by_places(const AnyMesh& before, const AnyMesh& after, const Origins
   }
 }
 
-/// Every one of these entities is an origin.
+/// Expects that each of these entities is an origin.
 void expect_all_there(const std::vector<std::uint32_t>& required,
                       const std::vector<std::uint32_t>& origin_of, const char* what) {
   const std::set<std::uint32_t> origins(origin_of.begin(), origin_of.end());
@@ -157,7 +157,7 @@ AnyMesh cracked_box(int cells) {
   return mesh;
 }
 
-/// For each vertex on the crack, whether it is on the side of higher coordinates, by its elements.
+/// [vertex] The sides of the crack on which its elements lie.
 template <int Dim>
 std::vector<int> sides(const AnyMesh& mesh) {
   std::vector<int> side(mesh.vertex_count(), 0);  // bits: 1 lower, 2 higher, both at the rim

@@ -53,8 +53,8 @@ struct CutElement {
   }
 };
 
-/// Whichever edges are cut, in whatever order, the pieces fill the element, each turned as it is,
-/// and know on which of its facets theirs lie.
+/// For edges cut in any order, the pieces fill the element, have its orientation, and know on which
+/// of its facets theirs lie.
 TYPED_TEST(PiecesIn, FillTheElement) {
   constexpr int Dim = TypeParam::value;
   test::Random random(1);

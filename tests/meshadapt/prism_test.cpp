@@ -10,8 +10,8 @@
 namespace ductile::meshadapt::prism_test {
 namespace {
 
-/// Parts of a wavy surface over the unit square, or of a curve over an interval, n along an axis,
-/// by their corners.
+/// Corners of the parts of a wavy surface over the unit square, or of a curve over an interval,
+/// with n parts along an axis.
 template <int Dim, std::size_t Corners>
 using Parts = std::vector<std::array<Vector<Dim>, Corners>>;
 
@@ -46,7 +46,7 @@ Parts<3, 3> wavy_sheet(int n) {
   return parts;
 }
 
-/// A random simplex with no height whose first coordinates (all but the last, or one of a thread)
+/// A random simplex of height 0 whose first coordinates (all but the last; one for a segment in 3D)
 /// are in this range.
 template <int Dim, std::size_t Corners>
 std::array<Vector<Dim>, Corners> flat_simplex(test::Random& random, double low, double high) {

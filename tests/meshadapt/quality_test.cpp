@@ -54,7 +54,7 @@ TEST(Quality, IsOneForRegularElementsAndFallsToZeroOrLess) {
   EXPECT_NEAR(quality_of_mean_ratio<3>(mean_ratio<3>(corner)), corner, 1e-14);
 }
 
-/// What is regular after the metric's own stretching is regular in the metric.
+/// An element that is regular after the metric's stretch is regular in the metric.
 template <int Dim>
 void expect_regular_in(const Sites<Dim>& regular, double anisotropy) {
   Random random(9);
@@ -137,7 +137,8 @@ TEST(Quality, OfARegularElementIsOneHoweverSizesGrow) {
   expect_one_if_metrics_differ_by_factors<3>(random, tetrahedron(std::sqrt(2.0 / 3)));
 }
 
-/// The metrics are as dense everywhere and turned anyhow: which is the densest is rounding.
+/// All corners have nearly the same density and random axes, so rounding alone decides which is the
+/// densest.
 template <int Dim>
 void expect_little_from_little(Random& random) {
   constexpr double little = 1e-6;

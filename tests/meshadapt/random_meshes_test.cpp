@@ -1,7 +1,7 @@
 /// @file
-/// Adapts random meshes to random metrics; every result must be a valid mesh that has kept what it
-/// had to. DUCTILE_TRIALS says how many (default 60), DUCTILE_FIRST_TRIAL where to start, and
-/// DUCTILE_TRIAL_FOLDER where to write inputs and outputs, if anywhere.
+/// Adapts random meshes to random metrics; every result must be a valid mesh that keeps what it
+/// must. DUCTILE_TRIALS is the number of cases (default 60), DUCTILE_FIRST_TRIAL the first one, and
+/// DUCTILE_TRIAL_FOLDER a folder for inputs and outputs, if wanted.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -46,7 +46,7 @@ void try_case(std::uint64_t seed) {
   EXPECT_TRUE(faults.empty()) << test::joined(faults);
   EXPECT_LT(seconds.count(), 60) << "it took too long";
   const std::size_t size = result.mesh.triangles.size() + result.mesh.tetrahedra.size();
-  EXPECT_LT(size, 150000U) << "there are far more elements than asked for";
+  EXPECT_LT(size, 150000U) << "there are far more elements than the metric asks for";
   if (std::getenv("DUCTILE_TRIAL_FOLDER") != nullptr)
     std::printf("%llu %zu %.2fs %s\n", static_cast<unsigned long long>(seed), size, seconds.count(),
                 random.what.c_str());

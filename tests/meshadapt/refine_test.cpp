@@ -46,8 +46,8 @@ Mesh<Dim> wild_mesh(const Executor& executor, Random& random, Neighbours<Dim>& n
   return mesh;
 }
 
-/// Where the metric changes a lot along an edge, the qualities before and after a split have little
-/// to do with each other: edges much too long must not wait for good ones.
+/// Where the metric changes a lot along an edge, the qualities before and after a split are hardly
+/// related: overlong edges must not wait for a split of good quality.
 TYPED_TEST(RefineIn, SplitsOverlongEdgesIntoWorseQualities) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 1});
@@ -92,7 +92,7 @@ std::set<Edge> edges_of(const Mesh<Dim>& mesh) {
   return edges;
 }
 
-/// The first `most` of the long edges of a wild mesh are split, on so many threads.
+/// A wild mesh in which the first `most` long edges were split on `threads` threads.
 template <int Dim>
 struct Refined {
   Mesh<Dim> mesh;
@@ -145,7 +145,7 @@ TYPED_TEST(RefineIn, RenumberingNeedsNoListsOfNewVertices) {
   EXPECT_GT(refined, 0);
 }
 
-/// With few edges and with many, as lists are brought up to date in another way then.
+/// Few and many edges, because lists are updated in different ways.
 TYPED_TEST(RefineIn, LeavesASoundMesh) {
   constexpr int Dim = TypeParam::value;
   for (const std::size_t most : {1, 5, 100000})
@@ -164,9 +164,8 @@ TYPED_TEST(RefineIn, LeavesASoundMesh) {
     }
 }
 
-/// Most edges of a wild mesh are split together with others of their elements.
-/// Does an edge lead from one side of a layer to another, or of a strip of a patch in 3D? What both
-/// ends lie on has fewer dimensions than what the edge lies in.
+/// Does an edge connect two sides of a layer, or in 3D of a strip of a patch? Its ends then lie on
+/// entities of lower dimension than the entity in which the edge lies.
 template <int Dim>
 bool is_across(const Mesh<Dim>& mesh, VertexId a, VertexId b) {
   const int ends = std::max(mesh.kind_of[a].class_dimension, mesh.kind_of[b].class_dimension);
@@ -198,10 +197,10 @@ TYPED_TEST(RefineIn, MakesNoShortEdgeExceptAcrossLayers) {
   }
   EXPECT_GT(applied, 500U);
   EXPECT_GT(refused, 50U);
-  EXPECT_GT(rounds, 2U) << "none was refused because others were not";
+  EXPECT_GT(rounds, 2U) << "no split was refused because of another one";
 }
 
-/// An edge is not left whole because of another that is.
+/// An edge that could be split alone is not left because of another one that is left.
 TYPED_TEST(RefineIn, SplitsWhateverMayBeSplitAlone) {
   constexpr int Dim = TypeParam::value;
   std::size_t refused = 0;

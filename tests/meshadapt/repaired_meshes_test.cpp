@@ -1,5 +1,5 @@
-// What is wrong with a mesh only in how it is listed is put right, with a warning: facets and edges
-// that are there twice, elements that are turned. What is wrong in space is refused.
+// Faults in the listing of a mesh are repaired with a warning: facets and edges that are listed
+// twice, elements that are inverted. Faults in space are refused.
 
 #include <gtest/gtest.h>
 
@@ -71,14 +71,14 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// ---- Listed twice ----
+// ---- Repeated facets and edges ----
 
 struct Repeated {
   std::size_t count = 0, different = 0;
 };
 
-/// Lists some of the cells again, in another order of corners and partly with another reference;
-/// `required` receives some of the repeated ones, and `expected` the ones that they repeat.
+/// Lists some cells again, with another order of corners and some with another reference. Adds some
+/// of the repetitions to `required`, and their originals to `expected`.
 template <int Corners>
 Repeated repeat(Cells<Corners>& cells, Random& random, std::vector<std::uint32_t>& required,
                 std::vector<std::uint32_t>& expected) {
@@ -151,7 +151,7 @@ TEST(RepairedMeshes, SayWhichReferenceIsKept) {
             "is kept: 9 of edge 3, not 5 of edge 6");
 }
 
-// ---- Turned ----
+// ---- Inverted elements ----
 
 template <int Dim>
 std::set<std::pair<Corners<Dim>, std::int32_t>> sorted_elements(const AnyMesh& mesh) {
@@ -200,8 +200,8 @@ TEST(RepairedMeshes, TurnElementsBack) {
   }
 }
 
-/// Moves a vertex inside beyond a facet of an element around it, so that the element overlaps what
-/// is behind the facet, and others are drawn out. Returns whether there is such a vertex.
+/// Moves an interior vertex beyond a facet of one of its elements, so that the element overlaps its
+/// neighbour. Returns false if there is no such vertex.
 template <int Dim>
 bool tangle(AnyMesh& mesh, Random& random) {
   const auto& elements = elements_in<Dim>(mesh).vertices;
@@ -236,7 +236,7 @@ TEST(RepairedMeshes, RefuseWhatIsInvertedInSpace) {
     ++tangled;
     const std::string text = complaint(mesh);
     EXPECT_TRUE(contains(text, " is inverted: it overlaps ")) << text;
-    for (auto& corners : mesh.triangles.vertices)  // however they are listed
+    for (auto& corners : mesh.triangles.vertices)  // the orientation in the list does not matter
       if (seed % 2 == 0 && chance(random, 0.3)) std::swap(corners[0], corners[1]);
     EXPECT_TRUE(contains(complaint(mesh), "overlap")) << complaint(mesh);
   }

@@ -1,6 +1,6 @@
 /// @file
-/// Adapts meshes with curved boundaries again and again, each time what came out before, with sizes
-/// that grow from what their boundaries ask for: it must not get finer and finer.
+/// Adapts meshes with curved boundaries again and again, each time the previous result, with sizes
+/// that grow from those that their boundaries ask for: it must not get finer with each call.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ using test::Random;
 
 const Executor executor({.threads = 2});
 
-/// Makes the squares around the axis of the unit square or cube, widened to [-1, 1], circles up to
-/// this fraction of it, and what is around them a transition to the square.
+/// Widens the unit square or cube to [-1, 1] across its axis, and turns the squares around the axis
+/// into circles, up to the fraction `radius`; outside, they change gradually back to squares.
 void round_off(AnyMesh& mesh, double radius) {
   const auto size = static_cast<std::size_t>(mesh.dimension);
   for (std::size_t at = 0; at < mesh.coordinates.size(); at += size) {
@@ -41,7 +41,7 @@ void round_off(AnyMesh& mesh, double radius) {
   }
 }
 
-/// Two regions: inside a circle or a cylinder and around it; or only what is around.
+/// Two regions, inside and around a circle or cylinder; if hollow, only the outer one.
 AnyMesh cylinder_in_box(int dimension, int n, bool hollow) {
   test::Grid grid = test::unit_grid(dimension, n);
   grid.region = [=](const test::Cell& cell) {
@@ -74,7 +74,7 @@ AnyMesh ball(int n) {
   return mesh;
 }
 
-/// A part of a torus, of radius 3 and a tube of radius 1.
+/// A part of a torus with radius 3, whose tube has radius 1.
 AnyMesh bent_tube(int n, double angle) {
   AnyMesh mesh = test::make_grid(test::unit_grid(3, n));
   round_off(mesh, 1);
@@ -90,7 +90,7 @@ AnyMesh bent_tube(int n, double angle) {
   return mesh;
 }
 
-/// A few elements: vertices of one or two cells, all of them moved.
+/// A mesh of one or two cells per axis, with all vertices moved.
 AnyMesh random_mesh(int dimension, Random& random) {
   for (;;) {
     test::Grid grid = test::unit_grid(dimension, 1 + static_cast<int>(test::below(random, 2)));
@@ -158,8 +158,8 @@ TEST(RepeatedCalls, OnABall) {
     }
 }
 
-/// Not with the sizes that it has: these grow so fast around the tube that what limits their growth
-/// makes them smaller each time, without any tolerance, too.
+/// The test uses uniform sizes. The mesh's own sizes grow so fast around the tube that limiting
+/// their growth makes them smaller with each call, even without a tolerance.
 TEST(RepeatedCalls, OnATorus) {
   for (const double tolerance : {0.05, 0.01})
     for (const double size : {0.4, 1.0}) {
@@ -168,8 +168,8 @@ TEST(RepeatedCalls, OnATorus) {
     }
 }
 
-/// Layers across the axis of a cylinder that are thinner than the tolerance, from facets that are
-/// farther from the circle than it: facets there can hardly change, whatever they are like.
+/// Layers across the axis of a cylinder that are thinner than the tolerance. Its facets are farther
+/// from the circle than that and can hardly change.
 TEST(RepeatedCalls, ComeToThinLayersAlongACylinder) {
   for (const double thin : {0.001, 0.002}) {
     SCOPED_TRACE("thin " + std::to_string(thin));

@@ -1,5 +1,5 @@
-// Sizes taken from required entities: what the metric becomes, edge by edge, and what that does for
-// the mesh beside frozen interfaces of other sizes than the metric asks for.
+// Sizes taken from required entities: the resulting metric, edge by edge, and its benefit for the
+// mesh beside frozen interfaces of other sizes than the metric asks for.
 
 #include "metric/required_sizes.hpp"
 
@@ -55,8 +55,8 @@ std::vector<std::uint32_t>& required_elements(AnyMesh& mesh) {
   return Dim == 2 ? mesh.required_triangles : mesh.required_tetrahedra;
 }
 
-/// Something that may not change: the interface between two regions or several, a side of the
-/// boundary, the elements of a region. Stretched by up to this factor along an axis.
+/// A mesh with required entities: the interface between regions, a side of the boundary, or the
+/// elements of a region. It is stretched by up to this factor along an axis.
 template <int Dim>
 AnyMesh frozen_mesh(Random& random, int n, double stretch, std::string& what,
                     double jiggling = 0.3) {
@@ -83,8 +83,8 @@ AnyMesh frozen_mesh(Random& random, int n, double stretch, std::string& what,
 
 // ---- The metric ----
 
-/// Of vertices from those that are marked, along edges of the mesh: the least, or the greatest, of
-/// size + slope * distance.
+/// Sizes carried from the marked vertices along edges of the mesh: the least, or for a negative
+/// slope the greatest, size + slope * distance.
 template <int Dim>
 std::vector<double> carried(const AnyMesh& mesh, const std::vector<double>& size_of,
                             const std::vector<bool>& is_source, double slope) {
@@ -180,8 +180,8 @@ TYPED_TEST(RequiredSizes, GrowAndFallFromWhatIsRequired) {
   EXPECT_GT(left, 100);
 }
 
-/// Many intersections of stretched metrics do not add up to sizes that nothing asked for, and that
-/// nothing required has; neither do those of squared sizes.
+/// Many intersections of anisotropic metrics, or of squared sizes, must not add up to sizes that
+/// neither the metric nor a required entity has.
 TYPED_TEST(RequiredSizes, ComeToAnEndOnWildMetrics) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 1});
@@ -217,9 +217,9 @@ TYPED_TEST(RequiredSizes, ComeToAnEndOnWildMetrics) {
   }
 }
 
-// ---- What it is good for ----
+// ---- Benefits ----
 
-/// As finely as the edges that a frozen mesh has, times a factor.
+/// A metric with sizes like the edges of a frozen mesh, times `ratio`.
 template <int Dim>
 AnyField metric_for(const AnyMesh& mesh, Random& random, double ratio, double stretch) {
   std::array<double, Dim> sizes;
@@ -235,7 +235,7 @@ AnyField metric_for(const AnyMesh& mesh, Random& random, double ratio, double st
   return test::metric_field<Dim>(mesh, [&](auto) { return metric; });
 }
 
-/// What is asked for held for 100 seeds in each dimension.
+/// The expectations below held for 100 seeds in each dimension.
 template <int Dim>
 void freeze(std::uint64_t seed) {
   Random random(seed);
@@ -269,8 +269,8 @@ TYPED_TEST(RequiredSizes, LeaveRoomForGoodElementsBesideWhatIsFrozen) {
   }
 }
 
-/// Slivers, needles and metrics that turn from vertex to vertex: nothing breaks, and hardly
-/// anything gets worse.
+/// Slivers, needles and metrics that vary from vertex to vertex: results are valid, and hardly any
+/// is worse than without.
 TEST(RequiredSizesOfAll, LeaveNastyCasesValid) {
   const Executor executor({.threads = 1});
   double before = 0, after = 0;
@@ -296,7 +296,8 @@ TEST(RequiredSizesOfAll, LeaveNastyCasesValid) {
   EXPECT_GE(after, before);
 }
 
-/// Of edges of 0.2 in a metric of 0.02, as between the parts of a mesh that is adapted in parts.
+/// Required edges of 0.2 in a metric of 0.02, as between the parts of a mesh that is adapted in
+/// parts.
 TEST(RequiredSizes3D, LetAnInterfaceBeFrozenThatIsFarTooCoarse) {
   AnyMesh mesh = test::make_grid(test::unit_grid(3, 5));
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
@@ -313,7 +314,7 @@ TEST(RequiredSizes3D, LetAnInterfaceBeFrozenThatIsFarTooCoarse) {
   EXPECT_EQ(test::joined(test::faults_of(executor, mesh, adapted)), "");
 }
 
-// ---- What counts as required, and what does not ----
+// ---- Entities that count as required ----
 
 /// Sizes at the vertices of a grid with cells of 0.1 or 0.2 where the metric asks for 1.
 template <int Dim>
@@ -332,7 +333,7 @@ TYPED_TEST(RequiredSizes, AreTakenFromAllThatIsRequiredAndNothingElse) {
   EXPECT_EQ(taken_from<Dim>(plain), untouched);
 
   AnyMesh mesh = plain;
-  mesh.required_vertices = {0};  // which has no edge that may not change
+  mesh.required_vertices = {0};  // none of its edges is required
   EXPECT_EQ(taken_from<Dim>(mesh), untouched);
   const std::uint32_t other = elements_in<Dim>(mesh).vertices[0][0] == 0
                                   ? elements_in<Dim>(mesh).vertices[0][1]

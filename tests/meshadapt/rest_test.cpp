@@ -21,7 +21,7 @@ namespace {
 
 using runtime::Executor;
 
-/// The elements by where their corners are, in order.
+/// Positions of the corners of each element, sorted.
 template <int Dim>
 std::vector<std::vector<double>> places_in(const AnyMesh& mesh) {
   std::vector<std::vector<double>> places;
@@ -39,7 +39,7 @@ std::vector<std::vector<double>> places(const AnyMesh& mesh) {
   return mesh.dimension == 2 ? places_in<2>(mesh) : places_in<3>(mesh);
 }
 
-/// Share of the elements of either mesh, that of more, that the other has not.
+/// Share of the larger mesh's elements that the other mesh does not have.
 double share_changed(const AnyMesh& before, const AnyMesh& after) {
   const auto one = places(before), other = places(after);
   std::vector<std::vector<double>> both;
@@ -49,7 +49,7 @@ double share_changed(const AnyMesh& before, const AnyMesh& after) {
   return 1 - static_cast<double>(both.size()) / most;
 }
 
-/// By how much the third call changes the number of elements, and which share of them.
+/// Relative change of the number of elements by the last call, and share of elements changed.
 struct Change {
   double count, share;
 };
@@ -58,8 +58,8 @@ std::size_t element_count(const AnyMesh& mesh) {
   return mesh.dimension == 2 ? mesh.triangles.size() : mesh.tetrahedra.size();
 }
 
-/// Of as many calls, each given the mesh that the last one left: with its metric, or with one that
-/// is made anew; what the last of them changes.
+/// Adapts `calls` times, each time the previous result, with its metric or a newly evaluated one.
+/// Returns the change by the last call.
 Change change_by_call(int calls, const AnyMesh& mesh, const AnyField& metric,
                       const AdaptOptions& options, auto&& metric_on) {
   const Executor executor({.threads = 1});
@@ -72,7 +72,7 @@ Change change_by_call(int calls, const AnyMesh& mesh, const AnyField& metric,
   return {std::abs(after / before - 1), share_changed(last.mesh, next.mesh)};
 }
 
-/// Of a number of cases, those that are not at rest, which may be one in twenty.
+/// Counts cases that are not at rest; one in twenty is accepted.
 class Unrest {
  public:
   void note(std::uint64_t seed, const std::string& what, double changed) {
@@ -105,7 +105,7 @@ TEST(Rest, ComesByTheThirdCallWithTheMetricThatIsLeft) {
   });
 }
 
-/// The first calls bring meshes near a metric that the first mesh has not resolved.
+/// The first calls approach a metric that the first mesh does not resolve.
 TEST(Rest, ComesByTheSixthCallWithAMetricThatIsMadeAnew) {
   expect_rest(20, [](std::uint64_t seed, Unrest& unrest) {
     const test::RestCase made = test::rest_case(seed);
@@ -125,7 +125,7 @@ TEST(Rest, ComesByTheThirdCallInNastyMeshesToo) {
   });
 }
 
-/// A mesh at rest, of whose metric a small spot changes: the spot is adapted, however small it is.
+/// In a mesh at rest the metric changes in a small spot: the spot is adapted, however small it is.
 TEST(Rest, IsNotForWhatIsNew) {
   const Executor executor({.threads = 1});
   test::Random random(5);

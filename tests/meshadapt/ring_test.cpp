@@ -10,8 +10,8 @@ namespace {
 
 constexpr VertexId a = 100, b = 101;
 
-/// The elements around a-b between consecutive ones of n vertices, shuffled, each with its corners
-/// in a random even order.
+/// The elements around edge a-b, one for each pair of consecutive vertices of n, shuffled, each
+/// with its corners in a random even permutation.
 std::vector<Corners<3>> fan(std::uint32_t n, bool closed, std::mt19937& random) {
   std::vector<Corners<3>> elements;
   for (std::uint32_t i = 0; i + (closed ? 0 : 1) < n; ++i) {

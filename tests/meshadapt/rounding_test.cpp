@@ -1,7 +1,7 @@
 /// @file
 /// Adapts meshes with flat faces, straight lines and interfaces whose coordinates were written with
-/// few digits. They are as flat as if all digits were there, on each of several calls; what is
-/// curved stays so.
+/// few digits. In each of several calls they stay as flat as with all digits, and curved parts stay
+/// curved.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ using test::Random;
 
 const Executor executor({.threads = 2});
 
-/// How a program might write numbers.
+/// A number format of a program.
 struct Format {
   enum class Kind { significant, decimals, single, single_printed } kind;
   int digits;
@@ -112,7 +112,7 @@ struct Case {
   std::string what;
 };
 
-/// A slanted box, or what is left of it, with interfaces and maybe ridges, somewhere in space.
+/// A rotated box, possibly with holes, interfaces and ridges, somewhere in space.
 Case random_case(std::uint64_t seed) {
   Random random(seed);
   const int dimension = 2 + static_cast<int>(seed % 2);
@@ -158,11 +158,11 @@ Case random_case(std::uint64_t seed) {
 }
 
 struct Share {
-  double in_range;       ///< of the edges
+  double in_range;       ///< share of the edges
   std::size_t vertices;  ///< of the mesh
 };
 
-/// Shares of edges in range after each of some calls.
+/// Share of edges in range after each call.
 std::vector<Share> shares(AnyMesh mesh, double size, int calls) {
   std::vector<Share> result;
   for (int call = 0; call < calls; ++call) {
@@ -173,13 +173,13 @@ std::vector<Share> shares(AnyMesh mesh, double size, int calls) {
     result.push_back({measure(executor, adapted.mesh, &adapted.metric).share_in_range(),
                       adapted.mesh.vertex_count()});
     mesh = std::move(adapted.mesh);
-    size *= call % 2 == 0 ? 1.3 : 0.6;  // so that there is something to do
+    size *= call % 2 == 0 ? 1.3 : 0.6;  // so that each call has work
   }
   return result;
 }
 
-/// Of a few hundred edges some more or less are in range by chance; with a boundary that cannot be
-/// coarsened a third and more are not. Of fewer edges shares say nothing.
+/// With a few hundred edges the share in range varies by chance. If the boundary cannot be
+/// coarsened, a third or more are out of range. With fewer edges the share means nothing.
 TEST(Rounding, LeavesFlatWhatIsFlat) {
   int compared = 0, poorer = 0;
   double sum = 0;
@@ -187,7 +187,7 @@ TEST(Rounding, LeavesFlatWhatIsFlat) {
     const Case random = random_case(seed);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + random.what);
     const AnyMesh rounded = written(random.exact, random.format);
-    if (!check_mesh(executor, rounded).empty()) continue;  // too few digits for its elements
+    if (!check_mesh(executor, rounded).empty()) continue;  // too few digits for a valid mesh
     const auto exact = shares(random.exact, random.size, 3);
     const auto found = shares(rounded, random.size, 3);
     for (std::size_t call = 0; call < exact.size(); ++call) {
@@ -199,13 +199,13 @@ TEST(Rounding, LeavesFlatWhatIsFlat) {
       ++compared;
     }
   }
-  if (compared < 300) return;  // too few cases to say what they are like on average
+  if (compared < 300) return;  // too few cases for a mean
   EXPECT_GT(sum / compared, -0.005);
   EXPECT_LT(poorer, 0.04 * compared);
 }
 
-/// A grid that is sheared by one of a few slopes in each column: all coordinates are multiples of
-/// 0.05 by choice, and what is straight is so exactly.
+/// A grid that is sheared by one of a few slopes in each column. All coordinates are multiples of
+/// 0.05 by choice, and straight lines are exactly straight.
 AnyMesh round_numbers(Random& random) {
   constexpr double unit = 0.05;
   const int dimension = 2 + static_cast<int>(test::below(random, 2));
@@ -249,7 +249,7 @@ std::size_t patch_count(const AnyMesh& any) {
   return make_mesh<Dim>(executor, any, {}, neighbours, warnings).patches.size();
 }
 
-/// Of patches that face another one.
+/// Number of patches that are sides of a crack.
 std::size_t crack_side_count(const AnyMesh& any) {
   Neighbours<3> neighbours;
   std::vector<std::string> warnings;
@@ -258,7 +258,7 @@ std::size_t crack_side_count(const AnyMesh& any) {
       patches.begin(), patches.end(), [](const auto& patch) { return patch.crack_side; }));
 }
 
-/// What bends by rounding alone encloses nothing.
+/// Rounding may bend a patch, but the patch encloses nothing then.
 TEST(Rounding, MakesNoPatchFaceAnother) {
   for (auto seed = test::first_trial(); seed < test::end_of_trials(200); ++seed) {
     const Case random = random_case(2 * seed + 1);  // in 3D
@@ -269,7 +269,7 @@ TEST(Rounding, MakesNoPatchFaceAnother) {
   }
 }
 
-/// Of so many facets around, of radius 1.
+/// A disk or cylinder of radius 1 with this number of facets around.
 AnyMesh cylinder(int dimension, int facets) {
   test::Grid grid = test::unit_grid(dimension, facets / 4);
   if (dimension == 3) grid.lines[2] = {0, 0.5, 1};
@@ -279,7 +279,7 @@ AnyMesh cylinder(int dimension, int facets) {
     double &x = mesh.coordinates[at], &y = mesh.coordinates[at + 1];
     x = 2 * x - 1;
     y = 2 * y - 1;
-    // By the angle, so that all facets are alike.
+    // Places vertices by angle, so that all facets are equal.
     const double square = std::max(std::abs(x), std::abs(y));
     if (!(square > 0)) continue;
     const double along = std::abs(x) == square ? y / x : x / y;
@@ -297,7 +297,7 @@ TEST(Rounding, KeepsTheFacetsOfCylinders) {
   Random random(3);
   for (const int dimension : {2, 3})
     for (const int facets : {48, 120, 400}) {
-      if (dimension == 3 && facets == 400) continue;  // as in 2D, and large
+      if (dimension == 3 && facets == 400) continue;  // the same as in 2D, but large
       const AnyMesh exact = cylinder(dimension, facets);
       const std::size_t flat = dimension == 3 ? 2 : 0;
       for (const double scale : {0.003, 1.0, 700.0})

@@ -1,6 +1,6 @@
 /// @file
-/// The rules by which operators refuse a change, each asked on a mesh of a few elements: a vertex
-/// in the middle of a straight side, on a line of the boundary in 3D.
+/// The rules by which operators refuse a change, each tested on a mesh of a few elements: a vertex
+/// in the middle of a straight side, or in 3D on a line of the boundary.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +81,7 @@ TYPED_TEST(RulesIn, NoCollapseChangesARequiredElement) {
   }
 }
 
-/// A collapse may make an edge longer than the rules want by 2 % of the longest that is there.
+/// A collapse may exceed the longest allowed edge by 2 % of the longest existing one.
 TYPED_TEST(RulesIn, LongEdgesAreExtendedALittleOrNotAtAll) {
   constexpr int Dim = TypeParam::value;
   EdgeCollapse plan;
@@ -93,7 +93,7 @@ TYPED_TEST(RulesIn, LongEdgesAreExtendedALittleOrNotAtAll) {
   EXPECT_FALSE(Coarsen<Dim>(much, {}).decide(1, plan));
 }
 
-/// Seen along this normal the facet from 0 to 1 faces the other way than that from 0 to 2.
+/// Along this normal, the facets 0-1 and 0-2 face opposite directions.
 TYPED_TEST(RulesIn, ACollapseTurnsNoFacet) {
   constexpr int Dim = TypeParam::value;
   auto mesh = made<Dim>(pair_of<Dim>(0.5, 1));
@@ -146,8 +146,8 @@ TYPED_TEST(RulesIn, AMoveLeavesVolumesPositiveAndLengthsInTheirRange) {
   EXPECT_FALSE(op.keeps_volumes(1, at(1, 0)));    // flat
   EXPECT_FALSE(op.keeps_volumes(1, at(1.1, 0)));  // inverted
   EXPECT_FALSE(op.keeps_volumes(1, at(-0.1, 0)));
-  EXPECT_FALSE(op.keeps_volumes(1, at(0.5, 1.5)));   // its facets keep their turn
-  EXPECT_FALSE(op.keeps_volumes(1, at(1.2, -0.5)));  // its elements have volumes
+  EXPECT_FALSE(op.keeps_volumes(1, at(0.5, 1.5)));   // its facets keep their orientation
+  EXPECT_FALSE(op.keeps_volumes(1, at(1.2, -0.5)));  // its elements have positive volumes
   EXPECT_TRUE(op.keeps_lengths(1, site_at(0.7)));
   EXPECT_FALSE(op.keeps_lengths(1, site_at(0.9)));  // too close to 2
 }
@@ -173,7 +173,7 @@ TYPED_TEST(RulesIn, NoEdgeOfARequiredElementIsSplit) {
   EXPECT_FALSE(may_split(1, 2));
 }
 
-/// Where a metric is so thin that the volume of a unit is 0.
+/// The metric is so thin that the volume of a unit element underflows to 0.
 TYPED_TEST(RulesIn, NoVertexGetsAMetricWithoutAVolume) {
   constexpr int Dim = TypeParam::value;
   Neighbours<Dim> neighbours;
@@ -191,7 +191,7 @@ TYPED_TEST(RulesIn, ASplitGivesItsVertexTheReferenceOfBothEnds) {
   const AnyMesh any = pair_of<Dim>(2, 4);
   Neighbours<Dim> neighbours;
   auto mesh = made<Dim>(any, &neighbours);
-  mesh.reference_of[0] = mesh.reference_of[1] = 5;  // set here, so that they mark no points
+  mesh.reference_of[0] = mesh.reference_of[1] = 5;  // set late: marks no points
   mesh.reference_of[2] = 7;
   const Background<Dim> background(executor, mesh, std::move(neighbours));
   const VertexId first = mesh.vertex_slots();
@@ -204,8 +204,8 @@ TYPED_TEST(RulesIn, ASplitGivesItsVertexTheReferenceOfBothEnds) {
   EXPECT_EQ(mesh.reference_of[first + 1], 0);
 }
 
-/// The corner 0 of a square with four triangles, which edges from 6 in the middle of the others
-/// would cut off.
+/// Corner 0 of a square with four triangles. Edges from 6, in the middle of the others, would cut
+/// it off.
 TEST(RulesOfCoarsen, ACornerStaysThoughAnEdgeFromItIsInside) {
   auto mesh = made<2>(test::listed_mesh<2>({{{0, 0}},
                                             {{0.6, 0}},
@@ -235,7 +235,7 @@ TEST(RulesOfCoarsen, ACornerStaysThoughAnEdgeFromItIsInside) {
 
 using test::patch_opposite;
 
-/// A second patch like that of this facet, which is the side of a crack.
+/// Gives this facet a second patch of its own, which is the side of a crack.
 template <int Dim>
 void make_crack_side(Mesh<Dim>& mesh, ElementId element, VertexId opposite) {
   PatchId& patch = patch_opposite(mesh, element, opposite);
@@ -244,7 +244,7 @@ void make_crack_side(Mesh<Dim>& mesh, ElementId element, VertexId opposite) {
   patch = static_cast<PatchId>(mesh.patches.size() - 1);
 }
 
-/// The corners of a crack side get no edge between them.
+/// No edge may connect two rims of a crack's side.
 TEST(RulesOfCracks, ASideGetsNoEdgeFromRimToRim) {
   auto mesh = made<2>(pair_of<2>(0.5, 1));
   const Coarsen<2> op(mesh, {});
@@ -275,7 +275,7 @@ TEST(RulesOfCracks, ASideGetsNoTriangleFromRimToRimToRim) {
   EXPECT_FALSE(op.keeps_sides_apart(collapse(1, 0)));
 }
 
-/// A tetrahedron whose facet 0-1-2 lies between two edges of one smooth curve and its ends.
+/// A tetrahedron whose facet 0-1-2 lies between two edges of one smooth curve.
 TEST(RulesOfCurves, TheLastTriangleOfAPatchStays) {
   auto mesh = made<3>(test::listed_mesh<3>(
       {{{0, 0, 0}}, {{0.5, 0.2, 0}}, {{1, 0, 0}}, {{0.5, 0.1, 0.5}}}, {{0, 1, 2, 3}}));
@@ -292,7 +292,7 @@ TEST(RulesOfCurves, TheLastTriangleOfAPatchStays) {
   EXPECT_TRUE(op.keeps_geometry(1, 0));
 }
 
-/// The top of a pyramid of twelve sides, on which a circle of twelve edges is listed.
+/// The upper end of a pyramid with twelve sides, and a listed circle of twelve edges on it.
 Mesh<3> circle_on_a_plane(double tolerance, Neighbours<3>* neighbours = nullptr) {
   constexpr std::uint32_t sides = 12;
   AnyMesh any;
@@ -317,7 +317,7 @@ Mesh<3> circle_on_a_plane(double tolerance, Neighbours<3>* neighbours = nullptr)
       executor, any, {.complete_boundary = true, .hausdorff_tolerance = tolerance}, neighbours);
 }
 
-/// No facet on the plane says so.
+/// All facets lie in one plane, so that only the curve limits the change.
 TEST(RulesOfCurves, ASmoothCurveStaysCloseToTheInput) {
   for (const bool coarse : {false, true}) {
     Neighbours<3> neighbours;
@@ -334,14 +334,15 @@ TEST(RulesOfCurves, ASmoothCurveStaysCloseToTheInput) {
   }
 }
 
-/// The corners and the middle of a side of a square, and two vertices inside, 5 beside 6.
+/// The corners of a square, the middle of one side, and two interior vertices, 5 and 6, side by
+/// side.
 Mesh<2> square_with_two_inside() {
   return made<2>(test::listed_mesh<2>(
       {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}, {{0, 0.45}}, {{0.3, 0.4}}, {{0.5, 0.45}}},
       {{0, 1, 5}, {1, 6, 5}, {1, 2, 6}, {2, 3, 6}, {3, 5, 6}, {3, 4, 5}, {4, 0, 5}}));
 }
 
-/// Of the neighbours of the vertex kept only those that may go.
+/// Only neighbours of the kept vertex that may be removed are noted.
 TEST(RulesOfCoarsen, VerticesThatGetAShortEdgeAreNoted) {
   auto mesh = square_with_two_inside();
   EdgeCollapse plan;
@@ -351,7 +352,7 @@ TEST(RulesOfCoarsen, VerticesThatGetAShortEdgeAreNoted) {
             std::vector<VertexId>{4});
 }
 
-/// Even where the interface between them is not known as one.
+/// The rule also holds if the interface between the regions is not listed.
 TEST(RulesOfSwap, NoEdgeOrFaceBetweenRegionsIsSwapped) {
   for (const std::int32_t second : {1, 2}) {
     auto kite = made<2>(test::listed_mesh<2>({{{-1, 0}}, {{1, 0}}, {{0, -0.4}}, {{0.1, 0.5}}},
@@ -366,7 +367,7 @@ TEST(RulesOfSwap, NoEdgeOrFaceBetweenRegionsIsSwapped) {
     auto flat = made<3>(test::listed_mesh<3>(
         {{{1, 0, 0}}, {{-0.5, 0.9, 0}}, {{-0.5, -0.9, 0}}, {{0, 0, 0.3}}, {{0, 0, -0.3}}},
         {{0, 1, 2, 3}, {0, 2, 1, 4}}, {1, second}));
-    for (auto& patches : flat.patches_of) patches[3] = 0;  // of the face 0-1-2
+    for (auto& patches : flat.patches_of) patches[3] = 0;  // the face 0-1-2
     Replacement<3> pierced;
     EXPECT_EQ(Swap<3>(executor, flat).decide({0, 1, 2}, Shell{0, 1}, pierced), second == 1);
   }

@@ -18,7 +18,7 @@ using test::uniform;
 using Triangle = std::array<Vector<3>, 3>;
 using Segment = std::array<Vector<2>, 2>;
 
-/// Points of a triangle, its corners and sides among them.
+/// Sample points of a triangle, including its corners and sides.
 std::vector<Vector<3>> samples(const Triangle& t, int n) {
   std::vector<Vector<3>> points;
   for (int i = 0; i <= n; ++i)
@@ -91,7 +91,7 @@ std::vector<Sheets<2, 2>::Part> wavy_line(std::uint32_t sheet) {
   return parts;
 }
 
-/// What sheets say of a facet, and what samples of it do.
+/// Compares the answer of the sheets for a facet with the distances of its samples.
 template <class Sheets, class Parts, class Facet>
 void compare(const Sheets& sheets, const Parts& parts, const Facet& facet, double tolerance,
              std::array<int, 2>& count) {
@@ -161,7 +161,7 @@ TEST(Sheets, CoverAFacetThatIsTurnedOnlyIfThatMeansNothing) {
   EXPECT_TRUE((Sheets<3, 3>(wave(7, 0, true), 0.01).cover({a, c, b}, 7)));
 }
 
-/// Two walls of a gap, the upper one turned downwards.
+/// Two walls of a gap; the upper one faces down.
 TEST(Sheets, CoverNoFacetThatMightMeetWhatFacesIt) {
   for (const bool two_sided : {false, true}) {
     auto parts = wave(7);
@@ -174,14 +174,14 @@ TEST(Sheets, CoverNoFacetThatMightMeetWhatFacesIt) {
     };
     EXPECT_TRUE(covered(0.012, 0));
     EXPECT_EQ(covered(0.012, 0.0095), two_sided);
-    EXPECT_TRUE(covered(0.05, 0)) << "no closer than before";
-    EXPECT_TRUE(covered(0.05, 0.005)) << "half as far as there is left, at most";
+    EXPECT_TRUE(covered(0.05, 0)) << "the other wall is no closer than before";
+    EXPECT_TRUE(covered(0.05, 0.005)) << "at most half the remaining distance";
     EXPECT_EQ(covered(0.05, 0.008), two_sided);
   }
 }
 
-/// A wall and something thin, of 4 degrees: a needle that points at it, or, where the domain is
-/// between, the other side of a plate.
+/// A wall and a thin part with an angle of 4 degrees: a needle that points at the wall, or, with
+/// the domain in between, the other side of a plate.
 TEST(Sheets, CoverNoFacetThatMightMeetATip) {
   const Vector<2> left{{0, 0}}, right{{1, 0}};
   const Segment wall{right, left};  // faces upwards
@@ -192,16 +192,18 @@ TEST(Sheets, CoverNoFacetThatMightMeetATip) {
     return Sheets<2, 2>(parts, tolerance).cover({right + up, left + up}, 7);
   };
   const Vector<2> tip{{0.9, 0.02}}, a{{0.88, 0.6}}, b{{0.92, 0.6}};
-  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.01, 0.008)) << "farther than the tolerance";
+  EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.01, 0.008))
+      << "the tip is farther than the tolerance";
   EXPECT_FALSE(covered({{a, tip}, {tip, b}}, 0.03, 0.008));
   EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.03, 0.006));
   EXPECT_TRUE(covered({{a, tip}, {tip, b}}, 0.03, 0));
   const Vector<2> under_left{{0, -0.02}};
-  EXPECT_TRUE(covered({{under_left, right}}, 0.1, 0)) << "of a wedge, joined at its tip";
+  EXPECT_TRUE(covered({{under_left, right}}, 0.1, 0))
+      << "the walls of a wedge are joined at its tip";
 }
 
-/// The other side of a ridge is no gap, into however many facets it is divided; that of a thin
-/// wedge is.
+/// The other side of a ridge is no gap, however many facets it is divided into; the other side of a
+/// thin wedge is one.
 TEST(Sheets, CoverFacetsBesideARidge) {
   const Vector<2> left{{0, 0}}, ridge{{1, 0}}, down{{0, -0.03}};
   const auto covered = [&](double degrees, const std::vector<double>& ends) {

@@ -12,7 +12,7 @@ namespace {
 using test::Random;
 using test::uniform;
 
-/// Points on a common line or plane, but for a last step of `off` units in the last place.
+/// Points on a common line or plane, up to a few units in the last place.
 template <int Dim>
 std::array<Vector<Dim>, Dim + 1> almost_flat(Random& random, double scale, double offset) {
   std::array<Vector<Dim>, Dim + 1> p;

@@ -1,4 +1,4 @@
-// Sizes said by places, and bounds by reference, compared with what a search over everything finds.
+// Sizes by places, and bounds by reference, compared with an exhaustive search.
 
 #include "ductile/meshadapt/sizes.hpp"
 
@@ -47,8 +47,8 @@ double to_triangle(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c,
   return norm(at - closest_point(std::array{a, b, c}, at));
 }
 
-/// The distance to the nearest entity of a reference; of elements, 0 at their corners and that to
-/// their sides elsewhere, because nothing else of them is nearer.
+/// Distance to the nearest entity with a reference. For elements it is 0 at their corners, and
+/// otherwise the distance to their sides.
 double to_entities(const AnyMesh& mesh, int dimension, int reference, const Vector<3>& at) {
   double least = infinity;
   const auto p = [&](std::uint32_t v) { return place_of(mesh, v); };
@@ -75,7 +75,7 @@ double to_entities(const AnyMesh& mesh, int dimension, int reference, const Vect
   return least;
 }
 
-/// Whether a vertex belongs to an entity of a reference.
+/// Does the vertex belong to an entity with this reference?
 bool belongs(const AnyMesh& mesh, int dimension, int reference, std::size_t vertex) {
   const auto among = [&](const auto& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i)
@@ -91,7 +91,7 @@ bool belongs(const AnyMesh& mesh, int dimension, int reference, std::size_t vert
                           : among(mesh.tetrahedra);
 }
 
-/// One way to say a size, and the distance that it is about.
+/// A place for a size, and the distance to it.
 struct Way {
   SizePlace place;
   std::function<double(const Vector<3>&)> distance;
@@ -134,7 +134,7 @@ Way random_way(Random& random, const AnyMesh& mesh) {
       AxisBox box{points[0], points.back()};
       for (int i = 0; i < 3; ++i)
         if (box.low[i] > box.high[i]) std::swap(box.low[i], box.high[i]);
-      if (d == 2) box.low[2] = box.high[2] = 7;  // which does not count
+      if (d == 2) box.low[2] = box.high[2] = 7;  // is ignored in 2D
       return {box, [=](const Vector<3>& at) {
                 Vector<3> nearest = at;
                 for (int i = 0; i < d; ++i) nearest[i] = std::clamp(at[i], box.low[i], box.high[i]);
@@ -351,7 +351,7 @@ TEST(LocalSizes, AreReadFromMmgsFiles) {
   EXPECT_EQ(found[1].reference, -7);
   EXPECT_EQ(found[1].largest, 0.1);
   EXPECT_EQ(found[2].dimension, 1);
-  EXPECT_EQ(found[2].smallest, 0);  // which is no bound
+  EXPECT_EQ(found[2].smallest, 0);  // 0 is no bound
   Warnings warnings;
   EXPECT_EQ(read("LSReferences\n2\n3 nosplit\n2 1 5\nLSBaseReferences\n1\n4\nparameters\n1\n"
                  "1 Vertices 0.1 0.2 0",

@@ -24,8 +24,8 @@ using Triangle = CurvedSimplex<3, 3>;
 
 const double ridge = std::cos(0.25 * 3.14159265358979323846);
 
-/// A cube's surface in n x n squares for each side, its corners put where the function says; the
-/// sphere of radius 1 by default. All is one smooth patch.
+/// The surface of a cube with n x n squares on each side, mapped by `place`, by default to the
+/// sphere of radius 1. All of it is one smooth patch.
 using Place = std::function<Vector<3>(const Vector<3>&)>;
 ModelInput<3> blown_up_cube(int n, const Place& place) {
   ModelInput<3> input{{}, {}, {}, {}, 1, 1e-10, ridge};
@@ -60,7 +60,7 @@ ModelInput<3> blown_up_cube(int n, const Place& place) {
   return input;
 }
 
-/// Of the points of all curved facets.
+/// Largest value of distance(p) over sample points of all curved facets.
 template <class Distance>
 double farthest(const SmoothModel<3>& model, Distance distance) {
   constexpr int n = 6;
@@ -79,7 +79,7 @@ Place ellipsoid(const Vector<3>& axes) {
     return Vector<3>{{axes[0] * p[0], axes[1] * p[1], axes[2] * p[2]}};
   };
 }
-/// To first order.
+/// Distance from an ellipsoid, to first order.
 double distance_from(const Vector<3>& axes, const Vector<3>& p) {
   double value = -1, square = 0;
   for (int i = 0; i < 3; ++i) {
@@ -101,7 +101,7 @@ TEST(SmoothModel, ComesCloseToEllipsoids) {
     };
     const double coarse = error(6), fine = error(12);
     EXPECT_LT(coarse, 0.02);
-    EXPECT_LT(fine, coarse / 5) << "a chord's is a quarter";
+    EXPECT_LT(fine, coarse / 5) << "the error of chords would fall to a quarter";
   }
 }
 
@@ -112,7 +112,7 @@ TEST(SmoothModel, ComesCloserToASphereThanChords) {
   EXPECT_LT(farthest(SmoothModel<3>(executor, input), off), 4e-4) << "of chords: 0.017";
 }
 
-/// Two rings of edges around it that cross, as seams of what is closed; no patch ends there.
+/// Adds two crossing rings of edges, like the seams of a closed surface; no patch ends there.
 ModelInput<3> with_seams(ModelInput<3> input, bool are_ridges) {
   for (const auto& facet : input.facets)
     for (std::size_t i = 0; i < 3; ++i) {
@@ -138,7 +138,7 @@ TEST(SmoothModel, SeamsInsideLeaveItSmooth) {
     };
     const double plain = error(input);
     EXPECT_LT(error(with_seams(input, false)), 1.5 * plain);
-    EXPECT_GT(error(with_seams(input, true)), 3 * plain) << "a ridge is none of it";
+    EXPECT_GT(error(with_seams(input, true)), 3 * plain) << "ridges must not be smoothed";
   }
 }
 
@@ -172,7 +172,7 @@ TEST(SmoothModel, IsNeverFartherThanTheTolerance) {
   }
 }
 
-/// Facets that share a side have the same curve there, whichever way they see it.
+/// Facets that share a side have the same curve there, from either side.
 TEST(SmoothModel, HasNoGaps) {
   const Executor executor({.threads = 2});
   const ModelInput<3> input = blown_up_cube(4, ellipsoid({{1, 0.7, 0.9}}));
@@ -191,8 +191,8 @@ TEST(SmoothModel, HasNoGaps) {
   EXPECT_GT(shared, input.facets.size());
 }
 
-/// A strip that is flat for x < 0, with a row of vertices inside, and rolls up for x > 0 around a
-/// cylinder of radius 1; curves at both rims.
+/// A strip, flat for x < 0 with a row of interior vertices, and rolled around a cylinder of radius
+/// 1 for x > 0; both rims are curves.
 ModelInput<3> rolled_strip(int n) {
   ModelInput<3> input{{}, {}, {}, {}, 0.05, 1e-10, ridge};
   for (int i = -n; i <= n; ++i)
@@ -254,7 +254,7 @@ TEST(SmoothModel, StaysWhereAFacetIsHeld) {
   EXPECT_FALSE(SmoothModel<3>(executor, input).facets[7]);
 }
 
-/// A regular polygon with a corner that stays.
+/// A regular polygon with one vertex that is a corner.
 ModelInput<2> polygon(int n) {
   ModelInput<2> input{{}, {}, {}, {}, 1, 1e-10, ridge};
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(n); ++i) {
@@ -322,7 +322,7 @@ TEST(Divider, LeavesNoGapsBesideWhatIsDividedLess) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto& weight = part.weight[i];
       if (weight[1] == 0 || weight[0] == 0) {
-        EXPECT_EQ(part.corner[i][2], 0) << "on a straight side";
+        EXPECT_EQ(part.corner[i][2], 0) << "the point leaves a straight side";
       }
     }
   });

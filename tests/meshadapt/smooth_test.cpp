@@ -39,8 +39,8 @@ Metric<Dim> layer(const Vector<Dim>& normal, double thin) {
   return metric;
 }
 
-/// Where qualities would gain most by leaving the patch, what rounding leaves of the direction
-/// within it must not be scaled up to a step.
+/// Where leaving the patch would improve qualities most, the direction within the patch is lost to
+/// rounding. It must not be scaled up to a step.
 TYPED_TEST(SmoothIn, KeepsVerticesOnTheirPatches) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 1});
@@ -116,7 +116,7 @@ TYPED_TEST(SmoothIn, ConflictsWithAllNeighbours) {
   }
 }
 
-/// A disc of 30 triangles around a vertex off its middle; 3D: two cones of tetrahedra on it.
+/// A disc of 30 triangles around an off-centre vertex; 3D: two cones of tetrahedra on it.
 template <int Dim>
 AnyMesh wheel() {
   constexpr std::uint32_t rim = 30, top = rim + 1, bottom = rim + 2;
@@ -143,7 +143,7 @@ AnyMesh wheel() {
   return any;
 }
 
-/// More elements than a plan has room for the qualities of.
+/// The ball has more elements than a plan can store qualities for.
 TYPED_TEST(SmoothIn, KeepsTheQualitiesOfALargeBallUpToDate) {
   constexpr int Dim = TypeParam::value;
   const Executor executor({.threads = 1});
@@ -157,7 +157,7 @@ TYPED_TEST(SmoothIn, KeepsTheQualitiesOfALargeBallUpToDate) {
   EXPECT_TRUE(check_mesh(executor, scene.mesh).empty());
 }
 
-/// The sum of the inverse qualities around a vertex if it were at this site.
+/// Sum of the inverse qualities around a vertex, if it were at this site.
 template <int Dim>
 double inverse_qualities(Mesh<Dim>& mesh, VertexId vertex, const Site<Dim>& site) {
   const Site<Dim> before = std::exchange(mesh.site_of[vertex], site);
@@ -168,7 +168,7 @@ double inverse_qualities(Mesh<Dim>& mesh, VertexId vertex, const Site<Dim>& site
   return sum;
 }
 
-/// Calls look_at(op, vertex, plan) for what moves of random meshes are planned.
+/// Calls look_at(op, vertex, plan) for the planned moves in random meshes.
 template <int Dim>
 void visit_moves(const SmoothOptions& options, auto&& look_at) {
   const Executor executor({.threads = 1});
@@ -197,7 +197,7 @@ TYPED_TEST(SmoothIn, RaisesTheHarmonicMeanOfQualitiesWhereAllArePoor) {
   EXPECT_GT(moves, 50U);
 }
 
-/// The lengths are those of a unit square in the metric of the identity.
+/// The range is in Euclidean lengths, because the metric is the identity.
 TYPED_TEST(SmoothIn, LeadsNoEdgeOutOfTheRange) {
   constexpr int Dim = TypeParam::value;
   std::size_t moves = 0;

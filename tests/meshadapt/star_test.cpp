@@ -13,7 +13,7 @@ namespace {
 
 const runtime::Executor executor({.threads = 1});
 
-/// A grid whose elements have qualities and epochs at random.
+/// A grid whose elements have random qualities and epochs.
 Mesh<3> random_grid(test::Random& random) {
   const AnyMesh any = test::make_grid(test::unit_grid(3, 4));
   Neighbours<3> neighbours;
@@ -26,7 +26,7 @@ Mesh<3> random_grid(test::Random& random) {
   return mesh;
 }
 
-/// How many elements around an edge each vertex is in.
+/// Number of elements around an edge that each vertex belongs to.
 std::map<VertexId, int> counts_around(const Mesh<3>& mesh, const Shell& shell) {
   std::map<VertexId, int> counts;
   for (const ElementId e : shell)

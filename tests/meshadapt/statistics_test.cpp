@@ -60,7 +60,7 @@ TEST(Statistics, TheRegularElementIsIdeal) {
   EXPECT_FALSE(s.in_metric);
 }
 
-/// Whatever rounding makes of ideal elements, of many sizes and directions.
+/// Ideal elements of many sizes and directions do not exceed the ideal by rounding.
 TEST(Statistics, NothingIsBetterThanIdeal) {
   const Executor executor({.threads = 1});
   test::Random random(5);
@@ -117,7 +117,7 @@ TEST(Statistics, EdgeLengthIsTheLogarithmicMeanOfBothEnds) {
   AnyField metric = constant_metric(mesh, 1);
   for (std::size_t component = 3; component < 6; ++component) metric.values[component] *= 16;
   const MeshStatistics s = measure(executor, mesh, &metric);
-  // The edge from (0, 0), where it is 1 long, to (1, 0), where it is 4 long.
+  // The longest edge goes from (0, 0), where its length is 1, to (1, 0), where it is 4.
   EXPECT_NEAR(s.edge_length.max, 3 / std::log(4.0), 1e-12);
 }
 
@@ -223,13 +223,13 @@ TEST(Distribution, IsThatOfTheSortedValues) {
     const int kind = trial % 7;
     for (double& value : values) {
       value = std::generate_canonical<double, 53>(random);
-      if (kind == 1) value = 0.5;                          // all alike
-      if (kind == 2) value = std::floor(5 * value) / 4;    // on bounds of bins, beyond one
-      if (kind == 3) value = std::pow(value, 40) * 1e9;    // most in one part
+      if (kind == 1) value = 0.5;                          // all equal
+      if (kind == 2) value = std::floor(5 * value) / 4;    // on bounds of bins, one beyond
+      if (kind == 3) value = std::pow(value, 40) * 1e9;    // most in one bin
       if (kind == 4) value = (value - 0.5) * 1e308 * 1.9;  // a range that overflows
       if (kind == 5) value = value < 0.1 ? -1 - value : value;
       if (kind == 6)
-        value = value < 0.9 ? 1 + value * 1e-12 : 1e-300 + value;  // narrow, and few far
+        value = value < 0.9 ? 1 + value * 1e-12 : 1e-300 + value;  // narrow, few outliers
     }
     const Distribution d =
         distribution(Executor({.threads = 1 + static_cast<int>(random() % 4)}), values, 0, 1);

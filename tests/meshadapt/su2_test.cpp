@@ -1,6 +1,6 @@
 /// @file
-/// Meshes of SU2: what is written is read again, what SU2 and mesh generators write is read, and
-/// what is wrong is told with its line.
+/// SU2 meshes: files are read back as written, files of SU2 and mesh generators are read, and
+/// faults are reported with their line.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -43,9 +43,9 @@ AnyMesh square() {
   return mesh;
 }
 
-// ---- What is written is read ----
+// ---- Files that are written are read ----
 
-/// Facets with what their markers are called, by which the file puts them in order.
+/// Facets with the names of their markers, which determine the order in the file.
 template <int Corners>
 std::multiset<std::pair<std::string, std::array<std::uint32_t, Corners>>> marked(
     const AnyMesh& mesh, const Cells<Corners>& facets) {
@@ -91,10 +91,10 @@ TEST(Su2, IsReadAsItWasWritten) {
     }
 }
 
-// ---- What other programs write ----
+// ---- Files of other programs ----
 
 TEST(Su2, IsReadAsMeshGeneratorsWriteIt) {
-  const std::string rows = "5 0 1 2 0\n5 0 2 3 1\n";  // with numbers, as older programs write
+  const std::string rows = "5 0 1 2 0\n5 0 2 3 1\n";  // numbered, as older programs write
   const std::string points = "0 0 0\n1 0 1\n1 1 2\n0 1 3\n";
   const std::string markers =
       "NMARK= 2\nMARKER_TAG= wall\nMARKER_ELEMS= 1\n3 0 1\n"
@@ -134,7 +134,7 @@ TEST(Su2, MarkersThatAreNumbersAreReferences) {
   EXPECT_EQ(found.names, (std::vector<ReferenceName>{{1, 2, "wall"}, {1, 3, "inlet"}}));
 }
 
-// ---- What is wrong ----
+// ---- Invalid files ----
 
 TEST(Su2, ComplainsWithTheLine) {
   const std::string head = "NDIME= 2\n", cells = "NELEM= 1\n5 0 1 2\n",

@@ -1,4 +1,4 @@
-// Surfaces that the caller knows by functions: vertices of adapted meshes lie on them.
+// Surfaces given by functions: vertices of adapted meshes lie on them.
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ Point on_cylinder(const Point& p) {
   const double scale = radius / std::hypot(p[0], p[1]);
   return {scale * p[0], scale * p[1], p[2]};
 }
-/// Around the z axis.
+/// The closest point of a torus around the z axis.
 Point on_torus(const Point& p) {
   const double far = std::hypot(p[0], p[1]);
   const double scale = tube / std::hypot(far - ring, p[2]);
@@ -50,7 +50,7 @@ Point on_torus(const Point& p) {
   return {out * p[0], out * p[1], scale * p[2]};
 }
 
-// ---- Shapes: reference 1 is what is round ----
+// ---- Shapes: the round part has reference 1 ----
 
 struct Shape {
   const char* name;
@@ -58,7 +58,7 @@ struct Shape {
   Point (*closest)(const Point&);
 };
 
-/// A square's point in a disk of radius 1.
+/// Maps a point of the unit square to the disk of radius 1.
 std::array<double, 2> in_disk(double x, double y) {
   const double far = std::hypot(x = 2 * x - 1, y = 2 * y - 1);
   const double scale = far > 0 ? std::max(std::abs(x), std::abs(y)) / far : 0;
@@ -104,7 +104,7 @@ Point position(const AnyMesh& mesh, std::size_t vertex) {
   return point;
 }
 
-/// How far vertices of facets of reference 1 are from their surface at most.
+/// Largest distance of vertices of facets with reference 1 from their surface.
 double off(const Shape& shape, const AnyMesh& mesh) {
   std::set<std::uint32_t> on_it;
   const auto add = [&](const auto& facets) {
@@ -121,7 +121,7 @@ double off(const Shape& shape, const AnyMesh& mesh) {
   return most;
 }
 
-/// Sizes of a front that moves from call to call.
+/// Sizes with a front that moves from call to call.
 AnyField front(const AnyMesh& mesh, int call) {
   AnyField sizes{mesh.dimension, mesh.vertex_count(), {AnyField::Type::scalar}, {}, "sizes"};
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
@@ -202,11 +202,11 @@ TEST_P(SurfaceFunctions, AreWhatAGeometryHas) {
   }
 }
 
-// ---- What is refused ----
+// ---- Refusals ----
 
 const Shape ball{"Ball", 3, on_ball};
 
-/// What a geometry of the ball says to functions.
+/// The error for these functions in a geometry of the ball.
 std::string message_for(const std::vector<SurfaceFunction>& functions) {
   try {
     Geometry(Executor({.threads = 2}), mesh_of(ball),
@@ -239,7 +239,7 @@ TEST(SurfaceFunctionErrors, ComeOutOfTheMiddleOfAnAdaptation) {
   const auto adapt_with = [&](int threads, auto&& away) {
     const Executor executor({.threads = threads});
     const auto function = [&](const Point& p) {
-      // A vertex of the input is on the ball; others are not yet.
+      // Vertices of the input are on the ball; new ones are not yet.
       const bool is_new = std::abs(std::hypot(p[0], p[1], p[2]) - radius) > 1e-6;
       return is_new ? away(p) : on_ball(p);
     };
@@ -266,7 +266,7 @@ TEST(SurfaceFunctionErrors, AreForFunctionsThatMeanNothing) {
   EXPECT_THROW(adapt(executor, mesh, metric, options), InputError) << "no tolerance";
   options = options_with(executor, mesh, {});
   options.make.functions = {{1, on_ball}};
-  EXPECT_THROW(adapt(executor, mesh, metric, options), InputError) << "a geometry as well";
+  EXPECT_THROW(adapt(executor, mesh, metric, options), InputError) << "functions and a geometry";
 }
 
 }  // namespace

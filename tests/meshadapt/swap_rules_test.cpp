@@ -1,5 +1,5 @@
 /// @file
-/// The rules by which swaps are refused, each asked on a mesh of a few elements that is changed so
+/// The rules by which swaps are refused, each tested on a mesh of a few elements that is changed so
 /// that no other rule refuses.
 #include <gtest/gtest.h>
 
@@ -18,27 +18,27 @@ Mesh<Dim> made(const AnyMesh& any) {
   return test::in_unit_metric<Dim>(executor, any, {.complete_boundary = true});
 }
 
-/// Two triangles whose edge 0-1 is worth a flip.
+/// Two triangles whose edge 0-1 should be flipped.
 AnyMesh kite() {
   return test::listed_mesh<2>({{{-1, 0}}, {{1, 0}}, {{0, -0.4}}, {{0.1, 0.5}}},
                               {{0, 1, 3}, {0, 2, 1}});
 }
 
-/// Three tetrahedra around an edge 0-1 that is worth removing.
+/// Three tetrahedra around an edge 0-1 that should be removed.
 AnyMesh three_around_an_edge() {
   return test::listed_mesh<3>(
       {{{0, 0, -1.2}}, {{0, 0, 1.2}}, {{1, 0, 0}}, {{-0.5, 0.9, 0}}, {{-0.5, -0.9, 0}}},
       {{0, 1, 2, 3}, {0, 1, 3, 4}, {0, 1, 4, 2}});
 }
 
-/// Two tetrahedra at an edge 0-1 of a flat side that is worth removing.
+/// Two tetrahedra at an edge 0-1 of a flat side that should be removed.
 AnyMesh two_at_a_side() {
   return test::listed_mesh<3>(
       {{{-1, 0, 0}}, {{1, 0, 0}}, {{0, -0.6, 0}}, {{0, 0.6, 0}}, {{0, 0, 0.8}}},
       {{0, 1, 3, 4}, {0, 2, 1, 4}});
 }
 
-/// Two tetrahedra whose face 0-1-2 is worth piercing.
+/// Two tetrahedra whose face 0-1-2 should be replaced by an edge.
 AnyMesh two_at_a_face() {
   return test::listed_mesh<3>(
       {{{1, 0, 0}}, {{-0.5, 0.9, 0}}, {{-0.5, -0.9, 0}}, {{0, 0, 0.3}}, {{0, 0, -0.3}}},
@@ -59,14 +59,14 @@ bool pierces_face(Mesh<3>& mesh, const EdgeRange& range = {}) {
   return Swap<3>(executor, mesh, range).decide({0, 1, 2}, Shell{0, 1}, plan);
 }
 
-/// A second region, that of this element.
+/// Moves this element to a new region.
 template <int Dim>
 void give_own_region(Mesh<Dim>& mesh, ElementId element) {
   mesh.region_of[element] = static_cast<std::uint32_t>(mesh.regions.size());
   mesh.regions.push_back(Region(mesh.regions[0]));
 }
 
-/// A second patch like this one.
+/// Adds a copy of this patch.
 template <int Dim>
 PatchId copy_of_patch(Mesh<Dim>& mesh, PatchId patch) {
   mesh.patches.push_back(Patch<Dim>(mesh.patches[patch]));
@@ -125,7 +125,7 @@ TEST(RulesOfEdgeRemoval, AnEdgeBetweenPatchesStays) {
   EXPECT_FALSE(swaps_edge(mesh));
 }
 
-/// A sheet that ends at a side of the same patch.
+/// A sheet of facets ends at a side with the same patch.
 TEST(RulesOfEdgeRemoval, AnEdgeOfMoreThanTwoFacetsStays) {
   auto mesh = made<3>(two_at_a_side());
   patch_opposite(mesh, 0, 3) = patch_opposite(mesh, 1, 2) = patch_opposite(mesh, 0, 4);
@@ -146,7 +146,7 @@ TEST(RulesOfEdgeRemoval, ACrackSideGetsNoEdgeFromRimToRim) {
   EXPECT_TRUE(swaps_edge(mesh));
 }
 
-/// Seen along this normal the side is a line.
+/// Projected along this normal, the side is a line.
 TEST(RulesOfEdgeRemoval, APatchIsNotFolded) {
   auto mesh = made<3>(two_at_a_side());
   mesh.patches[patch_opposite(mesh, 0, 4)].normal = {{1, 0, 0}};

@@ -69,7 +69,7 @@ TEST(Swap, RemovesALongEdgeOfAFlatBoundary) {
   EXPECT_EQ(found[0].c, none);
 }
 
-/// Both sides would have the edge 2-3 in common, though no facet.
+/// Both sides would get the edge 2-3, though they share no facet.
 TEST(Swap, MakesNoEdgeThatIsThereOnTheOtherSideOfTheBoundary) {
   auto mesh = mesh_of<3>({{{-1, 0, 0}},
                           {{1, 0, 0}},

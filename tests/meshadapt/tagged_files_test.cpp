@@ -1,6 +1,6 @@
 /// @file
-/// What files say beside cells: groups, markers, pieces, counts and the order of components. Each
-/// kind is tried with many random inputs.
+/// Data of files beside cells: groups, markers, pieces, counts and the order of components. Each
+/// kind is tested with many random inputs.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -42,7 +42,7 @@ std::string complaint_about(const std::string& name, const std::string& text) {
 
 // ---- Legacy VTK ----
 
-/// The parts of two triangles; counts are off where `off` says so.
+/// The parts of a file of two triangles; the count of part `off` is wrong.
 std::vector<std::string> vtk_parts(int off) {
   const auto count = [&](int part, int right) { return std::to_string(right + (off == part)); };
   return {"POINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n", "CELLS 2 8\n3 0 1 2\n3 0 2 3\n",
@@ -103,7 +103,7 @@ std::string strip_in_groups(const std::vector<std::set<int>>& groups_of) {
   return text + "$EndElements\n";
 }
 
-/// The groups of each triangle of a file of version 4.1, in whatever order it lists them.
+/// The groups of each triangle in a file of version 4.1, in the order of the file.
 std::map<int, std::set<int>> groups_in(const std::string& text) {
   const auto after = [&](const char* section) {
     return text.c_str() + text.find(section) + std::string(section).size();
@@ -155,7 +155,7 @@ TEST(TaggedFiles, KeepAllOfGmshsGroupsOfAnElement) {
     for (auto& groups : groups_of)
       for (int k = below(random, 4); k > 0; --k) groups.insert(1 + below(random, 5));
     for (const auto& groups : groups_of) any = any || !groups.empty();
-    if (!any) continue;  // then entities are the references
+    if (!any) continue;  // then the entities determine the references
     const AnyMesh mesh = read_text("a.msh", strip_in_groups(groups_of));
     for (const char* way : {".msh", ".vtu", ".vtk", "old"}) {
       const bool old = std::string(way) == "old";
@@ -208,7 +208,7 @@ std::string array(const std::string& type, const std::string& name, int componen
          std::to_string(components) + "\" format=\"ascii\">" + text + "</DataArray>";
 }
 
-/// The triangles of a mesh that are in a piece, with only the points that they need.
+/// A piece with the triangles of this part, and only the points that they need.
 std::string piece_of(const AnyMesh& mesh, const std::vector<int>& part_of, int part, bool numbers) {
   std::map<std::uint32_t, std::size_t> index_of;
   std::string points, ids, values, cells, ends, types, regions;
@@ -244,7 +244,7 @@ std::string vtu_of(const std::string& pieces) {
          "</UnstructuredGrid></VTKFile>";
 }
 
-/// Triangles by their region, each with the places and values of its corners.
+/// Positions and values of the corners of triangles, by the triangles' region.
 std::map<std::int32_t, std::set<std::array<double, 3>>> triangles_of(const MeshWithFields& file) {
   std::map<std::int32_t, std::set<std::array<double, 3>>> result;
   for (std::size_t t = 0; t < file.mesh.triangles.size(); ++t)
@@ -304,7 +304,7 @@ TEST(TaggedFiles, RefusePiecesThatDoNotFit) {
   EXPECT_NE(complaint_about("a.vtu", vtu_of(more + once)).find("'u'"), std::string::npos);
 }
 
-/// Zeros as appended data: a table of one block, and the block.
+/// Zeros as appended data: the table of one block, then the block.
 std::string packed_zeros(std::size_t bytes) {
   const std::string plain(bytes, '\0');
   uLongf size = compressBound(bytes);
@@ -318,7 +318,7 @@ std::string packed_zeros(std::size_t bytes) {
   return head + packed;
 }
 
-/// A grid of points, and arrays at them that all begin at the same compressed block.
+/// A grid of points with arrays that all refer to one compressed block.
 std::string sharing(int arrays, std::size_t values) {
   const std::string points = packed_zeros(24 * values);
   const std::string type = "<DataArray type=\"Float64\" format=\"appended\" ";
@@ -337,7 +337,7 @@ std::string sharing(int arrays, std::size_t values) {
 }
 
 TEST(TaggedFiles, ShareNoCompressedBlocksBeyondTheirSize) {
-  // Without a bound, 100 arrays of the same block hold 100 times as much as is in it.
+  // Without a bound, 100 arrays of one block would take 100 times its memory.
   for (const int arrays : {60, 100, 1000}) {
     const std::string told = complaint_about("a.vtu", sharing(arrays, 100000));
     EXPECT_NE(told.find("share"), std::string::npos) << told;
@@ -380,7 +380,8 @@ TEST(TaggedFiles, KeepVerticesThatAreMarked) {
       const Marks marks = marks_of(mesh);
       for (const char* name : {"a.mesh", "a.meshb", "a.msh", "a.vtu", "a.vtk"}) {
         write_mesh(folder / name, mesh);
-        // Twice, coarser and finer: what is kept once must be kept again.
+        // Adapted twice, coarser and finer, because a reference that is kept once must be kept
+        // again.
         const AnyMesh once = adapted(read_mesh(folder / name), 0.8).mesh;
         write_mesh(folder / name, once);
         const AnyMesh twice = adapted(read_mesh(folder / name), 0.2).mesh;
@@ -410,6 +411,8 @@ TEST(TaggedFiles, AreToldByTheirFormat) {
   using std::string_literals::operator""s;
   const std::vector<std::array<std::string, 3>> files{
       {"a.inp", "*HEADING\nx\n*NODE\n1, 0, 0, 0\n", "Abaqus"},
+      {"a.inp", "*INCLUDE, INPUT=b.inp\n", "Abaqus"},
+      {"a.inp", "# made by a program\n5 8 1 0 0\n1 0 0 0\n", "--input-format avsucd"},
       {"a.txt", "** made by hand\n*Node\n1, 0., 0.\n", "Abaqus"},
       {"a.med", "\x89HDF\r\n\x1a\n....INFOS_GENERALES", "MED"},
       {"a.x", "\x89HDF\r\n\x1a\n....CGNSLibraryVersion", "CGNS"},
@@ -443,8 +446,7 @@ TEST(TaggedFiles, SuspectAnotherOrderOfComponents) {
       field.types = {AnyField::Type::symmetric};
       const bool wrong = trial % 2 == 0;
       for (std::size_t v = 0; v < field.vertex_count; ++v) {
-        // Products beside the diagonal are smaller than its squares; in the other order they are
-        // not.
+        // Off-diagonal entries are smaller than the diagonal ones only in the right order.
         const double a = 1 + below(random, 9), b = 100 * a, c = 1e4 * a;
         const std::vector<double> in_vtk = dimension == 2
                                                ? std::vector{a, b, 0.1 * a}

@@ -1,4 +1,4 @@
-// Layers thinner than the size asked for: edges along them get that size.
+// Layers thinner than the requested size: edges along them get that size.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using runtime::Executor;
 
-/// Layers one element thick along the last axis, with edges along them of 1.5 to 3 sizes; half of
+/// Layers, one element thick along the last axis, with edges of 1.5 to 3 sizes along them; half of
 /// them lie between two blocks.
 struct Layers {
   int dimension;

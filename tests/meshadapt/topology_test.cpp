@@ -1,6 +1,7 @@
 /// @file
-/// Adapts random meshes whose boundary comes close to itself, with surface tolerances beyond that:
-/// each is to end valid, with the topology of the input. DUCTILE_TRIALS says how many of a kind.
+/// Adapts random meshes whose boundary comes close to itself, with larger surface tolerances: each
+/// result must be valid and have the topology of the input. DUCTILE_TRIALS is the number of cases
+/// of each kind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ std::vector<std::string> counted(const AnyMesh& mesh) {
   return mesh.dimension == 2 ? test::counted_topology<2>(mesh) : test::counted_topology<3>(mesh);
 }
 
-/// How many attempts it took.
+/// Returns the number of attempts.
 int try_case(const test::ThinCase& thin) {
   const AnyField metric = constant_metric(thin.mesh, thin.size);
   AdaptOptions options;
@@ -65,7 +66,7 @@ void try_many(const Make& make) {
   }
 }
 
-/// Cells of a grid of 4 along each axis at random, each cut into as many cells along each axis.
+/// Random cells of a coarse grid, each cut into `cut` cells along each axis.
 AnyMesh random_cells(int dimension, std::uint64_t seed, int cut, int regions) {
   const auto coarse = test::random_regions(seed, regions, true);
   test::Grid grid = test::unit_grid(dimension, (dimension == 2 ? 4 : 3) * cut);
@@ -87,7 +88,7 @@ TEST(CheckTopology, FindsNothingInMeshesOfOneDomain) {
     AnyMesh before = random_cells(dimension, seed, 1, regions);
     const AnyMesh after = random_cells(dimension, seed, 2, regions);
     EXPECT_EQ(differences(before, after), "");
-    before.edges = {};  // of which nothing need be listed
+    before.edges = {};  // edges need not be listed
     before.triangles = dimension == 2 ? before.triangles : Cells<3>{};
     EXPECT_EQ(differences(before, after), "");
   }

@@ -44,7 +44,7 @@ NamedField random_field(Random& random, const std::string& name, Type type, Plac
   return field;
 }
 
-/// A mesh of some shape, and another of the same domain that was made of it.
+/// A mesh of some shape, and another one of the same domain made from it.
 struct Pair {
   AnyMesh before, after;
 };
@@ -74,7 +74,7 @@ double integral_of(const FixedMesh<Dim>& mesh, const NamedField& field, std::siz
   return sum;
 }
 
-/// The element in which a point lies deepest, by looking at all.
+/// The element in which a point lies deepest, found by testing all.
 template <int Dim>
 ElementId element_at(const FixedMesh<Dim>& mesh, const Vector<Dim>& point, double& depth) {
   ElementId best = none;
@@ -130,14 +130,14 @@ TYPED_TEST(TransferFieldsIn, KeepIntegralsOnElementsAndTakeValuesAtCentroids) {
       EXPECT_EQ(result.fields[f].name, fields[f].name);
       EXPECT_EQ(result.fields[f].type, fields[f].type);
       EXPECT_EQ(result.fields[f].place, fields[f].place);
-      EXPECT_EQ(result.fields[f].values, again.fields[f].values) << "on one thread";
+      EXPECT_EQ(result.fields[f].values, again.fields[f].values) << "differs on one thread";
     }
     EXPECT_EQ(result.report.volume_outside, 0);
     EXPECT_EQ(result.report.volume_left_out, 0);
     EXPECT_EQ(result.report.vertices_outside, 0U);
     for (const std::size_t f : {0, 2, 4}) expect_conserved<Dim>(pair, fields[f], result.fields[f]);
     for (const double value : result.fields[4].values) EXPECT_EQ(value, 0.1);
-    // By value: of the element in which the centroid lies, unless it is on its side.
+    // By value: the value of the element that contains the centroid, unless it is close to a side.
     const auto old_mesh = make_fixed_mesh<Dim>(Executor(), pair.before);
     const auto mesh = make_fixed_mesh<Dim>(Executor(), pair.after);
     for (ElementId e = 0; e < mesh.element_count(); e += 5) {
@@ -149,7 +149,7 @@ TYPED_TEST(TransferFieldsIn, KeepIntegralsOnElementsAndTakeValuesAtCentroids) {
         EXPECT_EQ(result.fields[1].values[e], fields[1].values[host]) << e;
       }
     }
-    // At vertices: what the functions for one field give.
+    // At vertices: the same as the functions for one field.
     const AnyField u{Dim, pair.before.vertex_count(), {Type::vector}, fields[3].values, "u"};
     const AnyField t{Dim, pair.before.vertex_count(), {Type::scalar}, fields[5].values, "T"};
     EXPECT_EQ(result.fields[3].values,
@@ -159,7 +159,7 @@ TYPED_TEST(TransferFieldsIn, KeepIntegralsOnElementsAndTakeValuesAtCentroids) {
   }
 }
 
-/// Half of the new box is beyond the old one, a third of which it leaves out.
+/// The new box is the old one, shifted by half its length.
 TYPED_TEST(TransferFieldsIn, TakeTheClosestValueBeyondTheOldMesh) {
   constexpr int Dim = TypeParam::value;
   std::array<double, Dim> extent;
@@ -183,7 +183,7 @@ TYPED_TEST(TransferFieldsIn, TakeTheClosestValueBeyondTheOldMesh) {
   const auto sampled = transfer_fields(Executor({.threads = 2}), {before, fields}, after);
   EXPECT_NEAR(mean.report.volume_outside, 0.5, 1e-12);
   EXPECT_NEAR(mean.report.volume_left_out, 0.5, 1e-12);
-  EXPECT_EQ(sampled.report.volume_outside, 0) << "volumes are not looked at";
+  EXPECT_EQ(sampled.report.volume_outside, 0) << "transfer by value measures no volumes";
   for (std::size_t e = 0; e < mean.fields[0].values.size(); ++e) {
     double x = 0;
     for (const VertexId v : elements_in<Dim>(after).vertices[e])

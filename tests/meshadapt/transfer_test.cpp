@@ -49,7 +49,7 @@ Vector<Dim> position(const AnyMesh& any, std::size_t vertex) {
   return test::point<Dim>(any, static_cast<std::uint32_t>(vertex));
 }
 
-/// A scalar and a vector field, all components by function(component, position).
+/// A scalar and a vector field; component k is function(k, position).
 template <int Dim>
 AnyField field_on(const AnyMesh& any,
                   const std::function<double(std::size_t, const Vector<Dim>&)>& function) {
@@ -68,13 +68,13 @@ double linear(std::size_t component, const Vector<Dim>& p) {
   return value;
 }
 
-/// 0 or 1, by a front that is as steep as the mesh allows.
+/// 0 or 1, with a front between that is as steep as the mesh allows.
 template <int Dim>
 double front(std::size_t component, const Vector<Dim>& p) {
   return p[0] + 0.3 * std::sin(9 * p[1]) > 0.3 + 0.1 * static_cast<double>(component) ? 1 : 0;
 }
 
-/// [component]
+/// [component] Integral
 template <int Dim>
 std::vector<double> integrals(const AnyMesh& any, const AnyField& field) {
   const auto mesh = make_fixed_mesh<Dim>(executor, any);
@@ -293,7 +293,7 @@ TYPED_TEST(TransferIn, DoesNotDependOnThreads) {
   for (const int threads : {2, 3, 4, 8}) EXPECT_EQ(expected, run(threads)) << threads;
 }
 
-/// What an InputError says, "" if there is none.
+/// The message of the InputError, "" if there is none.
 std::string refusal(const std::function<void()>& act) {
   try {
     act();

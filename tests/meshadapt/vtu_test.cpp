@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <new>
 #include <pugixml.hpp>
 #include <string>
 #include <vector>
@@ -218,40 +216,6 @@ TEST(Vtu, RefusesAMeshThatLacksReferences) {
   mesh.triangles.reference.pop_back();
   EXPECT_NE(test::complaint([&] { write_vtu(folder / "a.vtu", mesh, {}); }), "");
   EXPECT_EQ(folder.file_count(), 0U);
-}
-
-// ---- Without memory ----
-
-std::size_t allocations_left = 0;
-
-void* allocate_while_there_is(std::size_t bytes) {
-  if (allocations_left == 0) return nullptr;
-  --allocations_left;
-  return std::malloc(bytes);
-}
-
-TEST(Vtu, IsWholeOrNotThereIfMemoryRunsOut) {
-  const test::TemporaryFolder folder;
-  const AnyMesh mesh = box_mesh<2>({1, 1}, {120, 120});
-  const std::vector<NamedField> fields = {
-      {"u", Type::scalar, std::vector<double>(mesh.vertex_count(), 0.5)}};
-  write_vtu(folder / "whole.vtu", mesh, fields);
-  const auto allocate = pugi::get_memory_allocation_function();
-  const auto deallocate = pugi::get_memory_deallocation_function();
-  pugi::set_memory_management_functions(allocate_while_there_is, std::free);
-  std::size_t failures = 0;
-  for (bool done = false; !done; ++failures) {
-    allocations_left = failures;
-    try {
-      write_vtu(folder / "out.vtu", mesh, fields);
-      done = true;
-    } catch (const std::bad_alloc&) {
-      EXPECT_FALSE(std::filesystem::exists(folder / "out.vtu")) << failures;
-    }
-  }
-  pugi::set_memory_management_functions(allocate, deallocate);
-  EXPECT_GT(failures, 3U);
-  EXPECT_EQ(test::get_bytes(folder / "out.vtu"), test::get_bytes(folder / "whole.vtu"));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 /// @file
-/// Read before every source of a build that holds mutants: rules that are taken away one at a time.
-/// The environment variable DUCTILE_MUTANT says which; without it nothing is taken away. If
-/// DUCTILE_REACHED names a file instead, the numbers of the rules that are asked are added to it.
+/// Included before every source of a build with mutants: rules that can be disabled one at a time.
+/// The environment variable DUCTILE_MUTANT is the number of the disabled rule; without it none is.
+/// If DUCTILE_REACHED names a file instead, the numbers of the rules that are evaluated are
+/// appended to it.
 #pragma once
 
 #include <fcntl.h>
@@ -11,7 +12,7 @@
 
 namespace ductile {
 
-/// Nothing is taken away, the rules that are asked are noted.
+/// No rule is disabled, but rules that are evaluated are recorded.
 constexpr int note_reached = -1;
 
 inline const char* const reached_file = std::getenv("DUCTILE_REACHED");
@@ -24,8 +25,8 @@ inline const int active_mutant = [] {
 
 inline bool reached[1000] = {};
 
-/// Writes a number the first time that a rule is asked, at once, because a test may end a process
-/// at any place. Returns false. Thread safety: any thread, and handlers of signals.
+/// Records a number when its rule is first evaluated, immediately, because a test may end a process
+/// at any point. Returns false. Thread safety: any thread, and signal handlers.
 inline bool note(int number) {
   if (__atomic_exchange_n(&reached[number], true, __ATOMIC_RELAXED)) return false;
   const int file = open(reached_file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
@@ -36,7 +37,7 @@ inline bool note(int number) {
   return false;
 }
 
-/// Is the rule with this number taken away? Never in what the compiler evaluates.
+/// Is the rule with this number disabled? Never in constant expressions.
 constexpr bool is_mutant(int number) {
   if (__builtin_is_constant_evaluated()) return false;
   return active_mutant == note_reached ? note(number) : number == active_mutant;

@@ -120,7 +120,7 @@ def build(folder, jobs):
     subprocess.run(["cmake", "-S", folder / "source", "-B", folder / "build", "-G", "Ninja",
                     "-D", "CMAKE_BUILD_TYPE=Release", "-D", "DUCTILE_TESTS=library", "-D", f"CMAKE_CXX_FLAGS={flags}",
                     "-D", "DUCTILE_BUILD_BENCH=OFF", "-D", "DUCTILE_BUILD_C=OFF",
-                    "-D", "DUCTILE_UNITE_SOURCES=ON", "-D", "DUCTILE_PROCESSOR_LEVELS=OFF"],
+                    "-D", "DUCTILE_UNITE_SOURCES=ON"],
                    check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", folder / "build", "-j", str(jobs), "--target", *PROGRAMS],
                    check=True, stdout=subprocess.DEVNULL)

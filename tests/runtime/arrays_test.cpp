@@ -19,7 +19,7 @@
 namespace ductile::runtime::arrays_test {
 namespace {
 
-/// Memory that the system has given no pages of yet.
+/// Memory for which the system has not provided pages yet.
 class Mapping {
  public:
   explicit Mapping(std::size_t pages) : bytes_(pages * page) {
@@ -32,7 +32,7 @@ class Mapping {
 
   std::uint8_t* at(std::size_t byte) const { return static_cast<std::uint8_t*>(place_) + byte; }
 
-  /// Which of its pages are there, as ones in order.
+  /// [page] 1 if the page is resident.
   std::vector<std::uint8_t> there() const {
     std::vector<std::uint8_t> result(bytes_ / page);
     EXPECT_EQ(mincore(place_, bytes_, result.data()), 0);
@@ -51,7 +51,7 @@ class Mapping {
   void* place_;
 };
 
-/// Linux can since 5.14.
+/// True on Linux since 5.14.
 bool system_can() {
   constexpr int populate_write = 23;
   const Mapping one(1);
@@ -59,14 +59,14 @@ bool system_can() {
 }
 
 TEST(FreshMemory, GetsThePagesOfAllThatWasAddedAndNoOthers) {
-  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  if (!system_can()) GTEST_SKIP() << "this system cannot provide pages before they are written";
   constexpr std::size_t page_count = 300;
   for (const int threads : {1, 2, 3, 8}) {
     const Mapping memory(page_count);
     FreshMemory fresh;
     fresh.add(memory.at(10 * Mapping::page), 200 * Mapping::page);
     fresh.add(memory.at(250 * Mapping::page + 1), 3 * Mapping::page);
-    fresh.add(memory.at(290 * Mapping::page + 7), Mapping::page - 1);  // no whole page
+    fresh.add(memory.at(290 * Mapping::page + 7), Mapping::page - 1);  // covers no whole page
     fresh.touch(Executor({.threads = threads}));
     const std::vector<std::uint8_t> there = memory.there();
     for (std::size_t i = 0; i < page_count; ++i)
@@ -75,14 +75,14 @@ TEST(FreshMemory, GetsThePagesOfAllThatWasAddedAndNoOthers) {
 }
 
 TEST(FreshMemory, GetsThePagesOfZerosBeforeTheyAreRead) {
-  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  if (!system_can()) GTEST_SKIP() << "this system cannot provide pages before they are written";
   GrowingArray<std::uint64_t> without, with;
   without.resize(1000000);
   FreshMemory fresh;
   with.resize(1000000, fresh);
   fresh.touch(Executor({.threads = 2}));
   const bool given_without = !detail::is_fresh(without.data(), without.bytes());
-  // If so malloc gave it, as for sanitizers.
+  // Sanitizers replace malloc, which then may have provided the pages.
   EXPECT_TRUE(given_without || !detail::is_fresh(with.data(), with.size() * sizeof(std::uint64_t)));
   EXPECT_EQ(std::count(with.begin(), with.end(), 0U), 1000000);
 }
@@ -94,12 +94,12 @@ TEST(FreshMemory, KeepsWhatIsThere) {
   FreshMemory fresh;
   fresh.add(values.data() + 11, (values.size() - 20) * sizeof(values[0]));
   fresh.touch(Executor({.threads = 3}));
-  fresh.touch(Executor({.threads = 3}));  // of nothing
+  fresh.touch(Executor({.threads = 3}));  // nothing is left to touch
   EXPECT_EQ(values, before);
 }
 
 TEST(TouchPages, AsksForManyOfWhichTheLastIsNotThere) {
-  if (!system_can()) GTEST_SKIP() << "this system cannot give pages before they are written";
+  if (!system_can()) GTEST_SKIP() << "this system cannot provide pages before they are written";
   const Executor executor({.threads = 2});
   const std::size_t page = Mapping::page;
   const Mapping fresh(1000), few(1000), reused(1000);
@@ -124,7 +124,7 @@ TEST(UnsetVector, MakesNothingOfWhatIsTriviallyCopyable) {
   EXPECT_EQ(Counted::made, 0);
   EXPECT_EQ(values.size(), 1000U);
   UnsetVector<std::uint32_t> numbers(10, 7);
-  numbers.resize(11, 9);  // a value that is given counts
+  numbers.resize(11, 9);  // the given value is used
   EXPECT_EQ(numbers.front(), 7U);
   EXPECT_EQ(numbers.back(), 9U);
 }

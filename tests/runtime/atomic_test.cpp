@@ -59,7 +59,7 @@ TEST(NumberWithLock, KeepsItsNumberWhileItIsHeld) {
   const auto again = number.hold();
 }
 
-/// Plain counters beside the locks: one that two threads change at once loses counts.
+/// The locks guard plain counters, which lose counts if two threads change one at once.
 TEST(NumberWithLock, LetsOneThreadInAtATime) {
   constexpr std::size_t turns = 20000;
   for (const int threads : test::thread_counts) {

@@ -12,7 +12,7 @@
 namespace ductile::runtime::collect_test {
 namespace {
 
-/// Finds the same number of times as i's hash says, 0 to 3.
+/// Number of items found at i, 0 to 3 by its hash.
 std::uint32_t finds(std::size_t i) { return mix32(static_cast<std::uint32_t>(i)) % 4; }
 
 TEST(ParallelCollect, KeepsTheOrderOfIndicesOnAnyNumberOfThreads) {

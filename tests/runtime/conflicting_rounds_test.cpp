@@ -1,5 +1,5 @@
 /// @file
-/// Operators with conflicts, in tiles and in colours: turns, wakes, what is thrown and refused.
+/// Operators with conflicts, in tiles and in colours: turns, wakes, exceptions and refusals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,8 +27,8 @@ using test::thread_counts;
 using test::Vertex;
 using test::works;
 
-/// Vertices of a grid whose rows are numbered one after the other; each takes on the mean of its
-/// neighbours, so that the order of any two neighbours shows in the last bit.
+/// Vertices of a grid, numbered row by row. Each takes the mean of its neighbours, so that the
+/// order of any two neighbours affects the last bit.
 class Mean {
  public:
   using Item = Vertex;
@@ -74,8 +74,8 @@ class Mean {
   Vertex side_;
 };
 
-/// Each vertex of a row makes up to two things, of which it may have asked for one more, and is
-/// noted by its neighbours.
+/// Each vertex of a row makes up to two things, possibly fewer than it has demanded, and is noted
+/// by its neighbours.
 class Make {
  public:
   using Item = Vertex;
@@ -122,7 +122,7 @@ class Make {
 };
 
 TEST(Colours, MakeThingsAndCommitWhatIsDeferred) {
-  constexpr Vertex vertices = 50000;  // more than are planned together of a colour
+  constexpr Vertex vertices = 50000;  // more of a colour than are planned together
   std::vector<Vertex> expected;
   for (const int threads : thread_counts) {
     const Executor executor({.threads = threads});
@@ -167,7 +167,7 @@ TEST_P(ByConflicts, EveryItemHasOneTurnWhateverTheThreads) {
   }
 }
 
-/// In the first round each item has its turn, and those that come before a neighbour have another.
+/// In the first round each item has its turn; items that come before a neighbour have another one.
 TEST_P(ByConflicts, AWokenItemThatStillWaitsHasItsTurnInTheRound) {
   constexpr Vertex side = 60;
   std::vector<int> expected;

@@ -1,5 +1,5 @@
 /// @file
-/// Contract: an operator whose conflicts change, and works for it.
+/// Contract: an operator whose conflicts change, and work lists for it.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,9 @@
 
 namespace ductile::runtime::test {
 
-/// Contracts edges of a graph: a vertex of few neighbours goes, one of them takes over the others.
-/// So conflicts change, and two that do not conflict may change the neighbours of a third.
+/// Contracts edges of a graph: a vertex of few neighbours is removed, and one of these takes over
+/// the others. So conflicts change, and two items without conflict may change the neighbours of a
+/// third.
 class Contract {
  public:
   using Item = Vertex;
@@ -86,7 +87,7 @@ class Contract {
   std::unique_ptr<std::mutex[]> mutex_of_;
 };
 
-/// Works of many and few items, side by side and apart, in order and not.
+/// Work lists of many and few items, adjacent and scattered, sorted and unsorted.
 inline std::vector<std::vector<Vertex>> works(Vertex side) {
   std::vector<std::vector<Vertex>> works{all_items(side * side), {}, {}, {side + 1}};
   for (Vertex v = 0; v < side * side; v += 7) works[1].push_back(v);

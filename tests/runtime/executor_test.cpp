@@ -38,7 +38,7 @@ TEST(Executor, RefusesThreadCountsThatMakeNoSense) {
   EXPECT_GE(available_cores(), 1);
 }
 
-/// The masks that each thread has in a loop of which it gets a part.
+/// [thread] Its affinity mask in a loop of which it gets a part.
 std::vector<cpu_set_t> masks(const Executor& executor) {
   std::vector<cpu_set_t> mask_of(static_cast<std::size_t>(executor.threads()));
   parallel_for(executor, mask_of.size(),
@@ -47,7 +47,7 @@ std::vector<cpu_set_t> masks(const Executor& executor) {
   return mask_of;
 }
 
-/// Whether the system lets a thread choose where it runs, among several places.
+/// Does the system let a thread choose among several processing units?
 bool can_bind() {
   bool can = false;
   std::thread([&] {
@@ -82,7 +82,7 @@ TEST(Executor, BindsThreadsForTheLoopAndNoLonger) {
   if (!binds) GTEST_SKIP() << "threads cannot be bound here";
 }
 
-/// A machine that is not there until destruction, for hwloc.
+/// Makes hwloc report a fictitious machine until destruction.
 class Machine {
  public:
   explicit Machine(const char* description) { setenv("HWLOC_SYNTHETIC", description, 1); }

@@ -16,7 +16,7 @@ void expect_caught(ContractRule rule, Op op, std::vector<typename Op::Item> work
                    Strategy strategy = Strategy::automatic) {
   try {
     run_rounds_checked(Executor({.threads = 2}), op, std::move(work), {.strategy = strategy});
-    ADD_FAILURE() << "nothing was caught, rule " << static_cast<int>(rule);
+    ADD_FAILURE() << "expected ContractBroken, nothing was thrown, rule " << static_cast<int>(rule);
   } catch (const ContractBroken& broken) {
     EXPECT_EQ(static_cast<int>(broken.rule()), static_cast<int>(rule)) << broken.what();
   }

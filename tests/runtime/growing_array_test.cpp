@@ -55,7 +55,7 @@ TEST(GrowingArray, IsWrittenByAllThreadsAfterItGrew) {
     ASSERT_EQ(array[i], i * (i < 1000 ? 3 : i < 100000 ? 2 : 1));
 }
 
-/// From one page to many times what is held free behind it.
+/// The array grows from one page to many times the reserve behind it.
 TEST(GrowingArray, KeepsWhatItHoldsWhereItsPagesAreAskedFor) {
   const Executor executor({.threads = 3});
   GrowingArray<std::uint32_t> array;
@@ -70,7 +70,7 @@ TEST(GrowingArray, KeepsWhatItHoldsWhereItsPagesAreAskedFor) {
 }
 
 #ifdef __linux__
-/// From here on the system moves no pages, unless it takes no such orders.
+/// Makes the system refuse to move pages, unless it ignores such filters.
 void forbid_moving_pages() {
   std::array<sock_filter, 4> filter = {
       {{BPF_LD | BPF_W | BPF_ABS, 0, 0, offsetof(seccomp_data, nr)},
@@ -82,7 +82,7 @@ void forbid_moving_pages() {
   prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0);
 }
 
-/// As before Linux 6.17 pages of several mappings could not be moved.
+/// Linux before 6.17 could not move pages of several mappings.
 TEST(GrowingArray, KeepsWhatItHoldsWherePagesCannotBeMoved) {
   const auto grow = [] {
     forbid_moving_pages();

@@ -22,8 +22,8 @@ struct EliminationFaults {
   bool hides_neighbours = false, revives = false;
 };
 
-/// Takes away vertices of least degree first; the neighbours of each become a clique. What is noted
-/// of a vertex depends on who was taken before it.
+/// Eliminates vertices, those of least degree first; the neighbours of each become a clique. A
+/// vertex's note depends on the vertices eliminated before it.
 class Elimination {
  public:
   struct Item {
@@ -63,7 +63,7 @@ class Elimination {
     if (!faults_.hides_neighbours)
       for (const Vertex other : plan.neighbours)
         if (!reach(other)) return false;
-    // To be caught: who has no plan gets one when a neighbour goes.
+    // The fault to be detected: an item without a plan gets one when a neighbour is eliminated.
     return !faults_.revives || version[item.vertex] % 2 == 0;
   }
   void apply(const Item& item, Plan& plan, auto& commit) {
@@ -101,7 +101,7 @@ class Elimination {
 };
 static_assert(LevelledOperator<Elimination>);
 
-/// By a map of levels, and with nothing of the runtime's.
+/// The reference: a map of levels, independent of the runtime.
 void eliminate_plainly(Elimination& op) {
   std::map<std::uint32_t, std::vector<Elimination::Item>> waiting;
   for (const auto& item : op.all_items()) waiting[item.degree].push_back(item);
@@ -126,7 +126,7 @@ void eliminate_plainly(Elimination& op) {
   }
 }
 
-/// All rounds by several threads at once, which a whole run does only where that was faster so far.
+/// Runs all rounds on several threads; a whole run does that only where it was faster so far.
 template <class Op>
 RoundsReport run_at_once(const Executor& executor, Op& op,
                          const std::vector<typename Op::Item>& work) {
@@ -134,7 +134,7 @@ RoundsReport run_at_once(const Executor& executor, Op& op,
       .run(work, std::numeric_limits<std::size_t>::max());
 }
 
-/// Few and many vertices; hardly any edges, and enough that cliques grow.
+/// Vertices and edges: few and many vertices; hardly any edges, and enough for cliques to grow.
 constexpr std::pair<std::size_t, std::size_t> sizes[] = {{1, 0},     {7, 9},       {60, 100},
                                                          {300, 400}, {2000, 1700}, {20000, 10000}};
 
@@ -190,9 +190,9 @@ TEST(LevelRounds, RunWithoutWork) {
 }
 
 TEST(LevelRounds, RefuseStrategiesWithoutLevels) {
-  for (const Strategy strategy : {Strategy::regions, Strategy::in_order, Strategy::locks}) {
+  for (const Strategy strategy : {Strategy::regions, Strategy::in_order}) {
     Elimination op(1, 10, 10);
-    const Executor executor({.threads = 2, .deterministic = strategy != Strategy::locks});
+    const Executor executor({.threads = 2});
     EXPECT_THROW(run_rounds(executor, op, op.all_items(), {.strategy = strategy}),
                  std::invalid_argument);
     EXPECT_THROW(run_rounds_checked(executor, op, op.all_items(), {.strategy = strategy}),
@@ -221,7 +221,7 @@ TEST(LevelRounds, AreCheckedForReachesAndOrder) {
   expect_caught(ContractRule::order_kept, revived, revived.all_items());
 }
 
-/// Passes small numbers on along a line. Levels are far apart, up to the last that there is.
+/// Passes small numbers on along a line. Levels are far apart, up to the greatest possible one.
 template <bool tells>
 class Lowering {
  public:

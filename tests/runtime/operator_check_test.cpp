@@ -44,7 +44,7 @@ TEST(OperatorCheck, LetsASoundOperatorPass) {
 struct SumFaults {
   bool hides_next = false, is_one_sided = false, wakes = false;
 };
-/// On a line of vertices: the sum of one and its two neighbours, once.
+/// Each vertex of a line takes the sum of itself and its two neighbours, once.
 class Sums {
  public:
   using Item = Vertex;
@@ -90,11 +90,11 @@ TEST(OperatorCheck, FindsEachFaultOfAnOperatorInOrder) {
   Sums checked, run;
   run_rounds_checked(Executor({.threads = 2}), checked, work);
   run_rounds(Executor({.threads = 1}), run, work);
-  EXPECT_EQ(checked.value, run.value) << "in the order of the work";
+  EXPECT_EQ(checked.value, run.value) << "the order differs from that of the work";
 }
 
-/// On a line of vertices: each adds 1 to both neighbours, once. Those that have a neighbour in
-/// common have no conflict, as sums come out the same in any order, unless one reads them.
+/// Each vertex of a line adds 1 to both neighbours, once. Vertices with a common neighbour have no
+/// conflict, because the order of additions does not matter unless one of them reads the sum.
 class SharedSums {
  public:
   using Item = Vertex;
@@ -140,8 +140,8 @@ TEST(OperatorCheck, FindsWhoReadsWhatAnotherWithoutAConflictWrites) {
             100U);
 }
 
-/// Each item takes the first free place from a random one on. If it reaches for places one after
-/// the other, which ones depends on who was there before; otherwise it reaches for all it may take.
+/// Each item takes the first free place from a random one on. If it reaches for places one by one,
+/// the places it reaches depend on earlier items; otherwise it reaches for all it may take.
 class Probing {
  public:
   using Item = Vertex;
@@ -195,7 +195,7 @@ class Countdown {
 TEST(OperatorCheck, FindsWhoWasNotWoken) {
   Countdown op;
   expect_caught(ContractRule::woken_if_plannable, op, all_items(3));
-  // In order nobody is woken, so that it counts down once.
+  // In order nothing is woken, so each counts down once.
   run_rounds_checked(Executor(), op, all_items(3), {.strategy = Strategy::in_order});
   EXPECT_EQ(op.left, (std::vector{2, 0, 1}));
   op.wakes = true;
@@ -203,12 +203,12 @@ TEST(OperatorCheck, FindsWhoWasNotWoken) {
   EXPECT_EQ(op.left, (std::vector{0, 0, 0}));
 }
 
-/// An item that is none, and leads out of its array.
+/// The item is invalid and would lead out of its array.
 TEST(OperatorCheck, NamesTheItemThatReachesForWhatIsNot) {
   Countdown op;
   try {
     run_rounds_checked(Executor(), op, {0, 4000000000U});
-    ADD_FAILURE() << "nothing was caught";
+    ADD_FAILURE() << "expected ContractBroken, nothing was thrown";
   } catch (const ContractBroken& broken) {
     EXPECT_EQ(broken.item(), "4000000000");
     EXPECT_EQ(broken.rule(), ContractRule::numbers_in_range);

@@ -32,7 +32,8 @@ std::string described(Schedule schedule, int threads) {
          std::to_string(threads);
 }
 
-/// Small bodies may be copied, but not those that somebody else sees, change, or cannot be copied.
+/// Small bodies may be copied, except those that the caller shares or changes and those that cannot
+/// be copied.
 TEST(ParallelForBody, KeepsItsState) {
   struct Counter {
     std::size_t calls = 0;

@@ -1,5 +1,5 @@
 /// @file
-/// Rounds ask for items ahead of their plans.
+/// Rounds prefetch items ahead of their plans.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 using test::all_items;
 using test::Vertex;
 
-/// Each item once; notes which stages it was asked for ahead.
+/// Plans each item once; notes the stages for which it was prefetched before.
 struct AskedAhead {
   using Item = Vertex;
   struct Plan {};

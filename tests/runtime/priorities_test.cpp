@@ -52,7 +52,7 @@ std::vector<WeightedMatching::Item> random_edges(Vertex vertices, std::size_t co
   return edges;
 }
 
-/// Of one window, all of which are looked at again until none is left, that is the greedy matching.
+/// Within one window, whose items run until none is left, the result is the greedy matching.
 TEST(Priorities, DecideWhoWins) {
   for (std::uint32_t seed = 1; seed < 200; ++seed) {
     const auto edges = random_edges(20, 60, 1000 * seed);

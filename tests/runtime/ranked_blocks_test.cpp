@@ -16,7 +16,7 @@
 namespace ductile::runtime::detail::ranked_blocks_test {
 namespace {
 
-/// Blocks that meet others of any rank, as chance has it.
+/// Random pairs of touching blocks, of any rank.
 struct Meetings {
   std::vector<std::vector<std::size_t>> met;  // [block]
   std::vector<std::uint32_t> rank_of;         // [block]
@@ -35,10 +35,10 @@ struct Meetings {
 };
 
 struct Begun {
-  std::size_t block, next = 0;  // of those that it meets
+  std::size_t block, next = 0;  // index into the blocks that it touches
 };
 
-/// Runs all blocks; done(block) is called when its turn has come.
+/// Runs all blocks; calls done(block) in a block's turn.
 void run(const Executor& executor, const Meetings& meetings, auto&& done) {
   RankedBlocks<Begun> blocks(executor, meetings.met.size(),
                              [&](std::size_t block) { return meetings.rank_of[block]; });
@@ -75,7 +75,8 @@ TEST(RankedBlocks, RunOnceAndAfterThoseOfLowerRankThatTheyMeet) {
     }
 }
 
-/// A block ends only when all that do not meet it are done, which those who wait for it have to do.
+/// A block ends only when all blocks that do not touch it are done, so waiting threads must run
+/// those.
 TEST(RankedBlocks, AreDoneByThreadsThatWaitForAnother) {
   using namespace std::chrono_literals;
   constexpr std::size_t count = 40;

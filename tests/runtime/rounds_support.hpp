@@ -1,5 +1,5 @@
 /// @file
-/// What tests of run_rounds share.
+/// Shared by the tests of run_rounds.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace ductile::runtime::test {
 using Vertex = std::uint32_t;
 inline constexpr std::array thread_counts{1, 2, 3, 4, 8};
 
-/// For plans that a test asks for itself: whoever is reached for is had.
+/// A reach() for plans that a test makes itself: grants everything.
 struct ReachAny {
   bool operator()(Vertex) const { return true; }
 };

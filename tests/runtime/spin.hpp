@@ -1,5 +1,5 @@
 /// @file
-/// Work that takes time.
+/// Busy work of a given duration.
 #pragma once
 
 #include <chrono>

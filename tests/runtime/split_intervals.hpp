@@ -1,6 +1,6 @@
 /// @file
-/// SplitIntervals: an Operator for tests, whose faults can be switched on. A row of
-/// intervals covers [0, 1); each is halved until it is short enough. Makes intervals and points.
+/// SplitIntervals: an Operator for tests, with faults that can be switched on. A row of intervals
+/// covers [0, 1); each is halved until it is short enough. Makes intervals and points.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace ductile::runtime::test {
 
-/// What is wrong with the operator.
+/// Faults of the operator that a test can switch on.
 struct IntervalFaults {
   bool writes_unreached = false, reads_unreached = false, goes_on = false;
   std::uint32_t demanded = 1;  // of points for each interval; no fault
@@ -120,7 +120,7 @@ class SplitIntervals {
     }
   }
 
-  /// Every interval once, one beside the other, none too long.
+  /// Does the row contain every interval once, each next to the previous one, and none too long?
   bool is_whole() const {
     std::size_t seen = 0;
     std::uint32_t left = none, last_point = none;
@@ -155,7 +155,7 @@ class SplitIntervals {
     if (intervals[to].left != none) intervals[intervals[to].left].right = to;
     if (intervals[to].right != none) intervals[intervals[to].right].left = to;
   }
-  /// Where the interval to the right of an interval ends.
+  /// Right end of the interval to the right of this one.
   std::uint32_t end_after(std::uint32_t interval) const {
     if (interval == none || intervals[interval].right == none) return none;
     return intervals[intervals[interval].right].end_point;

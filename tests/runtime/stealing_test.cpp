@@ -1,5 +1,5 @@
 /// @file
-/// Work stealing: threads that are late are helped; what is done with signals.
+/// Work stealing: late threads are helped; handling of signals.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -109,8 +109,8 @@ TEST(StealBySignal, LeavesSignalsAloneThatTheCallerWaitsFor) {
 
 // ---- Stealing: a loop that only ends if threads are helped ----
 
-/// Runs a loop in which iteration `slow` waits until all others but `but_for` are done. Returns
-/// false if it has waited too long.
+/// Runs a loop in which iteration `slow` waits until all others, except `but_for` of them, are
+/// done. Returns false if it has waited too long.
 bool others_are_done_meanwhile(const Executor& executor, std::size_t n, std::size_t slow,
                                std::size_t but_for) {
   using namespace std::chrono_literals;
@@ -134,8 +134,8 @@ INSTANTIATE_TEST_SUITE_P(Schedules, Stealing,
                          testing::Values(Schedule::steal_by_signal, Schedule::steal_by_atomics));
 
 TEST_P(Stealing, TakesWhatAThreadDoesNotGetTo) {
-  constexpr std::size_t n = 120;  // so few are claimed one by one
-  // A victim's handler leaves it the iteration that it may be about to begin.
+  constexpr std::size_t n = 120;  // few enough to be claimed one by one
+  // A victim's handler does not give away the iteration that the victim may be about to begin.
   const std::size_t kept = GetParam() == Schedule::steal_by_signal ? 1 : 0;
   for (const int threads : {2, 3, 8}) {
     const Executor executor({.threads = threads, .schedule = GetParam()});
@@ -147,7 +147,7 @@ TEST_P(Stealing, TakesWhatAThreadDoesNotGetTo) {
 }
 
 TEST(StealBySignal, ReachesThreadsThatBlockAllSignals) {
-  // Threads have the mask of the one that made them, and OpenMP keeps them for its next loop.
+  // Threads inherit the mask of their creator, and OpenMP keeps them for its next loop.
   std::thread([] {
     const Executor executor({.threads = 2, .schedule = Schedule::steal_by_signal});
     {
@@ -160,8 +160,8 @@ TEST(StealBySignal, ReachesThreadsThatBlockAllSignals) {
   }).join();
 }
 
-/// A few iterations are long, so that those asked seem to have more left than they have: many
-/// signals come when there is too little to give.
+/// A few iterations are long, so that victims seem to have more left than they have: many signals
+/// arrive when there is too little to give.
 TEST(StealBySignal, RunsNothingTwiceThatWasRefused) {
   for (std::uint32_t loop = 0; loop < 1000; ++loop) {
     std::vector<std::atomic<int>> runs(90);

@@ -22,7 +22,7 @@ using Dims =
     testing::Types<std::integral_constant<std::size_t, 2>, std::integral_constant<std::size_t, 3>>;
 TYPED_TEST_SUITE(Strategies, Dims);
 
-/// From few and from many, to few and to many: one by one, in regions, and both.
+/// Few and many intervals become few and many: run one by one, in regions, and both.
 TYPED_TEST(Strategies, SplitTheSameAtAnyNumberOfThreads) {
   for (const auto& [count, length] :
        {std::pair<std::size_t, double>{1, 1e-3}, {7, 0.4}, {50, 2.5e-5}, {40000, 3e-5}})
@@ -42,21 +42,12 @@ TYPED_TEST(Strategies, SplitTheSameAtAnyNumberOfThreads) {
     }
 }
 
-TYPED_TEST(Strategies, RaceByLocks) {
-  for (const int threads : thread_counts) {
-    SplitIntervals<TypeParam::value> op(3000, 2e-5);
-    run_rounds(Executor({.threads = threads, .deterministic = false}), op, op.all_items());
-    ASSERT_TRUE(op.is_whole()) << threads;
-  }
-}
-
 /// Plans demand three points and take one.
 TEST(Strategies, LeaveNoHoles) {
-  for (const Strategy strategy : {Strategy::regions, Strategy::reservations, Strategy::locks})
+  for (const Strategy strategy : {Strategy::regions, Strategy::reservations})
     for (const std::size_t count : {10, 40000}) {
       SplitIntervals<2> op(count, 2e-5, {.demanded = 3});
-      run_rounds(Executor({.threads = 3, .deterministic = strategy != Strategy::locks}), op,
-                 op.all_items(), {.strategy = strategy});
+      run_rounds(Executor({.threads = 3}), op, op.all_items(), {.strategy = strategy});
       EXPECT_TRUE(op.is_whole()) << static_cast<int>(strategy) << ", " << count;
     }
 }
@@ -80,13 +71,10 @@ TEST(Strategies, StopWhereRoundsAreLimited) {
 }
 
 TEST(Strategies, EndIfPlansDemandMoreNumbersThanPartsGet) {
-  for (const bool deterministic : {true, false}) {
-    SplitIntervals<2> op(50000, 1.5e-5, {.demanded = 200000});
-    const RoundsReport report =
-        run_rounds(Executor({.threads = 2, .deterministic = deterministic}), op, op.all_items());
-    EXPECT_TRUE(op.is_whole());
-    EXPECT_TRUE(!deterministic || report.rounds < 10U);
-  }
+  SplitIntervals<2> op(50000, 1.5e-5, {.demanded = 200000});
+  const RoundsReport report = run_rounds(Executor({.threads = 2}), op, op.all_items());
+  EXPECT_TRUE(op.is_whole());
+  EXPECT_LT(report.rounds, 10U);
 }
 
 TEST(Strategies, RunInsideALoopAndWithoutWork) {
@@ -104,7 +92,7 @@ TEST(Strategies, RunInsideALoopAndWithoutWork) {
 
 // ---- In order ----
 
-/// The lowest colour that no neighbour before it in the work has.
+/// Each vertex takes the lowest colour that no neighbour before it in the work has.
 class GreedyColours {
  public:
   using Item = Vertex;
@@ -143,7 +131,7 @@ class GreedyColours {
   const CsrRows& rows_;
 };
 
-/// Of n vertices, edges (a(i), b(i)) for i below m.
+/// A graph of n vertices with the edges (a(i), b(i)) for i below m.
 CsrRows graph_of(std::size_t n, std::size_t m, auto&& a, auto&& b) {
   std::vector<std::set<Vertex>> row(n);
   for (std::size_t i = 0; i < m; ++i) {
@@ -160,8 +148,8 @@ CsrRows graph_of(std::size_t n, std::size_t m, auto&& a, auto&& b) {
   return rows;
 }
 
-/// More vertices than may be begun ahead of the first that waits: a path and random edges. Fewer:
-/// no edge, a star, neighbours near in the order.
+/// Graphs with more vertices than may be begun ahead of the first waiting one: a path and random
+/// edges. Graphs with fewer: no edges, a star, neighbours close in the order.
 std::vector<CsrRows> graphs() {
   constexpr std::size_t n = 6000, many = 40000;
   const auto self = [](std::size_t i) { return i; };
@@ -179,8 +167,8 @@ std::vector<CsrRows> graphs() {
   return all;
 }
 
-/// Runs the work in parts of this size, each at once, which a whole run does only where that was
-/// faster so far. Returns what was applied.
+/// Runs the work in parts of this size, each on several threads; a whole run does that only where
+/// it was faster so far. Returns the applied items.
 template <class Op, class Work>
 std::vector<Vertex> run_at_once(const Executor& executor, Op& op, const Work& work,
                                 std::size_t part) {
@@ -238,7 +226,7 @@ TEST(InOrder, GivesWhatAPlainLoopGives) {
   }
 }
 
-/// Joins pairs of numbers that are both free; tells no conflicts.
+/// Joins pairs of free numbers; has no conflicts().
 class Pairing {
  public:
   using Item = std::uint32_t;
@@ -298,10 +286,9 @@ TEST(InOrder, GivesWhatAPlainLoopGivesWithoutConflicts) {
 TEST(Strategies, SayWhatAnOperatorLacks) {
   const Executor executor({.threads = 2});
   Pairing pairing(10, 10);
-  EXPECT_THROW(run_rounds(executor, pairing, all_items(10), {.strategy = Strategy::regions}),
-               std::invalid_argument);
-  EXPECT_THROW(run_rounds(executor, pairing, all_items(10), {.strategy = Strategy::locks}),
-               std::invalid_argument);
+  for (const Strategy strategy : {Strategy::tiles, Strategy::colours})
+    EXPECT_THROW(run_rounds(executor, pairing, all_items(10), {.strategy = strategy}),
+                 std::invalid_argument);
   SplitIntervals<2> split(10, 1e-2);
   EXPECT_THROW(run_rounds(executor, split, split.all_items(), {.strategy = Strategy::in_order}),
                std::invalid_argument);
@@ -322,17 +309,13 @@ TEST(Strategies, PassOnWhatOperatorsThrow) {
     Pairing ordered(5000, 20000);
     ordered.throws_at = 15000;
     EXPECT_THROW(run_at_once(executor, ordered, work, 20000), std::runtime_error);
-    for (const Strategy strategy : {Strategy::in_order, Strategy::reservations}) {
+    for (const Strategy strategy :
+         {Strategy::automatic, Strategy::in_order, Strategy::reservations}) {
       Pairing pairing(5000, 20000);
       pairing.throws_at = 15000;
       EXPECT_THROW(run_rounds(executor, pairing, all_items(20000), {.strategy = strategy}),
                    std::runtime_error);
     }
-    Pairing racing(5000, 20000);
-    racing.throws_at = 15000;
-    EXPECT_THROW(run_rounds(Executor({.threads = threads, .deterministic = false}), racing,
-                            all_items(20000)),
-                 std::runtime_error);
   }
 }
 
@@ -390,7 +373,7 @@ TYPED_TEST(Strategies, MapRegionsOfEqualSizes) {
                 1.2 * static_cast<double>(*std::min_element(size.begin(), size.end())));
       cuts.insert(owner_of);
     }
-  EXPECT_EQ(cuts.size(), 3U) << "a cut for each turn, the same at any number of threads";
+  EXPECT_EQ(cuts.size(), 3U) << "expected one cut per turn, the same at any number of threads";
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ TEST(WithTeam, RunsFewChunksOnAsManyThreadsAtMost) {
   EXPECT_LT(last_thread, 3);
 }
 
-/// Whoever sleeps, is late or has no core to run on meanwhile: long pauses between loops, threads
-/// that are done long before the leader, and leaders that are done before others have begun.
+/// Covers threads that sleep, are late or have no core: long pauses between loops, threads that
+/// finish long before the leader, and leaders that finish before others have begun.
 TEST(WithTeam, GoesOnWhereverThreadsAre) {
   const std::chrono::microseconds pauses[] = {0us, 3us, 60us, 300us};
   for (const int threads : {2, 3, 8}) {
@@ -195,12 +195,13 @@ TEST(WithTeam, ReturnsWhatTheBodyReturns) {
 
 // ---- Algorithms of many loops form a team by themselves ----
 
-/// Whether the calling thread leads a team of these, or is another that it has called.
+/// Is the calling thread in a team of this executor: its leader, or a thread that the leader has
+/// called?
 bool in_a_team(const Executor& executor, std::thread::id leader) {
   return std::this_thread::get_id() != leader || Team::of(executor) != nullptr;
 }
 
-/// Counts how often it was looked at outside of a team.
+/// A graph that counts its visits outside of a team.
 struct Ring {
   const Executor& executor;
   std::size_t size;
@@ -235,7 +236,7 @@ TEST(WithTeam, ColouringsFormOne) {
   EXPECT_TRUE(is_proper(executor, ring, colouring));
 }
 
-/// Each item once; asked how many there are between loops.
+/// Runs each item once; counts resource_count() calls outside of a team.
 struct Visits {
   using Item = std::uint32_t;
   struct Plan {};

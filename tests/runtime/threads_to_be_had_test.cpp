@@ -1,6 +1,6 @@
 /// @file
-/// Loops of a forked child, and of a process that gets no more threads: they run alone, and all of
-/// them.
+/// Loops in a forked child, and in a process that gets no more threads, run completely on the
+/// calling thread.
 #include "threads_to_be_had.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ bool counts_each_once(const Executor& executor) {
   return std::all_of(count.begin(), count.end(), [](int c) { return c == 1; });
 }
 
-/// By all schedules, with and without a team.
+/// Do loops work under all schedules, with and without a team?
 bool loops_work(int threads) {
   for (const Schedule schedule : schedules) {
     const Executor executor({.threads = threads, .schedule = schedule});
@@ -64,7 +64,7 @@ TEST(ThreadsToBeHad, AreNoneInAChildOfAProcessWithThreads) {
   EXPECT_TRUE(loops_work(4));
 }
 
-/// They may be another user's of OpenMP.
+/// Such threads may belong to another user of OpenMP.
 TEST(ThreadsToBeHad, AreNoneInAChildOfAProcessWithThreadsOfOthers) {
   std::promise<void> end;
   std::thread other([waits = end.get_future()]() mutable { waits.get(); });
@@ -73,7 +73,7 @@ TEST(ThreadsToBeHad, AreNoneInAChildOfAProcessWithThreadsOfOthers) {
   other.join();
 }
 
-/// Of addresses, which stacks take; root may have any number of processes.
+/// Limits addresses, which stacks need, because root may start any number of threads.
 void limit_addresses_to_what_is_there() {
   std::ifstream statm("/proc/self/statm");
   rlim_t pages = 0;
@@ -95,7 +95,7 @@ bool are_addresses_counted() {
 }
 
 TEST(ThreadsToBeHad, AreNoneWhereTheyCannotBeMade) {
-  if (!are_addresses_counted()) GTEST_SKIP() << "sanitizers take all addresses";
+  if (!are_addresses_counted()) GTEST_SKIP() << "sanitizers reserve all addresses";
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto limited = [] {
     limit_addresses_to_what_is_there();

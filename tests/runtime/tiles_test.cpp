@@ -32,7 +32,7 @@ struct Turn {
   auto operator<=>(const Turn&) const = default;
 };
 
-/// What a test's own run of Contract hands to apply().
+/// The commit argument of apply() in this test's own run of Contract.
 struct Woken {
   std::map<Vertex, Turn> turn_of;
   std::set<Vertex> items, postponed;
@@ -106,7 +106,7 @@ TEST(Tiles, RunByTheirRanksAndPostponeWhomAnEqualOneComesBefore) {
     }
 }
 
-/// More than fit at once into what collects the tiles that an item meets.
+/// The last vertex touches more tiles than the buffer for an item's tiles holds.
 TEST(Tiles, MeetAnyNumberOfTiles) {
   constexpr Vertex side = 150;
   Contract expected(side), contract(side);

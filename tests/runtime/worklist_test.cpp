@@ -17,7 +17,7 @@
 #include "ductile/runtime/executor.hpp"
 #include "ductile/runtime/hash.hpp"
 
-// The thread sanitizer has these functions itself and lets nobody replace them.
+// The thread sanitizer has its own versions of these functions, which cannot be replaced.
 #if !defined(__has_feature)
 #define DUCTILE_REPLACES_NEW
 #elif !__has_feature(thread_sanitizer)
@@ -25,7 +25,7 @@
 #endif
 #ifdef DUCTILE_REPLACES_NEW
 namespace {
-std::atomic<std::size_t> most_bytes = SIZE_MAX;  // that over-aligned types get at once
+std::atomic<std::size_t> most_bytes = SIZE_MAX;  // for one allocation of an over-aligned type
 }
 
 [[gnu::noinline]] void* operator new(std::size_t bytes, std::align_val_t alignment) {
@@ -203,7 +203,7 @@ TEST(Worklist, IsSortedAndWithoutDuplicatesOnRequest) {
   }
 }
 
-/// Knows where it lives; counts those that live.
+/// An over-aligned item that knows whether it is intact; counts living objects.
 struct alignas(128) Large {
   static inline std::atomic<int> alive = 0;
 

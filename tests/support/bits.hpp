@@ -1,5 +1,5 @@
 /// @file
-/// The bits of doubles, to tell what is the same bit for bit from what is only equal: -0 and 0.
+/// The bits of doubles, to distinguish values that are equal but not identical: -0 and 0.
 #pragma once
 
 #include <bit>

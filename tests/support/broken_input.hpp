@@ -1,5 +1,5 @@
 /// @file
-/// Arrays that are broken in random ways, and what a function may do with them.
+/// Arrays that are broken in random ways, and the allowed reactions of a function.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,13 +24,13 @@ namespace ductile::meshadapt::test {
 /// Suites of tests in both dimensions.
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 
-/// Expects the call to throw an InputError whose message says nothing of files or options.
+/// Expects the call to throw an InputError whose message mentions no files or options.
 template <class Call>
 void expect_refused(const Call& call, const std::string& what) {
   SCOPED_TRACE(what);
   try {
     call();
-    ADD_FAILURE() << "taken";
+    ADD_FAILURE() << "expected an InputError, nothing was thrown";
   } catch (const InputError& error) {
     const std::string text = error.what();
     for (const char* word : {"option", " file", "--", " -h", ".mesh:"})
@@ -41,7 +41,7 @@ void expect_refused(const Call& call, const std::string& what) {
   }
 }
 
-/// Expects the call to return, or to throw an InputError and nothing else.
+/// Expects that the call returns or throws an InputError.
 template <class Call>
 void expect_survived(const Call& call, const std::string& what) {
   SCOPED_TRACE(what);
@@ -96,7 +96,7 @@ Metric<Dim> no_metric(Random& random) {
     case 2:
       axes.value[0] *= -1;
       break;
-    case 3: {  // along axes of the space, as rounding would else make another of it
+    case 3: {  // along the axes of space, because rounding would change it otherwise
       Metric<Dim> stretched = isotropic<Dim>(1);
       stretched.m[0] = 1e-20;
       stretched.m[2] = 1e20;
@@ -109,7 +109,7 @@ Metric<Dim> no_metric(Random& random) {
   return compose(axes);
 }
 
-/// A folder for the test that runs; it goes away.
+/// A folder for the running test, removed afterwards.
 struct Folder {
   std::filesystem::path path;
   Folder() {

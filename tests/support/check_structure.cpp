@@ -141,7 +141,7 @@ class StructureChecker {
   int facet_number(ElementId element, const Facet<Dim>& facet) const {
     for (std::size_t i = 0; i <= Dim; ++i)
       if (!contains(facet, mesh_.corners_of[element][i])) return static_cast<int>(i);
-    return 0;  // cannot be: the corners are all different
+    return 0;  // impossible, because the corners are different
   }
 
   /// Are the two orders of a facet's corners of different parity?
@@ -200,7 +200,7 @@ class StructureChecker {
     return good;
   }
 
-  /// How far from flat or straight is let pass: twice what classification lets, and rounding.
+  /// Allowed distance from flat or straight: twice what classification allows, plus rounding.
   double tolerance() const {
     if (mesh_.rounding) return 4 * mesh_.rounding->tolerance;
     double extent = 0, largest = 0;
@@ -235,7 +235,7 @@ class StructureChecker {
         " has a facet that does not lie in the plane of its patch");
   }
 
-  /// How large a facet is, seen along the normal of its patch; negative if seen from behind.
+  /// Area of a facet projected along the normal of its patch; negative if seen from behind.
   double projection(ElementId e, int i) const {
     const Facet<Dim> facet = facet_of<Dim>(mesh_.corners_of[e], i);
     const auto side = [&](std::size_t k) {
@@ -248,7 +248,8 @@ class StructureChecker {
       return dot(cross(side(1), side(2)), normal);
   }
 
-  /// All elements of a region lie on one side of a patch, unless the patch is inside that region.
+  /// Checks that all elements of a region lie on one side of a patch, unless it is inside that
+  /// region.
   void check_folds() {
     const auto inside_region = [&](ElementId e, int i) {
       const Ids others = across(e, i);
@@ -390,7 +391,8 @@ class StructureChecker {
     return kind.class_dimension != 1 || misjudged_on_curve(v, around.patches);
   }
 
-  /// A vertex that moves along a curve: the curve goes on straight, between the same patches.
+  /// Is a vertex of a curve classified wrongly? The curve must continue straight, between the same
+  /// patches.
   bool misjudged_on_curve(VertexId v, const Ids& patches) const {
     if constexpr (Dim == 3) {
       const auto links = mesh_.links_of.of(v);

@@ -10,10 +10,10 @@
 
 namespace ductile::meshadapt {
 
-/// As check_mesh() of an AnyMesh for a mesh that is being adapted, entities numbered from 0 as in
-/// memory. Checked as well: the lists of vertices agree with the corners of elements, qualities are
-/// up to date, facets carry the same patch on both sides, patches are flat, curves straight, and
-/// what vertices may do fits what they lie on. Slower; for tests and debugging.
+/// As check_mesh() of an AnyMesh, for a mesh that is being adapted; entities are numbered from 0.
+/// Also checks that the lists of vertices agree with the corners of elements, cached qualities are
+/// up to date, facets carry the same patch on both sides, patches are flat, curves are straight,
+/// and the freedom of vertices fits the entities that they lie on. Slower; for tests and debugging.
 template <int Dim>
 std::vector<std::string> check_mesh(const runtime::Executor& executor, const Mesh<Dim>& mesh);
 

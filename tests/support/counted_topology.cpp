@@ -33,7 +33,7 @@ class Union {
   std::vector<std::size_t> parent_;
 };
 
-/// Joins cells that have the same corners `of` them, looked up one after the other.
+/// Number of connected parts of cells, where cells with a common face of(cell) are connected.
 std::size_t parts(const std::vector<Some>& cells,
                   const std::function<std::vector<Some>(const Some&)>& of) {
   Union sets(cells.size());
@@ -54,7 +54,8 @@ std::vector<Some> subsets(const Some& cell, std::size_t size) {
   return found;
 }
 
-/// How often facets around one vertex are not connected by what they have in common but it.
+/// Number of excess parts of the facets around each vertex, if facets are connected by sharing
+/// something besides the vertex.
 std::size_t non_manifold_vertices(const std::vector<Some>& boundary, std::size_t dimension) {
   std::map<Corner, std::vector<Some>> around;
   for (const Some& facet : boundary)

@@ -1,6 +1,6 @@
 /// @file
-/// counted_topology: what adaptation must not change, counted from the cells alone. Shares no code
-/// with the library's check_topology().
+/// counted_topology: the topology that adaptation must keep, counted from the cells alone. Shares
+/// no code with the library's check_topology().
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace ductile::meshadapt::test {
 
-/// A line for all elements and one for those of each reference: vertices - edges + facets -
-/// elements, the number of their parts by facets and by vertices in common, that of the parts of
-/// the facets around them, and that of vertices where those meet themselves without an edge.
+/// One line for all elements and one for those of each reference: the Euler characteristic; the
+/// number of parts connected by facets, and by vertices; the number of parts of the facets around
+/// them; and the number of vertices where these facets touch each other without a common edge.
 template <int Dim>
 std::vector<std::string> counted_topology(const AnyMesh& mesh);
 

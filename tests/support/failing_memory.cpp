@@ -1,10 +1,10 @@
 /// @file
-/// A library to be loaded before a program (LD_PRELOAD): it makes the program's n-th request for
-/// memory fail, once or from then on. The environment says which, and where to write how many
-/// requests there were:
+/// A library to be loaded before a program (LD_PRELOAD): makes the program's n-th request for
+/// memory fail, once or from then on. The environment gives n, and a file for the number of
+/// requests:
 ///   DUCTILE_FAIL_AT=n  DUCTILE_FAIL=once|on  DUCTILE_FAIL_COUNT=file
-/// Requests are counted, those of forked children too, from when libraries are initialised, which
-/// main() comes after.
+/// Requests, including those of forked children, are counted from the initialisation of libraries
+/// on, which comes before main().
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -18,7 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 
-// The C library's own names, for those who take the place of malloc and its kin.
+// The C library's own names, for libraries that replace malloc.
 extern "C" {
 void* libc_malloc(std::size_t bytes) asm("__libc_malloc");
 void* libc_calloc(std::size_t count, std::size_t bytes) asm("__libc_calloc");
@@ -88,7 +88,7 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t bytes) {
   return *memory == nullptr ? ENOMEM : 0;
 }
 
-// NOLINTNEXTLINE(readability-function-size): that many has the system's.
+// NOLINTNEXTLINE(readability-function-size): the system's function has this many parameters.
 void* mmap(void* place, std::size_t bytes, int protection, int flags, int file, off_t offset) {
   using Map = void* (*)(void*, std::size_t, int, int, int, off_t);
   static const Map map = reinterpret_cast<Map>(::dlsym(RTLD_NEXT, "mmap"));

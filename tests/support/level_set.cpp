@@ -38,7 +38,7 @@ double plate_level(const Vector<3>& p) {
 
 namespace {
 
-/// Cuts tetrahedra, one after the other; what two share is cut once.
+/// Cuts tetrahedra one by one; a shared edge is cut once.
 class Cutter {
  public:
   Cutter(const LevelGrid& grid, const Level& level)
@@ -99,7 +99,8 @@ class Cutter {
     return grid_vertices_[at] = add_point(p, level_(p));
   }
 
-  /// Between a point inside and one outside; for now as if the function were linear.
+  /// The vertex at the zero between a point inside and one outside, placed by linear interpolation
+  /// at first.
   std::uint32_t zero_between(std::uint32_t in, std::uint32_t out) {
     const auto found = zero_at_.find({in, out});
     if (found != zero_at_.end()) return found->second;
@@ -136,9 +137,9 @@ class Cutter {
       if (volume(elements_[e]) < 0) std::swap(elements_[e][2], elements_[e][3]);
   }
 
-  /// From a triangle to the one above it. The diagonals of its sides begin at the side's lowest
-  /// number, so that those of neighbours agree (Dompierre et al., "How to subdivide pyramids,
-  /// prisms, and hexahedra into tetrahedra", 1999).
+  /// Adds the tetrahedra of a prism: a triangle and the one above it. The diagonals of its sides
+  /// begin at the side's lowest number, so that neighbours agree (Dompierre et al., "How to
+  /// subdivide pyramids, prisms, and hexahedra into tetrahedra", 1999).
   void add_prism(std::array<std::uint32_t, 6> p) {
     const auto lowest = std::min_element(p.begin(), p.end()) - p.begin();
     if (lowest >= 3) std::swap_ranges(p.begin(), p.begin() + 3, p.begin() + 3);
@@ -159,7 +160,7 @@ class Cutter {
     return dot(cross(side(1), side(2)), side(3));
   }
 
-  /// To where they are wanted, unless that turns elements over.
+  /// Moves vertices to the function's zeros, except where that would invert elements.
   void move_zeros() {
     for (const auto& [vertex, zero] : zeros_) points_[vertex] = zero.wanted;
     for (bool again = true; again;) {

@@ -1,6 +1,6 @@
 /// @file
-/// level_set: tetrahedra below the zero of a function, cut out of a grid as marching tetrahedra do,
-/// so that many facets are needles and slivers, which turn by anything against those around them.
+/// level_set: the tetrahedra below the zero of a function, cut out of a grid by marching
+/// tetrahedra, so that many facets are needles and slivers at large angles to their neighbours.
 #pragma once
 
 #include <cstdint>
@@ -11,28 +11,28 @@
 
 namespace ductile::meshadapt::test {
 
-/// Negative inside; may be any continuous function.
+/// A continuous function that is negative inside.
 using Level = std::function<double(const Vector<3>&)>;
 
-double sphere_level(const Vector<3>& p);  ///< of radius 1; the distance to it
-double torus_level(const Vector<3>& p);   ///< around the z axis, radii 1 and 0.4; the distance
-double gyroid_level(const Vector<3>& p);  ///< a sheet of some thickness, of period 1
-double cube_level(const Vector<3>& p);    ///< from -1 to 1, with sharp edges
-double plate_level(const Vector<3>& p);   ///< of radius 1 and thickness 0.02, rounded at its rim
+double sphere_level(const Vector<3>& p);  ///< distance from a sphere of radius 1
+double torus_level(const Vector<3>& p);   ///< distance from a torus around z, radii 1 and 0.4
+double gyroid_level(const Vector<3>& p);  ///< a gyroid sheet of some thickness, with period 1
+double cube_level(const Vector<3>& p);    ///< a cube from -1 to 1, with sharp edges
+double plate_level(const Vector<3>& p);   ///< a disc of radius 1, thickness 0.02, with a round rim
 
-/// n^3 cells of six tetrahedra over a cube from -extent to extent, turned and moved by less than a
-/// cell. A function is zero somewhere on an edge of theirs.
+/// n^3 cells of six tetrahedra over a cube from -extent to extent, rotated, and shifted by less
+/// than a cell.
 struct LevelGrid {
   int n = 10;
   double extent = 1.4;
-  std::uint64_t seed = 0;  ///< of how it is turned and moved, and of the noise; 0: it is not moved
-  double least = 0;        ///< of an edge, closer to whose ends no zero is put, wherever it is
-  double noise = 0;        ///< of an edge, by which zeros are off at random
+  std::uint64_t seed = 0;  ///< for rotation, shift and noise; 0: the grid is not moved
+  double least = 0;  ///< least distance of a zero from the ends of its edge, as a share of the edge
+  double noise = 0;  ///< amplitude of random errors of zeros, as a share of the edge
 };
 
-/// The tetrahedra inside. Triangles at the zero have reference 1, those on the grid's own boundary
-/// 2. Where a tetrahedron would be turned over, zeros are put where a function is zero that is
-/// linear on edges.
+/// Returns the tetrahedra inside. Triangles at the zero have reference 1, those on the grid's
+/// boundary 2. Where a tetrahedron would be inverted, zeros lie where the function's linear
+/// interpolant along edges has them.
 AnyMesh cut_out(const LevelGrid& grid, const Level& level);
 
 }  // namespace ductile::meshadapt::test

@@ -140,7 +140,7 @@ class GridMaker {
     }
   }
 
-  /// A tetrahedron for each order in which the axes can be gone along to the opposite corner.
+  /// Adds a tetrahedron for each order of the axes on the way to the opposite corner.
   void cut_cube(const Cell& cell) {
     const int region = grid_.region(cell);
     if (region == 0) return;

@@ -1,6 +1,6 @@
 /// @file
-/// Meshes to test with: grids with holes and regions over the unit square and cube, and what makes
-/// them less tame: moved vertices, slivers, other places, sizes and directions in space.
+/// Meshes to test with: grids with holes and regions over the unit square and cube, and ways to
+/// make them harder: moved vertices, slivers, other places, sizes and directions in space.
 #pragma once
 
 #include <array>
@@ -26,15 +26,15 @@ struct Grid {
   int dimension = 2;
   std::array<std::vector<double>, 3> lines;  ///< [axis], ascending
   std::function<int(const Cell&)> region;    ///< reference of a cell's elements, 0: no cell there
-  std::uint64_t seed = 0;                    ///< 2D: of the directions of diagonals; 0: all alike
+  std::uint64_t seed = 0;  ///< 2D: for random directions of diagonals; 0: all equal
 };
 
 /// n equal cells along each axis of the unit square or cube, one region.
 Grid unit_grid(int dimension, int n);
 
-/// Cuts the cells into 2 triangles or 6 tetrahedra (Kuhn), lists boundary facets and, unless told
-/// otherwise, interfaces. A facet's reference says which way it faces: 1 to 6 for -x +x -y +y -z
-/// +z, 10 more on interfaces. No vertex is unused.
+/// Cuts the cells into 2 triangles or 6 tetrahedra (Kuhn), lists boundary facets and, by default,
+/// interfaces. A facet's reference is the direction it faces: 1 to 6 for -x +x -y +y -z +z, plus 10
+/// on interfaces. No vertex is unused.
 AnyMesh make_grid(const Grid& grid, bool list_interfaces = true);
 
 /// Shapes, by the region of a cell of an n x n (x n) grid; see Grid::region.
@@ -65,17 +65,17 @@ void list_ridges(AnyMesh& mesh);
 /// surroundings, unless that would invert an element.
 void jiggle(AnyMesh& mesh, Random& random, double amount);
 
-/// Moves `count` inner vertices to almost onto a facet of an element around them: `thickness` is
-/// what is left of the distance. Every element keeps an exactly positive volume.
+/// Moves `count` inner vertices almost onto a facet of an element around them; the distance shrinks
+/// by the factor `thickness`. Every element keeps an exactly positive volume.
 void make_slivers(AnyMesh& mesh, Random& random, std::size_t count, double thickness);
 
-/// Bends the unit square or cube into an arc around the origin, from the x axis on: x becomes the
-/// distance from its axis, from 0.5 to 1.5, and y the angle, up to this one. References stay: 1 is
-/// the inside of the arc, 2 the outside, 3 and 4 its ends.
+/// Bends the unit square or cube into an arc around the origin, starting at the x axis: x becomes
+/// the radius, from 0.5 to 1.5, and y the angle, from 0 to `angle`. References stay: 1 is the
+/// inside of the arc, 2 the outside, 3 and 4 its ends.
 void bend(AnyMesh& mesh, double angle);
 
-/// Of height 1, with n cells along each axis; its base has radius 1, its lid this one. References
-/// are 1 around it, 5 underneath and 6 above.
+/// A truncated cone of height 1 with n cells along each axis; its base has radius 1, its lid radius
+/// `lid`. The mantle has reference 1, the base 5, the lid 6.
 AnyMesh truncated_cone(int n, double lid);
 
 /// Turns the mesh by a random rotation, scales it and moves it.

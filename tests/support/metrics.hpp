@@ -1,5 +1,5 @@
 /// @file
-/// Metric fields to test with, from tame to nasty.
+/// Metric fields to test with, from simple to hard.
 #pragma once
 
 #include <algorithm>

@@ -63,8 +63,8 @@ Measures measures(const AnyMesh& mesh) {
 }
 
 struct Tolerance {
-  double of_each;  ///< relative to what is compared
-  double of_all;   ///< relative to the sum of all: what rounding of the coordinates allows
+  double of_each;  ///< relative to each measure
+  double of_all;   ///< relative to the sum of all, for rounding of the coordinates
 };
 
 void compare(Lines& lines, const Measures& before, const Measures& after,
@@ -87,7 +87,7 @@ void compare(Lines& lines, const Measures& before, const Measures& after,
 template <int Dim>
 using Place = std::array<double, Dim>;
 
-/// An entity by its corners' coordinates: it is the same in both meshes, to the bit.
+/// Identifies an entity by the exact coordinates of its corners, which are the same in both meshes.
 template <int Dim, std::size_t N>
 std::pair<std::vector<Place<Dim>>, std::int32_t> by_place(
     const AnyMesh& mesh, const std::array<std::uint32_t, N>& corners, std::int32_t reference) {
@@ -127,7 +127,7 @@ void compare_vertices(Lines& lines, const AnyMesh& before, const AnyMesh& after,
   if (all(before) != all(after)) lines.push_back(std::string(name) + " changed");
 }
 
-/// All corners stay. Vertices with references may become corners: see marked_points().
+/// Every corner must remain. Vertices with references may become corners: see marked_points().
 template <int Dim>
 void compare_corners(Lines& lines, const AnyMesh& before, const AnyMesh& after) {
   using Corner = std::pair<std::vector<Place<Dim>>, std::int32_t>;
@@ -145,7 +145,8 @@ void compare_corners(Lines& lines, const AnyMesh& before, const AnyMesh& after) 
     lines.emplace_back("corners changed");
 }
 
-/// Boundaries of a mesh far from the origin are flat, and measures known, up to rounding only.
+/// The tolerance for flatness and measures: far from the origin, both are known only up to
+/// rounding.
 template <int Dim>
 Tolerance tolerance(const AnyMesh& mesh) {
   double largest = 0, extent = 0;

@@ -10,16 +10,16 @@
 
 namespace ductile::meshadapt::test {
 
-/// What adaptation must have kept and has not, a line each: the measure of every region, of every
-/// interface between two of them, of listed facets and of listed edges by reference (to 1e-9, or
-/// what rounding of the coordinates allows); corners and required entities to the bit.
+/// Violations of what adaptation must keep, one line each: the measures of every region, of every
+/// interface between two regions, of listed facets and of listed edges by reference (to 1e-9, or
+/// what rounding of the coordinates allows); corners and required entities exactly.
 std::vector<std::string> changes_of_what_is_kept(const AnyMesh& before, const AnyMesh& after);
 
-/// The above, check_mesh's findings, and metrics that are not finite and positive.
+/// The same, with check_mesh's faults and metrics that are not finite and positive.
 std::vector<std::string> faults_of(const runtime::Executor& executor, const AnyMesh& before,
                                    const AdaptedMesh& after);
 
-/// Marks all listed facets as required: what lock_boundary asks for.
+/// Makes all listed facets required, as lock_boundary does.
 void require_facets(AnyMesh& mesh);
 
 /// Lines joined, for messages.

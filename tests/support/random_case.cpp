@@ -124,7 +124,7 @@ class CaseMaker {
     say("scale " + std::to_string(scale) + " offset " + std::to_string(offset));
   }
 
-  /// Rounding may have turned the thinnest elements over.
+  /// Are all elements positive? Rounding may have inverted the thinnest ones.
   bool valid() const { return dimension_ == 2 ? valid_in<2>() : valid_in<3>(); }
   template <int Dim>
   bool valid_in() const {
@@ -153,7 +153,8 @@ class CaseMaker {
       metric = wild_field(case_.mesh, random_, jumps[kind], anisotropies[kind]);
       say("jump " + std::to_string(jumps[kind]) + " anisotropy " +
           std::to_string(anisotropies[kind]));
-      if (kind != 4) wanted *= 0.3;  // no mesh follows such a metric: more elements come out
+      if (kind != 4)
+        wanted *= 0.3;  // such a metric leads to more elements than its complexity says
     }
     scale_to(metric, case_.mesh, wanted);
     say("complexity " + std::to_string(wanted));

@@ -17,8 +17,8 @@ struct RandomCase {
 };
 
 /// The case of this seed: even seeds are 2D, odd ones 3D. Shapes, regions, required entities,
-/// slivers, places in space, kinds of metric and options all vary. What is asked for stays below
-/// some 10,000 elements.
+/// slivers, places in space, kinds of metric and options all vary. The metric asks for at most
+/// about 10,000 elements.
 RandomCase random_case(std::uint64_t seed);
 
 }  // namespace ductile::meshadapt::test

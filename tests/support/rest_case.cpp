@@ -12,13 +12,13 @@ namespace ductile::meshadapt::test {
 
 namespace {
 
-/// Sizes along an axis and across it, as functions of where it is.
+/// A metric with sizes along an axis and across it that depend on the position.
 template <int Dim>
 struct Formula {
   enum class Kind { constant, growing, plane, shell } kind;
   Vector<Dim> normal, centre;
-  double thin;          ///< the smallest size across, of that along
-  Metric<Dim> uniform;  ///< where it is constant
+  double thin;          ///< smallest size across, relative to that along
+  Metric<Dim> uniform;  ///< for the kind `constant`
 
   Metric<Dim> operator()(const Vector<Dim>& at) const {
     const Vector<Dim> from = at - centre;

@@ -13,14 +13,14 @@ namespace ductile::meshadapt::test {
 
 struct RestCase {
   AnyMesh mesh;
-  std::function<AnyField(const AnyMesh&)> metric_on;  ///< the formula at the vertices of a mesh
+  std::function<AnyField(const AnyMesh&)> metric_on;  ///< evaluates the formula on a mesh
   AdaptOptions options;
   std::string what;  ///< in words
 };
 
 /// The case of this seed: even seeds are 2D, odd ones 3D. Shapes, regions, required entities,
-/// curved boundaries, kinds of metric and options vary; metrics are isotropic or not, the same
-/// everywhere or not, and scaled so that some 50 to 3,000 elements are asked for.
+/// curved boundaries, kinds of metric and options vary; metrics are isotropic or not, uniform or
+/// not, and scaled to ask for about 50 to 3,000 elements.
 RestCase rest_case(std::uint64_t seed);
 
 }  // namespace ductile::meshadapt::test

@@ -14,7 +14,7 @@ namespace {
 
 using Edge = std::array<std::uint32_t, 2>;
 
-/// Cuts all cells on an edge in halves, at this new vertex.
+/// Splits all cells at an edge in two, at the new vertex `middle`.
 template <int Corners>
 void cut(Cells<Corners>& cells, const Edge& edge, std::uint32_t middle) {
   const std::size_t count = cells.size();
@@ -30,7 +30,7 @@ void cut(Cells<Corners>& cells, const Edge& edge, std::uint32_t middle) {
   }
 }
 
-/// Splits an edge of the mesh, so that what is left at its first end is this share of it.
+/// Splits an edge of the mesh at this share of its length from its first end.
 void split(AnyMesh& mesh, const Edge& edge, double share) {
   const auto middle = static_cast<std::uint32_t>(mesh.vertex_count());
   const auto dimension = static_cast<std::size_t>(mesh.dimension);

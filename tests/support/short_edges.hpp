@@ -1,6 +1,6 @@
 /// @file
-/// ShortEdgeCase: a mesh with a required edge, or required facets, far shorter than the size asked
-/// for there, made from a seed alone.
+/// ShortEdgeCase: a mesh with a required edge, or required facets, far shorter than the requested
+/// size, made from a seed alone.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,8 @@
 
 namespace ductile::meshadapt::test {
 
-/// Sets the metric, and qualities, of a mesh; and its neighbours, if they are wanted.
+/// Makes a Mesh with the unit metric and qualities; also returns its neighbours if `wanted` is
+/// given.
 template <int Dim>
 Mesh<Dim> in_unit_metric(const runtime::Executor& executor, const AnyMesh& any,
                          const MakeMeshOptions& options, Neighbours<Dim>* wanted = nullptr) {
@@ -32,7 +33,7 @@ Mesh<Dim> in_unit_metric(const runtime::Executor& executor, const AnyMesh& any,
   return mesh;
 }
 
-/// Elements by their corners, of the references given, or 1.
+/// A mesh of these points and elements, with the given references, or 1.
 template <int Dim>
 AnyMesh listed_mesh(std::initializer_list<Vector<Dim>> points,
                     std::initializer_list<Corners<Dim>> elements,
@@ -55,9 +56,9 @@ AnyMesh listed_mesh(std::initializer_list<Vector<Dim>> points,
   return any;
 }
 
-/// Elements around the edge 0-1, eight as in an orange of which the upper half was cut away, all
-/// but a slice of this height with the facets 0-2-3 and 1-2-3; and, on request, two elements on it
-/// of another region. Boundaries bend, and may change by the tolerance.
+/// Elements around the edge 0-1: eight, like the slices of an orange whose upper half was cut away
+/// except for a slice of this height with the facets 0-2-3 and 1-2-3; if `covered`, also two
+/// elements of another region on top. Boundaries are curved and may change within the tolerance.
 inline Mesh<3> half_orange(const runtime::Executor& executor, double height, double tolerance,
                            bool covered = false) {
   AnyMesh any;

@@ -22,8 +22,8 @@ Facet<Dim> in_order(Facet<Dim> facet) {
   return facet;
 }
 
-/// Lists the facets of one element, of reference 1 where they were listed before and else 7, and
-/// drops vertices that no element has.
+/// Lists the facets that one element has, with reference 1 if they were listed before and otherwise
+/// 7, and removes vertices that no element has.
 template <int Dim>
 void list_boundary(AnyMesh& mesh, const std::set<Facet<Dim>>& old) {
   std::map<Facet<Dim>, std::pair<int, Facet<Dim>>> found;
@@ -59,7 +59,7 @@ void drop_unused(AnyMesh& mesh) {
     for (std::uint32_t& v : corners) v = number[v];
 }
 
-/// Keeps these elements.
+/// Keeps the elements that are not gone.
 template <int Dim>
 void carve(AnyMesh& mesh, const std::vector<bool>& gone) {
   std::set<Facet<Dim>> old;
@@ -73,7 +73,7 @@ void carve(AnyMesh& mesh, const std::vector<bool>& gone) {
   drop_unused<Dim>(mesh);
 }
 
-/// Elements across facets; none at the boundary.
+/// [element] The elements across its facets.
 template <int Dim>
 std::vector<std::vector<std::size_t>> neighbours_in(const AnyMesh& mesh) {
   std::vector<std::vector<std::size_t>> result(elements_in<Dim>(mesh).size());
@@ -85,7 +85,7 @@ std::vector<std::vector<std::size_t>> neighbours_in(const AnyMesh& mesh) {
   return result;
 }
 
-/// All but the largest part that is connected by facets.
+/// Marks as gone all elements except the largest part connected by facets.
 template <int Dim>
 void keep_one_part(const AnyMesh& mesh, std::vector<bool>& gone) {
   const auto next = neighbours_in<Dim>(mesh);
@@ -111,7 +111,7 @@ void keep_one_part(const AnyMesh& mesh, std::vector<bool>& gone) {
   for (std::size_t e = 0; e < gone.size(); ++e) gone[e] = gone[e] || part[e] != largest;
 }
 
-/// A plate and how thick its layers are.
+/// A plate and the thickness of its layers.
 struct Plate {
   AnyMesh mesh;
   double layer;
@@ -134,7 +134,8 @@ Plate random_plate(int dimension, Random& random) {
   return {make_grid(grid), layer};
 }
 
-/// Divides elements, one after the other, at a point inside into as many as they have facets.
+/// Splits `count` random elements, one after the other, at an interior point into one element per
+/// facet.
 template <int Dim>
 void divide_elements(AnyMesh& mesh, Random& random, std::size_t count) {
   auto& elements = elements_in<Dim>(mesh);
@@ -172,7 +173,7 @@ bool is_sound(const AnyMesh& mesh) {
   });
 }
 
-/// Lifts what is at x (and y) along the last axis, unless that inverts an element.
+/// Moves vertices along the last axis by height(x, y), unless that inverts an element.
 void lift(AnyMesh& mesh, const std::function<double(double, double)>& height) {
   const std::vector<double> flat = mesh.coordinates;
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
@@ -183,7 +184,7 @@ void lift(AnyMesh& mesh, const std::function<double(double, double)>& height) {
   if (!(dimension == 2 ? is_sound<2>(mesh) : is_sound<3>(mesh))) mesh.coordinates = flat;
 }
 
-/// A cylinder, a cap of a ball, or a wave.
+/// A random height function: a cylinder, a cap of a ball, or a wave.
 std::function<double(double, double)> random_curve(Random& random) {
   const double radius = uniform(random, 0.8, 4), waves = uniform(random, 2, 7);
   const double amount = uniform(random, 0.1, 0.5) / waves;
@@ -257,8 +258,8 @@ ThinCase joined_voids(std::uint64_t seed) {
           layer * std::pow(10, uniform(random, -1, 0.7)), "joined voids"};
 }
 
-/// Doubles the vertices of facets between layers for which `splits` says so; what is above gets
-/// new ones, moved up by the gap.
+/// Doubles the vertices of facets between layers that satisfy `splits`. The elements above get the
+/// new vertices, moved up by the gap.
 template <int Dim>
 void split(AnyMesh& mesh, double level, const std::function<bool(const Vector<Dim>&)>& splits,
            double gap) {

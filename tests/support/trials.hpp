@@ -1,6 +1,6 @@
 /// @file
-/// How many random cases a test tries: by DUCTILE_TRIALS, from DUCTILE_FIRST_TRIAL on. Sanitizers
-/// try few, and who looks for faults tries many.
+/// The number of random cases a test tries, DUCTILE_TRIALS, starting at DUCTILE_FIRST_TRIAL.
+/// Sanitizers try few; a search for faults tries many.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 /// @file
-/// One function for each file of this folder: a row of the suite.
+/// One function for each file of this folder; each returns a row of the suite.
 #pragma once
 
 #include "suite.hpp"

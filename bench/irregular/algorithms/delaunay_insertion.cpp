@@ -17,7 +17,7 @@ namespace {
 using example::Triangulation;
 using Points = std::vector<example::Point>;
 
-/// All points that differ are vertices, and the square is covered.
+/// Checks that all different points are vertices, and that the square is covered.
 std::string fault(const Points& points, const Triangulation& mesh,
                   const Triangulation& /*serial*/) {
   if (delaunay_area(mesh) != 2 * std::int64_t{example::square_side} * example::square_side)

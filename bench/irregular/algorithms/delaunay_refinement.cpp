@@ -21,8 +21,8 @@ struct Start {
   double size;  // the largest radius of a triangle's circle
 };
 
-/// Of the plate, refined to about as many triangles as `size` says: that was measured. Of as many
-/// triangles at the start, of half as many random points.
+/// The plate, with a size that gives about `size` triangles, by measurement; or half as many random
+/// points, which give as many triangles at the start.
 Start make_start(const std::string& input, std::size_t size) {
   if (input == "plate")
     return {example::plate(),

@@ -15,7 +15,8 @@ namespace {
 
 using example::Ordering;
 
-/// Each vertex once, and at most a twentieth more fill than the serial code's.
+/// Checks that each vertex occurs once, and that the fill exceeds the serial code's by at most a
+/// twentieth.
 std::string fault(const GraphInput& input, const Ordering& result, const Ordering& serial) {
   std::vector<std::uint8_t> seen(input.view().vertex_count());
   for (const example::Vertex vertex : result.order)

@@ -13,7 +13,8 @@ namespace {
 
 using Distances = std::vector<std::uint32_t>;
 
-/// No arc is a short cut, and each vertex that is reached is so by an arc of no spare length.
+/// Checks that no arc shortens a path, and that each reached vertex has an arc that gives its
+/// distance.
 bool are_shortest(const GraphInput& input, const Distances& distance_of) {
   const auto graph = input.view();
   for (example::Vertex vertex = 0; vertex < graph.vertex_count(); ++vertex) {

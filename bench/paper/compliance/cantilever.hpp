@@ -1,6 +1,6 @@
 /// @file
-/// The cantilever: its regular start mesh, and which parts of the boundary are held and pulled.
-/// They are told apart by the references of boundary facets, which adaptation keeps.
+/// The cantilever: its regular start mesh, and the clamped and the pulled parts of its boundary.
+/// References of boundary facets identify these, because adaptation keeps them.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace ductile::paper {
 inline constexpr int held_reference = meshadapt::Side::left;
 inline constexpr int pulled_reference = 7;
 
-/// Cells of equal sides, `cells` across the height, a multiple of 10.
+/// A mesh of cubic (2D: square) cells, `cells` across the height; a multiple of 10.
 template <int Dim>
 meshadapt::AnyMesh cantilever_mesh(int cells);
 

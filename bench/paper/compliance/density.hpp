@@ -8,8 +8,8 @@
 
 namespace ductile::paper {
 
-/// Sends what is below the threshold towards 0 and what is above towards 1; a sharpness towards 0
-/// changes nothing (Wang, Lazarov & Sigmund, Struct. Multidiscip. Optim. 43, 2011).
+/// Moves densities below the threshold towards 0 and those above towards 1; as the sharpness
+/// approaches 0, nothing changes (Wang, Lazarov & Sigmund, Struct. Multidiscip. Optim. 43, 2011).
 struct Projection {
   double sharpness = 1;
   double threshold = 0.5;
@@ -28,18 +28,18 @@ struct VolumeGoal {
 Projection projection_of_volume(std::span<const double> density_of,
                                 std::span<const double> share_of, const VolumeGoal& goal);
 
-/// What a little more density at each vertex brings and costs.
+/// Gain and cost of a small increase of the density at each vertex.
 struct Derivatives {
-  std::vector<double> gain_of{};  ///< [vertex], of compliance that goes away, per volume
-  std::vector<double> cost_of{};  ///< [vertex], of volume, per volume
+  std::vector<double> gain_of{};  ///< [vertex], decrease of compliance per volume
+  std::vector<double> cost_of{};  ///< [vertex], increase of volume per volume
 };
 
 struct DesignStep {
   double move_limit = 0.2;
-  double added_volume = 0;  ///< to be gained by the step, to first order
+  double added_volume = 0;  ///< volume that the step must gain, to first order
 };
 
-/// The densities that a design never leaves: at 0 it could not grow again.
+/// The range of densities in a design; a density of 0 could not grow again.
 inline constexpr double least_density = 1e-3;
 
 /// Multiplies each density by the square root of gain over cost (Bendsoe, Structural Optimization

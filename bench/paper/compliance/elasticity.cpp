@@ -39,7 +39,7 @@ void Elasticity<Dim>::number_unknowns(const AnyMesh& any) {
     }
 }
 
-/// The traction is the same all over the pulled facets, and 1 altogether.
+/// The traction is constant over the pulled facets and has a total of 1.
 template <int Dim>
 void Elasticity<Dim>::load(const AnyMesh& any) {
   force_ = Values::Zero(unknown_count_);

@@ -18,10 +18,10 @@ class HelmholtzFilter {
   /// Keeps a reference to `mesh`.
   HelmholtzFilter(const meshadapt::FixedMesh<Dim>& mesh, double length);
 
-  /// Values at the vertices to smooth values at the vertices.
+  /// Returns smoothed values at the vertices.
   std::vector<double> smooth(const std::vector<double>& value_of) const;
-  /// The same of f times each vertex's hat function, integrated: what a derivative by the values
-  /// at the vertices is.
+  /// Smooths a field given by its integrals with the vertices' hat functions, such as a derivative
+  /// with respect to values at the vertices.
   std::vector<double> smooth_integrated(const std::vector<double>& integral_of) const;
 
  private:

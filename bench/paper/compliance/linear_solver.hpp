@@ -18,9 +18,9 @@ class LinearSolver;
 template <>
 class LinearSolver<2> {
  public:
-  /// Takes over a matrix, of the same pattern as those before.
+  /// Takes over a matrix, which has the same pattern as earlier ones.
   void factorise(const SparseMatrix& lower);
-  /// Throws std::runtime_error if the matrix was not positive definite.
+  /// Throws std::runtime_error if the matrix is not positive definite.
   Values solve(const Values& right, const Values& guess) const;
 
  private:

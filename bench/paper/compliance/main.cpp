@@ -1,7 +1,7 @@
 /// @file
-/// Structural compliance minimisation: the stiffest cantilever of a given volume, on meshes that
-/// follow the design, beside the same on a fine uniform mesh. Both structures are judged on one
-/// mesh that is finer still.
+/// Structural compliance minimisation: the stiffest cantilever of a given volume, on meshes adapted
+/// to the design, and for comparison on a fine uniform mesh. Both structures are judged on one mesh
+/// that is finer still.
 
 #include <algorithm>
 #include <array>
@@ -34,15 +34,16 @@ constexpr std::array<cli::Option, 6> options{{
     {"--iterations", "N", "of the optimisation (default: 120; 3D: 40)"},
 }};
 
-/// The two optimisations, and the cells across the height of the mesh that judges both. With no
-/// cells the adapted one is alone, and judged on its own mesh with each triangle split in four.
+/// The two optimisations, and the number of cells across the height of the mesh that judges both.
+/// If there are no uniform cells, the adapted one runs alone and is judged on its own mesh with
+/// each triangle split in four.
 struct Study {
   Settings adapted, uniform;
   int judge_cells = 0;
   bool compares() const { return uniform.cells > 0; }
 };
 
-/// Defaults: in the plane, in space, and of the tests.
+/// Default settings: in 2D, in 3D, and for tests.
 struct Defaults {
   double length = 0, elements = 0;
   int iterations = 0, start_cells = 0, uniform_cells = 0, judge_cells = 0;
@@ -52,8 +53,8 @@ constexpr Defaults space{0.08, 12000, 40, 10, 20, 30};
 constexpr Defaults plane_test{0.05, 1000, 30, 10, 40, 80};
 constexpr Defaults space_test{0.16, 3000, 20, 10, 10, 20};
 
-/// The contrast and the number of elements that conjugate gradients and a cube's third dimension
-/// leave room for.
+/// Adjusts the contrast and the number of elements to conjugate gradients and to the size of 3D
+/// meshes.
 void fit_to_space(Settings& settings) {
   settings.problem.void_stiffness = 1e-4;
   settings.adaptation.smallest = 0.2;
@@ -67,7 +68,8 @@ const Defaults& defaults_of(const Experiment& experiment, int dimension) {
   return dimension == 3 ? space : plane;
 }
 
-/// In 2D, four to the minimum length; 0 if the systems would not fit into common memory.
+/// Cells across the height: in 2D four per minimum length; 0 if the systems would not fit into the
+/// memory of usual machines.
 int uniform_cells(const Experiment& experiment, int dimension, double length) {
   const Defaults& usual = defaults_of(experiment, dimension);
   constexpr double most = 400;
@@ -115,7 +117,7 @@ void say_outcome(Experiment& experiment, const Outcome& outcome,
                  outcome.adapt_seconds);
 }
 
-/// `excess`: compliance over that of the uniform mesh that is let pass.
+/// `excess` is the allowed compliance above that of the uniform mesh, as a share.
 void claim_as_good(Experiment& experiment, const std::vector<Outcome>& outcomes,
                    const std::vector<paper::Judgement>& judgements, double excess) {
   std::array<char, 100> text{};
@@ -147,15 +149,15 @@ void compare(Experiment& experiment) {
   experiment.claim(std::abs(judgements[0].volume_fraction - volume) < 0.002 * volume,
                    "the volume is the one that was asked for");
   if (study.compares())
-    // The test in space has few tetrahedra across a bar: with 2800 to 3400 of them, and whichever
-    // of equal swaps comes first, it is 11 to 28 % less stiff.
+    // The 3D test has few tetrahedra across a bar. With 2800 to 3400 of them, and depending on
+    // which of several equal swaps comes first, it is 11 to 28 % less stiff.
     claim_as_good(experiment, outcomes, judgements, Dim == 3 && experiment.small() ? 0.35 : 0.03);
   else
     experiment.claim(judgements[0].compliance < 1.03 * outcomes[0].last.compliance,
                      "split in four, the mesh gives the same compliance within 3 %");
 }
 
-/// Sizes are of one dimension, so who gives some gets that one only.
+/// Sizes depend on the dimension, so if the user gives some, only that dimension runs.
 void run(Experiment& experiment) {
   const cli::Arguments& given = experiment.arguments();
   const bool own_sizes = std::any_of(options.begin() + 1, options.end(),

@@ -65,7 +65,7 @@ double weighted_sum(const std::vector<double>& value_of, const std::vector<doubl
 
 double sharpness_at(const Path& path, int iteration) {
   const double doublings = std::log2(path.last_sharpness);
-  const double done = 1.5 * iteration / path.iterations;  // of the time in which it doubles
+  const double done = 1.5 * iteration / path.iterations;  // share of the doubling phase
   return std::exp2(std::min(doublings, std::floor((doublings + 1) * done)));
 }
 
@@ -100,7 +100,7 @@ void Optimiser<Dim>::use_filter(double length) {
   length_ = length;
 }
 
-/// Design and displacement are carried over, the displacement as a first guess.
+/// Adapts the mesh and transfers the design, and the displacement as an initial guess.
 template <int Dim>
 void Optimiser<Dim>::adapt_mesh() {
   const Adaptation& wanted = settings_.adaptation;
@@ -123,7 +123,7 @@ void Optimiser<Dim>::adapt_mesh() {
   for (double& density : design_of_) density = std::clamp(density, least_density, 1.0);
 }
 
-/// Filters and projects the design; returns it as it was between the two.
+/// Filters and projects the design; returns the filtered design before the projection.
 template <int Dim>
 std::vector<double> Optimiser<Dim>::project(double sharpness) {
   std::vector<double> smooth_of = filter_->smooth(design_of_);

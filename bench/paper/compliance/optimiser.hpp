@@ -1,8 +1,8 @@
 /// @file
-/// Optimiser<Dim>: looks for the stiffest cantilever of a given volume by the density method. The
-/// design, a density at each vertex, is smoothed by the filter, projected towards 0 and 1, and
-/// analysed; the derivative goes back the same way. Now and then the mesh is adapted to the
-/// densities and the derivative, and the design is carried over with its integral.
+/// Optimiser<Dim>: searches for the stiffest cantilever of a given volume by the density method.
+/// The design, a density at each vertex, is smoothed by the filter, projected towards 0 and 1, and
+/// analysed; the derivative is propagated back. From time to time the mesh is adapted to the
+/// densities and the derivative, and the design is transferred with its integral.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace ductile::paper {
 
-/// What one iteration found.
+/// Results of one iteration.
 struct Iteration {
   int number = 0;
   std::size_t elements = 0;
@@ -25,21 +25,21 @@ struct Iteration {
   double length = 0;  ///< of the filter
   double compliance = 0;
   double volume_fraction = 0;
-  double change = 0;  ///< largest of a density
+  double change = 0;  ///< largest change of a density
   double adapt_seconds = 0, solve_seconds = 0, seconds = 0;
 };
 
 template <int Dim>
 class Optimiser {
  public:
-  /// Both are kept by reference.
+  /// Keeps references to both.
   Optimiser(const runtime::Executor& executor, const Settings& settings);
 
-  /// Adapts the mesh if it is time, analyses the design and improves it. Thread safety: one thread.
+  /// Adapts the mesh if it is due, analyses the design and improves it. Thread safety: one thread.
   Iteration iterate();
 
   const meshadapt::AnyMesh& mesh() const { return any_; }
-  /// What the iteration found, [vertex]: where there is material, and the derivative.
+  /// Results of the last iteration, [vertex]: the density of material, and the derivative.
   const std::vector<double>& density() const { return density_of_; }
   const std::vector<double>& derivative() const { return derivatives_.gain_of; }
   std::size_t element_count() const { return fixed_->element_count(); }
@@ -68,7 +68,7 @@ class Optimiser {
   Derivatives derivatives_;
 };
 
-/// Densities and the mesh that they live on. It refers to both, so it is for passing them only.
+/// Densities and their mesh. It refers to both, so use it for passing arguments only.
 template <int Dim>
 struct DensityOnMesh {
   const meshadapt::AnyMesh& mesh;

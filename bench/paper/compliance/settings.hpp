@@ -1,5 +1,5 @@
 /// @file
-/// What is optimised and how: the problem, the path to its solution, and the meshes on the way.
+/// Settings of an optimisation: the problem, the path to its solution, and the meshes on the way.
 /// Lengths are in units of the cantilever's length, stiffness in units of the solid's.
 #pragma once
 
@@ -9,9 +9,9 @@ namespace ductile::paper {
 /// force of 1 pulls down the middle fifth of the other end.
 struct Problem {
   double volume_fraction = 0.5;
-  double minimum_length = 0.01;  ///< of bars and holes
+  double minimum_length = 0.01;  ///< minimum thickness of bars and holes
   double penalty = 3;            ///< stiffness is density^penalty (SIMP)
-  double void_stiffness = 1e-6;  ///< what is left of stiffness where there is no material
+  double void_stiffness = 1e-6;  ///< stiffness where there is no material
   double poisson = 0.3;
 };
 
@@ -20,9 +20,9 @@ inline constexpr double width = 0.25;
 
 struct Path {
   int iterations = 120;
-  double move_limit = 0.2;     ///< most that a density changes in an iteration
-  double last_sharpness = 16;  ///< of the projection; doubles from 1 on, see sharpness_at
-  double first_length = 0;     ///< of the filter, if more than the minimum length; see length_at
+  double move_limit = 0.2;     ///< largest change of a density in an iteration
+  double last_sharpness = 16;  ///< final sharpness; doubles from 1 on, see sharpness_at
+  double first_length = 0;     ///< initial filter length if above minimum_length, see length_at
 };
 
 /// Sharpness doubles in equal steps; the last third of the iterations has the last one.
@@ -32,8 +32,8 @@ double sharpness_at(const Path& path, int iteration);
 double length_at(const Path& path, double minimum_length, int iteration);
 
 struct Adaptation {
-  double elements = 0;    ///< of the adapted meshes, about; 0: the start mesh is kept
-  int interval = 5;       ///< iterations from one mesh to the next
+  double elements = 0;    ///< approximate number in adapted meshes; 0: the start mesh is kept
+  int interval = 5;       ///< iterations between adaptations
   double smallest = 0.1;  ///< edge length, in units of the filter's length
   double largest = 0.1;   ///< edge length, as the height of the cantilever is 0.5
   double anisotropy = 10;

@@ -1,7 +1,6 @@
 /// @file
-/// split_in_four: a plane mesh with each triangle cut into four alike. What is linear in the old
-/// triangles is linear in the new ones, so a field on the mesh loses nothing: a finer mesh to judge
-/// it on.
+/// split_in_four: a plane mesh with each triangle cut into four similar ones. Linear functions on
+/// old triangles are linear on the new ones, so a field loses nothing on this finer mesh.
 #pragma once
 
 #include "ductile/meshadapt/any_mesh.hpp"

@@ -22,7 +22,7 @@ cli::Colour material_colour(double density) {
   return (1 - density) * cli::Colour{0.96, 0.96, 0.93} + density * cli::Colour{0.10, 0.18, 0.32};
 }
 
-/// A mesh with the density on it, kept until the picture is drawn.
+/// A mesh with its density, kept until the picture is drawn.
 struct Frame {
   std::string title;
   AnyMesh mesh;
@@ -38,7 +38,7 @@ FieldPanel panel_of(const Frame& frame, bool lines) {
           .colour = material_colour};
 }
 
-/// Iterations whose meshes are shown: four, closer to each other at the beginning.
+/// Is the mesh of this iteration shown? Four are, more closely spaced at the beginning.
 bool is_shown(int iteration, int iterations) {
   return iteration == iterations / 20 || iteration == iterations / 6 ||
          iteration == iterations / 2 || iteration == iterations - 1;
@@ -52,7 +52,7 @@ std::string words_for(const Iteration& found) {
   return text.data();
 }
 
-/// "adapted_2d" stands for files; readers see "adapted".
+/// Names such as "adapted_2d" are for files; readers see "adapted".
 std::string title_of(const Outcome& outcome) {
   return outcome.name.substr(0, outcome.name.find('_')) + " mesh, " + words_for(outcome.last);
 }
@@ -77,7 +77,7 @@ void add_to(Table& history, const Iteration& found) {
                found.adapt_seconds, found.solve_seconds, found.seconds});
 }
 
-/// The part of a solid mesh that is material.
+/// The material part of a 3D mesh.
 AnyMesh material_of(const Frame& frame) {
   AnyMesh solid = frame.mesh;
   solid.triangles = {};

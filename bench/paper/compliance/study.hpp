@@ -1,6 +1,6 @@
 /// @file
-/// Study<Dim>: one optimisation after the other, on adapted meshes and on the start mesh, with what
-/// they leave behind: a history and a VTU series each, and pictures.
+/// Study<Dim>: runs optimisations on adapted meshes and on the start mesh, and writes their
+/// results: a history, a VTU series and pictures.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace ductile::paper {
 
-/// What an optimisation came to.
+/// Result of an optimisation.
 struct Outcome {
   std::string name;
   meshadapt::AnyMesh mesh;
@@ -24,7 +24,7 @@ struct Outcome {
 template <int Dim>
 Outcome optimise(Experiment& experiment, const std::string& name, const Settings& settings);
 
-/// Structures side by side, and in 2D the meshes beneath them.
+/// Draws structures side by side, and in 2D the meshes below them.
 template <int Dim>
 void draw_outcomes(Experiment& experiment, const std::string& name,
                    const std::vector<Outcome>& outcomes);

@@ -10,7 +10,7 @@ namespace ductile::paper {
 
 namespace {
 
-/// An edge as one triangle has it.
+/// An edge of one triangle.
 struct HalfEdge {
   Edge edge;
   std::uint32_t place;  // 3 * element + i

@@ -1,8 +1,8 @@
 /// @file
-/// DualMesh: a triangle mesh seen by vertex-centred finite volumes. Each vertex owns a cell; cells
-/// of neighbouring vertices meet in faces that run from the middle of the edge between them to the
-/// centres of its triangles (median dual). Fluxes live on edges, whose direction is from the first
-/// to the second vertex.
+/// DualMesh: a triangle mesh for vertex-centred finite volumes. Each vertex owns a cell; cells of
+/// neighbouring vertices meet in faces that run from the midpoint of the edge between them to the
+/// centres of its triangles (median dual). Fluxes live on edges, directed from the first to the
+/// second vertex.
 #pragma once
 
 #include <array>

@@ -23,16 +23,16 @@ namespace {
 using namespace ductile;
 using namespace ductile::paper;
 
-/// What is run by default, and in the test.
+/// The default settings, and those of the test.
 struct Plan {
-  int reference_cells;  ///< of the uniform meshes, from bottom to top
+  int reference_cells;  ///< from bottom to top in the reference's uniform mesh
   std::vector<int> uniform_cells;
   std::vector<double> adapted_errors;  ///< see AdaptGoal
   double show_error;
   double compare_at, show_until;  ///< times
 };
 
-constexpr int adapt_every = 16;  // intervals; in which fingers go on by the front's thickness
+constexpr int adapt_every = 16;  // intervals; in which fingers advance by the front's thickness
 
 Plan plan_for(const Experiment& experiment) {
   if (experiment.small()) return {48, {16, 32}, {0.012, 0.006}, 0.004, 0.1, 0.3};
@@ -47,7 +47,7 @@ std::string text(const char* format, double number) {
   return result.data();
 }
 
-/// Checked for every run.
+/// Claims about conservation, checked for every run.
 void claim_conservation(Experiment& experiment, const Simulation& run) {
   experiment.say("mass balance %.1e, largest change in a transfer %.1e, overshoot %.1e",
                  run.mass_error(), run.transfer_error(), run.overshoot());
@@ -128,7 +128,7 @@ class Comparison {
 
 ColourBar saturation_bar() { return {"saturation phi, domain 2 x 1", 0, 1}; }
 
-/// What a frame of the strip shows, kept until all are there.
+/// Contents of a frame of the strip, kept until all are there.
 struct Frame {
   meshadapt::AnyMesh mesh;
   std::vector<double> saturation_of;

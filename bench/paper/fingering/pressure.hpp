@@ -1,7 +1,7 @@
 /// @file
-/// Darcy's law: div u = 0, u = -grad(p) / viscosity, by linear finite elements and CHOLMOD. What
-/// enters on the left is given, p = 0 on the right, nothing passes above and below.
-/// The fluxes between the cells of a DualMesh that come out balance at every vertex.
+/// Darcy's law: div u = 0, u = -grad(p) / viscosity, by linear finite elements and CHOLMOD. The
+/// inflow on the left is given, p = 0 on the right, and no flow crosses the upper and lower sides.
+/// The resulting fluxes between the cells of a DualMesh balance at every vertex.
 #pragma once
 
 #include <Eigen/CholmodSupport>
@@ -12,10 +12,10 @@
 
 namespace ductile::paper {
 
-/// Viscosity e^(R (1 - saturation)): 1 for the fluid that comes in, e^R for the one that is there.
+/// Viscosity e^(R (1 - saturation)): 1 for the injected fluid, e^R for the displaced one.
 struct Fluids {
   double log_viscosity_ratio = 2;  ///< R
-  double diffusivity = 0.0004;     ///< of one in the other; width and speed of inflow are 1
+  double diffusivity = 0.0004;     ///< for width and speed of the inflow of 1
 };
 
 /// 1 / viscosity.
@@ -23,7 +23,7 @@ inline double mobility(const Fluids& fluids, double saturation) {
   return std::exp(fluids.log_viscosity_ratio * (saturation - 1));
 }
 
-/// Rates of flow; those through the left side are DualMesh::inflow_of.
+/// Flow rates; those through the left side are DualMesh::inflow_of.
 struct Flow {
   std::vector<double> pressure_of;  // [vertex]
   std::vector<double> flux_of;      // [edge], from its first vertex to its second

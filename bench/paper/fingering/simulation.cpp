@@ -16,7 +16,7 @@ namespace ductile::paper {
 
 namespace {
 
-/// Adds the time from here to the end of a block.
+/// Adds the duration of a block to a sum.
 class Stopwatch {
  public:
   explicit Stopwatch(Seconds& sum) : sum_(sum) {}
@@ -37,7 +37,7 @@ class Stopwatch {
 using Metric = meshadapt::Metric<2>;
 using Point = meshadapt::Vector<2>;
 
-/// The faster and smoother one: fields are noisy where the mesh has just been changed.
+/// The faster and smoother method, because fields are noisy where the mesh has just been changed.
 constexpr auto recovery = meshadapt::Recovery::double_projection;
 
 }  // namespace
@@ -124,8 +124,8 @@ std::vector<Metric> Simulation::wanted_metric(const AdaptGoal& goal) {
   return metric_of;
 }
 
-/// The metric that the flow of now will have carried to each vertex after so much time: the one at
-/// the point that it comes from.
+/// The metric at each vertex after the current flow has carried it for this time: the metric at the
+/// point where the flow to the vertex starts.
 std::vector<Metric> Simulation::carried(const std::vector<Metric>& metric_of, double time) const {
   const auto slope_of =
       meshadapt::recover_gradient<2>(executor_, dual_->mesh, flow_.pressure_of, recovery);

@@ -1,8 +1,8 @@
 /// @file
-/// Simulation: a fluid displaces a more viscous one from left to right. Time goes in intervals: the
-/// pressure is found for the saturation at the start of each, the saturation is carried along to
+/// Simulation: a fluid displaces a more viscous one from left to right. In each interval of time
+/// the pressure is computed for the saturation at its start, and the saturation is transported to
 /// its end. Between intervals the mesh may be adapted to both, and the saturation projected to it.
-/// The metric covers where the front will be until the mesh is adapted again.
+/// The metric covers where the front will be until the next adaptation.
 #pragma once
 
 #include <memory>
@@ -16,17 +16,17 @@
 
 namespace ductile::paper {
 
-/// Saturation at a point when time starts.
+/// Saturation at a point at the start.
 using Start = double (*)(const meshadapt::Vector<2>&);
 
-/// What the mesh is adapted to: interpolation errors (L2 norm over the domain, whose area is 2) of
-/// the saturation, and of the pressure as a share of its largest value.
+/// Goals of adaptation: interpolation errors (L2 norm over the domain, whose area is 2) of the
+/// saturation, and of the pressure relative to its largest value.
 struct AdaptGoal {
   double saturation_error = 0.002;
   double pressure_error = 0.002;
   double smallest_size = 0.001;
   double largest_size = 0.1;
-  double ahead = 0;  ///< time from now for which the mesh is to do
+  double ahead = 0;  ///< time from now that the metric must cover
 };
 
 /// Seconds: of the clock on the wall, and of all processors together.
@@ -37,7 +37,7 @@ struct Seconds {
   }
 };
 
-/// Where the time went; transfer includes what is prepared anew for a new mesh.
+/// Times by phase; transfer includes preparations for a new mesh.
 struct Timings {
   Seconds pressure, transport, adaptation, transfer;
   Seconds solving() const { return pressure + transport; }
@@ -49,7 +49,7 @@ class Simulation {
   Simulation(const runtime::Executor& executor, const Fluids& fluids, const AnyMesh& mesh,
              Start start);
 
-  /// Adapts the mesh to what there is at the start, several times, and samples it anew.
+  /// Adapts the mesh to the initial state, several times, and samples that anew.
   void adapt_to_start(const AdaptGoal& goal, Start start);
 
   void adapt(const AdaptGoal& goal);
@@ -58,7 +58,7 @@ class Simulation {
   const AnyMesh& mesh() const { return mesh_; }
   const DualMesh& dual() const { return *dual_; }
   const std::vector<double>& saturation() const { return saturation_of_; }
-  /// Solves for it unless that was done already.
+  /// Computes the flow unless it is current.
   const std::vector<double>& pressure() {
     find_flow();
     return flow_.pressure_of;
@@ -69,18 +69,19 @@ class Simulation {
   /// Mean over time of the number of triangles.
   double mean_triangles() const { return triangle_time_ / time_; }
   bool adapted() const { return adaptations_ > 0; }
-  /// Steps of the transport.
+  /// Number of steps of the transport.
   int steps() const { return steps_; }
 
-  /// The integral over the mesh of what has these values at its vertices.
+  /// Integral over the mesh of the linear function with these values at the vertices.
   double integral(const std::vector<double>& value_of) const;
   /// The integral of the saturation.
   double mass() const { return integral(saturation_of_); }
-  /// Mass beyond what was there at the start, came in and went out since, as a share.
+  /// Relative error of the mass balance: the mass compared with the initial mass plus inflow minus
+  /// outflow.
   double mass_error() const;
-  /// The largest change of the mass in a projection to a new mesh, as a share.
+  /// Largest relative change of the mass in a projection to a new mesh.
   double transfer_error() const { return transfer_error_; }
-  /// How far the saturation was at most outside 0 to 1.
+  /// Largest amount by which the saturation has left the range 0 to 1.
   double overshoot() const { return overshoot_; }
 
  private:

@@ -1,6 +1,6 @@
 /// @file
-/// The runs of the experiment, how far two of them lie apart, and what a uniform mesh would need to
-/// come as near to a reference as an adapted one does.
+/// The runs of the experiment, the difference between two of them, and the cost of a uniform mesh
+/// that comes as close to a reference as an adapted one.
 #pragma once
 
 #include <functional>
@@ -12,11 +12,11 @@
 
 namespace ductile::paper {
 
-/// One run from the start to a time.
+/// Options of one run.
 struct RunOptions {
-  int cells = 32;            ///< of the uniform mesh to start with, from bottom to top
+  int cells = 32;            ///< from bottom to top in the uniform start mesh
   double end = 1;            ///< time
-  double interval = 0.0025;  ///< between two pressures
+  double interval = 0.0025;  ///< time between two pressure solves
   int adapt_every = 0;       ///< intervals; 0: never
   AdaptGoal goal = {};       ///< `ahead` becomes the time between adaptations
 };
@@ -24,24 +24,24 @@ struct RunOptions {
 /// Called at the start and after each interval.
 using Watch = std::function<void(Simulation&)>;
 
-/// The case: two squares, a sharp front on the left that is a little wavy.
+/// The case: a domain of two squares, with a sharp, slightly wavy front on the left.
 std::unique_ptr<Simulation> run_case(const runtime::Executor& executor, const RunOptions& options,
                                      const Watch& watch);
 
-/// What a run came to, beside a reference.
+/// Result of a run, compared with a reference.
 struct Outcome {
   bool adapted = false;
   double triangles = 0;  ///< mean over time
   double error = 0;      ///< integral of the difference of saturations at the end
-  Seconds seconds = {};  ///< without output
-  Seconds solving = {};  ///< of these, for pressure and transport
+  Seconds seconds = {};  ///< excludes output
+  Seconds solving = {};  ///< the part for pressure and transport
   int steps = 0;
 };
 
 Outcome compare(const runtime::Executor& executor, const Simulation& run,
                 const Simulation& reference);
 
-/// The saturation along the line of this x, by y: where the edges of the mesh cross it.
+/// Saturation along the line of this x, by y, at the intersections with edges of the mesh.
 std::vector<std::pair<double, double>> profile(const Simulation& run, double x);
 
 /// How far the fingers reach, and how many there are.
@@ -51,8 +51,8 @@ struct Fingers {
 };
 Fingers fingers(const Simulation& run);
 
-/// What uniform meshes need for an error: triangles and time as powers of the error through the
-/// two of `uniform` that are nearest to it.
+/// Cost of uniform meshes for this error: triangles and time as powers of the error through the two
+/// nearest of `uniform`.
 Outcome uniform_for_error(const std::vector<Outcome>& uniform, double error);
 
 }  // namespace ductile::paper

@@ -10,7 +10,7 @@ namespace ductile::paper {
 
 namespace {
 
-/// Share of the largest step within bounds that is taken.
+/// The share of the largest step within bounds that is used.
 constexpr double caution = 0.9;
 
 template <class Value>
@@ -66,8 +66,8 @@ double Transport::low_order(VertexId vertex, const std::vector<double>& old_of, 
   return old_of[vertex] + step / dual_.mesh.share_of[vertex] * gain;
 }
 
-/// What share of all corrections towards and away from a vertex leaves it between the values around
-/// it.
+/// The shares of all corrections towards and away from a vertex that keep it within the values
+/// around it.
 void Transport::find_limits(VertexId vertex, const std::vector<double>& old_of, double step) {
   double low = std::min(low_of_[vertex], old_of[vertex]);
   double high = std::max(low_of_[vertex], old_of[vertex]);

@@ -13,19 +13,19 @@
 
 namespace ductile::paper {
 
-/// How much of the fluid with saturation 1 came in and went out so far, as areas.
+/// Injected and produced amounts of the fluid with saturation 1 so far, as areas.
 struct Ledger {
   double injected = 0, produced = 0;
 };
 
 class Transport {
  public:
-  /// Keeps references to executor and mesh; the flow may go.
+  /// Keeps references to executor and mesh, but not to the flow.
   Transport(const runtime::Executor& executor, const DualMesh& dual, const Fluids& fluids,
             const Flow& flow);
 
-  /// Goes on for `interval` in as many equal steps as bounds ask for; returns their number.
-  /// Thread safety: one caller; runs on the executor.
+  /// Advances by `interval` in as many equal steps as bounds require; returns their number. Thread
+  /// safety: one caller; runs on the executor.
   int advance(std::vector<double>& saturation_of, Ledger& ledger, double interval);
 
  private:
@@ -35,7 +35,7 @@ class Transport {
   void find_limits(VertexId vertex, const std::vector<double>& old_of, double step);
   double corrected(VertexId vertex, const std::vector<double>& old_of, double step) const;
 
-  /// What is exchanged along an edge beside the upwind flux, before it is limited.
+  /// The correction to the upwind flux along an edge, before limiting.
   double correction(EdgeId edge, const std::vector<double>& old_of) const {
     const auto [from, to] = dual_.edges[edge];
     return correction_of_[edge] * (old_of[from] - old_of[to]);

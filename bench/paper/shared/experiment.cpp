@@ -48,7 +48,7 @@ Experiment::Setup setup_from(const ExperimentEntry& entry, const std::vector<std
           .arguments = arguments};
 }
 
-/// As a shell takes it for one word.
+/// The path quoted as one word for a shell.
 std::string word(const fs::path& path) {
   std::string text = "'";
   for (const char c : fs::absolute(path).string())
@@ -56,7 +56,7 @@ std::string word(const fs::path& path) {
   return text + "'";
 }
 
-/// Runs a script of gnuplot in the folder that has the tables and gets the plots.
+/// Runs a gnuplot script in the folder with the tables, where it writes the plots.
 void draw_plots(Experiment& experiment, const fs::path& script) {
   const std::string command = "cd " + word(experiment.folder()) + " && gnuplot " + word(script);
   if (std::system(command.c_str()) != 0)
@@ -69,7 +69,7 @@ Experiment::Experiment(const Setup& setup) : setup_(setup), executor_({.threads 
   std::error_code error;
   fs::create_directories(setup_.folder, error);
   if (error) throw meshadapt::Error(setup_.folder.string() + ": " + error.message());
-  std::ofstream(file("report.txt"));  // what an earlier run said goes
+  std::ofstream(file("report.txt"));  // clears the report of an earlier run
 }
 
 fs::path Experiment::file(const std::string& name) const {

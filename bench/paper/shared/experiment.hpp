@@ -1,6 +1,6 @@
 /// @file
-/// The main() of an experiment: what all of them are told on the command line, the folder that
-/// everything is written to, and the claims that they check. An experiment is one function:
+/// The main() of an experiment: its command line, the folder for all outputs, and the claims that
+/// it checks. An experiment is one function:
 ///   void run(Experiment& experiment);
 ///   int main(int count, char** word) { return run_experiment(count, word, {"title", run}); }
 #pragma once
@@ -28,21 +28,21 @@ class Experiment {
 
   const runtime::Executor& executor() const { return executor_; }
 
-  /// A test that takes seconds, not minutes, is wanted.
+  /// True for a test, which should take seconds, not minutes.
   bool small() const { return setup_.small; }
 
-  /// What was typed, for options of the experiment's own (ExperimentEntry::options).
+  /// The parsed command line, for options of the experiment itself (ExperimentEntry::options).
   const cli::Arguments& arguments() const { return setup_.arguments; }
 
   const std::filesystem::path& folder() const { return setup_.folder; }
 
-  /// Where an output file goes; folders in the name are made.
+  /// The path of an output file; makes folders in its name.
   std::filesystem::path file(const std::string& name) const;
 
   /// Prints a line, and keeps it for the file report.txt. `format` is as in printf.
   [[gnu::format(printf, 2, 3)]] void say(const char* format, ...);
 
-  /// Says the claim and whether it held; one that did not makes the program fail at its end.
+  /// Prints the claim and whether it holds. If a claim does not hold, the program fails at the end.
   void claim(bool holds, const std::string& what);
 
   bool all_claims_held() const { return failed_claims_ == 0; }
@@ -56,8 +56,8 @@ class Experiment {
 struct ExperimentEntry {
   const char* title;  ///< one line for help
   void (*run)(Experiment&);
-  const char* plots;  ///< the script of gnuplot that draws its figures from its tables
-  std::span<const cli::Option> options = {};  ///< beside those that all experiments have
+  const char* plots;  ///< the gnuplot script that draws its figures from its tables
+  std::span<const cli::Option> options = {};  ///< in addition to those of all experiments
 };
 
 /// Returns the exit status: 0 if the experiment ran to its end and all its claims held.

@@ -34,7 +34,7 @@ Surface new_surface(int width, int height) {
   return surface;
 }
 
-// ---- Where a panel shows what ----
+// ---- Layout of panels ----
 
 void expect_plane_field(const FieldPanel& panel) {
   if (panel.mesh.dimension != 2 || panel.mesh.triangles.size() == 0)
@@ -62,7 +62,7 @@ struct Pixel {
   double x = 0, y = 0;
 };
 
-/// One panel while it is painted.
+/// A panel that is being painted.
 struct Canvas {
   const FieldPanel& panel;
   Window window;
@@ -176,7 +176,7 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int lengt
   return CAIRO_STATUS_SUCCESS;
 }
 
-/// The height in pixels, with its title, of each row of panels.
+/// Height of each row of panels in pixels, including the title.
 std::vector<int> row_heights(const std::vector<Canvas>& canvases, std::size_t columns) {
   std::vector<int> heights((canvases.size() + columns - 1) / columns, 0);
   for (std::size_t i = 0; i < canvases.size(); ++i) {
@@ -193,8 +193,7 @@ std::string short_number(double value) {
   return text.data();
 }
 
-/// From its lower left corner: the value at its start, the colours, the value at the end, the
-/// label.
+/// Draws a colour bar from its lower left corner: first value, colours, last value, label.
 void draw_bar(cairo_t* pen, const ColourBar& bar, const Pixel& corner) {
   constexpr int length = 160, height = 12, space = 6;
   const auto write = [&](const std::string& text, double x) {

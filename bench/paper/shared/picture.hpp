@@ -14,12 +14,12 @@
 
 namespace ductile::paper {
 
-/// A part of the plane; one without extent stands for all of the mesh.
+/// A part of the plane; without extent, the whole mesh.
 struct Window {
   double left = 0, bottom = 0, right = 0, top = 0;
 };
 
-/// What one panel shows. It refers to mesh and values, so it is for passing them only.
+/// Contents of a panel. It refers to mesh and values, so use it for passing arguments only.
 struct FieldPanel {
   const meshadapt::AnyMesh& mesh;
   std::span<const double> value_of = {};  ///< [vertex]; none: white
@@ -32,7 +32,7 @@ struct FieldPanel {
 
 /// A bar of colours below the panels, with the values at its ends.
 struct ColourBar {
-  std::string label = {};  ///< what the colours mean; none: no bar
+  std::string label = {};  ///< meaning of the colours; none: no bar
   double from = 0, to = 1;
   cli::Colour (*colour)(double fraction) = cli::size_colour;
 };

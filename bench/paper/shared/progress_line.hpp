@@ -1,6 +1,6 @@
 /// @file
-/// ProgressLine: how far a long run is. On a terminal one line that changes in place; elsewhere a
-/// line now and then, so that a log stays short.
+/// ProgressLine: reports the progress of a long run: on a terminal by one line that changes in
+/// place, elsewhere by an occasional line, so that logs stay short.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// `done` is a share from 0 to 1; the time still needed is guessed from it.
+  /// `done` is a share from 0 to 1, from which the remaining time is estimated.
   void show(double done, const std::string& text);
 
  private:

@@ -10,7 +10,7 @@ namespace ductile::paper {
 
 namespace {
 
-/// `digits` significant ones.
+/// The number with this many significant digits.
 std::string text_of(double number, int digits) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.*g", digits, number);

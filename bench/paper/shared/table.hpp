@@ -14,7 +14,7 @@ class Table {
  public:
   explicit Table(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
-  /// One number for each column, or std::runtime_error is thrown.
+  /// Adds a row. Throws std::runtime_error unless there is a number for each column.
   void add(std::vector<double> row);
 
   std::size_t size() const { return rows_.size(); }

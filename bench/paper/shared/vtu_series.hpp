@@ -13,10 +13,10 @@ namespace ductile::paper {
 
 class VtuSeries {
  public:
-  /// `index` is where NAME.pvd goes; the folder beside it is made.
+  /// `index` is the path of NAME.pvd; makes the folder beside it.
   explicit VtuSeries(std::filesystem::path index);
 
-  /// Writes one file and the index anew, so that a run can be looked at while it goes on.
+  /// Writes a file and rewrites the index, so that a run can be viewed while it goes on.
   void add(double time, const meshadapt::AnyMesh& mesh,
            const std::vector<meshadapt::NamedField>& fields);
 

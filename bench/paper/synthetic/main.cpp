@@ -1,6 +1,6 @@
 /// @file
-/// The synthetic benchmark: a mesh that follows a moving front, in the unit square and cube. How
-/// long each kernel takes on 1, 2, 4, ... threads, and how the interpolation error falls with the
+/// The synthetic benchmark: a mesh follows a moving front in the unit square and cube. Measures the
+/// time of each kernel on 1, 2, 4, ... threads, and how the interpolation error falls with the
 /// number of elements.
 
 #include <array>
@@ -33,12 +33,12 @@ constexpr std::array<cli::Option, 5> options{{
 struct Size {
   double elements = 0;
   int steps = 0;
-  int start_cells = 0;  ///< along each axis of the mesh to start from; 0: of as many elements
+  int start_cells = 0;  ///< along each axis of the start mesh; 0: chosen for as many elements
 };
 
 Size size_of_march(const Experiment& experiment, int dimension) {
   const cli::Arguments& given = experiment.arguments();
-  // What the paper ran, and the test.
+  // The sizes of the paper, and those of the test.
   Size size = dimension == 2 ? Size{550000, 50, 200} : Size{210000, 50, 50};
   if (experiment.small()) size = dimension == 2 ? Size{2000, 4} : Size{3000, 4};
   if (const auto elements = given.positive("--elements"))
@@ -56,7 +56,7 @@ paper::MeshGoal goal_of(int dimension, double elements) {
   return goal;
 }
 
-// ---- What a march leaves to look at ----
+// ---- Pictures of a march ----
 
 /// A mesh of the march, kept until the picture is drawn.
 struct Frame {
@@ -111,7 +111,7 @@ void write_scene(const Experiment& experiment, const std::string& name, const cl
   outputs.commit();
 }
 
-/// What each tetrahedron is painted in: psi at its corners, on average.
+/// [tetrahedron] Colour for the mean of psi at its corners.
 std::vector<cli::Colour> psi_colours(const Frame& frame) {
   std::vector<cli::Colour> colour_of;
   colour_of.reserve(frame.mesh.tetrahedra.size());
@@ -123,7 +123,7 @@ std::vector<cli::Colour> psi_colours(const Frame& frame) {
   return colour_of;
 }
 
-/// Cuts through the cube at several times, in the colours of psi, and the last in those of sizes.
+/// Draws cuts through the cube at several times, coloured by psi, and the last one also by size.
 void draw_solid(Experiment& experiment, const std::vector<Frame>& frames) {
   const int axis = 2;
   cli::Scene strip;
@@ -140,7 +140,7 @@ void draw_solid(Experiment& experiment, const std::vector<Frame>& frames) {
               700);
 }
 
-/// Keeps some frames and writes some to the series.
+/// Keeps some frames, and writes some to the series.
 class Watcher {
  public:
   Watcher(Experiment& experiment, const std::string& name, int steps)
@@ -173,14 +173,14 @@ class Watcher {
 
 // ---- The two halves of the benchmark ----
 
-/// 1, 2, 4, ... below the last one.
+/// Powers of 2 below the last count.
 std::vector<int> thread_counts_below(int last) {
   std::vector<int> counts;
   for (int threads = 1; threads < last; threads *= 2) counts.push_back(threads);
   return counts;
 }
 
-/// One march on all threads, some steps of which are taken on fewer as well.
+/// Runs one march on all threads, and some of its steps on fewer threads as well.
 void time_kernels(Experiment& experiment, int dimension) {
   const std::string name = std::to_string(dimension) + "d";
   const cli::Arguments& given = experiment.arguments();
@@ -210,8 +210,8 @@ void time_kernels(Experiment& experiment, int dimension) {
     draw_solid(experiment, watcher.frames());
 }
 
-/// Sizes of meshes, each twice the one before, up to that of the march. Below about 10,000
-/// tetrahedra the rate is not yet there to be seen, so the test has one size in 3D.
+/// Sizes of meshes, each twice the previous one, up to that of the march. The rate does not show
+/// below about 10,000 tetrahedra, so the test has one size in 3D.
 std::vector<double> element_goals(const Experiment& experiment, int dimension) {
   const double elements = size_of_march(experiment, dimension).elements;
   if (experiment.small())

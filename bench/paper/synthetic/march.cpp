@@ -43,7 +43,7 @@ bool identical(const AdaptedMesh& a, const AdaptedMesh& b) {
          same_bytes(a.metric.values, b.metric.values);
 }
 
-/// Whether so many of a number of steps, evenly spread, count this one among them.
+/// Is this step one of the `timed` steps, which are spread evenly?
 bool is_timed(int step, const March& march) {
   return (step + 1) * march.timed / march.until > step * march.timed / march.until;
 }
@@ -55,7 +55,7 @@ FollowedMesh follow(const runtime::Executor& executor, const AnyMesh& mesh, cons
   const auto start = std::chrono::steady_clock::now();
   meshadapt::SolutionMetricOptions options;
   options.goal.complexity = meshadapt::complexity_of_elements(mesh.dimension, goal.elements);
-  options.goal.norm = 1;  // in which a jump does not spoil the rate
+  options.goal.norm = 1;  // in this norm a jump does not spoil the rate
   options.goal.bounds = {goal.smallest, goal.largest, goal.anisotropy};
   const meshadapt::SolutionMetric metric =
       meshadapt::solution_metric(executor, mesh, sampled_solution(executor, mesh, phase), options);
@@ -68,7 +68,7 @@ AnyMesh fitted_mesh(const runtime::Executor& executor, AnyMesh mesh, MeshGoal& g
   const double wanted = goal.elements;
   for (const double phase : phases) {
     mesh = follow(executor, mesh, goal, phase).adapted.mesh;
-    // After a large step in phase, one mesh says little.
+    // After a large step in phase, a single mesh is not representative.
     const double ratio = goal.elements / static_cast<double>(element_count(mesh));
     goal.elements = wanted * std::clamp(ratio, 0.7, 1.4);
   }

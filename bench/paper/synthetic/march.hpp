@@ -15,9 +15,9 @@
 
 namespace ductile::paper {
 
-/// What meshes are asked for.
+/// Requirements on meshes.
 struct MeshGoal {
-  double elements = 0;       ///< about as many
+  double elements = 0;       ///< approximate number
   double smallest = 1e-5;    ///< size; the jump would ask for 0
   double largest = 0.2;      ///< size
   double anisotropy = 1000;  ///< the longest size over the shortest
@@ -34,22 +34,22 @@ FollowedMesh follow(const runtime::Executor& executor, const meshadapt::AnyMesh&
 /// Seconds, summed over time steps.
 struct KernelSeconds {
   std::array<double, meshadapt::kernels.size()> kernels{};
-  double other = 0;   ///< of adapt(): set-up, renumbering
+  double other = 0;   ///< set-up and renumbering in adapt()
   double metric = 0;  ///< sampling, recovery of the Hessian, scaling
   double adapt() const { return std::accumulate(kernels.begin(), kernels.end(), other); }
 };
 
 struct March {
   MeshGoal goal;
-  int steps = 50;              ///< that the period is divided into
-  int until = 50;              ///< the last one to be taken
-  int timed = 10;              ///< of those taken, how many are timed, evenly spread
-  std::vector<int> threads{};  ///< on which they are timed, besides those of the executor
-  /// Called with what each step left.
+  int steps = 50;              ///< number of steps in a period
+  int until = 50;              ///< the last step to take
+  int timed = 10;              ///< number of timed steps, spread evenly
+  std::vector<int> threads{};  ///< numbers of threads for timed steps, besides the executor's
+  /// Called with the result of each step.
   std::function<void(int step, double phase, const meshadapt::AnyMesh& mesh)> look{};
 };
 
-/// Steps on one number of threads.
+/// Times of steps on one number of threads.
 struct TimedSteps {
   int threads = 0;
   int steps = 0;
@@ -60,12 +60,12 @@ struct MarchReport {
   double mean_elements = 0;
   TimedSteps all;                   ///< every step, on the executor's threads
   std::vector<TimedSteps> timed{};  ///< the same steps on each number of threads, fewest first
-  bool identical = true;            ///< their meshes and metrics, byte for byte
+  bool identical = true;            ///< meshes and metrics did not depend on threads
 };
 
-/// The mesh adapted to the solution at one phase after the other. From one to the next, the goal
-/// changes until meshes have as many elements as wanted: where psi jumps, the metric varies too
-/// much for complexity_of_elements() to know.
+/// Adapts the mesh to the solution at each phase in order. The goal is adjusted from phase to phase
+/// until meshes have the wanted number of elements: at the jump of psi the metric varies too much
+/// for complexity_of_elements() to predict it.
 meshadapt::AnyMesh fitted_mesh(const runtime::Executor& executor, meshadapt::AnyMesh mesh,
                                MeshGoal& goal, const std::vector<double>& phases);
 
@@ -73,12 +73,12 @@ meshadapt::AnyMesh fitted_mesh(const runtime::Executor& executor, meshadapt::Any
 /// and are not counted.
 MarchReport march(const runtime::Executor& executor, meshadapt::AnyMesh mesh, const March& march);
 
-/// Triangles or tetrahedra.
+/// Number of triangles, or of tetrahedra in 3D.
 std::size_t element_count(const meshadapt::AnyMesh& mesh);
 
-/// The unit square or cube to start from, with so many cells along each axis.
+/// The start mesh of the unit square or cube, with this many cells along each axis.
 meshadapt::AnyMesh start_mesh_of(int dimension, int cells);
-/// The same with about as many elements.
+/// The start mesh with about this many elements.
 meshadapt::AnyMesh start_mesh(int dimension, double elements);
 
 }  // namespace ductile::paper

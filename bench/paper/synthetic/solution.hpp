@@ -12,7 +12,7 @@
 
 namespace ductile::paper {
 
-/// psi's values at the vertices.
+/// Values of psi at the vertices.
 meshadapt::AnyField sampled_solution(const runtime::Executor& executor,
                                      const meshadapt::AnyMesh& mesh, double phase);
 
@@ -25,8 +25,8 @@ struct InterpolationError {
   double beside_jump = 0;  ///< L2 over the elements that the jump does not cut
 };
 
-/// Measured at about 50 points in each element, so elements cut by the jump count with an accuracy
-/// of some per cent of their own share.
+/// Evaluated at about 50 points in each element, so elements cut by the jump contribute with an
+/// error of some per cent of their share.
 template <int Dim>
 InterpolationError interpolation_error(const runtime::Executor& executor,
                                        const meshadapt::AnyMesh& mesh, double phase);

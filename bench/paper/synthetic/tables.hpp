@@ -1,6 +1,6 @@
 /// @file
-/// The tables of the synthetic benchmark, and what they show: the time of each kernel and how it
-/// shrinks with more threads; the interpolation error and how it shrinks with more elements.
+/// The tables of the synthetic benchmark: the time of each kernel by number of threads; the
+/// interpolation error by number of elements.
 #pragma once
 
 #include <string>
@@ -18,14 +18,14 @@ struct ErrorRow {
   InterpolationError error;
 };
 
-/// Says the seconds per step and the parallel efficiency against the fewest threads, kernel by
+/// Prints the seconds per step and the parallel efficiency relative to the fewest threads, by
 /// kernel; writes both to NAME, for plots.
 void say_kernels(Experiment& experiment, const std::string& name, const MarchReport& report);
 
-/// Says the errors and the rates from row to row; writes them to NAME, for plots.
+/// Prints the errors and the rates between rows; writes them to NAME, for plots.
 void say_errors(Experiment& experiment, const std::string& name, const std::vector<ErrorRow>& rows);
 
-/// The exponent r of error = constant * elements^-r from the first row to the last, beside the
+/// The exponent r of error = constant * elements^-r from the first row to the last, away from the
 /// jump.
 double convergence_rate(const std::vector<ErrorRow>& rows);
 

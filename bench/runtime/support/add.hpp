@@ -18,8 +18,8 @@ enum class Clock {
   manual,  ///< seconds that the body reports by SetIterationTime
 };
 
-/// `name` is SUBJECT/CASE/CANDIDATE; CANDIDATE is LIBRARY.METHOD, or `floor` for what no candidate
-/// can be faster than. body(state, threads) is called for each number of threads; it loops over the
+/// `name` is SUBJECT/CASE/CANDIDATE; CANDIDATE is LIBRARY.METHOD, or `floor` for a lower bound of
+/// all candidates. body(state, threads) is called for each number of threads; it loops over the
 /// state. On more than one thread, counters ping_before_ns and ping_after_ns come with each sample.
 /// Thread safety: one thread.
 template <class Body>

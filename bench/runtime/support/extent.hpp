@@ -1,8 +1,8 @@
 /// @file
-/// How much a run measures: its extent, its numbers of threads, and the main function of every
-/// benchmark program. The environment decides, so that one command drives many programs:
-/// DUCTILE_BENCH is `quick`, `standard` (if unset) or `full`; DUCTILE_BENCH_THREADS lists numbers
-/// of threads, "1 2 4"; without it they double up to the cores of the machine.
+/// The extent of a run, its numbers of threads, and the main function of every benchmark program.
+/// Environment variables set them, so that one command can drive many programs: DUCTILE_BENCH is
+/// `quick`, `standard` (the default) or `full`; DUCTILE_BENCH_THREADS lists numbers of threads, "1
+/// 2 4"; by default they double up to the cores of the machine.
 #pragma once
 
 #include <vector>
@@ -26,11 +26,11 @@ T by_extent(T quick, T standard, T full) {
   return e == Extent::quick ? quick : e == Extent::standard ? standard : full;
 }
 
-/// Ascending, from 1 unless the environment says otherwise. Throws std::runtime_error if that is
-/// not a list of positive numbers. Thread safety: as extent().
+/// Ascending numbers of threads, from 1 unless the environment says otherwise. Throws
+/// std::runtime_error if that has no list of positive numbers. Thread safety: as extent().
 std::vector<int> thread_counts();
 
-/// Those above 1; 1 itself if there are no others.
+/// The numbers of threads above 1; 1 if there are none.
 std::vector<int> team_sizes();
 
 /// The main function of a program that registers its benchmarks in `add_all`: Google Benchmark's

@@ -1,6 +1,6 @@
 /// @file
-/// Graphs to colour: what they are called and how they are made. A new graph is a function that
-/// returns its edges and a line in graph_cases() (graphs.cpp).
+/// Graphs to colour, with their names and generators. A new graph is a function that returns its
+/// edges and a line in graph_cases() (graphs.cpp).
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct EdgeList {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
 };
 
-/// Both directions of every edge. Throws std::out_of_range for a vertex that is not there.
+/// Rows with both directions of every edge. Throws std::out_of_range for an invalid vertex.
 Rows rows(const EdgeList& list);
 
 // ---- Generators: the same graph in every run ----
@@ -28,7 +28,7 @@ Rows rows(const EdgeList& list);
 /// A box of side^dim vertices in rows; every cell is cut into simplices along its main diagonal
 /// (Kuhn). dim is 2 or 3.
 EdgeList mesh(std::uint32_t side, int dim);
-/// Vertices renamed at random.
+/// The graph with its vertices renamed at random.
 EdgeList in_random_order(EdgeList list);
 /// The vertices of mesh(side, dim) renamed along a Hilbert curve, which keeps neighbours near each
 /// other in memory: the cache-friendly order.
@@ -43,7 +43,7 @@ EdgeList random_geometric(std::uint32_t vertex_count);
 EdgeList star(std::uint32_t vertex_count);
 EdgeList path(std::uint32_t vertex_count);
 
-// ---- What the benchmarks use ----
+// ---- Graphs of the benchmarks ----
 
 struct GraphCase {
   std::string name;

@@ -9,7 +9,7 @@
 namespace ductile::bench {
 namespace {
 
-/// In (0, 1], the same in every run.
+/// A pseudo-random number in (0, 1], the same in every run.
 double random(std::size_t i) {
   return (runtime::mix32(static_cast<std::uint32_t>(i)) + 1.0) / 4294967296.0;
 }
@@ -59,7 +59,7 @@ std::string name_of(Size size) {
 
 const std::vector<LoopCase>& loop_cases() {
   static const std::vector<LoopCase> cases = [] {
-    // Bodies that do next to nothing show what a launch, and handing out an iteration, costs.
+    // Loops with trivial bodies measure the cost of a launch and of handing out iterations.
     std::vector<LoopCase> made = {{"launch", shapes, 128, 0}, {"empty_1e6", shapes, 1000000, 0}};
     for (const Size size : sizes())
       for (const Shape& shape : shapes)

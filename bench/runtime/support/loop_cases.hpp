@@ -1,5 +1,5 @@
 /// @file
-/// Loops to share out: shapes (how the cost of an iteration depends on its index), numbers of
+/// Loops to parallelise: shapes (how the cost of an iteration depends on its index), numbers of
 /// iterations and mean costs. A new shape is one line in loop_cases.cpp; a new candidate is one
 /// call of add_loops.
 #pragma once
@@ -33,14 +33,14 @@ struct LoopCase {
   double mean_units;  ///< of work(), nominal nanoseconds
 };
 
-/// Those of the extent of this run; made once. Thread safety: one thread.
+/// The cases of this run's extent; made once. Thread safety: one thread.
 const std::vector<LoopCase>& loop_cases();
 
-/// Of each iteration; made at the first call and kept. Thread safety: one thread.
+/// Cost of each iteration; made at the first call and kept. Thread safety: one thread.
 std::span<const std::uint32_t> units_of(const LoopCase& loop_case);
 
-/// Adds a candidate for all cases. `make(threads)` returns what runs a loop: a function of the
-/// number of iterations and of a body, which it calls for every index. Where iterations are handed
+/// Adds a candidate for all cases. `make(threads)` returns a function that runs a loop: it takes
+/// the number of iterations and a body, which it calls for every index. If iterations are handed
 /// out in chunks, a chunk has loop_grain of them.
 constexpr std::size_t loop_grain = 64;
 template <class Make>

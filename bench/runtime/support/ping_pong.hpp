@@ -1,9 +1,9 @@
 /// @file
-/// How far two threads are from each other: the time a cache line takes to go from one to the other
-/// and back. Virtual machines move their cores: the two may be hyperthreads of one core at one time
-/// and far apart at another, and no figure on two threads means anything without it.
-/// In a header, because the two threads must be those of the OpenMP runtime that the program uses:
-/// others would share their cores with its waiting threads.
+/// Distance between two threads: the time for a cache line to go from one to the other and back.
+/// Virtual machines move their cores: the two may be hyperthreads of one core at one time and far
+/// apart at another, so figures on two threads mean nothing without it. In a header, because the
+/// two threads must belong to the OpenMP runtime of the program: others would share their cores
+/// with its waiting threads.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +53,7 @@ class PingPong {
   alignas(128) std::atomic<bool> late_{false};
   std::chrono::steady_clock::time_point deadline_ =
       std::chrono::steady_clock::now() + std::chrono::milliseconds(20);
-  double best_ns_ = never;  // of side 0
+  double best_ns_ = never;  // of side 0's batches
 };
 
 /// Nanoseconds of a round trip between two threads, 0 if they did not run at once.

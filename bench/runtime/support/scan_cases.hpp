@@ -1,6 +1,6 @@
 /// @file
-/// add_scans, add_sorts: candidates that replace values by the sum of those before them, or sort
-/// them, at all sizes; what they do is checked once per sample.
+/// add_scans, add_sorts: add candidates that compute prefix sums or sort, at all sizes; each
+/// sample's result is checked once.
 #pragma once
 
 #include <benchmark/benchmark.h>

@@ -1,5 +1,5 @@
 /// @file
-/// Lawson's edge flips, serially: a stack of edges; where one was flipped, the four around follow.
+/// Lawson's edge flips, serially: a stack of edges; after a flip, the four edges around are pushed.
 #pragma once
 
 #include <array>

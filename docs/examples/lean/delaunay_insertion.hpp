@@ -1,7 +1,7 @@
 /// @file
-/// The Delaunay triangulation of points by insertion one after the other, serially. Points come in
-/// rounds, each of about as many as all before, drawn at random (Amenta, Choi & Rote, SoCG
-/// 2003), and in a round along a Hilbert curve: a walk from the last triangle made is short.
+/// The Delaunay triangulation of points by insertion, serially. Points are inserted in rounds, each
+/// of about as many random points as all before (Amenta, Choi & Rote, SoCG 2003), and within a
+/// round along a Hilbert curve, so that a walk from the last triangle made is short.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +19,14 @@
 
 namespace lean {
 
-/// The place along a Hilbert curve through 2^bits times 2^bits cells.
+/// The position along a Hilbert curve through 2^bits times 2^bits cells.
 inline std::uint32_t hilbert_place(std::uint32_t x, std::uint32_t y, unsigned bits) {
   std::uint32_t place = 0;
   for (unsigned bit = bits; bit-- > 0;) {
     const std::uint32_t right = x >> bit & 1U, up = y >> bit & 1U;
     place = 4 * place + ((3 * right) ^ up);
-    // In the lower quarters the curve is turned; all ones or none, because branches cost more.
+    // In the lower quarters the curve is rotated. Masks of ones or zeros, because branches cost
+    // more.
     const std::uint32_t invert = 0U - (right & (1U - up)), swap = (x ^ y) & (0U - (1U - up));
     x ^= swap ^ invert;
     y ^= swap ^ invert;
@@ -35,7 +36,7 @@ inline std::uint32_t hilbert_place(std::uint32_t x, std::uint32_t y, unsigned bi
 
 /// The vertices from `first` on, in the order in which to insert them.
 inline std::vector<VertexId> insertion_order(std::span<const Point> points, VertexId first) {
-  constexpr unsigned bits = 24, kept = 12;  // of coordinates; the curve is that fine
+  constexpr unsigned bits = 24, kept = 12;  // of coordinates, and those that the curve uses
   constexpr int last_round = 6;
   std::vector<std::uint64_t> keys;
   keys.reserve(points.size());
@@ -54,8 +55,8 @@ inline std::vector<VertexId> insertion_order(std::span<const Point> points, Vert
   return order;
 }
 
-/// The first four points are the corners of a rectangle, anticlockwise, and all others are inside.
-/// A point that is there twice is a vertex once; its repetition has no triangle.
+/// The first four points are the corners of a rectangle, anticlockwise; all others are inside. Of
+/// equal points only one becomes a vertex with triangles.
 inline Triangulation delaunay_insertion(std::vector<Point> points) {
   Triangulation mesh{std::move(points), {}, {}};
   mesh.corners_of.reserve(2 * mesh.points.size());

@@ -12,8 +12,8 @@
 
 namespace lean {
 
-/// Puts points into a Delaunay triangulation until no triangle's circle has a radius over `size`,
-/// or over sqrt(2) times the triangle's shortest edge.
+/// Inserts points into a Delaunay triangulation until no triangle's circumradius exceeds `size`, or
+/// sqrt(2) times the triangle's shortest edge.
 class DelaunayRefinement {
  public:
   DelaunayRefinement(Triangulation& mesh, double size) : mesh_(mesh), size_squared_(size * size) {}
@@ -27,7 +27,7 @@ class DelaunayRefinement {
       insert(triangle);
       for (const TriangleId t : cavity_.triangles)
         if (is_bad(t)) wake(t);
-      // If an edge in its way was halved, the triangle may still be there.
+      // If an edge in the way was halved, the triangle may still exist.
       if (mesh_.corners_of[triangle][2] == last) waiting_.push_back({triangle, last});
     }
   }
@@ -40,7 +40,7 @@ class DelaunayRefinement {
   }
 
  private:
-  /// A triangle, for as long as it has the last corner that it has now.
+  /// A triangle, valid as long as its last corner stays the same.
   struct Bad {
     TriangleId triangle;
     VertexId last;
@@ -48,7 +48,7 @@ class DelaunayRefinement {
 
   void wake(TriangleId t) { waiting_.push_back({t, mesh_.corners_of[t][2]}); }
 
-  /// The centre of a triangle's circle, or the middle of a boundary edge in its way.
+  /// The circumcentre of a triangle, or the midpoint of a boundary edge in its way.
   void insert(TriangleId t) {
     cavity_.point = circle_centre(mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
     VertexId begin = 0, end = 0;

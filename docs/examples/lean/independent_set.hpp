@@ -1,6 +1,6 @@
 /// @file
-/// A maximal independent set, serially: each vertex in order, unless a neighbour before it is in.
-/// Only members look at their neighbours.
+/// A maximal independent set, serially: each vertex in order joins, unless an earlier neighbour has
+/// joined. Only members visit their neighbours.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace lean {
 
-/// [vertex], 1 for the members.
+/// Returns [vertex], 1 for the members.
 inline std::vector<std::uint8_t> independent_set(ductile::runtime::CsrGraph<> graph) {
   std::vector<std::uint8_t> member(graph.vertex_count()), beside(graph.vertex_count());
   for (example::Vertex vertex = 0; vertex < member.size(); ++vertex) {

@@ -14,7 +14,7 @@
 
 namespace lean {
 
-/// The numbers of the edges, ascending by weight, then number. There are less than 2^32.
+/// The numbers of the edges, ascending by weight, then number. There must be fewer than 2^32.
 inline std::vector<std::uint32_t> kruskal(std::size_t vertex_count,
                                           std::span<const example::Edge> edges,
                                           std::span<const example::Weight> weight_of) {

@@ -1,5 +1,6 @@
 /// @file
-/// A maximal matching, serially: each edge in order, unless one of its ends has an edge already.
+/// A maximal matching, serially: takes each edge in order, unless one of its ends is matched
+/// already.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 
 namespace lean {
 
-/// The numbers of the edges, ascending.
+/// Returns the numbers of the edges, ascending.
 inline std::vector<std::uint32_t> matching(std::size_t vertex_count,
                                            std::span<const example::Edge> edges) {
   std::vector<std::uint8_t> taken(vertex_count);

@@ -1,8 +1,8 @@
 /// @file
-/// A minimum-degree ordering by a quotient graph, serially (George & Liu, SIAM Review 31, 1989). A
-/// vertex that is eliminated becomes an element, a list of its neighbours, which are a clique from
-/// then on; elements that lie in the new one go. Vertices with the same neighbours are one, with a
-/// size, and its degree is exact and external: it counts the other vertices beside it.
+/// A minimum-degree ordering by a quotient graph, serially (George & Liu, SIAM Review 31, 1989). An
+/// eliminated vertex becomes an element, a list of its neighbours, which are a clique from then on;
+/// elements inside the new one are absorbed. Vertices with the same neighbours are merged into one
+/// with a size. Its degree is exact and external: the number of other vertices adjacent to it.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace lean {
 
 struct Ordering {
   std::vector<example::Vertex> order;
-  std::vector<std::uint32_t> steps;  ///< where in `order` vertices begin that go in one step
-  std::uint64_t fill = 0;            ///< entries of the factor L, its diagonal included
+  std::vector<std::uint32_t> steps;  ///< indices in `order` at which steps begin
+  std::uint64_t fill = 0;            ///< number of entries of the factor L, including its diagonal
 };
 
 class MinimumDegree {
@@ -49,7 +49,7 @@ class MinimumDegree {
       const Vertex pivot = first_[least_];
       const std::uint32_t size = nodes_[pivot].size, degree = nodes_[pivot].degree;
       eliminate(pivot);
-      const std::uint64_t all = nodes_[pivot].size;  // with those that went with it
+      const std::uint64_t all = nodes_[pivot].size;  // includes those eliminated with it
       result.fill += all * (degree + size - all) + all * (all + 1) / 2;
       result.steps.push_back(static_cast<std::uint32_t>(result.order.size()));
       for (Vertex v = pivot; v != none; v = nodes_[v].next) result.order.push_back(v);
@@ -61,14 +61,14 @@ class MinimumDegree {
  private:
   static constexpr std::uint32_t none = 0xffffffffU;
 
-  /// A vertex's list has elements first, then neighbours; an element's has vertices.
+  /// The list of a vertex has elements first, then neighbours; that of an element has vertices.
   struct Node {
     std::size_t begin = 0;
     std::uint32_t elements = 0, neighbours = 0;
-    std::uint32_t size = 1;  // 0 for what is eliminated or one with another
+    std::uint32_t size = 1;  // 0 if eliminated or merged into another
     std::uint32_t degree = 0;
     bool is_element = false;
-    Vertex next = none, last = none;     // of those that are one
+    Vertex next = none, last = none;     // the vertices merged into this one
     Vertex before = none, after = none;  // in the bucket
   };
 
@@ -84,7 +84,7 @@ class MinimumDegree {
     (node.before == none ? first_[node.degree] : nodes_[node.before].after) = node.after;
     if (node.after != none) nodes_[node.after].before = node.before;
   }
-  /// Vertex `gone` becomes one with `kept`.
+  /// Merges vertex `gone` into `kept`.
   void unite(Vertex kept, Vertex gone) {
     nodes_[kept].size += std::exchange(nodes_[gone].size, 0);
     nodes_[nodes_[kept].last].next = gone;
@@ -100,7 +100,7 @@ class MinimumDegree {
     mark_[pivot] = in_clique_ = ++now_;
     gather(pivot);
     for (const Vertex v : clique_) take(v);
-    for (const Vertex v : clique_)  // how much of other elements is not in this one
+    for (const Vertex v : clique_)  // the part of other elements that is outside the new one
       for (const Vertex* e = list(v); e != list(v) + nodes_[v].elements; ++e) {
         if (!nodes_[*e].is_element) continue;
         if (is_new(seen_, *e)) left_[*e] = nodes_[*e].degree;
@@ -122,7 +122,7 @@ class MinimumDegree {
     }
   }
 
-  /// Fills clique_, weight_: what is beside the pivot, whose elements go.
+  /// Fills in clique_ and weight_ with the neighbours of the pivot, and absorbs its elements.
   void gather(Vertex pivot) {
     clique_.clear();
     weight_ = 0;
@@ -142,8 +142,8 @@ class MinimumDegree {
     add(list(pivot) + node.elements, node.neighbours);
   }
 
-  /// Leaves the new element, others that reach beyond it, and neighbours that are not in it.
-  /// Without any of these two the vertex goes with the pivot.
+  /// Reduces the list to the new element, elements with vertices outside it, and neighbours outside
+  /// it. A vertex with neither of the last two is eliminated with the pivot.
   void shorten(Vertex pivot, Vertex v) {
     Node& node = nodes_[v];
     Vertex* const begin = lists_.data() + node.begin;
@@ -177,7 +177,7 @@ class MinimumDegree {
     }
   }
 
-  /// Those with the same lists, among those with the same sum.
+  /// Merges vertices with the same lists, comparing only those with the same hash.
   void unite_alike() {
     std::sort(hashes_.begin(), hashes_.end());
     for (std::size_t i = 0; i < hashes_.size(); ++i) {
@@ -199,8 +199,9 @@ class MinimumDegree {
     }
   }
 
-  /// The degree of a vertex of the new element, which is the first in its list. A second element
-  /// and neighbours are disjoint; with more elements, each vertex counts once.
+  /// The degree of a vertex of the new element, which is first in its list. If there is only one
+  /// other element, it is disjoint from the neighbours; with more elements, each vertex is counted
+  /// once.
   std::uint32_t degree(Vertex v) {
     const Node& node = nodes_[v];
     const Vertex *const begin = list(v), *const middle = begin + node.elements;

@@ -19,11 +19,12 @@ constexpr std::uint32_t unreachable = 0xffffffffU;
 
 class RadixHeap {
  public:
-  /// A distance of at least the last one taken.
+  /// The distance must not be below the last one taken.
   void push(std::uint32_t distance, example::Vertex vertex) {
     bags_[std::bit_width(distance ^ last_)].push_back(std::uint64_t{distance} << 32U | vertex);
   }
-  /// One of the least, (distance, vertex) in the two halves of a word. False if there is none.
+  /// Takes an entry of least distance: (distance, vertex) in the two halves of a word. False if
+  /// empty.
   bool pop(std::uint64_t& least) {
     if (bags_[0].empty() && !refill()) return false;
     least = bags_[0].back();
@@ -32,7 +33,7 @@ class RadixHeap {
   }
 
  private:
-  /// Deals out the first bag that is not empty among those before it.
+  /// Distributes the first non-empty bag among those before it.
   bool refill() {
     const auto bag = std::find_if(bags_.begin() + 1, bags_.end(),
                                   [](const auto& entries) { return !entries.empty(); });
@@ -48,8 +49,8 @@ class RadixHeap {
   std::uint32_t last_ = 0;
 };
 
-/// [vertex], the length of the shortest path from `source`, which must be less than 2^32 - 1, or
-/// `unreachable`.
+/// Returns [vertex], the length of the shortest path from `source`, or `unreachable`. Lengths must
+/// be below 2^32 - 1.
 inline std::vector<std::uint32_t> shortest_paths(ductile::runtime::CsrGraph<> graph,
                                                  std::span<const example::Weight> weight_of,
                                                  example::Vertex source) {
@@ -59,7 +60,7 @@ inline std::vector<std::uint32_t> shortest_paths(ductile::runtime::CsrGraph<> gr
   for (std::uint64_t least = 0; waiting.pop(least);) {
     const auto distance = static_cast<std::uint32_t>(least >> 32U);
     const auto vertex = static_cast<example::Vertex>(least);
-    if (distance != distance_of[vertex]) continue;  // a shorter way came first
+    if (distance != distance_of[vertex]) continue;  // a shorter path was found
     for (std::uint32_t arc = graph.offset[vertex]; arc < graph.offset[vertex + 1]; ++arc) {
       const example::Vertex other = graph.neighbour[arc];
       const std::uint32_t through = distance + weight_of[arc];

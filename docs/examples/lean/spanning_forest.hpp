@@ -1,5 +1,5 @@
 /// @file
-/// A spanning forest, serially: each edge in order, if its ends are in different trees.
+/// A spanning forest, serially: takes each edge in order if its ends are in different trees.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace lean {
 
-/// The numbers of the edges, ascending.
+/// Returns the numbers of the edges, ascending.
 inline std::vector<std::uint32_t> spanning_forest(std::size_t vertex_count,
                                                   std::span<const example::Edge> edges) {
   DisjointSets trees(vertex_count);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,8 +51,8 @@ struct AdaptReport {
   int attempts = 1;
   bool checked = false;  ///< check_adapted() ran and found no fault
   std::vector<std::string> warnings;
-  /// Processor level of the kernels used: "as built", "x86-64-v3" or "x86-64-v4". The library may
-  /// contain several and uses the best that this processor can run.
+  /// Instructions of the functions that take most of the time: "as built", or "x86-64-v4" if the
+  /// library also contains them for AVX-512 and this processor has it.
   std::string_view instructions = "as built";
 };
 
@@ -85,11 +86,47 @@ struct AdaptedMesh {
 AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, const AnyField& metric,
                   const AdaptOptions& options = {});
 
+/// A mesh and a metric, one symmetric tensor at each of its vertices.
+struct MeshWithMetric {
+  AnyMesh mesh;
+  AnyField metric;
+};
+
+/// What a MetricSource sees before a pass.
+struct AdaptState {
+  const runtime::Executor& executor;
+  int pass;  ///< counts the metrics given so far; 0: the input is to be adapted
+  const AnyMesh& input;
+  /// The adapted mesh as it stands, with the metric that it was adapted to; made when first asked
+  /// for. Not in pass 0.
+  std::function<const MeshWithMetric&()> adapted;
+
+  const AnyMesh& mesh() const { return pass == 0 ? input : adapted().mesh; }
+};
+
+/// Gives the metrics of an adaptation one after another: fixed ones, or sizes that are evaluated
+/// anew on each mesh. adapt() asks it on the calling thread.
+class MetricSource {
+ public:
+  virtual ~MetricSource() = default;
+  /// The metric for the next pass, one symmetric tensor at each vertex of state.mesh(), which must
+  /// stay until the next call; null if the mesh is final. Pass 0 comes again if adapt() starts over
+  /// with the input, as it does where curved boundaries met; a source gives the same then.
+  virtual const AnyField* next(const AdaptState& state) = 0;
+};
+
+/// adapt() to the metrics of a source, at most most_passes of them; then it warns and ends. Each
+/// is bounded, validated and limited like the metric above, on the mesh that it is for; curved
+/// boundaries are always measured from options.make.geometry, or from `mesh`. The report sums up
+/// all passes; its iterations are those of the last. Exceptions of the source leave adapt(). Throws
+/// InputError if the source has no metric for pass 0.
+AdaptedMesh adapt(const runtime::Executor& executor, const AnyMesh& mesh, MetricSource& source,
+                  const AdaptOptions& options = {});
+inline constexpr int most_passes = 100;  ///< from the input on
+
 /// Adapts `mesh` to sizes given by places. Sizes are evaluated at vertices, so a coarse mesh
-/// samples them poorly: the result is adapted again, to sizes evaluated on it, while at some vertex
-/// they are below two thirds of those used before; at most five times in all. Curved boundaries are
-/// always measured from options.make.geometry, or from `mesh`. The report is that of the last
-/// adaptation, with the seconds and warnings of all; options.progress is called in all. Throws as
+/// samples them poorly: the mesh is adapted again, to sizes evaluated on it, while at some vertex
+/// they are below two thirds of those used before; at most five times in all. Throws as
 /// size_field() and adapt() do. Thread safety: any thread; runs on the executor.
 AdaptedMesh adapt_to_sizes(const runtime::Executor& executor, const AnyMesh& mesh,
                            const Sizes& sizes, const AdaptOptions& options = {});

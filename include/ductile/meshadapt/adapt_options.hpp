@@ -14,7 +14,8 @@ namespace ductile::meshadapt {
 
 class Geometry;  // geometry.hpp
 
-/// Which edges are too short or too long, which elements too bad, and what a change may produce.
+/// Thresholds for edges that are too short or too long and elements that are too bad, and for the
+/// results of a change.
 /// expect_rules() in adapt/adapt.cpp has the accepted values.
 struct Rules {
   /// Edges shorter than this are collapsed.

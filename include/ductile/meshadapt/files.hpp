@@ -56,7 +56,7 @@ struct MeshWithFields {
 /// or a section whose name is one letter away from a known one.
 AnyMesh read_mesh(const std::filesystem::path& path, Warnings* warnings = nullptr);
 
-/// The same with the fields in the file, whose values are numbers and may be infinite. Fields with
+/// Reads a mesh with the fields in its file, whose values are numbers and may be infinite. Fields with
 /// unsupported numbers of components, or on other cells, are left out with a warning.
 MeshWithFields read_mesh_with_fields(const std::filesystem::path& path,
                                      Warnings* warnings = nullptr);
@@ -106,14 +106,15 @@ void write_field(const std::filesystem::path& path, const AnyField& field,
 // ---- Outputs that appear whole, and together ----
 
 class OutputFile;
+class Sink;
 
 /// Several output files that belong together and appear whole or not at all. While written, each
-/// has no name or, if the file system cannot do that, a temporary one beside its place,
-/// `NAME.ductile-tmp-PID-N`; commit() names all of them once every byte is on disk. Until then, and
-/// after an error or an interrupt, the previous files are untouched. Signals that end the process
-/// remove temporary files, and are delayed during renaming (runtime/process.hpp). Files that are
-/// not regular (/dev/null, a pipe), and those behind names such as /dev/stdout or /dev/fd/3, are
-/// written directly. Thread safety: one thread.
+/// has a temporary name beside its place, `NAME.ductile-tmp-PID-N`; commit() renames all of them
+/// once every byte is on disk. Until then, and after an error or an interrupt, the previous files
+/// are untouched. Signals that end the process remove temporary files (except SIGKILL), and are
+/// delayed during renaming (runtime/process.hpp). Files that are not regular (/dev/null, a pipe),
+/// and those behind names such as /dev/stdout or /dev/fd/3, are written directly. Thread safety:
+/// one thread.
 class AtomicOutputs {
  public:
   AtomicOutputs();
@@ -124,7 +125,7 @@ class AtomicOutputs {
 
   /// Opens an output for `path`, valid until commit(). Follows symbolic links and replaces their
   /// target. Throws InputError if check_writable would, or if `path` is already staged.
-  OutputFile& stage(const std::filesystem::path& path);
+  Sink& stage(const std::filesystem::path& path);
 
   /// Brings every file to disk, then moves each to its place. The old files of all outputs except
   /// the first are set aside before: a process killed meanwhile may leave the first one, old or
@@ -137,24 +138,23 @@ class AtomicOutputs {
   std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
-/// The files beside `path` that hold its old or intended content, because a process that wrote it
-/// was killed.
+/// The files beside `path` with its old or intended content that a killed process left.
 std::vector<std::filesystem::path> left_of(const std::filesystem::path& path);
 
 /// Checks before long work that a file could be written at `path`: throws InputError if the path is
 /// empty or a folder, or if its folder is missing or refuses a new file.
 void check_writable(const std::filesystem::path& path);
 
-/// The same for outputs that belong together; no two of them may be the same file.
+/// Checks outputs that belong together; no two of them may be the same file.
 void check_writable(const std::vector<std::filesystem::path>& paths);
 
 /// Writes a mesh as one of several outputs.
 void write_mesh(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyMesh& mesh,
                 const WriteOptions& options = {});
-/// The same for a field: the file appears with the other outputs.
+/// Writes a field as one of several outputs.
 void write_field(AtomicOutputs& outputs, const std::filesystem::path& path, const AnyField& field,
                  const WriteOptions& options = {});
-/// The same for any bytes.
+/// Writes bytes as one of several outputs.
 void write_bytes(AtomicOutputs& outputs, const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace ductile::meshadapt

@@ -72,7 +72,7 @@ struct SizeGrowth {
   /// Growth factor per unit of metric length, as in limit_gradation: at the distance d the size is
   /// size + d ln(grow). 1 or more; 0: the size applies at the place itself and nowhere else.
   double grow = 1.3;
-  double largest = 0;   ///< it grows up to this size and then stops; 0: without end
+  double largest = 0;   ///< the size grows up to this and then stays; 0: without end
   double distance = 0;  ///< instead of `grow`: it grows linearly to `largest` over this distance
 };
 

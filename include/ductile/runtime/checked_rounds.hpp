@@ -26,10 +26,10 @@ namespace ductile::runtime {
 /// As run_rounds(), for copyable items; ignores most_rounds. Throws ContractBroken and whatever the
 /// operator throws; do not use the operator's data then. Thread safety: one caller.
 template <class Op, class Work = std::vector<typename Op::Item>>
-RoundsReport run_rounds_checked(const Executor& executor, Op& op, Work work,
+RoundsReport run_rounds_checked(const Executor& /*one thread checks*/, Op& op, Work work,
                                 const RoundsOptions& options = {}) {
   detail::expect_whole_operator<Op>();
-  return detail::OperatorCheck<Op>(op, detail::strategy_of<Op>(executor, options))
+  return detail::OperatorCheck<Op>(op, detail::strategy_of<Op>(options))
       .run(detail::to_vector<typename Op::Item>(std::move(work)));
 }
 

@@ -59,7 +59,7 @@ class GrowingMemory {
   std::byte* data_ = nullptr;
   std::size_t bytes_ = 0;  // usable
   std::size_t space_ = 0;  // of reserved addresses, at least bytes_; 0 if the memory is malloc's
-  std::size_t added_ = 0;  // whose pages have been requested
+  std::size_t added_ = 0;  // bytes whose pages have been requested
 };
 
 }  // namespace detail

@@ -17,14 +17,14 @@
 
 namespace ductile::runtime {
 
-/// How an Operator is run. All but `locks` give the same result at any number of threads.
+/// How an Operator is run. Each strategy gives the same result at any number of threads.
 enum class Strategy : std::uint8_t {
-  automatic,     ///< reservations if the operator has level(), locks if the executor need not be
-                 ///< deterministic; otherwise regions if it has place_of(), in_order if it has
-                 ///< conflicts(), or reservations
-  regions,       ///< resources are cut into regions along a space-filling curve, and one thread
-                 ///< runs the items of a region, the last woken first; items that reach into
-                 ///< another region wait for the next phase, whose cuts lie elsewhere
+  automatic,     ///< reservations if the operator has level(), in_order if it has conflicts(), no
+                 ///< place_of() and makes nothing; otherwise regions
+  regions,       ///< resources are cut into regions along a space-filling curve, or by their
+                 ///< numbers if there is no place_of(). One thread runs the items of a region, the
+                 ///< last woken first; items that reach into another region wait for the next
+                 ///< phase, whose cuts lie elsewhere. If most have to wait, one thread runs all
   in_order,      ///< in the order of the work, with the result of a plain loop over it. Items
                  ///< neither wake others nor make things. The resources that an item
                  ///< reaches may depend only on earlier items, and an item without a plan never
@@ -37,8 +37,6 @@ enum class Strategy : std::uint8_t {
   colours,  ///< classes of items without conflicts, found by speculative colouring, one class after
             ///< the other; if the operator makes things, a whole class is planned before any of it
             ///< is applied
-  locks,    ///< first come, first served: the result depends on timing. Not allowed if the executor
-            ///< is deterministic
 };
 
 /// A thing that changes its number.
@@ -130,7 +128,8 @@ concept PrefetchingOperator = Operator<Op> &&
 };
 
 /// place_of(resource) is the position of a resource in 2D or 3D; resources reached together should
-/// be close. It is called between phases, for existing resources.
+/// be close. It is called between phases, for existing resources. Without it, resources reached
+/// together should have close numbers.
 template <class Op>
 concept PlacedOperator = Operator<Op> &&(
     requires(const Op& op, std::uint32_t resource) {
@@ -188,8 +187,8 @@ inline constexpr std::size_t kinds_made<Op> =
 struct RoundsOptions {
   Strategy strategy = Strategy::automatic;
   /// Stops after this many rounds even if work is left, and reports how much. By default a run goes
-  /// on until nothing is left, which is never if the operator always wakes items. In the strategies
-  /// regions and locks, woken items run in the same round. In order there is one round.
+  /// on until nothing is left, which is never if the operator always wakes items. In the strategy
+  /// regions woken items run in the same round. In order there is one round.
   int most_rounds = std::numeric_limits<int>::max();
 };
 

@@ -51,7 +51,7 @@ std::vector<typename Op::Item> applied_in_order(const Executor& executor, Op& op
   std::vector<Item> applied;
   applied.reserve(std::size(work));
   const auto note = [&](const Item& item) { applied.push_back(item); };
-  detail::strategy_of<Op>(executor, {.strategy = Strategy::in_order});
+  detail::strategy_of<Op>({.strategy = Strategy::in_order});
   const RoundsReport run =
       with_team(executor, [&] { return detail::run_in_order(executor, op, work, note); });
   if (report != nullptr) *report = run;

@@ -1,27 +1,21 @@
 #include "arguments.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "io/number_in.hpp"
 
 namespace ductile::cli {
 
 namespace {
 
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number value{};
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
+using meshadapt::number_in;
 
-/// Whether a word asks for an option: "-" and "-.vtu" are files and "-1" a number.
+/// True if a word asks for an option; "-" and "-.vtu" are files, "-1" is a number.
 bool looks_like_option(std::string_view word) {
   if (word.size() < 2 || word[0] != '-' || word[1] == '.') return false;
   const bool begins_as_number = word[1] >= '0' && word[1] <= '9';
-  return !begins_as_number || !parse<double>(word);
+  return !begins_as_number || !number_in<double>(word);
 }
 
 const Option* find(std::span<const Option> options, std::string_view word) {
@@ -32,8 +26,8 @@ const Option* find(std::span<const Option> options, std::string_view word) {
   return nullptr;
 }
 
-/// The option whose name is closest to a word, if it is so close that the word may be a slip: one
-/// letter in three, two at most.
+/// The option whose name is closest to a word that may be a typing error: at most one letter in
+/// three differs, and at most two.
 std::string_view nearest_name(std::span<const Option> options, std::string_view word) {
   std::string_view nearest;
   std::size_t least = 3;
@@ -113,7 +107,7 @@ void Arguments::take(std::span<const Option> options, std::span<const std::strin
   } else if (equals != std::string::npos) {
     value = word.substr(equals + 1);
   } else if (option->value.starts_with('[')) {
-    if (at + 1 < words.size() && parse<double>(words[at + 1])) value = words[++at];
+    if (at + 1 < words.size() && number_in<double>(words[at + 1])) value = words[++at];
     values_of_[std::string(option->name)].push_back(value);
     return;
   } else if (at + 1 < words.size() &&
@@ -142,7 +136,7 @@ std::vector<std::string> Arguments::texts(std::string_view name) const {
 std::optional<double> Arguments::number(std::string_view name) const {
   const std::optional<std::string> value = text(name);
   if (!value) return std::nullopt;
-  const std::optional<double> parsed = parse<double>(*value);
+  const std::optional<double> parsed = number_in<double>(*value);
   if (!parsed || !std::isfinite(*parsed)) refuse_value(name, "a number", *value);
   return parsed;
 }
@@ -150,7 +144,7 @@ std::optional<double> Arguments::number(std::string_view name) const {
 std::optional<double> Arguments::positive(std::string_view name) const {
   const std::optional<std::string> value = text(name);
   if (!value) return std::nullopt;
-  const std::optional<double> parsed = parse<double>(*value);
+  const std::optional<double> parsed = number_in<double>(*value);
   if (!parsed || !std::isfinite(*parsed) || *parsed <= 0)
     refuse_value(name, "a number above 0", *value);
   return parsed;
@@ -163,7 +157,7 @@ std::optional<int> Arguments::integer(std::string_view name, int least, int most
 }
 
 int whole_number(std::string_view name, const std::string& value, int least, int most) {
-  const std::optional<int> parsed = parse<int>(value);
+  const std::optional<int> parsed = number_in<int>(value);
   if (!parsed || *parsed < least || *parsed > most)
     refuse_value(name,
                  "a whole number from " + std::to_string(least) + " to " + std::to_string(most),

@@ -1,8 +1,8 @@
 /// @file
 /// Arguments: a command line taken apart by a table of options. One or two dashes mean the same, so
-/// what Mmg's users type (-hmin 0.1) and GNU's long form (--hmin=0.1) both work. Whatever is wrong
-/// is told by a UsageError that says what was expected and, for an unknown option, which it may be
-/// a slip of. The program, the benchmarks and the campaign share it; it needs no library.
+/// that Mmg's form (-hmin 0.1) and GNU's (--hmin=0.1) both work. A UsageError tells what was
+/// expected and, for an unknown option, which one is close to it. The program, the benchmarks and
+/// the campaign share it; it needs no library.
 #pragma once
 
 #include <map>
@@ -38,13 +38,13 @@ class Arguments {
   /// Throws UsageError. `words` are what follows the command's name.
   Arguments(std::span<const Option> options, std::span<const std::string> words);
 
-  /// What is no option, in order.
+  /// The words that are no options, in order.
   const std::vector<std::string>& operands() const { return operands_; }
 
   /// The last value given to the option of this name (as in the table).
   bool has(std::string_view name) const;
   std::optional<std::string> text(std::string_view name) const;
-  /// All that were given to it, in order.
+  /// All values given to it, in order.
   std::vector<std::string> texts(std::string_view name) const;
   /// Throw UsageError unless the value is such a number, inside the range.
   std::optional<double> positive(std::string_view name) const;
@@ -66,7 +66,7 @@ int whole_number(std::string_view name, const std::string& value, int least, int
 [[noreturn]] void refuse_value(std::string_view name, const std::string& expected,
                                const std::string& found);
 
-/// The part of a help page that lists options, a line each: those that have a line of help.
+/// The lines of a help page for all options that have a help text.
 std::string help_lines(std::span<const Option> options);
 
 /// The word without the dashes that it begins with.

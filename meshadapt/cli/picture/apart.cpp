@@ -16,7 +16,7 @@
 namespace ductile::cli {
 namespace {
 
-/// How the child says what it sends: its exit status.
+/// The exit status of the child, which tells what it sends.
 constexpr int made = 0, out_of_memory = 3, failed_with = 4, refused_with = 5;
 
 void send(int to, std::string_view bytes) {
@@ -27,8 +27,8 @@ void send(int to, std::string_view bytes) {
   }
 }
 
-/// Does not return: what is the parent's, such as temporary files, stays. It is the parent who
-/// tells what went wrong.
+/// Does not return, so that nothing of the parent, such as its temporary files, is removed. The
+/// parent reports errors.
 [[noreturn]] void be_the_child(int to, const std::function<std::string()>& work) noexcept {
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
@@ -46,7 +46,7 @@ void send(int to, std::string_view bytes) {
   }
 }
 
-/// Reads on without keeping anything where there is no memory for it, so that the child ends.
+/// Reads to the end even without memory for the bytes, so that the child ends.
 std::string receive(int from, bool& kept) noexcept {
   std::string bytes;
   std::array<char, 1 << 14> part;

@@ -1,6 +1,6 @@
 /// @file
-/// apart: does something in a process of its own, whose end is not that of the caller. Cairo
-/// does not survive when memory runs out at some of its places.
+/// apart: works in a child process, because cairo ends the process at some places if memory runs
+/// out.
 #pragma once
 
 #include <functional>
@@ -8,9 +8,9 @@
 
 namespace ductile::cli {
 
-/// Returns work(), which is called in a child process, or in this one where there can be none. What
-/// it throws arrives here as an Error or InputError of the same text. If the child is ended, throws
-/// std::bad_alloc.
+/// Returns work(), which runs in a child process, or in this one if there can be none. An exception
+/// of it is thrown here as an Error or InputError with the same text; std::bad_alloc if the child
+/// is ended.
 std::string apart(const std::function<std::string()>& work);
 
 }  // namespace ductile::cli

@@ -45,7 +45,7 @@ Bounds bounds_of(const Panel& panel) {
   return bounds;
 }
 
-/// Where everything goes, in pixels.
+/// The layout in pixels.
 struct Layout {
   double size = 0;  ///< larger side of a panel
   double margin = 0, text = 0;
@@ -226,7 +226,7 @@ void expect_success(cairo_status_t status) {
                            cairo_status_to_string(status));
 }
 
-/// Of a pen that has written.
+/// Throws Error if cairo has failed.
 void expect_success(cairo_t* pen) {
   expect_success(cairo_status(pen));
   expect_success(cairo_font_face_status(cairo_get_font_face(pen)));

@@ -11,7 +11,7 @@ namespace ductile::cli {
 
 enum class PictureFormat { png, svg };
 
-/// An SVG of more faces than this is of no use to any viewer.
+/// Viewers cannot show an SVG with more faces.
 inline constexpr std::size_t most_svg_faces = 200000;
 
 /// The larger side of each panel has `size` pixels. Throws Error if cairo cannot do it, InputError

@@ -43,7 +43,7 @@ Axes axes_of(const meshadapt::Metric<2>& metric) {
   return axes;
 }
 
-/// The long half axis that half of the area asks for at most.
+/// The median of the long half axis, weighted by area.
 double median_length(const std::vector<EllipsePlace>& places, const std::vector<Axes>& axes) {
   std::vector<std::size_t> order(places.size());
   double all = 0;
@@ -70,7 +70,8 @@ double round_factor(double factor) {
   return best;
 }
 
-/// Those inside first; otherwise an order that shows no rows or columns, the same in each run.
+/// Orders candidates: those inside first, otherwise so that no rows or columns show, and the same
+/// in each run.
 std::vector<std::size_t> order_of(const std::vector<EllipsePlace>& places) {
   std::vector<std::pair<std::uint64_t, std::size_t>> keys(places.size());
   for (std::size_t i = 0; i < keys.size(); ++i)
@@ -82,7 +83,7 @@ std::vector<std::size_t> order_of(const std::vector<EllipsePlace>& places) {
   return order;
 }
 
-/// Which parts of the plane are taken, in squares of one unit.
+/// The parts of the plane that are taken, in squares of one unit.
 class Taken {
  public:
   Taken(const std::vector<EllipsePlace>& places, double unit, double reach) : unit_(unit) {

@@ -1,6 +1,6 @@
 /// @file
-/// Which unit ellipses of a metric to draw: as many as there is room for without one on another, as
-/// large as can be seen, all by one factor as far as that goes.
+/// Chooses the unit ellipses of a metric to draw: as many as fit without overlap, large enough to
+/// be seen, scaled by one factor where possible.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace ductile::cli {
 
-/// Where an ellipse may be.
+/// A candidate for an ellipse.
 struct EllipsePlace {
   Point centre;
   meshadapt::Metric<2> metric;

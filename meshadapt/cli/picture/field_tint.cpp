@@ -18,7 +18,7 @@ namespace {
 
 using meshadapt::NamedField;
 
-/// Of values that are no numbers on a scale.
+/// The colour of values that are not on the scale: NaN and infinite ones.
 constexpr Colour beyond_scale{0.80, 0.80, 0.80};
 
 struct Range {

@@ -21,7 +21,7 @@ Colour scale_colour(const Legend& legend, double t) {
   return size_colour(legend.tint == Tint::field && legend.from == legend.to ? 0.5 : t);
 }
 
-/// A fifth of the scale apart, whatever the numbers there are.
+/// Marks at every fifth of the scale.
 std::vector<Tick> even_ticks(const Legend& legend) {
   std::vector<Tick> ticks;
   constexpr int steps = 5;
@@ -37,7 +37,7 @@ std::vector<Tick> even_ticks(const Legend& legend) {
   return ticks;
 }
 
-/// As many round ones as can be told apart in this width.
+/// As many round numbers as can be read in this width.
 std::vector<Tick> ticks_of(cairo_t* pen, const Legend& legend, double width) {
   if (legend.tint != Tint::field) return even_ticks(legend);
   std::vector<Tick> ticks;
@@ -68,7 +68,7 @@ void draw_scale(cairo_t* pen, const Legend& legend, const LegendPlace& place) {
       cairo_line_to(pen, at, y + 1.3 * text);
       cairo_stroke(pen);
     }
-    // In the middle of its mark, unless that is beyond the end of the scale.
+    // The number is centred below its mark, unless it would go beyond the end of the scale.
     const double half = text_width(pen, tick.label) / 2;
     const double left = round ? std::clamp(at - half, x, std::max(x, x + width - 2 * half))
                               : at - tick.at * 2 * half;
@@ -76,7 +76,7 @@ void draw_scale(cairo_t* pen, const Legend& legend, const LegendPlace& place) {
   }
 }
 
-/// One line that fits, of letters that there are.
+/// The text cut to one line, with the letters that the font has.
 std::string fitting(cairo_t* pen, const std::string& title, double width) {
   std::string text = as_utf8(meshadapt::printable(title));
   if (text_width(pen, text) <= width) return text;
@@ -87,7 +87,7 @@ std::string fitting(cairo_t* pen, const std::string& title, double width) {
   return text + "...";
 }
 
-/// Its name, or else its number.
+/// The name of a reference, otherwise its number.
 std::string label_of(const Legend& legend, std::size_t i) {
   return i < legend.names.size() && !legend.names[i].empty() ? legend.names[i]
                                                              : std::to_string(legend.references[i]);

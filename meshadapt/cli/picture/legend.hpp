@@ -8,8 +8,8 @@
 
 namespace ductile::cli {
 
-/// Where a legend goes: its upper left corner, how wide it may be, how large its letters are and
-/// how wide its title may be.
+/// The place of a legend: its upper left corner, its width, the size of its letters and the width
+/// of its title.
 struct LegendPlace {
   double x, y, width, text, room;
 };

@@ -1,5 +1,5 @@
 /// @file
-/// What all that draws with cairo does: setting colours and writing.
+/// Colours and text for drawing with cairo.
 #pragma once
 
 #include <cairo.h>
@@ -20,7 +20,7 @@ inline double text_width(cairo_t* pen, const std::string& text) {
   return extents.x_advance;
 }
 
-/// From x - share_left times its width.
+/// Writes the text from x - share_left times its width.
 inline void write(cairo_t* pen, double x, double y, const std::string& text,
                   double share_left = 0) {
   cairo_move_to(pen, x - share_left * text_width(pen, text), y);

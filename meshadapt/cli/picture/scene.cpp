@@ -72,7 +72,7 @@ struct Look {
   int axis;                ///< of the cut
 };
 
-/// What entities of a dimension with these references are called; empty where they have no name.
+/// [reference] the name of entities of a dimension; empty if they have none.
 std::vector<std::string> names_of_references(const AnyMesh& mesh, int dimension,
                                              const std::vector<std::int32_t>& references) {
   std::vector<std::string> names(references.size());

@@ -1,6 +1,6 @@
 /// @file
 /// Scene: a mesh turned into coloured polygons in the plane, in the order in which they are to be
-/// painted, with the words around them. Nothing here knows what paints it.
+/// painted, with the text around them. It is independent of the library that paints it.
 #pragma once
 
 #include <array>
@@ -45,10 +45,10 @@ struct Panel {
   std::vector<Ellipse> ellipses{};
 };
 
-/// What elements are coloured by; of a metric, its ellipses.
+/// The quantity that colours elements; a metric is shown by its ellipses.
 enum class Tint { quality, size, reference, field, metric };
 
-/// What the colours mean: a scale (quality from 0 to 1, size and metric from `from` to `to`,
+/// The meaning of the colours: a scale (quality from 0 to 1, size and metric from `from` to `to`,
 /// logarithmic, a field likewise, but even) or, for references, a list.
 struct Legend {
   std::string title{};
@@ -83,7 +83,7 @@ Scene make_scene(const runtime::Executor& executor, const meshadapt::AnyMesh& me
 using FacetColour =
     std::function<Colour(std::span<const std::uint32_t> corners, std::size_t element)>;
 
-/// What each element is painted in, [element], and the legend that explains it.
+/// The colour of each element, [element], and the legend for it.
 struct Tinting {
   std::vector<Colour> colour_of{};
   Legend legend{};
@@ -99,7 +99,7 @@ Panel panel_2d(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour
 Panel surface_panel(const meshadapt::AnyMesh& mesh, const Camera& camera,
                     const FacetColour& colour = {});
 
-/// What is left behind a plane through the middle, and the elements that it cuts.
+/// The part behind a plane through the middle, and the elements that the plane cuts.
 Panel cut_panel(const meshadapt::AnyMesh& mesh, const std::vector<Colour>& colour_of,
                 const Camera& camera, int axis);
 

@@ -66,7 +66,7 @@ std::vector<Skin> make_skin(const AnyMesh& mesh) {
   return skin;
 }
 
-/// A face with how near it is.
+/// A face and its depth.
 struct DeepFace {
   double depth = 0;
   Face face;
@@ -81,7 +81,7 @@ std::vector<Face> back_to_front(std::vector<DeepFace> deep) {
   return faces;
 }
 
-/// How light a surface of this normal is: lit from above the viewer's left shoulder.
+/// The brightness of a surface with this normal, lit from above the viewer's left shoulder.
 double lightness(const Position& normal, const Camera& camera) {
   const Position light = camera.towards + 0.6 * camera.up + (-0.35) * camera.right;
   const double cosine = std::abs(dot(normal, light)) / (norm(normal) * norm(light));

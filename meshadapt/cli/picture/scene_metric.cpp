@@ -44,8 +44,8 @@ std::string title_of(const UnitEllipses& ellipses, const char* where) {
          " times as large";
 }
 
-/// Adds them to the last panel. to_panel(p, 1) shows where a point of the plane is in which they
-/// were chosen, to_panel(p, 0) the same of a direction.
+/// Adds ellipses to the last panel. to_panel(p, 1) maps a point of the plane in which they were
+/// chosen, to_panel(p, 0) a direction.
 void add_chosen(Scene& scene, const UnitEllipses& chosen, const char* where, auto&& to_panel) {
   Legend legend{.title = title_of(chosen, where),
                 .tint = Tint::metric,

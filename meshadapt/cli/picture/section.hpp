@@ -18,7 +18,7 @@ struct CutPlane {
   double at = 0;
   double outwards = 1;  ///< towards the viewer: 1 or -1 along the axis
 
-  /// How far a point is before the plane, seen by the viewer.
+  /// The distance of a point from the plane, positive towards the viewer.
   double side(const Position& p) const { return outwards * (p[axis] - at); }
 };
 CutPlane middle_plane(const meshadapt::AnyMesh& mesh, const Camera& camera, int axis);
@@ -26,7 +26,7 @@ CutPlane middle_plane(const meshadapt::AnyMesh& mesh, const Camera& camera, int 
 using Tetrahedron = std::array<Position, 4>;
 Tetrahedron tetrahedron(const meshadapt::AnyMesh& mesh, std::size_t element);
 
-/// Where the plane cuts a tetrahedron: nothing, a triangle or a quadrangle.
+/// The section of a tetrahedron: empty, a triangle or a quadrangle.
 std::vector<Position> section(const Tetrahedron& corner, const CutPlane& plane);
 
 struct Span {

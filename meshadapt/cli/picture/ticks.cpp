@@ -16,7 +16,7 @@ double round_step(double least) {
   return 10 * power;
 }
 
-/// As many digits as tell it from its neighbours, a step away, on a scale of numbers up to
+/// A number with the digits that distinguish it from its neighbours, a step away, on a scale up to
 /// `largest`.
 std::string label_of(double value, double step, double largest) {
   char text[64];

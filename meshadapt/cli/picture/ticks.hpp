@@ -1,5 +1,5 @@
 /// @file
-/// Which numbers stand beside a scale.
+/// The numbers beside a scale.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 /// @file
-/// The serial codes that the runtime is compared with, and the graphs they work on: each against
-/// its definition, or against Boost.Graph.
+/// Tests of the serial codes that the runtime is compared with, and of their input graphs: each
+/// against its definition or against Boost.Graph.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ using BoostGraph =
     boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
                           boost::property<boost::edge_weight_t, std::uint64_t>>;
 
-/// Numbers by hashing, another series for each seed.
+/// Pseudo-random numbers; each seed gives another series.
 struct Random {
   std::uint64_t seed, count = 0;
   std::uint32_t below(std::size_t bound) {
@@ -46,7 +46,7 @@ struct Random {
   }
 };
 
-/// A list of edges, loops and repetitions among them.
+/// A list of edges that includes loops and repetitions.
 struct Edges {
   std::size_t vertex_count;
   std::vector<Edge> edges;
@@ -60,7 +60,7 @@ struct Edges {
       weights.push_back(seed % 2 == 0 ? random.below(5) : 1 + random.below(most_weight));
   }
 
-  /// Without loops and repetitions.
+  /// The graph of the list, without loops and repetitions.
   runtime::CsrRows graph() const {
     return graph_of_edges(runtime::Executor({.threads = 1}), vertex_count, edges.size(),
                           [&](std::size_t e) { return std::pair(edges[e].a, edges[e].b); });
@@ -168,7 +168,7 @@ TEST(Lean, ShortestPathsAreBoosts) {
     for (const Edge edge : list.edges) pairs.emplace_back(edge.a, edge.b);
     const runtime::CsrRows rows =
         runtime::csr_rows(static_cast<std::uint32_t>(list.vertex_count), pairs);
-    // Repeated edges have the least weight: of both ends alike.
+    // A repeated edge has its least weight, seen from either end.
     std::vector<Weight> weight_of;
     BoostGraph graph(list.vertex_count);
     for (Vertex a = 0; a < list.vertex_count; ++a)
@@ -205,8 +205,8 @@ std::uint64_t eliminate(const runtime::CsrRows& rows, const lean::Ordering& orde
     const Vertex v = ordering.order[i];
     if (step < ordering.steps.size() && ordering.steps[step] == i) {
       ++step;
-      // Of those that go at once, how many are outside of the vertex's own neighbourhood? The least
-      // external degree is at most the least degree.
+      // Vertices with the same closed neighbourhood are eliminated together. The degree of v
+      // without them, its external degree, is at most the least degree.
       std::size_t least = rows.vertex_count();
       for (const Vertex u : left) least = std::min(least, beside[u].size());
       const std::size_t alike = std::count_if(left.begin(), left.end(), [&](Vertex u) {
@@ -271,8 +271,8 @@ TEST(Lean, RefinementLeavesNoBadTriangle) {
   }
 }
 
-/// Random points in a rectangle of `sides` steps; few steps give points on common lines and
-/// circles, and the same point several times.
+/// Random points of a grid of `steps` steps; few steps give collinear, cocircular and repeated
+/// points.
 std::vector<Point> points_in_steps(std::uint64_t seed, std::size_t count, std::int32_t steps) {
   Random random{seed};
   const std::int32_t step = square_side / steps, height = std::max(2, steps / 2) * step;

@@ -1,5 +1,5 @@
 /// @file
-/// The examples that run by levels, beside the serial codes.
+/// Tests of the examples that run by levels, against the serial codes.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace runtime = ductile::runtime;
 
 constexpr int thread_counts[] = {1, 2, 3, 4, 8};
 
-/// A random graph; weights of odd seeds are few, 0 among them.
+/// A random graph. Odd seeds give few different weights, including 0.
 WeightedGraph weighted_graph(std::uint64_t seed, std::size_t vertex_count) {
   const auto random = [&](std::size_t i) { return runtime::mix64(seed << 32U | i); };
   const runtime::Executor executor({.threads = 1});
@@ -47,7 +47,7 @@ std::vector<WeightedGraph> large_graphs() {
   return graphs;
 }
 
-/// All rounds by several threads at once, which a whole run does only where that was faster so far.
+/// Runs all rounds on several threads; a whole run does that only where it was faster so far.
 template <class Op>
 void run_at_once(int threads, Op& op, const std::vector<typename Op::Item>& work) {
   runtime::detail::LevelRounds<Op>(runtime::Executor({.threads = threads}), op,
@@ -106,7 +106,8 @@ TEST(ShortestPaths, KeepTheContract) {
 
 // ---- Minimum degree ----
 
-/// Eliminates vertices one by one; returns the entries of the factor, or 0 if it is no ordering.
+/// Eliminates vertices one by one; returns the entries of the factor, or 0 if the order is no
+/// permutation.
 std::uint64_t entries(const runtime::CsrRows& rows, const std::vector<Vertex>& order) {
   if (std::set(order.begin(), order.end()).size() != rows.vertex_count()) return 0;
   std::vector<std::set<Vertex>> beside(rows.vertex_count());

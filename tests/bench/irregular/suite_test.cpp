@@ -1,5 +1,6 @@
 /// @file
-/// Parts of the benchmark of irregular algorithms: a wrong result is found, options, the file.
+/// Tests of parts of the benchmark of irregular algorithms: detection of wrong results, options,
+/// the results file.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -98,7 +99,7 @@ TEST(IrregularSuite, ReplacesItsFileOnlyByAWholeOne) {
   fs::remove_all(folder);
 }
 
-/// A program that prints what PBBS's do, if its arguments are as they should be.
+/// The program prints what a PBBS program does if its arguments are right.
 TEST(IrregularSuite, ReadsTheTimesOfOtherPrograms) {
   const fs::path folder = fs::path(testing::TempDir()) / "peers of 'irregular'";
   fs::create_directories(folder);

@@ -19,7 +19,7 @@ std::vector<std::uint32_t> sorted_degrees(const Rows& graph) {
   return degrees;
 }
 
-/// How far neighbours lie from each other in memory, in the mean.
+/// Mean distance in memory between neighbours.
 double mean_stride(const EdgeList& list) {
   double sum = 0;
   for (const auto& [u, v] : list.edges) sum += std::abs(double(u) - double(v));
@@ -53,7 +53,7 @@ TEST(Graphs, AnotherOrderIsTheSameGraph) {
   EXPECT_EQ(sorted_degrees(rows(solid)), sorted_degrees(rows(along_hilbert_curve(solid, 9, 3))));
 }
 
-/// Consecutive points of the curve are neighbours, which in a mesh are joined.
+/// Consecutive points of the curve are neighbours, and neighbours are joined in a mesh.
 TEST(Graphs, HilbertCurveNeverJumps) {
   for (const int dim : {2, 3}) {
     const Rows graph = rows(along_hilbert_curve(mesh(8, dim), 8, dim));

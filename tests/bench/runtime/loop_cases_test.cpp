@@ -81,7 +81,7 @@ TEST(ThreadCounts, AreThoseAskedFor) {
 TEST(PingPong, TakesATimeOrGivesUp) {
   const double ns = ping_pong_ns();
   EXPECT_GE(ns, 0);
-  EXPECT_LT(ns, 20e6);  // the game is called off before
+  EXPECT_LT(ns, 20e6);  // the ping-pong gives up before that
 }
 
 }  // namespace

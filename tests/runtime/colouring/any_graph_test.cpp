@@ -19,7 +19,7 @@ std::vector<std::uint32_t> row(const auto& graph, std::uint32_t v) {
   return all;
 }
 
-/// Rows of 0, 1, 32, 33 and more neighbours among them.
+/// Graphs with rows of 0, 1, 32, 33 and more neighbours.
 std::vector<test::TestGraph> graphs() {
   return {test::star_graph(33), test::star_graph(34),  test::star_graph(1000),
           test::path_graph(5),  test::mesh_graph(120), test::random_graph(20000, 300000, 3)};

@@ -55,7 +55,7 @@ TEST(Colouring, IsTheSameAtAnyThreadCountUnlessItSpeculates) {
 }
 
 TEST(Colouring, LetsNeighboursBeRepeatedOnOneSideOnly) {
-  // A ring with chords, whose even vertices name each neighbour thrice and whose odd ones once.
+  // A ring with chords; even vertices visit each neighbour three times, odd ones once.
   const std::uint32_t n = 4000;
   const auto graph = CallbackGraph(n, [](std::uint32_t v, auto&& visit) {
     for (int repetition = 0; repetition < (v % 2 == 0 ? 3 : 1); ++repetition)
@@ -111,7 +111,7 @@ std::vector<std::uint32_t> vertices_of(const test::TestGraph& graph) {
   return order;
 }
 
-/// First-fit, as plainly as can be.
+/// First-fit, implemented in the plainest way.
 std::vector<std::uint32_t> first_fit_in(const std::vector<std::uint32_t>& order,
                                         const test::TestGraph& graph) {
   std::vector<std::uint32_t> colour_of(order.size(), Colouring::none);
@@ -126,8 +126,9 @@ std::vector<std::uint32_t> first_fit_in(const std::vector<std::uint32_t>& order,
   return colour_of;
 }
 
-/// Rows of no, one, few and many neighbours, an even and an odd number; in cliques of ids in a row
-/// each vertex has all colours of the one before and one more, beyond those of each width.
+/// The graphs have rows of no, one, few and many neighbours, even and odd numbers of them. In
+/// cliques of consecutive ids the colours of a vertex grow one by one beyond the limit of each
+/// width.
 TEST(Colouring, SerialIsFirstFitInOrder) {
   auto graphs = test::test_graphs();
   graphs.push_back(test::make_graph("no edges", 300, {}));
@@ -164,8 +165,8 @@ TEST(Colouring, ByPriorityIsFirstFitInItsOrder) {
           << graph.name;
 }
 
-/// Cliques of sizes that just fit into words of each width, and just do not, on few vertices and on
-/// enough for marks.
+/// Cliques of sizes just within and just beyond the limits of words of each width, on few vertices
+/// and on enough for marks.
 TEST(Colouring, TakesAsManyColoursAsAreNeeded) {
   for (const std::uint32_t clique :
        {30U, 31U, 47U, 61U, 62U, 63U, 64U, 222U, 223U, 239U, 253U, 254U, 255U, 1100U})
@@ -197,7 +198,7 @@ TEST(Colouring, FindsAllClashesOfSpeculation) {
 }
 
 /// Two threads begin in the same clique, each with its half of the vertices, and wait for each
-/// other there, if not for long, so that what they colour first clashes.
+/// other briefly, so that their first colours clash.
 TEST(Colouring, TakesNoMoreColoursWhereVerticesAreTheirOwnNeighbours) {
   const std::uint32_t clique = 50, cliques = 200;
   std::array<std::atomic<bool>, 2> has_begun;
@@ -218,7 +219,7 @@ TEST(Colouring, TakesNoMoreColoursWhereVerticesAreTheirOwnNeighbours) {
     }
 }
 
-/// In the second graph there are too many colours for short words, and vertices of many neighbours.
+/// The second graph has too many colours for short words, and vertices with many neighbours.
 TEST(Colouring, OfACallbackIsThatOfItsRows) {
   for (const auto& graph :
        {test::random_graph(5000, 30000, 10), test::rmat_graph(12, 200000, 14)}) {
@@ -242,7 +243,8 @@ std::vector<std::uint32_t> some_vertices(const test::TestGraph& graph, std::uint
   return some;
 }
 
-/// 1 of 64 is few: they go one after the other, or by priority in the largest graph.
+/// A share of 1 of 64 is few: those vertices are recoloured serially, or by priority in the largest
+/// graph.
 TEST(Recolour, KeepsTheOthersAndIsTheSameAtAnyThreadCount) {
   std::vector<test::TestGraph> graphs = test::test_graphs();
   graphs.push_back(test::mesh_graph(260));

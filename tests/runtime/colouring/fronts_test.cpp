@@ -30,7 +30,7 @@ test::TestGraph box_graph(std::uint32_t side) {
   return test::make_graph("box", side * side * side, std::move(edges));
 }
 
-/// Meshes whose rows and planes end at the border between two parts, and where they do not.
+/// Meshes whose rows and planes end at the border between two parts, and meshes where they do not.
 std::vector<test::TestGraph> meshes() {
   return {test::mesh_graph(300), test::mesh_graph(301), box_graph(40), box_graph(41)};
 }
@@ -57,7 +57,7 @@ TEST(Fronts, HaveEveryVertexOnceHoweverWindowsAreTaken) {
     }
 }
 
-/// So many vertices without neighbours; their number is of a type of 32 bits.
+/// A graph of `count` vertices without neighbours; vertex_count() is a 32-bit number.
 struct Lonely {
   std::uint32_t count;
   std::uint32_t vertex_count() const { return count; }

@@ -1,6 +1,6 @@
 /// @file
-/// The automatic method: serial's colours on many threads, by whatever means, and at most one more
-/// where results may depend on timing.
+/// The automatic method: it gives serial's colours on many threads, by whichever way it chooses,
+/// and at most one more where results may depend on timing.
 #include "ductile/runtime/colouring/detail/together.hpp"
 
 #include <gtest/gtest.h>
@@ -34,8 +34,8 @@ test::TestGraph box_graph(std::uint32_t side) {
   return test::make_graph("box", side * side * side, std::move(edges));
 }
 
-/// A mesh of 2^bits vertices a side, numbered along a curve that leaves a square when it is done
-/// with it.
+/// A mesh of 2^bits vertices a side, numbered along a curve that completes each square before it
+/// leaves it.
 test::TestGraph curve_graph(unsigned bits) {
   const std::uint32_t side = 1U << bits;
   const auto place_of = [&](std::uint32_t v) {
@@ -49,8 +49,8 @@ test::TestGraph curve_graph(unsigned bits) {
   return test::make_graph("curve", side * side, std::move(edges));
 }
 
-/// Two sets of vertices, each joined to all of the other set but one. In the order that takes from
-/// both by turns, first-fit needs as many colours as there are pairs.
+/// Two sets of vertices, each vertex joined to all of the other set except its partner. Taking both
+/// sets alternately, first-fit needs as many colours as there are pairs.
 test::TestGraph crown_graph(std::uint32_t vertices, std::uint32_t pairs) {
   test::Edges edges;
   for (std::uint32_t u = 0; u < pairs; ++u)
@@ -167,7 +167,7 @@ TEST(Together, IsSharedOutByHowTheOrderLiesInTheGraph) {
   EXPECT_EQ(kind_of(test::rmat_graph(16, 1'000'000, 3)), Shares::none);  // has hubs
 }
 
-/// Others wait for what the thread that throws leaves without a colour.
+/// Other threads wait for the vertices that the throwing thread leaves uncoloured.
 TEST(Together, HandsOnWhatTheGraphThrows) {
   const auto mesh = test::mesh_graph(600);
   const auto shuffled = test::shuffled(mesh, 1);

@@ -118,7 +118,7 @@ class Buckets {
   };
   struct List {
     Chunk* first = nullptr;
-    Chunk* last = nullptr;  // has elements or is about to get some; chunks after it are kept
+    Chunk* last = nullptr;  // has elements or is about to get some; later chunks are kept for reuse
   };
 
   static constexpr std::size_t first_capacity = std::max<std::size_t>(1, 512 / sizeof(T));

@@ -19,7 +19,7 @@ namespace ductile::runtime {
 
 /// The order in which an owner's updates are committed.
 enum class CommitOrder {
-  any,      ///< whatever is fastest
+  any,      ///< the fastest order
   by_loop,  ///< the order in which a single thread would have deferred them
 };
 

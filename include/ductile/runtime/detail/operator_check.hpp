@@ -399,7 +399,7 @@ class OperatorCheck {
   std::vector<std::uint32_t> waits_of_;  // [item], how many times it waits, if there are conflicts
   std::vector<Numbered> considered_;     // have had their turn
   std::size_t added_ = 0;
-  std::uint32_t level_ = 0;    // that is running
+  std::uint32_t level_ = 0;    // the running level
   std::size_t round_end_ = 0;  // items with lower numbers existed when the round began
   Plan used_plan_{};
   std::array<std::size_t, kinds> top_{}, room_{};  // [kind]

@@ -30,7 +30,7 @@ struct RegionCut {
   bool anew = false;  ///< recompute the cells of all resources
 };
 
-/// Dim is the dimension of the places.
+/// Dim is the dimension of the places, 1 to 3.
 template <std::size_t Dim>
 class RegionMap {
  public:
@@ -63,7 +63,7 @@ class RegionMap {
  private:
   using Cell = std::uint16_t;
   static constexpr Cell unlabelled = 0xffff;
-  static constexpr int most_bits = Dim == 2 ? 7 : 5;  // bits of a cell per axis
+  static constexpr int most_bits = Dim == 3 ? 5 : 14 / static_cast<int>(Dim);  // of a cell per axis
   static constexpr std::size_t resources_a_cell = 32, block_size = 4096;
 
   void find_blocks(const Numbers& resources) {

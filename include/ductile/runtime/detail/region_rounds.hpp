@@ -1,9 +1,9 @@
 /// @file
-/// RegionRounds: the strategy `regions`. In each phase resources are cut into regions; one thread
-/// runs the items of a region, the last woken first, and writes directly, because all that its
-/// items reach belongs to it. An item that reaches into another region waits for the next phase,
-/// whose cuts lie elsewhere. The number of regions depends on the amount of work, never on threads,
-/// and so does the result.
+/// RegionRounds: the strategy `regions`. In each phase resources are cut into regions, by their
+/// places, or by their numbers if the operator has no place_of(). One thread runs the items of a
+/// region, the last woken first, and writes directly, because all that its items reach belongs to
+/// it. An item that reaches into another region waits for the next phase, whose cuts lie elsewhere.
+/// The number of regions depends on the amount of work, never on threads, and so does the result.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,17 @@
 
 namespace ductile::runtime::detail {
 
-template <PlacedOperator Op>
+/// place_of(resource), or the number of the resource.
+template <Operator Op>
+auto place_in(const Op& op, std::uint32_t resource) {
+  if constexpr (PlacedOperator<Op>) {
+    return op.place_of(resource);
+  } else {
+    return std::array<double, 1>{static_cast<double>(resource)};
+  }
+}
+
+template <Operator Op>
 class RegionRounds {
  public:
   using Item = typename Op::Item;
@@ -51,7 +61,7 @@ class RegionRounds {
   }
 
  private:
-  using Map = RegionMap<std::tuple_size_v<decltype(std::declval<const Op&>().place_of(0))>>;
+  using Map = RegionMap<std::tuple_size_v<decltype(place_in(std::declval<const Op&>(), 0))>>;
   using RegionNumber = typename Map::Region;
   using Pools = typename MadeThings<Op>::Pools;
 
@@ -159,7 +169,7 @@ class RegionRounds {
     std::vector<Region> regions(count);
     {
       const PhaseTimer timer(report_.conflict_seconds);
-      map_.cut(executor_, made_.resources(), [&](std::uint32_t r) { return op_.place_of(r); },
+      map_.cut(executor_, made_.resources(), [&](std::uint32_t r) { return place_in(op_, r); },
                {count, report_.rounds, report_.applied - applied_before_cut_, is_stuck_});
       applied_before_cut_ = report_.applied;
       share_out(work, regions);

@@ -10,7 +10,6 @@
 //     ordered_windows      all others
 //   reservation_windows    reservations, or
 //     level_rounds         operators with levels
-//   lock_rounds            locks
 //   tile_rounds            tiles; ranked_blocks runs them in order
 //   colour_rounds          colours
 // made_things holds the numbers of things that operators make.
@@ -22,7 +21,6 @@
 
 #include "ductile/runtime/detail/colour_rounds.hpp"
 #include "ductile/runtime/detail/level_rounds.hpp"
-#include "ductile/runtime/detail/lock_rounds.hpp"
 #include "ductile/runtime/detail/ordered_run.hpp"
 #include "ductile/runtime/detail/region_rounds.hpp"
 #include "ductile/runtime/detail/reservation_windows.hpp"
@@ -62,25 +60,18 @@ constexpr void expect_whole_operator() {
   static_assert(!has_levels || !makes_things, "an operator with levels makes no things");
 }
 
-/// Throws std::invalid_argument if the operator or the executor lacks what the strategy needs.
+/// Throws std::invalid_argument if the operator lacks what the strategy needs.
 template <Operator Op>
-void expect_possible(const Executor& executor, Strategy strategy) {
+void expect_possible(Strategy strategy) {
   constexpr bool makes_things = kinds_made<Op> != 0;
   const auto expect = [&](bool holds, const char* message) {
     if (!holds) throw std::invalid_argument(message);
   };
   switch (strategy) {
-    case Strategy::regions:
-      return expect(PlacedOperator<Op>,
-                    "strategy regions: the operator has no member place_of(resource) const that "
-                    "returns std::array<double, 2> or std::array<double, 3>");
     case Strategy::in_order:
       return expect(!makes_things,
                     "strategy in_order: the operator makes things, whose numbers follow another "
                     "order");
-    case Strategy::locks:
-      return expect(!executor.deterministic(),
-                    "strategy locks: the executor is deterministic, see ExecutorOptions");
     case Strategy::tiles:
       return expect(ConflictingOperator<Op> && !makes_things,
                     "strategy tiles: the operator has no member conflicts(item, visit) const, or "
@@ -88,6 +79,7 @@ void expect_possible(const Executor& executor, Strategy strategy) {
     case Strategy::colours:
       return expect(ConflictingOperator<Op>,
                     "strategy colours: the operator has no member conflicts(item, visit) const");
+    case Strategy::regions:
     case Strategy::reservations:
     case Strategy::automatic:
       return;
@@ -96,18 +88,17 @@ void expect_possible(const Executor& executor, Strategy strategy) {
 
 /// The strategy for these options and this operator. Throws as expect_possible().
 template <Operator Op>
-Strategy strategy_of(const Executor& executor, const RoundsOptions& options) {
+Strategy strategy_of(const RoundsOptions& options) {
   if constexpr (LevelledOperator<Op>) {
     if (options.strategy == Strategy::automatic || options.strategy == Strategy::reservations)
       return Strategy::reservations;
     throw std::invalid_argument(
         "the operator has levels, which only the strategies automatic and reservations keep");
   }
-  expect_possible<Op>(executor, options.strategy);
+  expect_possible<Op>(options.strategy);
   if (options.strategy != Strategy::automatic) return options.strategy;
-  if (!executor.deterministic()) return Strategy::locks;
-  if (PlacedOperator<Op>) return Strategy::regions;
-  return ConflictingOperator<Op> ? Strategy::in_order : Strategy::reservations;
+  constexpr bool has_order = ConflictingOperator<Op> && !PlacedOperator<Op> && kinds_made<Op> == 0;
+  return has_order ? Strategy::in_order : Strategy::regions;
 }
 
 template <class Item>
@@ -137,28 +128,25 @@ RoundsReport run_by(const Executor& executor, Op& op, Work work, std::size_t mos
   if constexpr (S == Strategy::tiles) return TileRounds<Op>(executor, op).run(work, most_rounds);
   if constexpr (S == Strategy::colours)
     return ColourRounds<Op>(executor, op).run(work, most_rounds);
-  if constexpr (S == Strategy::locks) return LockRounds<Op>(executor, op).run(items(), most_rounds);
 }
 
 template <Operator Op, class Work>
 RoundsReport run_by_options(const Executor& executor, Op& op, Work work,
                             const RoundsOptions& options) {
-  const Strategy strategy = strategy_of<Op>(executor, options);
+  const Strategy strategy = strategy_of<Op>(options);
   const auto most_rounds = static_cast<std::size_t>(options.most_rounds);
   const auto run = [&]<Strategy S>() {
     return run_by<S>(executor, op, std::move(work), most_rounds);
   };
   return with_team(executor, [&] {
     if constexpr (LevelledOperator<Op>) return run.template operator()<Strategy::reservations>();
-    if constexpr (PlacedOperator<Op>)
-      if (strategy == Strategy::regions) return run.template operator()<Strategy::regions>();
+    if (strategy == Strategy::regions) return run.template operator()<Strategy::regions>();
     if constexpr (kinds_made<Op> == 0)
       if (strategy == Strategy::in_order) return run.template operator()<Strategy::in_order>();
     if constexpr (ConflictingOperator<Op> && kinds_made<Op> == 0)
       if (strategy == Strategy::tiles) return run.template operator()<Strategy::tiles>();
     if constexpr (ConflictingOperator<Op>)
       if (strategy == Strategy::colours) return run.template operator()<Strategy::colours>();
-    if (strategy == Strategy::locks) return run.template operator()<Strategy::locks>();
     return run.template operator()<Strategy::reservations>();
   });
 }

@@ -1,0 +1,248 @@
+#include "adapt/outer_loop.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adapt/adapter.hpp"
+#include "adapt/edge_counts.hpp"
+#include "adapt/rescue.hpp"
+#include "adapt/size_limits.hpp"
+#include "adapt/take_apart.hpp"
+#include "core/instructions.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "geometry/flat_noise.hpp"
+#include "geometry/make_mesh.hpp"
+#include "mesh/wording.hpp"
+#include "operators/round_boundary.hpp"
+
+namespace ductile::meshadapt {
+
+using runtime::Executor;
+
+namespace {
+
+template <int Dim>
+std::size_t fixed_vertices(const Executor& executor, const Mesh<Dim>& mesh) {
+  const auto is_fixed = [&](std::size_t v) {
+    return std::size_t{mesh.kind_of[v].class_dimension == 0 &&
+                       mesh.vertex_alive(static_cast<VertexId>(v))};
+  };
+  return runtime::parallel_reduce(executor, mesh.vertex_slots(), std::size_t{0}, is_fixed,
+                                  std::plus<>());
+}
+
+template <int Dim>
+bool has_crack_sides(const Mesh<Dim>& mesh) {
+  return std::any_of(mesh.patches.begin(), mesh.patches.end(),
+                     [](const Patch<Dim>& patch) { return patch.crack_side; });
+}
+
+template <int Dim>
+Neighbours<Dim> neighbours_of(const Executor& executor, const Mesh<Dim>& mesh) {
+  Neighbours<Dim> neighbours;
+  runtime::FreshMemory fresh;
+  neighbours.resize_for_overwrite(mesh.element_slots(), fresh);
+  fresh.touch(executor);
+  runtime::parallel_for(executor, mesh.element_slots(), [&](std::size_t e) {
+    for (int i = 0; i <= Dim; ++i)
+      neighbours[e][static_cast<std::size_t>(i)] = neighbour(mesh, static_cast<ElementId>(e), i);
+  });
+  return neighbours;
+}
+
+/// Warns if faces that are flat except for noise keep all their vertices.
+template <int Dim>
+void warn_of_noise(const Executor& executor, const AnyMesh& input, const AnyMesh& adapted,
+                   std::vector<std::string>& warnings) {
+  constexpr double margin = 2;  // because the surface that is approximated has noise, too
+  // The input has more facets to judge by, unless it leaves them out.
+  const AnyMesh& judged = facets_in<Dim>(input).size() > 0 ? input : adapted;
+  const double noise = noise_in_flat_faces<Dim>(executor, judged);
+  if (!(noise > 0)) return;
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.2g", margin * noise);
+  warnings.push_back(name_of(input) + ": boundary faces are flat up to " + text.data() +
+                     ", probably by rounding; -hausd " + text.data() +
+                     " (hausdorff_tolerance) lets them be coarsened");
+}
+
+/// The input, set up to be adapted to one metric after another. An attempt whose result is not
+/// accepted is taken back: the input is set up again, for less effort or to keep more of its
+/// boundary.
+template <int Dim>
+class Attempt {
+ public:
+  /// Refers to the executor and the input.
+  Attempt(const Executor& executor, const AnyMesh& input, const AdaptOptions& options)
+      : executor_(executor),
+        input_(input),
+        is_flat_(options.make.hausdorff_tolerance == 0),
+        options_(options) {}
+
+  /// What the next pass begins with: the mesh as it stands, and metrics within the limits of the
+  /// options. They come from the source, unless the last ones grow too fast on this mesh. Nothing
+  /// if the mesh is final.
+  std::optional<Start<Dim>> next(MetricSource& source) {
+    if (pass_ > 0)
+      if (auto start = with_growth_limited()) return start;
+    growths_ = 0;
+    const AnyField* metric = source.next(
+        {executor_, pass_, input_, [this]() -> const MeshWithMetric& { return copy(); }});
+    if (metric == nullptr && pass_ == 0)
+      throw InputError(name_of(input_) + ": expected a metric to adapt it to, found none");
+    if (metric == nullptr) return std::nullopt;
+    if (pass_ < most_passes) return with_limits(*metric);
+    warn(metric->name + ": the mesh was adapted " + std::to_string(pass_) +
+         " times, and metrics still come; they are left out");
+    return std::nullopt;
+  }
+
+  /// Adapts; ends with keep() or take_back(). Refers to this.
+  Adapter<Dim> adapter(Start<Dim> start) {
+    const runtime::PhaseTimer timer(report_.setup_seconds);
+    copy_.reset();
+    return Adapter<Dim>(executor_, options_, std::move(start), report_);
+  }
+  Effort effort() const { return pass_ == 0 ? effort_ : Effort::everything; }
+
+  void keep(Adapter<Dim>& adapter) {
+    mesh_ = adapter.take_mesh();
+    ++pass_;
+  }
+
+  void take_back(Effort effort) { take_back(effort, options_.make); }
+  void take_back(Effort effort, MakeMeshOptions make) {
+    effort_ = effort;
+    options_.make = std::move(make);
+    report_ = {};
+    pass_ = 0;
+  }
+
+  AdaptedMesh result() {
+    copy_.reset();
+    round_boundary(mesh_);
+    count_edges(executor_, mesh_, options_.rules, report_);
+    const bool has_short = has_short_facets(executor_, mesh_, options_.rules);
+    auto [mesh, metric] = take_apart(executor_, std::move(mesh_));
+    if (has_short && is_flat_) warn_of_noise<Dim>(executor_, input_, mesh, report_.warnings);
+    return {std::move(mesh), std::move(metric), std::move(report_)};
+  }
+
+  /// May the boundary have met itself?
+  bool may_meet() const { return may_meet_; }
+
+ private:
+  void warn(const std::string& warning) {
+    auto& all = report_.warnings;
+    if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(warning);
+  }
+
+  /// The mesh as a file would hold it, with the same numbers.
+  const MeshWithMetric& copy() {
+    if (!copy_) {
+      copy_ = copy_in_order(executor_, mesh_);
+      copy_->mesh.name = input_.name;
+      copy_->mesh.names = input_.names;
+    }
+    return *copy_;
+  }
+
+  Start<Dim> with_limits(const AnyField& metric) {
+    const runtime::PhaseTimer timer(report_.setup_seconds);
+    name_ = metric.name;
+    auto metric_of = valid_metrics<Dim>(executor_, pass_ == 0 ? input_ : copy().mesh, metric,
+                                        {options_.smallest_size, options_.largest_size});
+    Neighbours<Dim> neighbours = pass_ == 0 ? set_up() : neighbours_of(executor_, mesh_);
+    for (const std::string& left : limit_sizes(executor_, mesh_, options_, metric_of))
+      warn(name_ + ": " + left);
+    expect_possible(executor_, mesh_, options_, metric_of, name_);
+    return {std::move(mesh_), std::move(neighbours), std::move(metric_of)};
+  }
+
+  /// Makes the mesh from the input.
+  Neighbours<Dim> set_up() {
+    Neighbours<Dim> neighbours;
+    mesh_ = {};  // before there is another
+    mesh_ = make_mesh<Dim>(executor_, input_, options_.make, neighbours, report_.warnings);
+    may_meet_ = mesh_.surface || has_crack_sides(mesh_);
+    report_.fixed_vertices = fixed_vertices(executor_, mesh_);
+    return neighbours;
+  }
+
+  /// Growth is limited along edges, of which a coarse mesh has few. Limits the metrics of the
+  /// adapted mesh along its edges; nothing if that asks for hardly more elements.
+  std::optional<Start<Dim>> with_growth_limited() {
+    constexpr double much = 1.1;
+    constexpr int most_times = 5;
+    if (!limits_growth(options_) || !options_.insert || growths_ == most_times) return std::nullopt;
+    ++growths_;
+    renumber(executor_, mesh_);
+    auto metric_of = runtime::make_vector<Metric<Dim>>(executor_, mesh_.vertex_slots());
+    runtime::parallel_for(executor_, metric_of.size(),
+                          [&](std::size_t v) { metric_of[v] = mesh_.site_of[v].metric; });
+    const double before = complexity_of_demand(executor_, mesh_, metric_of);
+    limit_sizes(executor_, mesh_, options_, metric_of);
+    if (complexity_of_demand(executor_, mesh_, metric_of) < much * before) return std::nullopt;
+    expect_possible(executor_, mesh_, options_, metric_of, name_);
+    Neighbours<Dim> neighbours = neighbours_of(executor_, mesh_);
+    return Start<Dim>{std::move(mesh_), std::move(neighbours), std::move(metric_of)};
+  }
+
+  const Executor& executor_;
+  const AnyMesh& input_;
+  bool is_flat_;  ///< asked for without a Hausdorff tolerance
+  AdaptOptions options_;
+  Effort effort_ = Effort::as_needed;  ///< for the input
+  int pass_ = 0;
+  int growths_ = 0;                     ///< times in a row that growth was limited
+  Mesh<Dim> mesh_;                      ///< as it stands between passes
+  std::string name_;                    ///< of the metric
+  std::optional<MeshWithMetric> copy_;  ///< of the mesh
+  AdaptReport report_;
+  bool may_meet_ = false;
+};
+
+}  // namespace
+
+template <int Dim>
+AdaptedMesh adapt_in(const Executor& executor, const AnyMesh& input, MetricSource& source,
+                     const AdaptOptions& options) {
+  double seconds = 0;
+  AdaptedMesh adapted;
+  {
+    const runtime::PhaseTimer timer(seconds);
+    Rescue<Dim> rescue(executor, input, options.make);
+    Attempt<Dim> attempt(executor, input, options);
+    while (true) {
+      if (auto start = attempt.next(source)) {
+        Adapter<Dim> adapter = attempt.adapter(std::move(*start));
+        if (const auto less = adapter.run(attempt.effort()))
+          attempt.take_back(*less);
+        else
+          attempt.keep(adapter);
+        continue;
+      }
+      adapted = attempt.result();
+      if (rescue.accepts(adapted, attempt.may_meet())) break;
+      attempt.take_back(Effort::as_needed, rescue.options());
+    }
+  }
+  adapted.report.total_seconds = seconds;
+  adapted.report.instructions = name_of(best_instructions());
+  return adapted;
+}
+
+template AdaptedMesh adapt_in<2>(const Executor&, const AnyMesh&, MetricSource&,
+                                 const AdaptOptions&);
+template AdaptedMesh adapt_in<3>(const Executor&, const AnyMesh&, MetricSource&,
+                                 const AdaptOptions&);
+
+}  // namespace ductile::meshadapt

@@ -1,0 +1,105 @@
+/// @file
+/// What an adaptation does to a metric before it uses it: tensors are validated, sizes kept within
+/// bounds, growth limited, and too many elements refused. Thread safety of all: one caller; they
+/// run on the executor.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "ductile/meshadapt/adapt.hpp"
+#include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/hessian_metric.hpp"
+#include "ductile/meshadapt/metric.hpp"
+#include "ductile/runtime/arrays.hpp"
+#include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/process.hpp"
+#include "geometry/curvature.hpp"
+#include "mesh/array_lengths.hpp"
+#include "mesh/mesh.hpp"
+#include "mesh/wording.hpp"
+#include "metric/demand.hpp"
+#include "metric/expect_metrics.hpp"
+#include "metric/mesh_gradation.hpp"
+#include "metric/required_sizes.hpp"
+
+namespace ductile::meshadapt {
+
+/// The tensors [vertex] of a metric for this mesh. Those out of range are bounded, which may make a
+/// metric of them. Throws InputError for a field that is not a metric of the mesh.
+template <int Dim>
+std::vector<Metric<Dim>> valid_metrics(const runtime::Executor& executor, const AnyMesh& mesh,
+                                       const AnyField& field, const SizeBounds& bounds) {
+  if (field.types != std::vector{AnyField::Type::symmetric} || field.dimension != Dim ||
+      field.vertex_count != mesh.vertex_count())
+    throw InputError(name_of(field) + ": expected one symmetric tensor for each of the " +
+                     std::to_string(mesh.vertex_count()) + " vertices of " + name_of(mesh));
+  expect_values(field);
+  expect_metric_field<Dim>(executor, field, bounds);
+  auto metric_of = runtime::make_vector<Metric<Dim>>(executor, field.vertex_count);
+  runtime::parallel_for(executor, metric_of.size(), [&](std::size_t v) {
+    Metric<Dim>& metric = metric_of[v];
+    std::copy_n(&field.values[v * metric.m.size()], metric.m.size(), metric.m.begin());
+    if (has_bounds(bounds) && !in_range(metric)) metric = within_bounds(metric, bounds);
+  });
+  return metric_of;
+}
+
+/// The growth factor asked for; 0: none.
+inline double growth_of(const AdaptOptions& options) {
+  constexpr double from_curves = 1.3;
+  return options.curved_sizes && options.gradation == 0 ? from_curves
+                                                        : std::max(options.gradation, 0.0);
+}
+
+/// Do the options limit how fast sizes grow?
+inline bool limits_growth(const AdaptOptions& options) {
+  return options.gradation > 0 || options.curved_sizes;
+}
+
+/// Makes the metrics keep the bounds and the growth that the options allow. Returns sentences about
+/// what it could not do.
+template <int Dim>
+std::vector<std::string> limit_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                                     const AdaptOptions& options,
+                                     std::vector<Metric<Dim>>& metric_of) {
+  std::vector<std::string> warnings;
+  const auto bound = [&] {
+    bound_sizes(executor, metric_of, {options.smallest_size, options.largest_size});
+  };
+  bound();
+  if (limits_growth(options)) {
+    if (mesh.surface)
+      bound_curved_sizes(executor, mesh, options.make.hausdorff_tolerance, metric_of);
+    if (const double factor = growth_of(options); factor > 0) {
+      const auto report = limit_gradation(executor, metric_of, mesh, {.factor = factor});
+      if (!report.converged)
+        warnings.push_back("sizes still grow faster than asked for in places, after " +
+                           std::to_string(report.sweeps) + " sweeps over the edges");
+    }
+    bound();  // intersections may be finer than the metrics
+  }
+  if (options.required_gradation > 0 &&
+      !take_required_sizes(executor, mesh, options.required_gradation, metric_of).converged)
+    warnings.emplace_back("sizes still differ more than asked for from required ones");
+  return warnings;
+}
+
+/// Throws unless the elements that the metric asks for can be numbered and fit in memory.
+template <int Dim>
+void expect_possible(const runtime::Executor& executor, const Mesh<Dim>& mesh,
+                     const AdaptOptions& options, const std::vector<Metric<Dim>>& metric_of,
+                     const std::string& name) {
+  if (!options.insert) return;
+  constexpr int enough_to_refine = 6;
+  const double least = options.make.lock_boundary ? 0 : least_elements(executor, mesh, metric_of);
+  const double elements = std::max(
+      complexity_of_demand(executor, mesh, metric_of) / complexity_of_elements(Dim, 1), least);
+  expect_countable(name, Dim, elements);
+  const std::size_t limit =
+      options.memory_limit > 0 ? options.memory_limit : runtime::most_memory();
+  if (limit > 0 && options.iterations >= enough_to_refine) expect_room(name, Dim, elements, limit);
+}
+
+}  // namespace ductile::meshadapt
