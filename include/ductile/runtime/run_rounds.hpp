@@ -34,7 +34,7 @@ template <Strategy S, class Op, class Work = std::vector<typename Op::Item>>
 requires(S != Strategy::automatic) RoundsReport
     run_rounds_by(const Executor& executor, Op& op, Work work, const RoundsOptions& options = {}) {
   detail::expect_whole_operator<Op>();
-  detail::expect_possible<Op>(executor, S);
+  detail::expect_possible<Op>(S);
   const auto most_rounds = static_cast<std::size_t>(options.most_rounds);
   return with_team(executor,
                    [&] { return detail::run_by<S>(executor, op, std::move(work), most_rounds); });
