@@ -26,7 +26,7 @@ function(ductile_unite)
   endforeach()
 endfunction()
 ductile_unite(ductile_runtime ductile_meshadapt ductile_meshadapt_plain ductile_cli ductile_c
-  ductile_petsc_parts ductile_mpi ductile_python_module
+  ductile_distributed ductile_petsc_parts ductile_mpi ductile_python_module
   test_support runtime_tests meshadapt_tests io_tests cli_tests process_tests campaign_parts campaign_tests
   ductile_bench_cases ductile_adapt_bench bench_tests adapt_bench_tests
   irregular_bench_parts runtime_bench_support runtime_bench_tests

@@ -4,30 +4,19 @@
 #include <string>
 #include <utility>
 
-#include "adapt_parts.hpp"
-#include "communicator.hpp"
+#include "distributed/adapt_parts.hpp"
+#include "distributed/communicator.hpp"
 #include "metric.hpp"
 #include "parameters.hpp"
 #include "plex.hpp"
 #include "plex_geometry.hpp"
 #include "read_plex.hpp"
-#include "threads.hpp"
 #include "vectors.hpp"
 #include "write_plex.hpp"
 
 namespace ductile::petsc {
 
 namespace {
-
-/// Prints a line for each pass on the first rank.
-void tell(MPI_Comm comm, const PassReport& pass) {
-  check(PetscPrintf(
-      comm,
-      "ductile: pass %d: %lld elements, %lld of %lld edges around interfaces blocked, "
-      "imbalance %.2f, %.3f s\n",
-      pass.pass, static_cast<long long>(pass.elements), static_cast<long long>(pass.blocked),
-      static_cast<long long>(pass.edges), pass.imbalance, pass.seconds));
-}
 
 /// Prints warnings, which the first rank has.
 void warn(const meshadapt::Warnings& warnings) {
@@ -51,11 +40,10 @@ DM adapted_plex(MPI_Comm handle, DM dm, Vec metric, DMLabel facets, DMLabel cell
                                                           {adapt.smallest_size, adapt.largest_size})
                                        : metric_of_label(comm, executor, facets, read);
   if (parameters.verbosity > 0)
-    parameters.options.told = [&](const PassReport& pass) { tell(handle, pass); };
-  const AdaptedParts parts =
-      read.part.mesh.dimension == 2
-          ? adapt_parts<2>(comm, executor, std::move(read.part), parameters.options)
-          : adapt_parts<3>(comm, executor, std::move(read.part), parameters.options);
+    parameters.options.told = [&](const PassReport& pass) {
+      check(PetscPrintf(handle, "ductile: %s\n", to_text(pass).c_str()));
+    };
+  const AdaptedParts parts = adapt_parts(comm, executor, std::move(read.part), parameters.options);
   warn(parts.warnings);
   DM adapted = write_plex(comm, parts, labels);
   pass_geometry_on(dm, adapted);
@@ -69,15 +57,9 @@ PetscErrorCode adapt_plex(DM dm, Vec metric, DMLabel facets, DMLabel cells, DM* 
   PetscFunctionBegin;
   MPI_Comm comm = MPI_COMM_NULL;
   PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(dm), &comm));
-  std::string failure;
-  try {
-    *adapted = adapted_plex(comm, dm, metric, facets, cells);
-  } catch (const std::bad_alloc&) {
-    failure = "there is not enough memory";
-  } catch (const std::exception& error) {
-    failure = error.what();
-  }
-  PetscCheck(failure.empty(), comm, PETSC_ERR_LIB, "Ductile: %s", failure.c_str());
+  const auto failure =
+      failure_of([&] { *adapted = adapted_plex(comm, dm, metric, facets, cells); });
+  PetscCheck(!failure, comm, PETSC_ERR_LIB, "Ductile: %s", failure->c_str());
   PetscFunctionReturn(0);
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "adapt_part.hpp"
+#include "distributed/adapt_part.hpp"
+#include "distributed/interfaces.hpp"
 #include "ductile/meshadapt/metric_field.hpp"
-#include "interfaces.hpp"
 
 namespace ductile::petsc {
 
@@ -78,7 +78,7 @@ AnyField agreed(const Communicator& comm, const runtime::Executor& executor, con
     list_boundary(executor, listed);
     if (part.element_count() > 0) tensor_of = meshadapt::tensors_of<Dim>(executor, sizes);
   });
-  const Interfaces interfaces = find_interfaces<Dim>(comm, listed);
+  const Interfaces interfaces = find_interfaces(comm, listed);
   std::vector<AtVertex> own;
   for (const SharedVertex& shared : interfaces.vertices)
     own.push_back({meshadapt::logarithm(tensor_of[shared.vertex]), factor_of[shared.vertex], 1});

@@ -2,10 +2,10 @@
 /// The metric of a DMPlex as the field of a part.
 #pragma once
 
-#include "communicator.hpp"
+#include "distributed/communicator.hpp"
+#include "distributed/part.hpp"
 #include "ductile/meshadapt/metric_operations.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "part.hpp"
 #include "plex.hpp"
 #include "read_plex.hpp"
 

@@ -1,7 +1,9 @@
 #include "parameters.hpp"
 
 #include <algorithm>
+#include <optional>
 
+#include "distributed/threads.hpp"
 #include "plex_geometry.hpp"
 
 namespace ductile::petsc {
@@ -44,6 +46,16 @@ Parameters parameters_of(DM dm) {
   parameters.verbosity = static_cast<int>(
       std::clamp<PetscInt>(parameter<PetscInt>(dm, DMPlexMetricGetVerbosity), -1, 10));
   return parameters;
+}
+
+int threads_of(const Communicator& comm, DM dm) {
+  const char* prefix = nullptr;
+  check(PetscObjectGetOptionsPrefix(reinterpret_cast<PetscObject>(dm), &prefix));
+  PetscInt threads = 0;
+  PetscBool is_given = PETSC_FALSE;
+  check(PetscOptionsGetInt(nullptr, prefix, "-dm_ductile_threads", &threads, &is_given));
+  return threads_of(
+      comm, is_given == PETSC_TRUE ? std::optional(static_cast<int>(threads)) : std::nullopt);
 }
 
 }  // namespace ductile::petsc

@@ -2,7 +2,7 @@
 /// The options of adaptation from a DM's DMPlexMetric parameters.
 #pragma once
 
-#include "adapt_parts.hpp"
+#include "distributed/adapt_parts.hpp"
 #include "plex.hpp"
 
 namespace ductile::petsc {
@@ -20,5 +20,8 @@ struct Parameters {
 /// complexity, order of normalisation and largest anisotropy have been used by
 /// DMPlexMetricNormalize() already. Throws Error.
 Parameters parameters_of(DM dm);
+
+/// The number of threads of each rank, which -dm_ductile_threads may give. Collective.
+int threads_of(const Communicator& comm, DM dm);
 
 }  // namespace ductile::petsc

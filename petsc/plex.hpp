@@ -7,10 +7,12 @@
 
 #include <string>
 
-#include "communicator.hpp"
+#include "distributed/communicator.hpp"
 #include "ductile/meshadapt/error.hpp"
 
 namespace ductile::petsc {
+
+using namespace distributed;
 
 /// Throws Error for an error code; PETSc has already printed where it occurred.
 inline void check(PetscErrorCode code) {

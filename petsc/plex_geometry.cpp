@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "parts_geometry.hpp"
+#include "distributed/parts_geometry.hpp"
 #include "read_plex.hpp"
 
 namespace ductile::petsc {

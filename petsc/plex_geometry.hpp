@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "communicator.hpp"
+#include "distributed/communicator.hpp"
 #include "ductile/meshadapt/adapt.hpp"
 #include "ductile/meshadapt/geometry.hpp"
 #include "ductile/runtime/executor.hpp"

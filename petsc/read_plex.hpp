@@ -2,8 +2,8 @@
 /// read_plex: reads a DMPlex as parts, without cells of an overlap.
 #pragma once
 
-#include "communicator.hpp"
-#include "part.hpp"
+#include "distributed/communicator.hpp"
+#include "distributed/part.hpp"
 #include "plex.hpp"
 
 namespace ductile::petsc {

@@ -3,12 +3,9 @@
 /// library, and transfer of fields.
 #include <petscdm.h>
 
-#include <exception>
-#include <string>
-
 #include "adapt_plex.hpp"
 #include "ductile_petsc.h"
-#include "threads.hpp"
+#include "parameters.hpp"
 #include "vectors.hpp"
 
 extern "C" {
@@ -29,9 +26,8 @@ PetscErrorCode DuctilePetscTransfer(DM before, Vec values, PetscBool on_cells,
   PetscFunctionBegin;
   MPI_Comm handle = MPI_COMM_NULL;
   PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(before), &handle));
-  std::string failure;
-  try {
-    const petsc::Communicator comm(handle);
+  const auto failure = distributed::failure_of([&] {
+    const distributed::Communicator comm(handle);
     const int threads = petsc::threads_of(comm, before);
     const auto executor = comm.on_all([&] { return runtime::Executor({.threads = threads}); });
     using Place = meshadapt::NamedField::Place;
@@ -41,10 +37,8 @@ PetscErrorCode DuctilePetscTransfer(DM before, Vec values, PetscBool on_cells,
         {{"values", values, on_cells == PETSC_TRUE ? Place::elements : Place::vertices,
           conservatively == PETSC_TRUE ? Carrying::conservatively : Carrying::by_value}},
         after)[0];
-  } catch (const std::exception& error) {
-    failure = error.what();
-  }
-  PetscCheck(failure.empty(), handle, PETSC_ERR_LIB, "Ductile: %s", failure.c_str());
+  });
+  PetscCheck(!failure, handle, PETSC_ERR_LIB, "Ductile: %s", failure->c_str());
   PetscFunctionReturn(0);
 }
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
-#include "adapt_part.hpp"
-#include "transfer_parts.hpp"
+#include "distributed/adapt_part.hpp"
+#include "distributed/transfer_parts.hpp"
 
 namespace ductile::petsc {
 
@@ -118,10 +118,7 @@ void compose(DM dm, const std::string& name, Vec vector) {
 
 /// The adapted metric as a vector. PETSc sorts the vertices of a rank by number.
 Vec metric_vector(const Part& part) {
-  std::vector<VertexId> order(part.number_of.size());
-  for (VertexId v = 0; v < order.size(); ++v) order[v] = v;
-  std::sort(order.begin(), order.end(),
-            [&](VertexId a, VertexId b) { return part.number_of[a] < part.number_of[b]; });
+  const std::vector<VertexId> order = by_number(part);
   const auto dim = static_cast<std::size_t>(part.mesh.dimension);
   const std::size_t width = dim * (dim + 1) / 2;
   return local_vector(order.size(), part.mesh.dimension * part.mesh.dimension,

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "adapt_parts.hpp"
-#include "communicator.hpp"
+#include "distributed/adapt_parts.hpp"
+#include "distributed/communicator.hpp"
 #include "ductile/meshadapt/transfer.hpp"
 #include "ductile/runtime/executor.hpp"
 #include "plex.hpp"

@@ -57,14 +57,9 @@ class Writer {
 
   /// Numbers points: PETSc sorts the vertices of a rank by number.
   void number_points() {
-    const auto& number_of = part_.number_of;
-    std::vector<std::int64_t> sorted(number_of);
-    std::sort(sorted.begin(), sorted.end());
-    const PetscInt first = vertices_of(dm_).begin;
-    for (const std::int64_t number : number_of)
-      point_of_.push_back(
-          first + static_cast<PetscInt>(std::lower_bound(sorted.begin(), sorted.end(), number) -
-                                        sorted.begin()));
+    point_of_.resize(part_.number_of.size());
+    PetscInt next = vertices_of(dm_).begin;
+    for (const VertexId v : by_number(part_)) point_of_[v] = next++;
   }
 
   void write_labels(const CarriedLabels& labels) {

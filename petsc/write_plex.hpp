@@ -2,8 +2,8 @@
 /// write_plex: makes an interpolated DMPlex from parts, without an overlap, with its labels.
 #pragma once
 
-#include "adapt_parts.hpp"
-#include "communicator.hpp"
+#include "distributed/adapt_parts.hpp"
+#include "distributed/communicator.hpp"
 #include "plex.hpp"
 
 namespace ductile::petsc {

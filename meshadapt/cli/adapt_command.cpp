@@ -156,9 +156,7 @@ void set_sizes(Job& job, const Arguments& arguments) {
   job.recovery = recovery_in(arguments);
   if (job.solution.empty() && arguments.has("--recovery"))
     throw UsageError("option --recovery: expected --solution as well, found none");
-  if (!given.empty()) return;
-  job.metric_in = metric_beside(job.input);
-  job.metric_found = job.metric_in.has_value();
+  job.metric_found = given.empty();
 }
 
 void set_files(Job& job, const Arguments& arguments, const std::optional<fs::path>& output) {
@@ -245,23 +243,29 @@ void expect_inputs_to_stay(const Job& job) {
 
 }  // namespace
 
-void set_options_of_work(AdaptJob& job, const Arguments& arguments) {
+AdaptJob adapt_job(const Arguments& arguments, const std::optional<fs::path>& output) {
+  Job job;
+  set_files(job, arguments, output);
   set_options(job.adapt, arguments);
   job.verbosity = arguments.integer("-v", -1, 10).value_or(1);
   job.threads = arguments.integer("--threads", 1, 4096).value_or(0);
   job.racing = arguments.has("--racing");
   if (const auto megabytes = arguments.integer("-m", 1, 1 << 30))
     job.memory = static_cast<std::size_t>(*megabytes) << 20U;
+  job.unneeded = unneeded_mmg_options(arguments);
+  return job;
 }
 
-AdaptJob read_adapt_job(const Arguments& arguments, const std::optional<fs::path>& output) {
-  Job job;
-  set_files(job, arguments, output);
-  set_options_of_work(job, arguments);
-  job.unneeded = unneeded_mmg_options(arguments);
+void check_files(AdaptJob& job) {
+  if (job.metric_found) job.metric_in = metric_beside(job.input);
+  job.metric_found = job.metric_found && job.metric_in;
   expect_inputs_to_stay(job);
   meshadapt::check_writable(outputs_of(job));
-  return job;
+}
+
+std::size_t memory_left(std::optional<std::size_t> given) {
+  const std::size_t most = given ? *given : runtime::most_memory(), held = runtime::held_memory();
+  return most == 0 ? 0 : most - std::min(held, most - 1);
 }
 
 namespace {
@@ -287,13 +291,6 @@ class ProgressLine {
   bool shown_;
 };
 
-/// Bytes that may still be allocated: the given limit, or the machine's memory, minus what is in
-/// use; 0 if unknown.
-std::size_t memory_left(std::optional<std::size_t> given) {
-  const std::size_t most = given ? *given : runtime::most_memory(), held = runtime::held_memory();
-  return most == 0 ? 0 : most - std::min(held, most - 1);
-}
-
 AdaptedMesh adapt_with_progress(const Executor& executor, const Job& job, const AnyMesh& mesh,
                                 const AnyField& metric, const meshadapt::Sizes& sizes) {
   const ProgressLine line(job.verbosity > 0 && stderr_is_terminal());
@@ -315,43 +312,19 @@ void expect_right(const meshadapt::AdjacentMesh& before, const meshadapt::Adjace
                            "); nothing was written; please report this with its input");
 }
 
-/// Fields on the adapted mesh: those of each file, and the names of all.
-struct Carried {
-  std::vector<AnyField> fields;
-  std::vector<std::string> names;
-};
-
-/// Prints warnings before the files get their names, because no memory is taken after that.
-void write_outputs(const Job& job, const AdaptedMesh& adapted, const Carried& carried,
-                   const std::string& json, meshadapt::Warnings& warnings) {
-  meshadapt::AtomicOutputs outputs;
-  std::vector<meshadapt::NamedField> fields;
-  if (job.with_metric) fields = meshadapt::named_fields(adapted.metric, "metric");
-  for (auto& field : CarriedFields::named_fields(carried.fields, carried.names))
-    fields.push_back(std::move(field));
-  meshadapt::WriteOptions with_fields;
-  with_fields.fields = fields;
-  meshadapt::WriteOptions as_named;
-  if (holds_fields(job.output)) as_named.fields = fields;
-  as_named.warnings = &warnings;
-  const std::string ending = job.output.extension().string();
-  as_named.format = ending;
-  meshadapt::write_mesh(outputs, place_of(job.output), adapted.mesh, as_named);
-  if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, adapted.metric);
-  job.fields.write(outputs, carried.fields);
-  if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, adapted.mesh, with_fields);
-  print_warnings(warnings, job.verbosity);
-  if (job.json) put_json(outputs, *job.json, json);
-  outputs.commit();
-}
-
 /// With --join, joins vertices that lie together, in the mesh, its metric and its fields.
-void join_all(const Job& job, AnyMesh& mesh, AnyField& metric, AnyField& fields,
-              meshadapt::Warnings& warnings) {
+void join_all(const Job& job, AdaptInput& input, meshadapt::Warnings& warnings) {
   if (!job.join) return;
-  const auto kept = join(mesh, *job.join, warnings);
-  metric = meshadapt::at_kept(metric, kept);
-  if (!fields.types.empty()) fields = meshadapt::at_kept(fields, kept);
+  const int dimension = input.file.mesh.dimension;
+  const std::size_t before = input.metric.vertex_count;
+  const auto kept = join(input.file.mesh, *job.join, warnings);
+  input.metric = meshadapt::at_kept(input.metric, kept);
+  for (auto* fields : {&input.file.fields, &input.fields.fields})
+    for (meshadapt::NamedField& field : *fields)
+      if (is_at_vertices(field))
+        field.values =
+            meshadapt::at_kept({dimension, before, {field.type}, std::move(field.values), {}}, kept)
+                .values;
 }
 
 std::string what_was_done(const Job& job, const AdaptSummary& summary) {
@@ -384,29 +357,60 @@ std::shared_ptr<const meshadapt::Geometry> read_geometry(const Executor& executo
                                  .complete_boundary = make.complete_boundary});
 }
 
-int work(const Executor& executor, Job job) {
-  if (job.memory) limit_memory(*job.memory);  // after OpenMP has started its threads
-  meshadapt::Warnings warnings;
+}  // namespace
+
+AdaptInput read_input(const Executor& executor, Job& job, meshadapt::Warnings& warnings) {
   if (!job.unneeded.empty()) warnings.push_back(job.unneeded);
-  meshadapt::MeshWithFields file = meshadapt::read_mesh_with_fields(job.input, &warnings);
-  const AnyMesh& mesh = file.mesh;
-  warn_of_fields_left(job, file, warnings);
-  const meshadapt::Sizes sizes = job.places.sizes_for(mesh, warnings);
-  AnyField metric = choose_metric(executor, job, file, sizes, warnings);
-  CarriedFields::Values fields = job.fields.read(mesh, warnings, {"metric"});
-  const MetricInForce in_force{metric_said(job, file), values_in_force(job)};
-  join_all(job, file.mesh, metric, fields.all, warnings);
+  AdaptInput input;
+  input.file = meshadapt::read_mesh_with_fields(job.input, &warnings);
+  const AnyMesh& mesh = input.file.mesh;
+  input.sizes = job.places.sizes_for(mesh, warnings);
+  input.metric = choose_metric(executor, job, input.file, input.sizes, warnings);
+  input.fields = job.fields.read(mesh, warnings);
+  input.in_force = {metric_said(job, input.file), values_in_force(job)};
+  join_all(job, input, warnings);
   warn_of_loose_vertices(executor, mesh, warnings);
   if (!job.places.any())
     bound_locally(executor, mesh, local_parameters(job.parameters, mesh, job.adapt, warnings),
-                  metric, job.adapt);
+                  input.metric, job.adapt);
+  return input;
+}
+
+/// Prints warnings, and takes the last memory, before files get their names.
+void write_outputs(const Job& job, const AdaptOutput& output, meshadapt::Warnings& warnings) {
+  meshadapt::AtomicOutputs outputs;
+  std::vector<meshadapt::NamedField> fields;
+  if (job.with_metric) fields = meshadapt::named_fields(output.metric, "metric");
+  fields.insert(fields.end(), output.fields.begin(), output.fields.end());
+  meshadapt::WriteOptions as_named;
+  if (holds_fields(job.output)) as_named.fields = fields;
+  as_named.warnings = &warnings;
+  const std::string ending = job.output.extension().string();
+  as_named.format = ending;
+  meshadapt::write_mesh(outputs, place_of(job.output), output.mesh, as_named);
+  if (job.metric_out) meshadapt::write_field(outputs, *job.metric_out, output.metric);
+  job.fields.write(outputs, output.mesh, output.fields, output.field_count_of);
+  if (job.vtu) meshadapt::write_mesh(outputs, *job.vtu, output.mesh, {.fields = fields});
+  print_warnings(warnings, job.verbosity);
+  if (job.json) put_json(outputs, *job.json, output.json);
+  outputs.commit();
+}
+
+namespace {
+
+int work(const Executor& executor, Job job) {
+  if (job.memory) limit_memory(*job.memory);  // which OpenMP must have its threads before
+  meshadapt::Warnings warnings;
+  const auto [file, sizes, metric, fields, in_force] = read_input(executor, job, warnings);
+  const AnyMesh& mesh = file.mesh;
+  warn_of_fields_left(job, file, warnings);
   job.adapt.make.geometry = read_geometry(executor, job, warnings);
 
   AdaptedMesh adapted = adapt_with_progress(executor, job, mesh, metric, sizes);
   const meshadapt::AdjacentMesh before(executor, mesh), after(executor, adapted.mesh);
   if (!adapted.report.checked) expect_right(before, after, job.adapt.make.hausdorff_tolerance);
   adapted.mesh.name = job.output.string();
-  const Carried carried{job.fields.carry(executor, mesh, fields, adapted.mesh), fields.names};
+  const auto carried = job.fields.carry(executor, mesh, fields, adapted.mesh);
   const AdaptSummary summary = summarise(
       before, metric, adapted, after,
       {.before = job.json || job.verbosity > 1,
@@ -417,7 +421,10 @@ int work(const Executor& executor, Job job) {
        .in_force = in_force});
   warnings.insert(warnings.end(), summary.report.warnings.begin(), summary.report.warnings.end());
   const std::string said = job.verbosity > 0 ? what_was_done(job, summary) : std::string();
-  write_outputs(job, adapted, carried, job.json ? to_json(summary) : std::string(), warnings);
+  write_outputs(job,
+                {adapted.mesh, adapted.metric, carried, fields.count_of,
+                 job.json ? to_json(summary) : std::string()},
+                warnings);
   // From here on no memory is taken, because the outputs are there.
   const bool taken = is_standard_output(job.output) || job.json == standard_output;
   std::fputs(said.c_str(), taken ? stderr : stdout);
@@ -425,7 +432,8 @@ int work(const Executor& executor, Job job) {
 }
 
 int run(const Arguments& arguments) {
-  const Job job = read_adapt_job(arguments);
+  Job job = adapt_job(arguments);
+  check_files(job);
   return run_in_team({.threads = job.threads, .deterministic = !job.racing},
                      [&](const Executor& executor) { return work(executor, job); });
 }

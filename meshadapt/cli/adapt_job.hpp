@@ -39,18 +39,49 @@ struct AdaptJob {
   int verbosity = 1;
   int threads = 0;
   bool racing = false;
-  bool metric_found = false;  // beside the mesh
+  bool metric_found = false;  // beside the mesh; before check_files(): no sizes are given
   bool with_metric = true;    // write the metric at the new vertices
   bool keep_sizes = false;    // whatever metric there is with the mesh
 };
 
-/// Throws UsageError, or InputError if outputs cannot be written. `output` replaces -o.
-AdaptJob read_adapt_job(const Arguments& arguments,
-                        const std::optional<std::filesystem::path>& output = {});
-
-/// Sets the part that needs no files: options of adapt(), threads, verbosity, memory. Throws
+/// The job that a command line asks for; touches no file. `output` replaces the value of -o. Throws
 /// UsageError.
-void set_options_of_work(AdaptJob& job, const Arguments& arguments);
+AdaptJob adapt_job(const Arguments& arguments,
+                   const std::optional<std::filesystem::path>& output = {});
+
+/// Looks for a metric beside the mesh unless sizes are given. Throws UsageError if an output would
+/// replace an input, InputError if outputs cannot be written.
+void check_files(AdaptJob& job);
+
+/// The contents of a job's files, ready to be adapted.
+struct AdaptInput {
+  meshadapt::MeshWithFields file;
+  meshadapt::Sizes sizes;  // by places
+  meshadapt::AnyField metric;
+  CarriedFields::Values fields;
+  MetricInForce in_force;
+};
+
+/// Reads a job's files except -geometry, joins vertices and bounds the metric; local parameters may
+/// widen the bounds in job.adapt. Throws InputError; UsageError if places do not fit the mesh.
+AdaptInput read_input(const runtime::Executor& executor, AdaptJob& job,
+                      meshadapt::Warnings& warnings);
+
+/// Bytes that may still be allocated: the given limit, or the machine's memory, minus what is in
+/// use; 0 if unknown.
+std::size_t memory_left(std::optional<std::size_t> given);
+
+/// An adapted mesh and the data on it.
+struct AdaptOutput {
+  const meshadapt::AnyMesh& mesh;
+  const meshadapt::AnyField& metric;
+  const std::vector<meshadapt::NamedField>& fields;
+  const std::vector<std::size_t>& field_count_of;  // [file that CarriedFields writes]
+  const std::string& json;
+};
+
+/// Writes all outputs of a job, or none. Prints the warnings before.
+void write_outputs(const AdaptJob& job, const AdaptOutput& output, meshadapt::Warnings& warnings);
 
 /// The metric that a job asks for, at the vertices of the input. Throws InputError.
 meshadapt::AnyField choose_metric(const runtime::Executor& executor, const AdaptJob& job,

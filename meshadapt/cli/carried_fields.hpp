@@ -22,29 +22,28 @@ class CarriedFields {
   /// Throws UsageError if options do not go together, or two fields would go into one file.
   CarriedFields(const Arguments& arguments, const std::filesystem::path& output);
 
+  bool interpolates() const { return interpolate_; }
   const std::vector<std::filesystem::path>& inputs() const { return inputs_; }
   /// OUT.FIELD.sol for each FIELD, in the folder of OUT; none if OUT itself holds fields.
   const std::vector<std::filesystem::path>& outputs() const { return outputs_; }
 
   struct Values {
-    meshadapt::AnyField all;                  ///< the fields in all files, side by side
-    std::vector<std::size_t> field_count_of;  ///< [file]
-    std::vector<std::string> names;           ///< [field]
+    std::vector<meshadapt::NamedField> fields;  ///< at vertices, of one file after another
+    std::vector<std::size_t> count_of;          ///< [file]
   };
-  /// Throws InputError unless they are fields of this mesh. `taken` are names that other fields
-  /// have.
-  Values read(const meshadapt::AnyMesh& mesh, meshadapt::Warnings& warnings,
-              std::vector<std::string> taken) const;
+  /// Reads the files. No two fields get the same name, and none is called metric. Throws InputError
+  /// unless they are fields of this mesh.
+  Values read(const meshadapt::AnyMesh& mesh, meshadapt::Warnings& warnings) const;
 
-  /// A field for each file, at the vertices of the mesh `to`.
-  std::vector<meshadapt::AnyField> carry(const runtime::Executor& executor,
-                                         const meshadapt::AnyMesh& from, const Values& values,
-                                         const meshadapt::AnyMesh& to) const;
+  /// The same fields at the vertices of the mesh `to`.
+  std::vector<meshadapt::NamedField> carry(const runtime::Executor& executor,
+                                           const meshadapt::AnyMesh& from, const Values& values,
+                                           const meshadapt::AnyMesh& to) const;
 
-  void write(meshadapt::AtomicOutputs& outputs,
-             const std::vector<meshadapt::AnyField>& carried) const;
-  static std::vector<meshadapt::NamedField> named_fields(
-      const std::vector<meshadapt::AnyField>& carried, const std::vector<std::string>& names);
+  /// Writes the outputs; count_of is that of the values.
+  void write(meshadapt::AtomicOutputs& outputs, const meshadapt::AnyMesh& mesh,
+             const std::vector<meshadapt::NamedField>& carried,
+             const std::vector<std::size_t>& count_of) const;
 
  private:
   std::vector<std::filesystem::path> inputs_, outputs_;  // [file]

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "arguments.hpp"
+#include "mmg_options.hpp"
 
 namespace ductile::cli {
 
@@ -19,19 +20,26 @@ struct Command {
   std::string_view details;   ///< further lines
   std::span<const Option> options;
   int (*run)(const Arguments& arguments);  ///< returns the exit status; throws Error
+  /// The advice for an option, without dashes, that the command does not have; may be empty.
+  std::string_view (*instead)(std::string_view option) = instead_of_mmg_option;
 };
 
 extern const Command adapt_command, info_command, metric_command, transfer_command, view_command,
     convert_command;
 
-/// Prints the help of a command for a program of this name.
-void print_help(const Command& command, std::string_view program = "ductile");
+/// A program with commands.
+struct Program {
+  std::string_view name;                     ///< as messages begin
+  std::string_view summary;                  ///< a sentence without its subject and full stop
+  std::span<const Command* const> commands;  ///< in the order of help
+  std::string_view launcher{};               ///< what starts it, for help, with a space at its end
+  bool speaks = true;  ///< prints help and errors; of several processes only one does
+};
 
-/// All commands, in the order of help.
-std::span<const Command* const> commands();
-
-/// Runs the program on the arguments of main(), prints errors (also if memory runs out) and returns
-/// the exit status.
+/// Runs a program on the arguments of main(): prints errors, also that memory has run out, and
+/// returns the exit status.
+int run_program(const Program& program, int argument_count, const char* const* argument) noexcept;
+/// The same for `ductile`.
 int run_program(int argument_count, const char* const* argument) noexcept;
 
 }  // namespace ductile::cli

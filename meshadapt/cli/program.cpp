@@ -8,7 +8,6 @@
 #include "command.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "ductile/meshadapt/files.hpp"
-#include "mmg_options.hpp"
 #include "version.hpp"
 
 namespace ductile::cli {
@@ -19,21 +18,23 @@ constexpr std::array<const Command*, 6> all_commands{&adapt_command,  &info_comm
                                                      &metric_command, &transfer_command,
                                                      &view_command,   &convert_command};
 
-const Command* find_command(std::string_view name) {
-  for (const Command* command : all_commands)
+const Command* find_command(const Program& program, std::string_view name) {
+  for (const Command* command : program.commands)
     if (command->name == name) return command;
   return nullptr;
 }
 
-void print_overview(std::FILE* to) {
-  std::fprintf(to, "ductile %s: adapts triangle and tetrahedral meshes to a metric.\n\nCommands:\n",
-               version);
-  for (const Command* command : all_commands)
-    std::fprintf(to, "  ductile %-8s %s\n", std::string(command->name).c_str(),
+void print_overview(const Program& program, std::FILE* to) {
+  const std::string name(program.name);
+  std::fprintf(to, "%s %s: %s.\n\nCommands:\n", name.c_str(), version,
+               std::string(program.summary).c_str());
+  for (const Command* command : program.commands)
+    std::fprintf(to, "  %s %-8s %s\n", name.c_str(), std::string(command->name).c_str(),
                  std::string(command->summary).c_str());
   std::fprintf(to,
-               "  ductile help COMMAND  shows its options\n"
-               "  ductile --version     says which version this is\n\nMeshes:\n");
+               "  %s help COMMAND  shows its options\n"
+               "  %s --version     says which version this is\n\nMeshes:\n",
+               name.c_str(), name.c_str());
   for (const meshadapt::MeshFormat& format : meshadapt::mesh_formats())
     std::fprintf(to, "  %-8s %s%s%s\n", std::string(format.ending).c_str(),
                  std::string(format.what).c_str(), format.holds_fields ? ", with fields" : "",
@@ -46,10 +47,9 @@ void print_overview(std::FILE* to) {
                "2 the command line or the input is wrong.\n");
 }
 
-}  // namespace
-
-void print_help(const Command& command, std::string_view program) {
-  std::printf("%s %s %s\n%s.\n", std::string(program).c_str(), std::string(command.name).c_str(),
+void print_help(const Program& program, const Command& command) {
+  std::printf("%s%s %s %s\n%s.\n", std::string(program.launcher).c_str(),
+              std::string(program.name).c_str(), std::string(command.name).c_str(),
               std::string(command.operands).c_str(), std::string(command.summary).c_str());
   if (!command.details.empty()) std::printf("%s\n", std::string(command.details).c_str());
   std::printf("\nOptions (one or two dashes mean the same):\n");
@@ -57,14 +57,12 @@ void print_help(const Command& command, std::string_view program) {
   std::printf("  %-22s %s\n", "-h, --help", "shows its options");
 }
 
-namespace {
-
-[[noreturn]] void refuse_command(const std::string& name) {
+[[noreturn]] void refuse_command(const Program& program, const std::string& name) {
   std::string message = "unknown command '" + name + "'";
-  for (const Command* command : all_commands)
+  for (const Command* command : program.commands)
     if (edit_distance(name, command->name) <= 2)
       message += "; did you mean '" + std::string(command->name) + "'?";
-  throw UsageError(message + " (ductile help lists the commands)");
+  throw UsageError(message + " (" + std::string(program.name) + " help lists the commands)");
 }
 
 bool asks_for_help(std::span<const std::string> words) {
@@ -75,79 +73,88 @@ bool asks_for_help(std::span<const std::string> words) {
   return false;
 }
 
-int run_help(std::span<const std::string> words) {
-  if (words.empty()) {
-    print_overview(stdout);
-  } else {
-    const Command* command = find_command(words[0]);
-    if (!command) refuse_command(words[0]);
-    print_help(*command);
-  }
+int run_help(const Program& program, std::span<const std::string> words) {
+  const Command* command = words.empty() ? nullptr : find_command(program, words[0]);
+  if (!words.empty() && !command) refuse_command(program, words[0]);
+  if (!program.speaks) return done;
+  if (command)
+    print_help(program, *command);
+  else
+    print_overview(program, stdout);
   return done;
 }
 
-/// Adds the alternative to the error about an option of Mmg that is refused.
+/// Adds the command's advice to the error about an unknown option.
 Arguments arguments_of(const Command& command, std::span<const std::string> words) {
   try {
     return Arguments(command.options, words);
   } catch (const UnknownOption& error) {
-    const std::string_view instead = instead_of_mmg_option(without_dashes(error.name));
+    const std::string_view instead = command.instead(without_dashes(error.name));
     if (instead.empty()) throw;
     throw UnknownOption(error.name, instead);
   }
 }
 
-int dispatch(std::span<const std::string> words) {
+int dispatch(const Program& program, std::span<const std::string> words) {
   if (words.empty()) {
-    print_overview(stderr);
+    if (program.speaks) print_overview(program, stderr);
     return misused;
   }
   const std::string& name = words[0];
   if (name == "--version" || name == "-version") {
-    std::printf("ductile %s\n", version);
+    if (program.speaks) std::printf("%s %s\n", std::string(program.name).c_str(), version);
     return done;
   }
-  if (name == "help" || name == "--help" || name == "-h") return run_help(words.subspan(1));
-  const Command* command = find_command(name);
-  if (!command) refuse_command(name);
-  if (asks_for_help(words.subspan(1))) return run_help(words.first(1));
+  if (name == "help" || name == "--help" || name == "-h")
+    return run_help(program, words.subspan(1));
+  const Command* command = find_command(program, name);
+  if (!command) refuse_command(program, name);
+  if (asks_for_help(words.subspan(1))) return run_help(program, words.first(1));
   return command->run(arguments_of(*command, words.subspan(1)));
 }
 
-/// Takes no memory, because it may have run out.
-int tell(const char* message, int status) noexcept {
-  std::fprintf(stderr, "ductile: %s\n", message);
+/// Allocates nothing, because memory may have run out.
+int tell(const Program& program, const char* message, int status) noexcept {
+  if (program.speaks)
+    std::fprintf(stderr, "%.*s: %s\n", static_cast<int>(program.name.size()), program.name.data(),
+                 message);
   return status;
 }
 
-int run_words(std::span<const std::string> words) {
+int run_words(const Program& program, std::span<const std::string> words) {
   try {
-    const int status = dispatch(words);
+    const int status = dispatch(program, words);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      return tell("standard output took no more: is the disk full?", failed);
+      return tell(program, "standard output took no more: is the disk full?", failed);
     return status;
   } catch (const UsageError& error) {
-    const bool known = !words.empty() && find_command(words[0]);
-    const std::string message = (known ? words[0] + ": " : std::string()) + error.what() +
-                                (known ? " (ductile help " + words[0] + " lists the options)" : "");
-    return tell(meshadapt::printable(message).c_str(), misused);
+    const bool known = !words.empty() && find_command(program, words[0]);
+    const std::string message =
+        (known ? words[0] + ": " : std::string()) + error.what() +
+        (known ? " (" + std::string(program.name) + " help " + words[0] + " lists the options)"
+               : "");
+    return tell(program, meshadapt::printable(message).c_str(), misused);
   } catch (const meshadapt::InputError& error) {
-    return tell(error.in_file(), misused);
+    return tell(program, error.in_file(), misused);
   }
 }
 
 }  // namespace
 
-std::span<const Command* const> commands() { return all_commands; }
+int run_program(const Program& program, int argument_count, const char* const* argument) noexcept {
+  try {
+    return run_words(program, std::vector<std::string>(argument + 1, argument + argument_count));
+  } catch (const std::bad_alloc&) {
+    return tell(program, "out of memory; allow more (-m) or take a smaller mesh", failed);
+  } catch (const std::exception& error) {
+    return tell(program, error.what(), failed);
+  }
+}
 
 int run_program(int argument_count, const char* const* argument) noexcept {
-  try {
-    return run_words(std::vector<std::string>(argument + 1, argument + argument_count));
-  } catch (const std::bad_alloc&) {
-    return tell("out of memory; allow more (-m) or take a smaller mesh", failed);
-  } catch (const std::exception& error) {
-    return tell(error.what(), failed);
-  }
+  return run_program(
+      {"ductile", "adapts triangle and tetrahedral meshes to a metric", all_commands},
+      argument_count, argument);
 }
 
 }  // namespace ductile::cli

@@ -1,35 +1,31 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "adapt_job.hpp"
-#include "adapt_parts.hpp"
 #include "adapt_to_sizes.hpp"
-#include "command.hpp"
-#include "ductile/meshadapt/files.hpp"
+#include "distributed/adapt_parts.hpp"
+#include "distributed/parts_geometry.hpp"
+#include "distributed/pieces.hpp"
+#include "distributed/threads.hpp"
+#include "distributed/transfer_parts.hpp"
 #include "ductile/meshadapt/mesh_arrays.hpp"
-#include "ductile/runtime/process.hpp"
-#include "file_part.hpp"
 #include "files.hpp"
 #include "first_rank.hpp"
 #include "input.hpp"
-#include "outputs.hpp"
-#include "parts_geometry.hpp"
 #include "program.hpp"
-#include "system.hpp"
-#include "threads.hpp"
-#include "transfer_parts.hpp"
+#include "run_in_team.hpp"
+#include "write_hdf5.hpp"
 
 namespace ductile::petsc {
 
 namespace {
 
-namespace fs = std::filesystem;
 using cli::AdaptJob;
 using cli::Arguments;
 using cli::Option;
@@ -37,19 +33,36 @@ using meshadapt::Carrying;
 using meshadapt::NamedField;
 using runtime::Executor;
 
+/// The options of `ductile adapt` that are not available on several ranks, and the advice for them.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> not_here{
+    {{"--racing", "not in ductile-mpi; results are the same each time here; use ductile adapt"},
+     {"--json", "not in ductile-mpi; use ductile info --json of the adapted mesh"},
+     {"--vtu", "not in ductile-mpi; use -o OUT.pvtu, or ductile convert of the adapted mesh"}}};
+
+/// The options whose help is another than in `ductile adapt`.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> other_help{
+    {{"-o", "a mesh, gathered; a .pvtu, in pieces; a .h5, of PETSc's (default: NAME.o.mesh)"},
+     {"--threads", "threads of each rank (default: its cores)"},
+     {"-m", "takes at most this much memory on each rank, in MB"},
+     {"--field", "carries fields, too, as those in the input; may be given again"}}};
+
+/// The text for an option in one of these tables, or null.
+const std::string_view* find(const auto& table, std::string_view option) {
+  for (const auto& [name, text] : table)
+    if (cli::without_dashes(name) == cli::without_dashes(option)) return &text;
+  return nullptr;
+}
+
+std::string_view instead_of(std::string_view option) {
+  const std::string_view* const advice = find(not_here, option);
+  return advice != nullptr ? *advice : cli::instead_of_mmg_option(option);
+}
+
 std::vector<Option> options_here() {
   std::vector<Option> options;
   for (Option option : cli::adapt_command.options) {
-    if (std::any_of(not_here.begin(), not_here.end(),
-                    [&](const NotHere& one) { return one.option == option.name; }))
-      continue;
-    if (option.name == "-o")
-      option.help =
-          "a mesh, gathered; a .pvtu, in pieces; a .h5, of PETSc's (default: NAME.o.mesh)";
-    if (option.name == "--threads") option.help = "threads of each rank (default: its cores)";
-    if (option.name == "-m") option.help = "takes at most this much memory on each rank, in MB";
-    if (option.name == "--field")
-      option.help = "carries fields, too, as those in the input; may be given again";
+    if (find(not_here, option.name) != nullptr) continue;
+    if (const std::string_view* const help = find(other_help, option.name)) option.help = *help;
     options.push_back(option);
   }
   return options;
@@ -69,9 +82,7 @@ void print_costs(const std::array<Costs, phase_count>& costs) {
 std::shared_ptr<const meshadapt::Geometry> geometry_of(const Communicator& comm,
                                                        const Executor& executor,
                                                        const Input& input) {
-  bool is_given = input.geometry.has_value();
-  from_first_rank(comm, is_given);
-  if (!is_given) return nullptr;
+  if (!input.job.geometry) return nullptr;
   const Part none = empty_part(input.file.part.mesh.dimension);
   return geometry_of_parts(comm, executor, input.geometry ? *input.geometry : none,
                            input.job.adapt.make);
@@ -91,72 +102,52 @@ AdaptPartsOptions options_of(const Communicator& comm, const Input& input,
   if (options.adapt.required_gradation <= 0 && comm.size() > 1)
     options.adapt.required_gradation = gradation_at_interfaces;
   options.passes = 6;
-  if (job.memory)
-    options.adapt.memory_limit = *job.memory - std::min(runtime::held_memory(), *job.memory - 1);
+  if (job.memory) options.adapt.memory_limit = cli::memory_left(job.memory);
   if (comm.rank() == 0 && job.verbosity > 0)
     options.told = [verbosity = job.verbosity](const PassReport& pass) {
-      std::printf(
-          "pass %d: %s elements, %lld of %lld edges around interfaces blocked, "
-          "imbalance %.2f, %.2f s\n",
-          pass.pass, cli::with_commas(static_cast<std::size_t>(pass.elements)).c_str(),
-          static_cast<long long>(pass.blocked), static_cast<long long>(pass.edges), pass.imbalance,
-          pass.seconds);
+      std::printf("%s\n", to_text(pass).c_str());
       if (verbosity > 1) print_costs(pass.costs);
       std::fflush(stdout);
     };
   return options;
 }
 
-/// The fields of the output: the metric, if wanted, and the transferred fields.
-std::vector<NamedField> fields_of(const Communicator& comm, const Executor& executor,
-                                  const Input& input, const AdaptedParts& parts,
-                                  Carrying carrying) {
-  std::vector<NamedField> fields = comm.on_all([&] {
-    return input.job.with_metric ? meshadapt::named_fields(parts.part.wanted, "metric")
-                                 : std::vector<NamedField>();
-  });
-  if (input.fields.empty()) return fields;
-  auto carried =
+/// Transfers the input's fields to the adapted mesh. Collective.
+std::vector<NamedField> fields_on(const Communicator& comm, const Executor& executor,
+                                  const Input& input, const AdaptedParts& parts) {
+  if (input.fields.empty()) return {};
+  const Costs before = comm.costs();
+  const auto carrying =
+      input.job.fields.interpolates() ? Carrying::by_value : Carrying::conservatively;
+  auto fields =
       transfer_parts(comm, executor, {input.file.part, input.fields}, parts.part, {carrying});
-  comm.on_all([&] { std::move(carried.begin(), carried.end(), std::back_inserter(fields)); });
+  const auto microseconds =
+      static_cast<std::int64_t>(1e6 * (comm.costs().seconds - before.seconds));
+  const auto sums = comm.sums({microseconds, comm.costs().bytes - before.bytes});
+  if (comm.rank() == 0 && input.job.verbosity > 1)
+    std::printf("  fields %.3f s, %.3f MB\n", 1e-6 * static_cast<double>(sums[0]),
+                1e-6 * static_cast<double>(sums[1]));
   return fields;
 }
 
-/// Writes on the first rank: like ductile adapt, with separate files for data that the mesh's
-/// format cannot hold.
-void write_gathered(Input& input, meshadapt::MeshWithFields file) {
-  const AdaptJob& job = input.job;
-  meshadapt::AtomicOutputs outputs;
-  const std::string ending = job.output.extension().string();
-  std::vector<meshadapt::AnyField> of_files;
-  std::size_t next = file.fields.size();
-  for (const std::size_t count : input.field_count_of) next -= count;
-  for (const std::size_t count : input.field_count_of) {
-    const auto at = file.fields.begin() + static_cast<std::ptrdiff_t>(next);
-    of_files.push_back(cli::side_by_side({at, at + static_cast<std::ptrdiff_t>(count)}, file.mesh));
-    next += count;
-  }
-  meshadapt::WriteOptions options;
-  if (cli::holds_fields(job.output)) options.fields = file.fields;
-  options.warnings = &input.warnings;
-  options.format = ending;
-  meshadapt::write_mesh(outputs, cli::place_of(job.output), file.mesh, options);
-  if (job.metric_out)
-    meshadapt::write_field(outputs, *job.metric_out,
-                           cli::side_by_side({file.fields.front()}, file.mesh));
-  job.fields.write(outputs, of_files);
-  cli::print_warnings(input.warnings, job.verbosity);
-  outputs.commit();
-}
-
 void write(const Communicator& comm, const Executor& executor, Input& input,
-           const DistributedResult& result) {
-  if (input.form != Form::gathered)
-    on_first_rank(comm, [&] { cli::print_warnings(input.warnings, input.job.verbosity); });
+           DistributedResult& result) {
+  if (input.form == Form::gathered) {
+    const GatheredResult whole = gathered(comm, executor, result);
+    return on_first_rank(comm, [&] {
+      cli::write_outputs(input.job,
+                         {whole.mesh, whole.metric, whole.fields, input.field_count_of, {}},
+                         input.warnings);
+    });
+  }
+  on_first_rank(comm, [&] { cli::print_warnings(input.warnings, input.job.verbosity); });
+  if (input.job.with_metric)
+    comm.on_all([&] {
+      auto metric = meshadapt::named_fields(result.parts.part.wanted, "metric");
+      result.fields.insert(result.fields.begin(), std::move(metric[0]));
+    });
   if (input.form == Form::pieces) return write_pieces(comm, input.output, result);
-  if (input.form == Form::hdf5) return write_hdf5(comm, input.output, result);
-  meshadapt::MeshWithFields file = gathered(comm, executor, result);
-  on_first_rank(comm, [&] { write_gathered(input, std::move(file)); });
+  write_hdf5(comm, input.output, result);
 }
 
 void sum_up(const Communicator& comm, const Input& input, const AdaptedParts& parts) {
@@ -164,26 +155,15 @@ void sum_up(const Communicator& comm, const Input& input, const AdaptedParts& pa
   const auto sums = comm.sums({parts.own, elements});
   const std::int64_t most = comm.largest(elements);
   if (comm.rank() != 0 || input.job.verbosity <= 0) return;
+  const auto number = [](std::int64_t n) { return cli::with_commas(static_cast<std::size_t>(n)); };
   std::fprintf(cli::is_standard_output(input.output) ? stderr : stdout,
                "%s: %s vertices, %s %s on %d rank%s, %s on one at most\n",
-               meshadapt::printable(input.output.string()).c_str(),
-               cli::with_commas(static_cast<std::size_t>(sums[0])).c_str(),
-               cli::with_commas(static_cast<std::size_t>(sums[1])).c_str(),
-               parts.part.mesh.dimension == 2 ? "triangles" : "tetrahedra", comm.size(),
-               comm.size() > 1 ? "s" : "",
-               cli::with_commas(static_cast<std::size_t>(most)).c_str());
+               meshadapt::printable(input.output.string()).c_str(), number(sums[0]).c_str(),
+               number(sums[1]).c_str(), parts.part.mesh.dimension == 2 ? "triangles" : "tetrahedra",
+               comm.size(), comm.size() > 1 ? "s" : "", number(most).c_str());
 }
 
-void tell_costs_of_fields(const Communicator& comm, const Input& input, const Costs& before) {
-  const auto microseconds =
-      static_cast<std::int64_t>(1e6 * (comm.costs().seconds - before.seconds));
-  const auto sums = comm.sums({microseconds, comm.costs().bytes - before.bytes});
-  if (comm.rank() == 0 && input.job.verbosity > 1 && !input.fields.empty())
-    std::printf("  fields %.3f s, %.3f MB\n", 1e-6 * static_cast<double>(sums[0]),
-                1e-6 * static_cast<double>(sums[1]));
-}
-
-void work(const Communicator& comm, const Executor& executor, Input& input, Carrying carrying) {
+int work(const Communicator& comm, const Executor& executor, Input& input) {
   if (input.job.memory) comm.on_all([&] { cli::limit_memory(*input.job.memory); });
   on_first_rank(comm, [&] { read_files(input, executor); });
   tell_others(comm, input);
@@ -191,43 +171,48 @@ void work(const Communicator& comm, const Executor& executor, Input& input, Carr
   AdaptedParts parts = adapt_to_sizes(comm, executor, input, options);
   input.warnings.insert(input.warnings.end(), parts.warnings.begin(), parts.warnings.end());
   if (comm.rank() == 0 && input.job.verbosity > 1) print_costs(parts.last);
-  const Costs before = comm.costs();
-  auto fields = fields_of(comm, executor, input, parts, carrying);
-  tell_costs_of_fields(comm, input, before);
-  const DistributedResult result{std::move(parts), std::move(fields), input.file.kept, input.names,
-                                 input.dropped_axis};
+  auto fields = fields_on(comm, executor, input, parts);
+  DistributedResult result{std::move(parts), std::move(fields), input.file.kept};
   write(comm, executor, input, result);
   sum_up(comm, input, result.parts);
+  return cli::done;
+}
+
+int run(const Arguments& arguments) {
+  Input input = read_words(arguments);
+  const Communicator comm(MPI_COMM_WORLD);
+  try {
+    on_first_rank(comm, [&] { check_files(input); });
+    const int given = input.job.threads;
+    const int threads = threads_of(comm, given > 0 ? std::optional(given) : std::nullopt);
+    return cli::run_in_team({.threads = threads},
+                            [&](const Executor& executor) { return work(comm, executor, input); });
+  } catch (const AgreedError& error) {
+    std::rethrow_if_nested(error);
+    throw;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ductile-mpi: rank %d: %s\n", comm.rank(), error.what());
+    MPI_Abort(MPI_COMM_WORLD, cli::failed);
+    throw;
+  }
 }
 
 }  // namespace
 
-void adapt_files(const Communicator& comm, std::span<const std::string> words) {
-  Input input;
-  on_first_rank(comm, [&] { read_words(input, Arguments(cli::adapt_command.options, words)); });
-  const Carrying carrying = comm.on_all([&] {
-    const Arguments arguments(cli::adapt_command.options, words);
-    if (comm.rank() != 0) cli::set_options_of_work(input.job, arguments);
-    return arguments.has("--interpolate") ? Carrying::by_value : Carrying::conservatively;
-  });
-  const int threads =
-      threads_of(comm, input.job.threads > 0 ? std::optional(input.job.threads) : std::nullopt);
-  const Executor executor = comm.on_all([&] { return Executor({.threads = threads}); });
-  cli::reuse_memory(executor.threads());
-  runtime::with_team(executor, [&] { work(comm, executor, input, carrying); });
-}
-
-void print_help_of_adapt() {
-  const std::vector<Option> options = options_here();
-  cli::Command command = cli::adapt_command;
-  command.summary = "adapts a mesh to a metric, on all ranks that mpirun starts";
-  command.details =
+const cli::Command& adapt_command() {
+  static const std::vector<Option> options = options_here();
+  static const cli::Command command{
+      cli::adapt_command.name,
+      cli::adapt_command.operands,
+      "adapts a mesh to a metric, on all ranks that mpirun starts",
       "The first rank reads; planes share elements out; each rank adapts its part, and passes\n"
       "go on until hardly anything is held between parts. The same number of ranks gives the same "
       "bytes,\n"
-      "whatever the number of threads.";
-  command.options = options;
-  cli::print_help(command, "mpirun -n N ductile-mpi");
+      "whatever the number of threads.",
+      options,
+      run,
+      instead_of};
+  return command;
 }
 
 }  // namespace ductile::petsc

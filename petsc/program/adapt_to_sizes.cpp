@@ -4,21 +4,15 @@
 #include <optional>
 #include <utility>
 
+#include "distributed/migrate.hpp"
+#include "distributed/parts_geometry.hpp"
 #include "first_rank.hpp"
-#include "migrate.hpp"
-#include "parts_geometry.hpp"
 
 namespace ductile::petsc {
 
 using runtime::Executor;
 
 namespace {
-
-AdaptedParts adapt(const Communicator& comm, const Executor& executor, const Part& part,
-                   const AdaptPartsOptions& options) {
-  return part.mesh.dimension == 2 ? adapt_parts<2>(comm, executor, part, options)
-                                  : adapt_parts<3>(comm, executor, part, options);
-}
 
 /// The adapted mesh on the first rank, with its next metric; none, on all ranks, if it is final.
 std::optional<Part> next(const Communicator& comm, const Executor& executor, Input& input,
@@ -27,7 +21,6 @@ std::optional<Part> next(const Communicator& comm, const Executor& executor, Inp
   bool is_final = false;
   on_first_rank(comm, [&] {
     meshadapt::MeshWithMetric now{mesh_for_file(all, input.file.kept), all.wanted};
-    now.mesh.names = input.names;
     const AnyField* metric = input.places->next(
         {executor, pass, now.mesh, [&]() -> const meshadapt::MeshWithMetric& { return now; }});
     is_final = metric == nullptr;
@@ -42,10 +35,9 @@ std::optional<Part> next(const Communicator& comm, const Executor& executor, Inp
 
 AdaptedParts adapt_to_sizes(const Communicator& comm, const Executor& executor, Input& input,
                             AdaptPartsOptions options) {
-  bool by_places = input.places.has_value();
-  from_first_rank(comm, by_places);
+  const bool by_places = input.job.places.any();
   if (by_places && comm.size() == 1) options.source = &*input.places;
-  AdaptedParts parts = adapt(comm, executor, input.file.part, options);
+  AdaptedParts parts = adapt_parts(comm, executor, input.file.part, options);
   for (int pass = 1; by_places && comm.size() > 1; ++pass) {
     const auto again = next(comm, executor, input, parts.part, pass);
     if (!again) break;
@@ -53,7 +45,7 @@ AdaptedParts adapt_to_sizes(const Communicator& comm, const Executor& executor, 
     if (make.hausdorff_tolerance > 0 && !make.geometry)
       make.geometry = geometry_of_parts(comm, executor, input.file.part, make);
     auto warnings = std::move(parts.warnings);
-    parts = adapt(comm, executor, *again, options);
+    parts = adapt_parts(comm, executor, *again, options);
     for (const std::string& warning : parts.warnings)
       if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
         warnings.push_back(warning);

@@ -1,56 +1,40 @@
 /// @file
-/// Work of the first rank alone, and how the others learn its result: only it uses files and the
-/// command line.
+/// Work of the first rank alone, and how the others learn its result: only it uses files.
 #pragma once
 
-#include <cstdio>
+#include <exception>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
-#include "command.hpp"
-#include "communicator.hpp"
+#include "distributed/communicator.hpp"
 
 namespace ductile::petsc {
 
-/// An error that the first rank has printed; all ranks end with this status.
-struct Ended {
-  int status;
-};
+using namespace distributed;
 
-/// Calls work() on the first rank; work() may not communicate. Its exceptions are printed there;
-/// then Ended is thrown on all ranks. Collective.
+/// Calls work() on the first rank; work() may not communicate. If it throws, its exception is
+/// nested in an AgreedError there, and the other ranks throw one too. Collective.
 template <class Work>
 void on_first_rank(const Communicator& comm, Work&& work) {
-  int status = cli::done;
-  const auto failed = [&](const char* message, int as) {
-    std::fprintf(stderr, "ductile-mpi: %s\n", message);
-    status = as;
+  const auto tell = [&](int has_failed) {
+    MPI_Bcast(&has_failed, 1, MPI_INT, 0, comm.handle());
+    return has_failed != 0;
   };
   if (comm.rank() == 0) try {
       work();
-    } catch (const cli::UsageError& error) {
-      failed(error.what(), cli::misused);
-    } catch (const meshadapt::InputError& error) {
-      failed(error.in_file(), cli::misused);
-    } catch (const std::bad_alloc&) {
-      failed("out of memory on the first rank, which reads and gathers", cli::failed);
-    } catch (const std::exception& error) {
-      failed(error.what(), cli::failed);
+    } catch (...) {
+      tell(1);
+      std::throw_with_nested(AgreedError("the first rank has failed"));
     }
-  MPI_Bcast(&status, 1, MPI_INT, 0, comm.handle());
-  if (status != cli::done) throw Ended{status};
+  if (tell(0)) throw AgreedError("the first rank has failed");
 }
 
 /// Sends the first rank's values to all ranks. Collective.
 template <class T>
 void from_first_rank(const Communicator& comm, std::vector<T>& values) {
-  PerRank<T> to(static_cast<std::size_t>(comm.size()));
-  if (comm.rank() == 0)
-    comm.on_all([&] { to.assign(to.size(), values); });
-  else
-    comm.on_all([] {});
+  PerRank<T> to = comm.on_all(
+      [&] { return PerRank<T>(comm.size(), comm.rank() == 0 ? values : std::vector<T>()); });
   values = comm.exchange(to).items;
 }
 

@@ -1,37 +1,28 @@
 /// @file
-/// Input of `ductile-mpi adapt` from command line and files: the first rank reads it and sends the
-/// others what they need.
+/// Input of `ductile-mpi adapt`. All ranks read the command line; the first one reads the files and
+/// sends the others what they need.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "adapt/sizes_by_places.hpp"
 #include "adapt_job.hpp"
-#include "communicator.hpp"
+#include "distributed/communicator.hpp"
+#include "distributed/file_part.hpp"
 #include "ductile/meshadapt/files.hpp"
 #include "ductile/runtime/executor.hpp"
-#include "file_part.hpp"
 
 namespace ductile::petsc {
 
-/// An option of `ductile adapt` that is not available on several ranks, and its alternative.
-struct NotHere {
-  std::string_view option, instead;
-};
-inline constexpr std::array<NotHere, 3> not_here{
-    {{"--racing", "results are the same each time here; use ductile adapt"},
-     {"--json", "use ductile info --json of the adapted mesh"},
-     {"--vtu", "use -o OUT.pvtu, or ductile convert of the adapted mesh"}}};
+using namespace distributed;
 
 enum class Form { gathered, pieces, hdf5 };
 
-/// The input, in the order in which it is read. Other ranks only know the types of fields, the
-/// first one all.
+/// The input, in the order in which it is read. Ranks other than the first know an empty part, and
+/// fields without values.
 struct Input {
   cli::AdaptJob job;
   std::filesystem::path output;
@@ -41,14 +32,14 @@ struct Input {
   std::optional<Part> geometry;  // the mesh of -geometry
   std::vector<meshadapt::NamedField> fields;
   std::vector<std::size_t> field_count_of;  // [file given by --field]
-  std::vector<meshadapt::ReferenceName> names;
-  int dropped_axis = 2;
   meshadapt::Warnings warnings;
 };
 
-/// Reads the command line. On the first rank. Throws UsageError, and InputError if outputs cannot
-/// be written.
-void read_words(Input& input, const cli::Arguments& arguments);
+/// Reads the command line; touches no file. Throws UsageError.
+Input read_words(const cli::Arguments& arguments);
+
+/// Does what cli::check_files() does, for the output in any form. On the first rank.
+void check_files(Input& input);
 
 /// Reads the job's files. On the first rank. Throws InputError.
 void read_files(Input& input, const runtime::Executor& executor);

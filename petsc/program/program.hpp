@@ -2,18 +2,13 @@
 /// The command of the program `ductile-mpi`.
 #pragma once
 
-#include <span>
-#include <string>
-
-#include "communicator.hpp"
+#include "command.hpp"
 
 namespace ductile::petsc {
 
-/// Adapts a mesh on all ranks, with the arguments after `adapt`. Throws Ended or AgreedError; other
-/// exceptions are thrown on one rank only. Collective.
-void adapt_files(const Communicator& comm, std::span<const std::string> words);
-
-/// Prints the help of `adapt`.
-void print_help_of_adapt();
+/// `adapt`, with the options of `ductile adapt` that are available on several ranks. A failure that
+/// only one rank knows ends all of them, because the others may wait for it; others are thrown on
+/// all ranks, as AgreedError except on the first. Collective.
+const cli::Command& adapt_command();
 
 }  // namespace ductile::petsc

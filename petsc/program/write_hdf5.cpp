@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "outputs.hpp"
 #include "plex.hpp"
+#include "write_hdf5.hpp"
 #include "write_plex.hpp"
 
 namespace ductile::petsc {
@@ -35,15 +35,6 @@ using HeldDM = Held<DM, DMDestroy>;
 using HeldVec = Held<Vec, VecDestroy>;
 using HeldSection = Held<PetscSection, PetscSectionDestroy>;
 using HeldViewer = Held<PetscViewer, PetscViewerDestroy>;
-
-/// [vertex of the DMPlex] The vertex of the part: PETSc sorts them by number.
-std::vector<VertexId> by_number(const Part& part) {
-  std::vector<VertexId> order(part.number_of.size());
-  for (VertexId v = 0; v < order.size(); ++v) order[v] = v;
-  std::sort(order.begin(), order.end(),
-            [&](VertexId a, VertexId b) { return part.number_of[a] < part.number_of[b]; });
-  return order;
-}
 
 /// order is [vertex or cell of the DMPlex], its index in the part.
 void write_field(DM plex, PetscViewer viewer, const NamedField& field,
@@ -103,7 +94,7 @@ void write_hdf5(const Communicator& comm, const fs::path& path, const Distribute
   labels.vertices.name = "Vertex Sets";
   if (result.parts.part.mesh.dimension == 3) labels.edges.name = "Edge Sets";
   const AdaptedParts parts = comm.on_all([&] { return with_references(result); });
-  const auto vertices = comm.on_all([&] { return by_number(parts.part); });
+  const auto vertices = comm.on_all([&] { return by_number(parts.part); });  // PETSc sorts them
   std::vector<std::uint32_t> cells(parts.part.element_count());  // in the order of the part
   std::iota(cells.begin(), cells.end(), 0U);
   const std::string temporary = path.string() + ".ductile-tmp";

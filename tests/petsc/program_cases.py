@@ -7,6 +7,7 @@ separate runs with other numbers of threads; what goes wrong is told, and nothin
 import itertools
 import os
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -76,13 +77,14 @@ def lines(points):
 required_words = {2: ("RequiredEdges", "RequiredTriangles"), 3: ("RequiredTriangles", "RequiredTetrahedra")}
 
 
-def write_mesh(name, dim, points, cells, facets, kept=(), required=(), edges=(), marks=None):
-    """required: numbers of facets, and of cells; edges: of tetrahedra; marks: numbers of edges by word"""
+def write_mesh(name, dim, points, cells, facets, kept=(), required=(), edges=(), marks=None, references=None):
+    """required: numbers of facets, and of cells; edges: of tetrahedra; marks: numbers of edges by word;
+    references: of vertices"""
     names = {2: ("Edges", "Triangles"), 3: ("Triangles", "Tetrahedra")}[dim]
     with open(name, "w") as file:
         print("MeshVersionFormatted 2\nDimension", dim, "\nVertices", len(points), file=file)
-        for p in points:
-            print(*p, 0, file=file)
+        for v, p in enumerate(points):
+            print(*p, (references or {}).get(v, 0), file=file)
         for word, list in zip(names, (facets, cells)):
             print(word, len(list), file=file)
             for corners, reference in list:
@@ -118,7 +120,7 @@ def sections(name):
             each = width[word] or dim + 1
             count = int(next(words))
             found[word] = [[float(next(words)) for _ in range(each)] for _ in range(count)]
-        elif word in ("SolAtVertices", "Ridges") or word.startswith("Required"):
+        elif word in ("SolAtVertices", "Ridges", "Corners") or word.startswith("Required"):
             count = int(next(words))
             skip = 2 if word == "SolAtVertices" else 0
             for _ in range(skip):
@@ -346,10 +348,70 @@ def try_loose_edge():
     expect(text.count("1 of 1 listed edges belong to no tetrahedron") == 1, text)
 
 
+def same_as_serial(words, mesh):
+    """On one rank the mesh and its metric are those of ductile adapt."""
+    adapt(*words, "-o", mesh)
+    if ranks == "1":
+        run([ductile, "adapt", *words, "-o", "serial.mesh"])
+        for ending in (".mesh", ".sol"):
+            ours = pathlib.Path(mesh).with_suffix(ending).read_bytes()
+            expect(ours == pathlib.Path(f"serial{ending}").read_bytes(), f"{words}: {ending} is another on one rank")
+
+
+def try_points(dim, n):
+    """Vertices whose references mark points, a few or many, inside and on boundaries, stay where they are;
+    those whose reference is that of a whole side do not."""
+    points, cells, facets = box(dim, n)
+    for seed, count in enumerate((1, 8, 20, 20)):
+        marked = random.Random(seed).sample(range(len(points)), count)
+        references = {v: 100 + i for i, v in enumerate(marked)}
+        write_mesh("points.mesh", dim, points, cells, facets, references=references)
+        same_as_serial(["points.mesh", "-hsiz", str(1.5 / n), "--threads", "1"], "points.out.mesh")
+        run([ductile, "info", "points.out.mesh"])
+        _, found = sections("points.out.mesh")
+        now = {int(p[dim]): p[:dim] for p in found["Vertices"] if p[dim] != 0}
+        lost = [r for v, r in references.items() if now.get(r) != points[v]]
+        expect(len(now) == count and not lost, f"{dim}D: {count} points, lost or moved: {lost}, there are {now}")
+        corners = {int(found["Vertices"][int(v) - 1][dim]) for v in found["Corners"]}
+        expect(corners >= set(references.values()), f"{dim}D: {corners} are corners")
+    side = [v for v, p in enumerate(points) if p[0] == 0]
+    references = {v: 5 for v in side} | {v: 100 + v for v in marked if v not in side}
+    write_mesh("points.mesh", dim, points, cells, facets, references=references)
+    text = adapt("points.mesh", "-hsiz", "0.5", "-o", "points.out.mesh")
+    expect("not required are left out" in text, text)
+    left = [p for p in sections("points.out.mesh")[1]["Vertices"] if p[0] == 0]
+    expect(len(left) < len(side) / 2, f"{dim}D: {len(left)} of {len(side)} vertices with a line's reference stay")
+
+
+def try_join(dim, n):
+    """Two regions with vertices of their own where they meet become one mesh."""
+    points, cells, facets = box(dim, n)
+    twin = {v: len(points) + i for i, v in enumerate(v for v, p in enumerate(points) if p[0] == 0.5)}
+    points = points + [points[v] for v in twin]
+    cells = [([twin.get(v, v) for v in cell] if region == 2 else cell, region) for cell, region in cells]
+    write_mesh("twins.mesh", dim, points, cells, facets)
+    write_sol("u.sol", dim, [1 + p[0] for p in points])
+    words = ["twins.mesh", "-hsiz", str(1.3 / n), "--join", "0", "--complete-boundary", "--field", "u.sol"]
+    text = adapt(*words, "-o", "twins.out.mesh")
+    expect(f"{len(twin)} vertices were joined" in text, text)
+    same_as_serial(words, "twins.out.mesh")
+    run([ductile, "info", "twins.out.mesh"])
+    before, after = measures("twins.mesh"), measures("twins.out.mesh")
+    for key in {("cell", 1.0), ("cell", 2.0), ("facet", 99.0)}:
+        expect(abs(before[key] - after[key]) < 1e-9, f"{dim}D: {key}: {before[key]} became {after[key]}")
+
+
 def try_mistakes(dim):
     os.remove("out.mesh")
     text = adapt("in.mesh", "-o", "out.mesh", "--hmxa", "1", status=2)
-    expect("did you mean" in text, text)
+    expect("did you mean" in text and text.count("ductile-mpi: ") == 1, text)
+    expect("Mmg's" in adapt("in.mesh", "-o", "out.mesh", "-ls", "0", status=2), "-ls is not Mmg's")
+    for words, status, said in (
+        ([], 2, "Commands:"), (["help"], 0, "Commands:"), (["--version"], 0, "ductile-mpi "),
+        (["help", "adapt"], 0, "mpirun -n N ductile-mpi adapt"), (["adpt"], 2, "did you mean 'adapt'"),
+    ):  # fmt: skip
+        text = run([*mpi, ductile_mpi, *words], status)
+        expect(text.count(said) == 1 and "--json" not in text, f"{words}: {text}")
     text = adapt("in.mesh", "-o", "out.mesh", "--near", "point:0,0,0:0.1", status=2)
     expect("the mesh has dimension 2, found 3 numbers" in text, text)
     text = adapt("in.mesh", "-o", "out.mesh", "--json", "out.json", status=2)
@@ -372,6 +434,8 @@ for dim, n in ((2, 10), (3, 5)):
     try_hdf5(dim, n)
     try_curved(dim, 24 if dim == 2 else 10, 0.004 if dim == 2 else 0.02)
     try_places(dim)
+    try_points(dim, n)
+    try_join(dim, 6)
     if dim == 2:
         try_mistakes(dim)
     else:

@@ -1,0 +1,147 @@
+#include "distributed/transfer_parts.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "distributed/gather_overlap.hpp"
+#include "distributed/interfaces.hpp"
+
+namespace ductile::distributed {
+
+namespace {
+
+using meshadapt::Joining;
+using meshadapt::NamedField;
+
+/// A communicator of the ranks that have elements.
+class Busy {
+ public:
+  Busy(const Communicator& comm, const Part& part) {
+    MPI_Comm_split(comm.handle(), part.element_count() > 0 ? 0 : MPI_UNDEFINED, comm.rank(),
+                   &handle_);
+  }
+  ~Busy() {
+    if (handle_ != MPI_COMM_NULL) MPI_Comm_free(&handle_);
+  }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+
+  std::optional<Communicator> communicator() const {
+    if (handle_ == MPI_COMM_NULL) return std::nullopt;
+    return Communicator(handle_);
+  }
+
+ private:
+  MPI_Comm handle_ = MPI_COMM_NULL;
+};
+
+/// Combines the values of all ranks at shared vertices.
+class Joiner {
+ public:
+  Joiner(const Communicator& comm, const Interfaces& interfaces)
+      : comm_(comm), interfaces_(interfaces) {}
+
+  /// Combines values; first asks whether a rank has failed before. Collective.
+  void join(std::span<double> values, std::size_t stride, Joining how) {
+    has_told_ = true;
+    comm_.agree(std::nullopt);
+    const PerRank<double> to = comm_.on_all([&] { return values_to(values, stride); });
+    const Received<double> received = comm_.exchange(to);
+    has_told_ = false;
+    std::vector<std::size_t> next(received.begin.begin(), received.begin.end() - 1);  // [rank]
+    for (const SharedVertex& shared : interfaces_.vertices) {
+      double* const at = &values[shared.vertex * stride];
+      std::vector<double> own(at, at + stride);
+      bool is_first = true;
+      for (const int rank : shared.ranks) {
+        const double* other = own.data();
+        if (rank != comm_.rank()) {
+          other = &received.items[next[static_cast<std::size_t>(rank)]];
+          next[static_cast<std::size_t>(rank)] += stride;
+        }
+        combine({at, stride}, other, is_first, how);
+        is_first = false;
+      }
+    }
+  }
+
+  /// Is an exception thrown now thrown on all ranks?
+  bool has_told() const { return has_told_; }
+
+ private:
+  PerRank<double> values_to(std::span<const double> values, std::size_t stride) const {
+    PerRank<double> to(static_cast<std::size_t>(comm_.size()));
+    for (const SharedVertex& shared : interfaces_.vertices)
+      for (const int rank : shared.ranks) {
+        if (rank == comm_.rank()) continue;
+        const auto at = values.begin() + static_cast<std::ptrdiff_t>(shared.vertex * stride);
+        auto& list = to[static_cast<std::size_t>(rank)];
+        list.insert(list.end(), at, at + static_cast<std::ptrdiff_t>(stride));
+      }
+    return to;
+  }
+
+  /// Combines in the order of the ranks, so that all get the same bits.
+  static void combine(std::span<double> result, const double* other, bool is_first, Joining how) {
+    for (std::size_t k = 0; k < result.size(); ++k) {
+      if (is_first)
+        result[k] = other[k];
+      else if (how == Joining::sum)
+        result[k] += other[k];
+      else if (how == Joining::least)
+        result[k] = std::min(result[k], other[k]);
+    }
+  }
+
+  const Communicator& comm_;
+  const Interfaces& interfaces_;
+  bool has_told_ = false;
+};
+
+/// Transfers this rank's fields, together with the other ranks that have elements. Throws the same
+/// on all of these.
+std::vector<NamedField> carried(const Communicator& comm, const runtime::Executor& executor,
+                                const PartWithFields& from, const AnyMesh& to,
+                                const Interfaces& interfaces,
+                                const std::vector<meshadapt::Carrying>& carrying) {
+  Joiner joiner(comm, interfaces);
+  std::vector<NamedField> fields;
+  const auto failure = failure_of([&] {
+    const meshadapt::JoinParts join = [&](std::span<double> values, std::size_t stride,
+                                          Joining how) { joiner.join(values, stride, how); };
+    fields = meshadapt::transfer_fields(executor, {from.mesh, from.fields}, to, carrying,
+                                        comm.size() > 1 ? join : meshadapt::JoinParts())
+                 .fields;
+  });
+  if (failure && joiner.has_told()) throw AgreedError(*failure);
+  comm.agree(failure);
+  return fields;
+}
+
+}  // namespace
+
+std::vector<NamedField> transfer_parts(const Communicator& comm, const runtime::Executor& executor,
+                                       const FieldsOnPart& from, const Part& to,
+                                       const std::vector<meshadapt::Carrying>& carrying) {
+  const PartWithFields around =
+      gather_overlap(comm, from.part, from.fields, comm.on_all([&] { return boxes_of(to); }));
+  std::vector<NamedField> fields;
+  const double start = Communicator::processor_seconds();  // includes waiting
+  {
+    const Busy busy(comm, to);
+    const auto failure = failure_of([&] {
+      if (const auto others = busy.communicator())
+        fields =
+            carried(*others, executor, around, to.mesh, find_interfaces(*others, to), carrying);
+    });
+    comm.add_work(Communicator::processor_seconds() - start);
+    comm.agree(failure);
+  }
+  if (fields.empty())
+    for (const NamedField& field : from.fields)
+      fields.push_back({field.name, field.type, {}, field.place});
+  return fields;
+}
+
+}  // namespace ductile::distributed

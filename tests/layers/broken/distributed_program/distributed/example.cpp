@@ -1,0 +1,1 @@
+#include "adapt_job.hpp"
