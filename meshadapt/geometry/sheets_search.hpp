@@ -151,49 +151,21 @@ struct Sheets<Dim, Corners>::Search {
     return {inside(box, around.covering), inside(box, around.steep), inside(box, around.facing)};
   }
 
-  /// Those of some parts that may be within a distance of the simplex: not those above or below it,
-  /// or beside one of its sides, by more.
+  /// Those of some parts that may be within a distance of the simplex.
   Near close_to(const Points& simplex, double distance, const Near& parts) const {
     Near near = inside(box_around(simplex, distance), parts);
-    if (Corners != Dim || near.empty()) return near;
-    struct End {
-      Vector<Dim> outwards;
-      double farthest;  // of what is close enough
-    };
-    std::array<End, Corners> ends;
-    for (std::size_t i = 0; i < Corners; ++i)
-      ends[i] = {out_of_side(simplex, i), -std::numeric_limits<double>::infinity()};
-    for (auto& [outwards, farthest] : ends)
-      for (const Vector<Dim>& corner : simplex)
-        farthest = std::max(farthest, dot(corner, outwards) + distance);
     const auto is_beyond = [&](std::uint32_t part) {
-      const Points& corners = sheets.parts_[part].corner;
-      const auto all = [&](const auto& lie_there) {
-        return std::all_of(corners.begin(), corners.end(), lie_there);
-      };
-      const auto height = [&](const Vector<Dim>& p) { return dot(p - simplex[0], direction); };
-      return all([&](const Vector<Dim>& p) { return height(p) > distance; }) ||
-             all([&](const Vector<Dim>& p) { return height(p) < -distance; }) ||
-             std::any_of(ends.begin(), ends.end(), [&](const End& side) {
-               return all(
-                   [&](const Vector<Dim>& p) { return dot(p, side.outwards) > side.farthest; });
-             });
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (const Vector<Dim>& corner : sheets.parts_[part].corner) {
+        const double height = dot(corner - simplex[0], direction);
+        low = std::min(low, height);
+        high = std::max(high, height);
+      }
+      return low > distance || high < -distance;
     };
-    near.erase(std::remove_if(near.begin(), near.end(), is_beyond), near.end());
+    if constexpr (Corners == Dim)
+      near.erase(std::remove_if(near.begin(), near.end(), is_beyond), near.end());
     return near;
-  }
-
-  /// Unit vector that leads out of the simplex across the side opposite to a corner.
-  Vector<Dim> out_of_side(const Points& simplex, std::size_t corner) const {
-    const Vector<Dim>& a = simplex[(corner + 1) % Corners];
-    if constexpr (Dim == 2)
-      return unit(a - simplex[corner]);
-    else if constexpr (Corners == 2)
-      return {};
-    else {
-      const Vector<Dim> across = unit(cross(simplex[(corner + 2) % 3] - a, direction));
-      return dot(across, simplex[corner] - a) > 0 ? -1.0 * across : across;
-    }
   }
 
   /// How far a point is from where the simplex goes on to.
