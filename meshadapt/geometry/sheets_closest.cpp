@@ -92,14 +92,15 @@ Vector<Dim> Sheets<Dim, Corners>::on_sheet(const Vector<Dim>& point, const Vecto
   return projection_of_[sheet](model);
 }
 
-/// Looks nearby first, because it is likely there, and the tolerance may be large.
+/// Looks nearby first, because it is likely there; reach and tolerance may be large.
 template <int Dim, std::size_t Corners>
 std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& point,
                                                          std::uint32_t sheet, double reach) const {
   const double most = reach + tolerance_;
-  for (bool last = false; !last; reach *= 4) {
-    last = !(reach > 0 && reach < most);
-    const double within = last ? most : reach;
+  double within = std::min(reach, tolerance_);
+  for (bool last = false; !last; within *= 4) {
+    last = !(within > 0 && within < most);
+    if (last) within = most;
     Near near;
     each_meeting(box_around(std::array{point}, within), [&](std::uint32_t part) {
       if (parts_[part].sheet == sheet) near.push_back(part);

@@ -17,7 +17,7 @@
 
 namespace ductile::meshadapt {
 
-/// Of some points, with a margin around them.
+/// The box around some points, with a margin.
 template <int Dim, std::size_t N>
 Box<Dim> box_around(const std::array<Vector<Dim>, N>& points, double margin) {
   auto box = box_around(points);
@@ -39,7 +39,7 @@ Vector<Dim> direction_of(const std::array<Vector<Dim>, Corners>& corner) {
   return unit(direction);
 }
 
-/// Of the facets: their parts are looked at one by one.
+/// A tree of the facets; the parts of each are looked at one by one.
 template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Tree : BoxHierarchy<Dim> {
   using BoxHierarchy<Dim>::BoxHierarchy;
@@ -60,22 +60,25 @@ template <int Dim, std::size_t Corners>
 struct Sheets<Dim, Corners>::Near : boost::container::small_vector<std::uint32_t, 192> {
   Closest closest(const Sheets& sheets, const Vector<Dim>& point) const {
     Closest best;
-    const auto square = [&](std::uint32_t part) {
-      const Vector<Dim> aside = sheets.shape_of_[part].centre - point;
-      return dot(aside, aside);
-    };
     const auto look = [&](std::uint32_t part) {
       const Vector<Dim> at = closest_point(sheets.parts_[part].corner, point);
       const double distance = norm(at - point);
       if (distance < best.distance) best = {distance, at, part};
     };
     if (this->empty()) return best;
-    look(*std::min_element(this->begin(), this->end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(square(a), a) < std::pair(square(b), b);
-    }));
-    for (const std::uint32_t part : *this) {
-      const double reach = best.distance + sheets.shape_of_[part].radius;
-      if (square(part) < reach * reach) look(part);
+    boost::container::small_vector<double, 192> square_of(this->size(),
+                                                          boost::container::default_init);
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < this->size(); ++i) {
+      const Vector<Dim> aside = sheets.shape_of_[(*this)[i]].centre - point;
+      square_of[i] = dot(aside, aside);
+      if (std::pair(square_of[i], (*this)[i]) < std::pair(square_of[first], (*this)[first]))
+        first = i;
+    }
+    look((*this)[first]);
+    for (std::size_t i = 0; i < this->size(); ++i) {
+      const double reach = best.distance + sheets.shape_of_[(*this)[i]].radius;
+      if (square_of[i] < reach * reach) look((*this)[i]);
     }
     return best;
   }

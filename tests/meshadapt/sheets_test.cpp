@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "mesh/distance.hpp"
@@ -223,6 +226,107 @@ TEST(Sheets, CoverFacetsBesideARidge) {
     EXPECT_TRUE(covered(degrees, {0.01, 0.02, 0.04, 0.5})) << degrees;
   }
   EXPECT_FALSE(covered(20, {0.02, 0.5}));
+}
+
+/// The two sides of a pipe of radius 1, as sheets 7, inside, and 8, in facets that are 0.02 long.
+std::vector<Sheets<3, 3>::Part> pipe(double thickness, bool both_sides = true) {
+  constexpr int around = 300, along = 15;
+  std::vector<Sheets<3, 3>::Part> parts;
+  for (const std::uint32_t sheet : {7U, 8U}) {
+    if (sheet == 8 && !both_sides) break;
+    const double radius = sheet == 7 ? 1 - thickness : 1;
+    const auto at = [&](int i, int j) {
+      const double angle = 2 * std::numbers::pi * i / around;
+      return Vector<3>{{radius * std::cos(angle), radius * std::sin(angle), 0.02 * j}};
+    };
+    for (int i = 0; i < around; ++i)
+      for (int j = 0; j < along; ++j)
+        for (Triangle t : {Triangle{at(i, j), at(i + 1, j), at(i + 1, j + 1)},
+                           Triangle{at(i, j), at(i + 1, j + 1), at(i, j + 1)}}) {
+          if (sheet == 7) std::swap(t[1], t[2]);
+          parts.push_back({t, sheet, false});
+        }
+  }
+  return parts;
+}
+/// A facet of large chords on one of its sides.
+Triangle chords(test::Random& random, const std::vector<Sheets<3, 3>::Part>& parts,
+                std::uint32_t sheet) {
+  Triangle t;
+  const double angle = uniform(random, 0, 6), width = uniform(random, 0.05, 0.25);
+  const double low = uniform(random, 0, 0.1), high = uniform(random, 0.2, 0.3);
+  const std::array places{std::pair(angle, low), std::pair(angle + width, low),
+                          std::pair(angle + uniform(random, 0, width), high)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector<3> on_circle{
+        {std::cos(places[i].first), std::sin(places[i].first), places[i].second}};
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& part : parts) {
+      if (part.sheet != sheet) continue;
+      const Vector<3> there = closest_point(part.corner, on_circle);
+      if (norm(there - on_circle) < least) t[i] = there;
+      least = std::min(least, norm(there - on_circle));
+    }
+  }
+  if (sheet == 7) std::swap(t[1], t[2]);
+  return t;
+}
+
+/// Chords of the inner side lead away from the outer one, which curves down beside them.
+TEST(Sheets, CoverFacetsOfThinWallsWhereverTheyStayApart) {
+  test::Random random(5);
+  std::array<int, 2> count{};
+  for (const double thickness : {0.002, 0.003, 0.006}) {
+    const auto parts = pipe(thickness);
+    const auto side_near = [&](std::uint32_t sheet, const Triangle& facet) {
+      auto near = parts;
+      std::erase_if(near, [&](const auto& part) {
+        return part.sheet != sheet ||
+               norm(part.corner[0] - closest_point(facet, part.corner[0])) > 0.04;
+      });
+      return near;
+    };
+    const Sheets<3, 3> sheets(parts, 0.004);
+    for (int trial = 0; trial < 30; ++trial) {
+      const std::uint32_t sheet = 7 + static_cast<std::uint32_t>(trial % 2);
+      const Triangle facet = chords(random, parts, sheet);
+      const auto own = side_near(sheet, facet), other = side_near(15 - sheet, facet);
+      double most = 0, least_gap = 1, worst = 0;
+      for (const Vector<3>& p : samples(facet, 12)) {
+        const double here = distance(own, p), gap = distance(other, p);
+        most = std::max(most, here);
+        least_gap = std::min(least_gap, gap);
+        worst = std::max(worst, gap < 0.004 ? here / gap : 0);
+      }
+      const bool covered = sheets.cover(facet, sheet);
+      if (most > 0.004 || worst > 0.5) {
+        EXPECT_FALSE(covered) << most << ' ' << worst;
+      }
+      if (most < 0.0035 && 2.2 * most < least_gap) {
+        EXPECT_TRUE(covered) << most << ' ' << least_gap;
+      }
+      ++count[covered ? 1 : 0];
+    }
+  }
+  EXPECT_GT(count[0], 20);
+  EXPECT_GT(count[1], 20);
+}
+
+/// Each part of the other side was once compared with all parts of this one: 220 times as long as
+/// without the other side, where 9 times is enough.
+TEST(Sheets, CoverFacetsOfThinWallsInTimeThatGrowsWithTheirParts) {
+  const auto seconds = [](bool both_sides) {
+    const Sheets<3, 3> sheets(pipe(0.003, both_sides), 0.05);
+    test::Random random(6);
+    std::vector<Triangle> facets;
+    for (int i = 0; i < 20; ++i) facets.push_back(chords(random, pipe(0.003, true), 7));
+    const std::clock_t start = std::clock();
+    for (int time = 0; time < 20; ++time)
+      for (const Triangle& facet : facets) sheets.cover(facet, 7);
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  };
+  const double one = seconds(false), both = seconds(true);
+  EXPECT_LT(both, 30 * one);
 }
 
 TEST(Sheets, FindTheClosestPointWithinReach) {
