@@ -92,10 +92,12 @@ void Gradation<Dim, AMesh>::take_sources() {
       executor_, waiting_.size(), 0.0, [&](std::size_t i) { return fineness_of_[waiting_[i]]; },
       [](double a, double b) { return std::max(a, b); });
   const auto those_waiting = [&](auto&& wanted) {
-    return runtime::parallel_collect<VertexId>(executor_, waiting_.size(),
-                                               [&](std::size_t i, auto&& append) {
-                                                 if (wanted(waiting_[i])) append(waiting_[i]);
-                                               });
+    return runtime::parallel_collect<VertexId>(
+        executor_, waiting_.size(),
+        [&](std::size_t i, auto&& append) {
+          if (wanted(waiting_[i])) append(waiting_[i]);
+        },
+        cheap.serial_below);
   };
   const auto is_source = [&](VertexId v) { return fineness_of_[v] * close >= finest; };
   sources_ = those_waiting(is_source);
@@ -110,12 +112,14 @@ template <int Dim, class AMesh>
 std::size_t Gradation<Dim, AMesh>::spread(Metrics& metric_of) {
   find_reached(metric_of);
   const auto raised = runtime::parallel_collect<Raised>(
-      executor_, reached_.size(), [&](std::size_t i, auto&& append) {
+      executor_, reached_.size(),
+      [&](std::size_t i, auto&& append) {
         const VertexId v = reached_.items()[i];
         Raised at{v, metric_of[v], finest_of_[v]};
         if (at.finest == 0) at.finest = bound_from(principal_axes(metric_of[v]));
         if (raise_from_sources(metric_of, at)) append(at);
-      });
+      },
+      256);
   runtime::parallel_for(
       executor_, sources_.size(), [&](std::size_t i) { state_of_[sources_[i]] = State::settled; },
       cheap);
