@@ -203,10 +203,10 @@ AdaptSummary summarise(const meshadapt::AdjacentMesh& before, const meshadapt::A
                        const SummaryOptions& options) {
   AdaptSummary summary{.before = summarise_mesh(before.mesh()),
                        .after = summarise_mesh(after.mesh()),
+                       .in_force = options.in_force,
                        .report = adapted.report,
                        .threads = after.executor().threads(),
                        .deterministic = after.executor().deterministic()};
-  summary.in_force = options.in_force;
   summary.peak_memory = runtime::peak_memory();
   if (options.before) summary.before.statistics = measure(before, &metric);
   if (options.after) summary.after.statistics = measure(after, &adapted.metric);
