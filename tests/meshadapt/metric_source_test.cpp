@@ -149,7 +149,7 @@ TEST(MetricSources, RefineNearAFunctionThatTheInputDoesNotShow) {
       near.push_back(0);
       for (std::size_t v = 0; v < size_of.size(); ++v) {
         near.back() += distance(now, v) < fine ? 1U : 0U;
-        size_of[v] = std::min(coarse, fine + distance(now, v));
+        size_of[v] = std::min(coarse, fine + 0.3 * distance(now, v));
       }
       if (state.pass == 4) return AnyField{};
       return metric_of(scalar_field(dimension, size_of), now);
@@ -157,10 +157,10 @@ TEST(MetricSources, RefineNearAFunctionThatTheInputDoesNotShow) {
     const AdaptedMesh adapted = adapt(executor, mesh, source);
     EXPECT_EQ(test::joined(check_adapted(executor, mesh, adapted.mesh)), "");
     ASSERT_EQ(near.size(), 5U);
-    const double ideal = dimension == 2 ? 2 * 3.14 * radius / fine * 2
-                                        : 4 * 3.14 * radius * radius / (fine * fine) * 2;
+    const double ideal =
+        dimension == 2 ? 2 * 3.14 * radius / fine : 4 * 3.14 * radius * radius / (fine * fine);
     EXPECT_LT(near[1], 0.5 * ideal) << "one pass misses it";
-    EXPECT_GT(near[4], 0.7 * ideal);
+    EXPECT_GT(near[4], 0.8 * ideal);
   }
 }
 
@@ -256,24 +256,38 @@ TEST(MetricSources, EndAfterTheMostPassesWithAWarning) {
   }
 }
 
+/// Thin across a direction that turns with the first axis by so much, which edges hardly show.
+AnyField turning(const AnyMesh& mesh, double turn) {
+  const auto stride = static_cast<std::size_t>(mesh.dimension);
+  constexpr double across = 1 / (0.02 * 0.02), along = 1 / (0.25 * 0.25);
+  AnyField metric = constant_metric(mesh, 0.25);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    const double angle = turn * mesh.coordinates[v * stride];
+    const double c = std::cos(angle), s = std::sin(angle);
+    double* const tensor = &metric.values[v * (stride == 2 ? 3 : 6)];  // m11 m12 m22 ...
+    tensor[0] = across * c * c + along * s * s;
+    tensor[1] = (across - along) * c * s;
+    tensor[2] = across * s * s + along * c * c;
+  }
+  return metric;
+}
+
 /// Passes that limit growth lie between those of the source, and end.
 TEST(MetricSources, AreAskedWhenGrowthIsLimited) {
   const Executor executor({.threads = 2});
-  for (std::uint64_t seed = 0; seed < test::trials(6); ++seed) {
+  int grown = 0;
+  for (std::uint64_t seed = 0; seed < test::trials(4); ++seed) {
     const AnyMesh mesh = random_grid(seed);
-    const auto stride = static_cast<std::size_t>(mesh.dimension);
-    Source source([&](const AdaptState& state) {
-      const AnyMesh& now = state.mesh();
-      std::vector<double> size_of(now.vertex_count(), 0.3);
-      for (std::size_t v = 0; v < size_of.size(); ++v)
-        if (now.coordinates[v * stride] == 0) size_of[v] = mesh.dimension == 2 ? 2e-3 : 0.02;
-      return state.pass == 0 ? metric_of(scalar_field(mesh.dimension, size_of), now) : AnyField{};
-    });
+    const AnyField metric = turning(mesh, 2 + 0.5 * static_cast<double>(seed));
+    Source source([&](const AdaptState& state) { return state.pass == 0 ? metric : AnyField{}; });
     const AdaptedMesh adapted = adapt(executor, mesh, source, {.gradation = 1.2});
     ASSERT_EQ(source.passes.size(), 2U);
-    EXPECT_GT(source.passes[1], 1) << "growth was limited on the result";
     EXPECT_LE(source.passes[1], 6);
+    grown += source.passes[1] > 1 ? 1 : 0;
     EXPECT_EQ(test::joined(check_adapted(executor, mesh, adapted.mesh)), "");
+  }
+  if (test::trials(4) >= 4) {
+    EXPECT_GT(grown, 0) << "the adapted mesh shows more growth";
   }
 }
 
