@@ -37,10 +37,10 @@ if(TARGET ductile_c)
       string(PREPEND ductile_pc_${dir} "\${prefix}/")
     endif()
   endforeach()
-  configure_file(${PROJECT_SOURCE_DIR}/c/ductile.pc.in ${PROJECT_BINARY_DIR}/ductile.pc @ONLY)
+  configure_file(${PROJECT_SOURCE_DIR}/doors/c/ductile.pc.in ${PROJECT_BINARY_DIR}/ductile.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/ductile.pc
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT c)
-  install(FILES ${PROJECT_SOURCE_DIR}/c/ductile.f90
+  install(FILES ${PROJECT_SOURCE_DIR}/doors/c/ductile.f90
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT c)
 endif()
 # PETSc loads it by its name; who links it needs PETSc's flags, not CMake's package.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the pictures of the gallery into the folder of this file: for each idea a mesh before and after.
 
-    pip install ./python          or PYTHONPATH=build/release/python after ./dev test
+    pip install ./doors/python          or PYTHONPATH=build/release/python after ./dev test
     python3 docs/gallery/draw.py
 """
 

@@ -17,21 +17,21 @@ run() { echo "$*"; "$@"; }
 
 # shellcheck disable=SC2046
 run "$cc" -std=c99 -Wall -Wextra -Wpedantic -Werror $(pkg-config --cflags ductile) \
-  "$source/c/examples/adapt.c" -o "$work/adapt_c" $(pkg-config --libs ductile)
+  "$source/doors/c/examples/adapt.c" -o "$work/adapt_c" $(pkg-config --libs ductile)
 "$work/adapt_c"
 if [ -n "$fc" ]; then
   cd "$work"  # where modules go
   # shellcheck disable=SC2046
-  run "$fc" -Wall -Werror "$work/prefix/include/ductile.f90" "$source/c/examples/adapt.f90" \
+  run "$fc" -Wall -Werror "$work/prefix/include/ductile.f90" "$source/doors/c/examples/adapt.f90" \
     -o adapt_f $(pkg-config --libs ductile)
   ./adapt_f
 fi
 
 # All that can be seen is what the map names, and the other way round.
-sed -n 's/^ *\(ductile_[a-z_0-9]*\);$/\1/p' "$source/c/ductile.map" | sort >"$work/named"
+sed -n 's/^ *\(ductile_[a-z_0-9]*\);$/\1/p' "$source/doors/c/ductile.map" | sort >"$work/named"
 nm -D --defined-only "$library" | sed -n 's/.* T \([a-z_0-9]*\)@@.*/\1/p' | sort >"$work/seen"
 diff "$work/named" "$work/seen"
 nm -D --defined-only "$library" | grep -v ' T \| A ' && { echo "more is seen than functions"; exit 1; }
-grep -o '\bductile_[a-z_0-9]*(' "$source/c/ductile.h" | tr -d '(' | sort -u | diff "$work/named" - \
+grep -o '\bductile_[a-z_0-9]*(' "$source/doors/c/ductile.h" | tr -d '(' | sort -u | diff "$work/named" - \
   >"$work/undeclared" || { cat "$work/undeclared"; exit 1; }
 readelf -d "$library" | grep SONAME

@@ -3,7 +3,7 @@
 #   2. the runtime's other parts never include its colouring, so that nobody who runs rounds parses it;
 #   3. OpenMP, atomics, locks, threads and signals appear in runtime only;
 #   4. each floor of mesh adaptation includes lower ones only;
-#   5. MPI appears in distributed and petsc only, PETSc in petsc.
+#   5. MPI appears in distributed and doors/petsc only, PETSc in doors/petsc.
 #   cmake -D SOURCE_DIR=... -P check_layers.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -48,15 +48,15 @@ forbid_except("/runtime/colouring/" "#include .*/colouring/"
   "colouring stands on the other parts of runtime, not they on it" include/ductile/runtime runtime)
 forbid("#include .*meshadapt" "runtime's tests build without meshadapt" tests/runtime)
 forbid("#include .*cli/" "only the program includes the program" ${below_program}
-  distributed c petsc python)
+  distributed doors)
 
-set(without_mpi include/ductile runtime meshadapt c python)
-forbid("<mpi\\.h>|MPI_[A-Z]|#include .*distributed/" "MPI stays inside distributed and petsc" ${without_mpi})
+set(without_mpi include/ductile runtime meshadapt doors/c doors/python)
+forbid("<mpi\\.h>|MPI_[A-Z]|#include .*distributed/" "MPI stays inside distributed and doors/petsc" ${without_mpi})
 forbid("[Pp][Ee][Tt][Ss][Cc]|DMPlex" "distributed knows nothing of PETSc" ${without_mpi} distributed)
 # Without a folder, which the program's headers are included by.
 forbid("#include \"[a-z_0-9]+\\.hpp\"" "distributed names the folders of what it includes" distributed)
 
-set(above_runtime include/ductile/meshadapt meshadapt distributed c petsc python docs/examples)
+set(above_runtime include/ductile/meshadapt meshadapt distributed doors docs/examples)
 forbid("#pragma +omp|<omp\\.h>|omp_[a-z]+_" "OpenMP stays inside runtime" ${above_runtime})
 forbid("<(atomic|mutex|shared_mutex|thread|condition_variable|future|semaphore|barrier|latch|stop_token)>"
   "atomics, locks and threads stay inside runtime" ${above_runtime})

@@ -156,7 +156,7 @@ def test_example_solves_adapts_and_transfers(tmp_path, capsys):
 
 
 def test_the_guide_runs_as_it_is_written(tmp_path, monkeypatch):
-    guide = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
+    guide = pathlib.Path(__file__).parents[3] / "docs" / "python.md"
     if not guide.exists():
         pytest.skip("the guide is not beside the package")
     mesh = ductile.box((1, 1, 1), (3, 3, 3))
