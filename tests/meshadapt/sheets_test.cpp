@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -229,11 +228,10 @@ TEST(Sheets, CoverFacetsBesideARidge) {
 }
 
 /// The two sides of a pipe of radius 1, as sheets 7, inside, and 8, in facets that are 0.02 long.
-std::vector<Sheets<3, 3>::Part> pipe(double thickness, bool both_sides = true) {
+std::vector<Sheets<3, 3>::Part> pipe(double thickness) {
   constexpr int around = 300, along = 15;
   std::vector<Sheets<3, 3>::Part> parts;
   for (const std::uint32_t sheet : {7U, 8U}) {
-    if (sheet == 8 && !both_sides) break;
     const double radius = sheet == 7 ? 1 - thickness : 1;
     const auto at = [&](int i, int j) {
       const double angle = 2 * std::numbers::pi * i / around;
@@ -310,23 +308,6 @@ TEST(Sheets, CoverFacetsOfThinWallsWhereverTheyStayApart) {
   }
   EXPECT_GT(count[0], 20);
   EXPECT_GT(count[1], 20);
-}
-
-/// Each part of the other side was once compared with all parts of this one: 220 times as long as
-/// without the other side, where 9 times is enough.
-TEST(Sheets, CoverFacetsOfThinWallsInTimeThatGrowsWithTheirParts) {
-  const auto seconds = [](bool both_sides) {
-    const Sheets<3, 3> sheets(pipe(0.003, both_sides), 0.05);
-    test::Random random(6);
-    std::vector<Triangle> facets;
-    for (int i = 0; i < 20; ++i) facets.push_back(chords(random, pipe(0.003, true), 7));
-    const std::clock_t start = std::clock();
-    for (int time = 0; time < 20; ++time)
-      for (const Triangle& facet : facets) sheets.cover(facet, 7);
-    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  };
-  const double one = seconds(false), both = seconds(true);
-  EXPECT_LT(both, 30 * one);
 }
 
 TEST(Sheets, FindTheClosestPointWithinReach) {

@@ -56,8 +56,8 @@ struct MeshWithFields {
 /// or a section whose name is one letter away from a known one.
 AnyMesh read_mesh(const std::filesystem::path& path, Warnings* warnings = nullptr);
 
-/// Reads a mesh with the fields in its file, whose values are numbers and may be infinite. Fields with
-/// unsupported numbers of components, or on other cells, are left out with a warning.
+/// Reads a mesh with the fields in its file, whose values are numbers and may be infinite. Fields
+/// with unsupported numbers of components, or on other cells, are left out with a warning.
 MeshWithFields read_mesh_with_fields(const std::filesystem::path& path,
                                      Warnings* warnings = nullptr);
 
