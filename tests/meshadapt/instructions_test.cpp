@@ -145,9 +145,11 @@ TYPED_TEST(InstructionsIn, AdaptedMeshesAreTheSame) {
     const auto adapted_with = [&](Instructions instructions) {
       Scene<Dim> scene(this->executor_, seed);
       scene.mesh.instructions = instructions;
-      Adapter<Dim> adapter(this->executor_, scene.random.options, std::move(scene.mesh),
-                           std::move(scene.neighbours), scene.metric_of);
-      adapter.run();
+      AdaptReport report;
+      Adapter<Dim> adapter(
+          this->executor_, scene.random.options,
+          {std::move(scene.mesh), std::move(scene.neighbours), std::move(scene.metric_of)}, report);
+      adapter.run(Effort::everything);
       EXPECT_EQ(adapter.mesh().instructions, instructions);
       return take_apart(this->executor_, adapter.take_mesh());
     };
