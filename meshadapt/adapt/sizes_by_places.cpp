@@ -53,7 +53,7 @@ TriangleSurface places_of(const AnyMesh& mesh, const EntityList& list) {
 /// The same sizes near places instead of near vertices, and edges in 3D, that carry a reference.
 Sizes lasting(const AnyMesh& mesh, const Sizes& sizes) {
   Sizes result{.elsewhere = sizes.elsewhere, .bounds = sizes.bounds};
-  for (const SizeSource& source : sizes.sources) {
+  each_source(sizes, [&](const SizeSource& source) {
     std::set<std::pair<int, std::int32_t>> references;
     if (const auto* entities = std::get_if<Referenced>(&source.place))
       references = {{entities->dimension, entities->reference}};
@@ -67,7 +67,7 @@ Sizes lasting(const AnyMesh& mesh, const Sizes& sizes) {
         part.place = places_of(mesh, entities_of(mesh, dimension, reference));
       result.sources.push_back(std::move(part));
     }
-  }
+  });
   return result;
 }
 

@@ -11,6 +11,7 @@
 
 #include "ductile/meshadapt/any_mesh.hpp"
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/meshadapt/sizes.hpp"
 
 namespace ductile::meshadapt {
 
@@ -78,6 +79,20 @@ inline std::set<std::pair<int, std::int32_t>> references_named(const AnyMesh& me
                    (known.empty() ? std::string("a number, because the mesh has no names")
                                   : "a name that the mesh has, one of " + known) +
                    "; found '" + name + "'");
+}
+
+/// Calls take(source) for each source; an InputError that it throws then begins with the source.
+template <class Take>
+void each_source(const Sizes& sizes, Take&& take) {
+  for (std::size_t i = 0; i < sizes.sources.size(); ++i) {
+    const SizeSource& source = sizes.sources[i];
+    try {
+      take(source);
+    } catch (const InputError& error) {
+      const std::string index = "sources[" + std::to_string(i) + "]";
+      throw InputError((source.name.empty() ? index : source.name) + ": " + error.what());
+    }
+  }
 }
 
 }  // namespace ductile::meshadapt

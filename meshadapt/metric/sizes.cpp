@@ -101,20 +101,6 @@ void expect_source(const SizeSource& source) {
   std::visit([](const auto& place) { expect_place(place); }, source.place);
 }
 
-/// Lets errors say which source they are about.
-template <class Take>
-void each_source(const Sizes& sizes, Take&& take) {
-  for (std::size_t i = 0; i < sizes.sources.size(); ++i) {
-    const SizeSource& source = sizes.sources[i];
-    try {
-      take(source);
-    } catch (const InputError& error) {
-      const std::string index = "sources[" + std::to_string(i) + "]";
-      throw InputError((source.name.empty() ? index : source.name) + ": " + error.what());
-    }
-  }
-}
-
 // ---- Pieces that distances are measured to ----
 
 Piece point_piece(const Vector<3>& a) { return {{a, a, a}, 1}; }

@@ -18,7 +18,7 @@ header=$source/doors/c/ductile.h
   sed -n 's/^ *\(ductile_[a-z_0-9]*\);$/__typeof__(\&\1) api_of_\1;/p' "$source/doors/c/ductile.map"
   grep -o 'DUCTILE_[A-Z_]* = ' "$header" | sed 's/ = //; s/.*/char value_of_&[1 + &];/'
 } >api.c
-"$cc" -std=gnu99 -g -shared -fPIC -I "$source/c" api.c -o libductile_api.so
+"$cc" -std=gnu99 -g -shared -fPIC -I "$source/doors/c" api.c -o libductile_api.so
 abidw --no-corpus-path --no-comp-dir-path --no-show-locs libductile_api.so |
   sed "s| path='[^']*'||" >now.abi
 if [ "$update" = --update ]; then

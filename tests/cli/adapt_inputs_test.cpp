@@ -34,7 +34,9 @@ std::size_t element_count(const AnyMesh& mesh) {
 AnyMesh grid(int dimension, int n) { return test::make_grid(test::unit_grid(dimension, n)); }
 
 NamedField field_of(const AnyMesh& mesh, const std::string& name, Place place, auto value) {
-  NamedField field{.name = name, .place = place};
+  NamedField field;
+  field.name = name;
+  field.place = place;
   const std::size_t count = place == Place::vertices ? mesh.vertex_count() : element_count(mesh);
   for (std::size_t i = 0; i < count; ++i) field.values.push_back(value(i));
   return field;

@@ -365,14 +365,17 @@ TEST(LocalSizes, AreReadFromMmgsFiles) {
   };
   for (const auto& [text, said] : std::vector<Fault>{
            {"sizes 1", "a.mmg3d:1: expected Parameters, found 'sizes'"},
-           {"parameters\nmany", ":2: expected the number of references, found 'many'"},
+           {"parameters\nmany",
+            ":2: expected the number of references, a whole number, found 'many'"},
            {"parameters -1", ":1: expected a number of references of 0 or more"},
            {"parameters 2\n1 Edge 1 2 3\n", "expected a reference, found the end of the file"},
-           {"parameters 1\n1.5 Edge 1 2 3", ":2: expected a reference, found '1.5'"},
-           {"parameters 1\n99999999999 Edge 1 2 3", ":2: expected a reference, found '9999"},
+           {"parameters 1\n1.5 Edge 1 2 3",
+            ":2: expected a reference, a whole number, found '1.5'"},
+           {"parameters 1\n99999999999 Edge 1 2 3",
+            ":2: expected a reference, a whole number, found '9999"},
            {"parameters 1\n1 Quads 1 2 3", "expected Vertex, Edge, Triangle or Tetrahedron, found"},
-           {"parameters 1\n1 Edge x 2 3", ":2: expected hmin, found 'x'"},
-           {"parameters 1\n1 Edge 1 inf 3", ":2: expected hmax, found one that is not finite"},
+           {"parameters 1\n1 Edge x 2 3", ":2: expected hmin, a number, found 'x'"},
+           {"parameters 1\n1 Edge 1 inf 3", ":2: expected hmax, a finite number"},
            {"parameters 1\n1 Edge 2 1 3", ":2: expected hmin not to be above hmax"},
            {"parameters 1\n1 Edge 1 2", "expected hausd, found the end of the file"},
            {"parameters 1\n1 Edge 1 2 3 4", "expected Parameters, found '4'"}})
