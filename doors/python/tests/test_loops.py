@@ -41,9 +41,10 @@ def l2_error(mesh, u, exact):
     return np.sqrt((area[:, None] * missed**2).sum() / 3)
 
 
-@pytest.mark.parametrize("angle", [0.3, np.pi / 2])
+@pytest.mark.parametrize("angle", [0.3, 1, np.pi / 2])
 @pytest.mark.parametrize("steep", [20, 60])
-def test_error_of_a_solver_never_grows_over_six_cycles(angle, steep):
+def test_error_of_a_solver_does_not_grow_with_the_cycles(angle, steep):
+    """The first mesh misses the steeper layer, so that the second may be worse than it."""
     across = np.array([np.cos(angle), np.sin(angle)])
 
     def exact(x):
@@ -57,6 +58,6 @@ def test_error_of_a_solver_never_grows_over_six_cycles(angle, steep):
         u = solve_poisson(mesh, source, exact)
         errors.append(l2_error(mesh, u, exact))
         mesh = mesh.remesh(ductile.metric(mesh, u, elements=2000))
-    for cycle in range(1, 6):
+    for cycle in range(2, 6):
         assert errors[cycle] < 1.2 * min(errors[:cycle]), errors
-    assert errors[-1] < 0.1 * errors[0], errors
+    assert errors[-1] < 0.05 * errors[0], errors
