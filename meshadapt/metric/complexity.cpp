@@ -7,7 +7,6 @@
 #include "core/first_bad.hpp"
 #include "ductile/meshadapt/error.hpp"
 #include "metric/expect_metrics.hpp"
-#include "metric/gradation.hpp"
 #include "metric/spectrum.hpp"
 
 namespace ductile::meshadapt {
@@ -22,20 +21,19 @@ struct Scaling {
   std::vector<Metric<Dim>>& metric_of;
   const FixedMesh<Dim>& mesh;
   const ComplexityGoal& goal;
-  Gradation<Dim, FixedMesh<Dim>>& gradation;
 };
 
-/// Grades the metrics until squared lengths exceed their limits by this at most; returns the
+/// Grades the metrics until squared lengths exceed what they may be by this at most; returns the
 /// complexity over the goal.
 template <int Dim>
 double take_graded(const Executor& executor, double tolerance, const Scaling<Dim>& scaling) {
-  scaling.gradation.limit(scaling.metric_of,
-                          {.factor = scaling.goal.gradation, .tolerance = tolerance});
+  limit_gradation(executor, scaling.metric_of, scaling.mesh,
+                  {.factor = scaling.goal.gradation, .tolerance = tolerance});
   return complexity(executor, scaling.mesh, scaling.metric_of) / scaling.goal.complexity;
 }
 
-/// Multiplies graded metrics by one factor of 1 or more, so that they have the complexity. They
-/// stay graded, because their growth per unit of metric length becomes less.
+/// Multiplies graded metrics by one factor of 1 or more, so that they have the complexity. Sizes
+/// grow by the less per unit of metric length, so that they stay graded.
 template <int Dim>
 double take_finer(const Executor& executor, double share, const Scaling<Dim>& scaling) {
   const double factor = std::max(1.0, std::pow(1 / share, 2.0 / Dim));
@@ -46,30 +44,28 @@ double take_finer(const Executor& executor, double share, const Scaling<Dim>& sc
 }
 
 /// Looks for the factor by a secant of logarithms: grading adds the less, in proportion, the finer
-/// the metric is, so the complexity grows with the factor at most to the power d / 2, and to a
-/// smaller one the more grading has added, as measured for the first step. Somewhat below the goal
-/// is enough: what is missing then takes no more grading.
+/// the metric is, so the complexity grows with the factor at most to the power d / 2. Near the goal
+/// is enough, and less than it is best: what is missing then takes no more grading.
 template <int Dim>
 MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, double start,
                        const Scaling<Dim>& scaling) {
   constexpr int most_passes = 20;
-  constexpr double near = 0.72, aim = 0.85, close = 0.96, tolerance = 0.02, roughly = 0.3;
-  constexpr double least_slope = 0.1, most_slope = 0.5 * Dim;
-  double at = std::log(start), last_at = 0, last = 0;
+  constexpr double near = 0.85, aim = 0.93, tolerance = 0.02, roughly = 0.05;
+  constexpr double least_slope = 0.1, first_slope = Dim / 3.0, most_slope = 0.5 * Dim;
+  double at = std::log(start), slope = first_slope, last_at = 0, last = 0;
   MetricFit best;
   for (int pass = 0; pass < most_passes && !best.reached; ++pass) {
     scaling.metric_of = spectrum.metrics(executor, std::exp(at));
     double share = take_graded(executor, roughly, scaling);
     const double found = std::log(share);
-    if (share > near && share < close) {
+    if (share > near && share < 1 + tolerance) {
       share = take_graded(executor, GradationOptions{}.tolerance, scaling);
       share = take_finer(executor, share, scaling);
       best.reached = std::abs(share - 1) < tolerance;
     }
     best.complexity = share * scaling.goal.complexity;
-    const double slope = pass > 0 && at != last_at
-                             ? std::clamp((found - last) / (at - last_at), least_slope, most_slope)
-                             : most_slope * (0.47 + 0.53 / std::max(1.0, share));
+    if (pass > 0 && at != last_at)
+      slope = std::clamp((found - last) / (at - last_at), least_slope, most_slope);
     last_at = at;
     last = found;
     at += (std::log(aim) - found) / slope;
@@ -113,10 +109,7 @@ MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>
                         [&](std::size_t v) { spectrum.axes_of[v] = principal_axes(metric_of[v]); });
   const double now = complexity(executor, mesh, metric_of);
   const double start = now > 0 ? std::pow(goal.complexity / now, 2.0 / Dim) : 1;
-  if (goal.gradation > 0) {
-    Gradation<Dim, FixedMesh<Dim>> gradation(executor, mesh, metric_of.size());
-    return scale_graded(executor, spectrum, start, {metric_of, mesh, goal, gradation});
-  }
+  if (goal.gradation > 0) return scale_graded(executor, spectrum, start, {metric_of, mesh, goal});
   const double factor = fitting_factor(
       [&](double f) { return spectrum.complexity(executor, mesh, f); }, goal.complexity, start);
   metric_of = spectrum.metrics(executor, factor);

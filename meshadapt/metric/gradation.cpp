@@ -2,23 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstdint>
+#include <numeric>
+#include <span>
 #include <string>
 
 #include "ductile/meshadapt/error.hpp"
+#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
+#include "ductile/runtime/worklist.hpp"
 #include "metric/expect_metrics.hpp"
-#include "metric/gradation.hpp"
 #include "metric/mesh_gradation.hpp"
 #include "metric/metric_range.hpp"
 #include "metric/raise.hpp"
 #include "metric/spectrum.hpp"
+#include "metric/vertex_neighbours.hpp"
 
 namespace ductile::meshadapt {
 
 using runtime::Executor;
 
 namespace {
+
+// ---- What gradation needs of a mesh, of either kind ----
 
 template <int Dim>
 const Vector<Dim>& place_of(const Mesh<Dim>& mesh, VertexId vertex) {
@@ -28,175 +34,131 @@ template <int Dim>
 const Vector<Dim>& place_of(const FixedMesh<Dim>& mesh, VertexId vertex) {
   return mesh.position_of[vertex];
 }
-
-template <int Dim>
-double trace(const Metric<Dim>& metric) {
-  double sum = 0;
-  for (int i = 0; i < Dim; ++i) sum += metric(i, i);
-  return sum;
-}
-
-/// An upper bound on eigenvalues at a vertex, relative to the largest that spreads to it: with 1,
-/// the direction of the shortest size could not turn.
-template <int Dim>
-double bound_from(const PrincipalAxes<Dim>& axes) {
-  constexpr double finer = 1.2;
-  return finer * *std::max_element(axes.value.begin(), axes.value.end());
-}
-
-/// For loops of a few writes per vertex.
-constexpr runtime::LoopOptions cheap{.serial_below = 8192};
-
-}  // namespace
-
+/// The Jacobi iteration of limit_gradation. After the first sweep only vertices with a neighbour
+/// that changed in the sweep before are looked at, and only against such neighbours: metrics never
+/// get coarser, so a bound that held still does.
 template <int Dim, class AMesh>
-Gradation<Dim, AMesh>::Gradation(const Executor& executor, const AMesh& mesh, std::size_t vertices)
-    : executor_(executor),
-      mesh_(mesh),
-      state_of_(vertices),
-      fineness_of_(vertices),
-      axes_of_(vertices),
-      finest_of_(vertices),
-      neighbours_(executor, mesh),
-      reached_(executor) {
-  neighbours_.keep(vertices);
-}
-
-template <int Dim, class AMesh>
-GradationReport Gradation<Dim, AMesh>::limit(Metrics& metric_of, const GradationOptions& options) {
-  rate_ = std::log(options.factor);
-  tolerance_ = options.tolerance;
-  waiting_.resize(metric_of.size());
-  runtime::parallel_for(executor_, metric_of.size(), [&](std::size_t v) {
-    waiting_[v] = static_cast<VertexId>(v);
-    state_of_[v] = State::waiting;
-    fineness_of_[v] = trace(metric_of[v]);
-    finest_of_[v] = 0;
-  });
-  GradationReport report;
-  for (; !waiting_.empty() && report.sweeps < options.sweeps; ++report.sweeps) {
-    take_sources();
-    report.raised += spread(metric_of);
+class Gradation {
+ public:
+  Gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of, const AMesh& mesh,
+            const GradationOptions& options)
+      : executor_(executor),
+        metric_of_(metric_of),
+        mesh_(mesh),
+        options_(options),
+        rate_(std::log(options.factor)),
+        changed_(metric_of.size()),
+        has_changed_(metric_of.size(), 1),
+        axes_of_(metric_of.size()),
+        finest_of_(metric_of.size()),
+        neighbours_(executor, mesh) {
+    std::iota(changed_.begin(), changed_.end(), VertexId{0});
+    neighbours_.keep(metric_of.size());
   }
-  report.converged = waiting_.empty();
-  if (report.raised > 0)
-    runtime::parallel_for(executor_, metric_of.size(),
-                          [&](std::size_t v) { metric_of[v] = brought_into_range(metric_of[v]); });
-  return report;
-}
 
-template <int Dim, class AMesh>
-void Gradation<Dim, AMesh>::take_sources() {
-  constexpr double close = 2;  // as a factor of squared sizes
-  const double finest = runtime::parallel_reduce(
-      executor_, waiting_.size(), 0.0, [&](std::size_t i) { return fineness_of_[waiting_[i]]; },
-      [](double a, double b) { return std::max(a, b); });
-  const auto those_waiting = [&](auto&& wanted) {
-    return runtime::parallel_collect<VertexId>(
-        executor_, waiting_.size(),
-        [&](std::size_t i, auto&& append) {
-          if (wanted(waiting_[i])) append(waiting_[i]);
-        },
-        cheap.serial_below);
-  };
-  const auto is_source = [&](VertexId v) { return fineness_of_[v] * close >= finest; };
-  sources_ = those_waiting(is_source);
-  waiting_ = those_waiting(std::not_fn(is_source));
-  runtime::parallel_for(
-      executor_, sources_.size(), [&](std::size_t i) { state_of_[sources_[i]] = State::source; },
-      cheap);
-}
-
-/// Finds the new metrics from the old ones, then puts them in place. Returns how many there are.
-template <int Dim, class AMesh>
-std::size_t Gradation<Dim, AMesh>::spread(Metrics& metric_of) {
-  find_reached(metric_of);
-  const auto raised = runtime::parallel_collect<Raised>(
-      executor_, reached_.size(),
-      [&](std::size_t i, auto&& append) {
-        const VertexId v = reached_.items()[i];
-        Raised at{v, metric_of[v], finest_of_[v]};
-        if (at.finest == 0) at.finest = bound_from(principal_axes(metric_of[v]));
-        if (raise_from_sources(metric_of, at)) append(at);
-      },
-      256);
-  runtime::parallel_for(
-      executor_, sources_.size(), [&](std::size_t i) { state_of_[sources_[i]] = State::settled; },
-      cheap);
-  for (const Raised& at : raised) {
-    metric_of[at.vertex] = at.metric;
-    finest_of_[at.vertex] = at.finest;
-    fineness_of_[at.vertex] = trace(at.metric);
-    if (state_of_[at.vertex] == State::settled) waiting_.push_back(at.vertex);
-    state_of_[at.vertex] = State::waiting;
-  }
-  return raised.size();
-}
-
-/// The vertices that a source may raise, and the axes of these sources.
-template <int Dim, class AMesh>
-void Gradation<Dim, AMesh>::find_reached(const Metrics& metric_of) {
-  reached_.clear();
-  const auto from_source = [&](std::size_t i, auto& reached) {
-    const VertexId from = sources_[i];
-    for (const VertexId to : neighbours_.of(from)) {
-      if (growth_beyond(metric_of, from, to, metric_of[to]) == 0) continue;
-      if (state_of_[from] == State::source) {
-        axes_of_[from] = principal_axes(metric_of[from]);
-        if (finest_of_[from] == 0) finest_of_[from] = bound_from(axes_of_[from]);
-        state_of_[from] = State::spreading;
-      }
-      reached.append(to);
+  GradationReport run() {
+    GradationReport report;
+    const std::vector<VertexId> all = changed_;
+    while (!changed_.empty() && report.sweeps < options_.sweeps) {
+      // Where many have changed, it takes less to look at all vertices than to sort those to wake.
+      if (changed_.size() > all.size() / 32)
+        sweep(all);
+      else
+        sweep(neighbours_.of_all(changed_));
+      ++report.sweeps;
+      report.raised += changed_.size();
     }
-  };
-  runtime::parallel_for(executor_, sources_.size(), runtime::with(reached_), from_source,
-                        {.serial_below = 256});
-  reached_.collect_unique();
-}
-
-template <int Dim, class AMesh>
-bool Gradation<Dim, AMesh>::raise_from_sources(const Metrics& metric_of, Raised& at) {
-  bool raised = false;
-  for (const VertexId from : neighbours_.of(at.vertex)) {
-    if (state_of_[from] != State::spreading) continue;
-    const double growth = growth_beyond(metric_of, from, at.vertex, at.metric);
-    if (growth == 0) continue;
-    const Raised reaching = grown(from, at.vertex, growth);
-    if (raising::surely_finer(at.metric, reaching.metric, tolerance_)) continue;
-    at.finest = std::max(at.finest, reaching.finest);
-    raised = raising::raise_up_to(at.finest, at.metric, reaching.metric, tolerance_) || raised;
+    report.converged = changed_.empty();
+    if (report.raised > 0)
+      runtime::parallel_for(executor_, metric_of_.size(), [&](std::size_t v) {
+        metric_of_[v] = brought_into_range(metric_of_[v]);
+      });
+    return report;
   }
-  return raised;
-}
 
-/// Growth of sizes along an edge in the metric at its start; 0 if the metric at its end is surely
-/// fine enough. No size grows by less than g^(7/8), so that is seen without the axes.
-template <int Dim, class AMesh>
-double Gradation<Dim, AMesh>::growth_beyond(const Metrics& metric_of, VertexId from, VertexId to,
-                                            const Metric<Dim>& there) const {
-  const Vector<Dim> edge = place_of(mesh_, to) - place_of(mesh_, from);
-  const double growth = 1 + rate_ * std::sqrt(std::max(0.0, squared_length(metric_of[from], edge)));
-  const double least = growth * growth / std::sqrt(std::sqrt(growth));
-  return raising::surely_finer(least * there, metric_of[from], tolerance_) ? 0 : growth;
-}
+ private:
+  /// For loops of a few writes per vertex.
+  static constexpr runtime::LoopOptions cheap{.serial_below = 8192};
 
-/// The coarsest metric at the end of an edge that the one at its start allows: a size h grows by
-/// g^(7/8) g_h^(1/8), where g is the growth over the edge's length in the metric and g_h that over
-/// its length in h.
-template <int Dim, class AMesh>
-auto Gradation<Dim, AMesh>::grown(VertexId from, VertexId to, double growth) const -> Raised {
-  const double in_space = rate_ * norm(place_of(mesh_, to) - place_of(mesh_, from));
-  const auto grow = [&](double value) {
-    const double in_size = 1 + in_space * std::sqrt(std::max(0.0, value));
-    const double mixed = growth * std::sqrt(std::sqrt(std::sqrt(in_size / growth)));
-    return value / (mixed * mixed);
+  struct Raised {
+    VertexId vertex;
+    Metric<Dim> metric;
+    double finest;
   };
-  PrincipalAxes<Dim> axes = axes_of_[from];
-  for (double& value : axes.value) value = grow(value);
-  return {to, compose(axes), grow(finest_of_[from])};
-}
 
-namespace {
+  /// Finds the new metrics from the old ones, then puts them in place.
+  void sweep(std::span<const VertexId> active) {
+    runtime::parallel_for(executor_, changed_.size(), [&](std::size_t i) {
+      const VertexId v = changed_[i];
+      const auto& value = (axes_of_[v] = principal_axes(metric_of_[v])).value;
+      if (finest_of_[v] == 0) finest_of_[v] = finer * *std::max_element(value.begin(), value.end());
+    });
+    const auto raised = runtime::parallel_collect<Raised>(
+        executor_, active.size(), [&](std::size_t i, auto&& append) {
+          Raised at{active[i], metric_of_[active[i]], finest_of_[active[i]]};
+          if (raise_from_neighbours(at)) append(at);
+        });
+    runtime::parallel_for(
+        executor_, changed_.size(), [&](std::size_t i) { has_changed_[changed_[i]] = 0; }, cheap);
+    changed_.resize(raised.size());
+    runtime::parallel_for(
+        executor_, raised.size(),
+        [&](std::size_t i) {
+          metric_of_[raised[i].vertex] = raised[i].metric;
+          finest_of_[raised[i].vertex] = raised[i].finest;
+          has_changed_[raised[i].vertex] = 1;
+          changed_[i] = raised[i].vertex;
+        },
+        cheap);
+  }
+
+  bool raise_from_neighbours(Raised& at) {
+    bool raised = false;
+    for (const VertexId from : neighbours_.of(at.vertex)) {
+      if (!has_changed_[from]) continue;
+      const Vector<Dim> edge = place_of(mesh_, at.vertex) - place_of(mesh_, from);
+      const double growth =
+          1 + rate_ * std::sqrt(std::max(0.0, squared_length(metric_of_[from], edge)));
+      // No size grows by less than g^(7/8), which is seen without the axes.
+      const double least = growth * growth / std::sqrt(std::sqrt(growth));
+      if (raising::surely_finer(least * at.metric, metric_of_[from], options_.tolerance)) continue;
+      const auto [vertex, reaching, finest] = grown(from, norm(edge) * rate_, growth);
+      if (raising::surely_finer(at.metric, reaching, options_.tolerance)) continue;
+      at.finest = std::max(at.finest, finest);
+      raised = raising::raise_up_to(at.finest, at.metric, reaching, options_.tolerance) || raised;
+    }
+    return raised;
+  }
+
+  /// The metric at `from` as it may be at most where an edge leads: a size h grows by
+  /// g^(7/8) g_h^(1/8), where g is the growth over the edge's length in the metric and g_h that
+  /// over its length in h.
+  Raised grown(VertexId from, double in_space, double in_metric) const {
+    const auto grow = [&](double value) {
+      const double in_size = 1 + in_space * std::sqrt(std::max(0.0, value));
+      const double growth = in_metric * std::sqrt(std::sqrt(std::sqrt(in_size / in_metric)));
+      return value / (growth * growth);
+    };
+    PrincipalAxes<Dim> axes = axes_of_[from];
+    for (double& value : axes.value) value = grow(value);
+    return {from, compose(axes), grow(finest_of_[from])};
+  }
+
+  /// By how much eigenvalues may exceed the largest that spreads to a vertex: at 1 the direction of
+  /// the shortest size could not turn.
+  static constexpr double finer = 1.2;
+
+  const Executor& executor_;
+  std::vector<Metric<Dim>>& metric_of_;  // [vertex]
+  const AMesh& mesh_;
+  GradationOptions options_;
+  double rate_;                                       // growth per unit length
+  std::vector<VertexId> changed_;                     // in the last sweep, all before the first
+  std::vector<std::uint8_t> has_changed_;             // [vertex]
+  runtime::UnsetVector<PrincipalAxes<Dim>> axes_of_;  // [vertex], of those that changed
+  std::vector<double> finest_of_;                     // [vertex], no eigenvalue is larger
+  VertexNeighbours<AMesh> neighbours_;
+};
 
 [[noreturn]] void refuse_gradation(double factor, const char* option) {
   throw InputError(std::string(option) + ": expected a factor of 1 or more, found " +
@@ -224,7 +186,7 @@ template <int Dim>
 GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                                 const Mesh<Dim>& mesh, const GradationOptions& options) {
   expect_gradable(metric_of.size(), mesh.vertex_slots(), options);
-  return Gradation<Dim, Mesh<Dim>>(executor, mesh, metric_of.size()).limit(metric_of, options);
+  return Gradation<Dim, Mesh<Dim>>(executor, metric_of, mesh, options).run();
 }
 
 template <int Dim>
@@ -232,11 +194,9 @@ GradationReport limit_gradation(const Executor& executor, std::vector<Metric<Dim
                                 const FixedMesh<Dim>& mesh, const GradationOptions& options) {
   expect_gradable(metric_of.size(), mesh.vertex_count(), options);
   expect_metrics(executor, metric_of, "metric_of");
-  return Gradation<Dim, FixedMesh<Dim>>(executor, mesh, metric_of.size()).limit(metric_of, options);
+  return Gradation<Dim, FixedMesh<Dim>>(executor, metric_of, mesh, options).run();
 }
 
-template class Gradation<2, FixedMesh<2>>;
-template class Gradation<3, FixedMesh<3>>;
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<2>>&,
                                          const FixedMesh<2>&, const GradationOptions&);
 template GradationReport limit_gradation(const Executor&, std::vector<Metric<3>>&,

@@ -41,10 +41,9 @@ class VertexNeighbours {
     found.clear();
     for (const ElementId element : elements_around(mesh_, vertex))
       for (const VertexId corner : mesh_.corners_of[element])
-        if (corner != vertex && std::find(found.begin(), found.end(), corner) == found.end())
-          found.push_back(corner);
+        if (corner != vertex) found.push_back(corner);
     std::sort(found.begin(), found.end());
-    return found;
+    return {found.begin(), std::unique(found.begin(), found.end())};
   }
 
   /// Keeps the neighbours of all vertices, for whoever asks for them again and again.

@@ -67,9 +67,8 @@ struct GradationReport {
 /// Des. 46 (2010): with g alone, metrics spread with all of their anisotropy, so that differing
 /// directions cause short edges in many directions over long distances. Isotropic metrics grow by
 /// g, because g_h is the same. No size ends more than a tenth below the smallest of those that
-/// spread to it. In each sweep the finest metrics that have not spread yet are intersected with
-/// those of neighbours, in the order of their numbers, so the result does not depend on threads or
-/// timing.
+/// spread to it. In each sweep a vertex intersects its metric with its neighbours' from before the
+/// sweep, in the order of their numbers, so the result does not depend on threads or timing.
 /// metric_of is indexed by the vertices of the mesh, whose own metrics are not read. Throws
 /// InputError if the factor is below 1 or not finite, the tolerance or the sweeps are negative, or
 /// there is not a metric (see metric_of) for each vertex; std::bad_alloc if memory runs out. Thread
