@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 class OutputFile {
  public:
-  explicit OutputFile(fs::path path) : OutputFile(path, is_written_directly(path)) {
+  explicit OutputFile(const fs::path& path) : OutputFile(path, is_written_directly(path)) {
     open();  // where this throws, the destructor removes the temporary file
     sink_.emplace(file_, path_, !is_direct_);
   }

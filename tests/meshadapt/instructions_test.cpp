@@ -59,7 +59,7 @@ struct Scene {
 
 template <class Item>
 bool same_bytes(const Item& a, const Item& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  return std::memcmp(&a, &b, sizeof a) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
 }
 
 /// Both dimensions; even seeds of random_case() are 2D, odd ones 3D.
