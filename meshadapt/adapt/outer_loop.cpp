@@ -87,9 +87,9 @@ class Attempt {
         is_flat_(options.make.hausdorff_tolerance == 0),
         options_(options) {}
 
-  /// What the next pass begins with: the mesh as it stands, and metrics within the limits of the
-  /// options. They come from the source, unless the last ones grow too fast on this mesh. Nothing
-  /// if the mesh is final.
+  /// The mesh as it stands and the metrics for the next pass, within the limits of the options.
+  /// They come from the source, unless the last ones grow too fast on this mesh. Nothing if the
+  /// mesh is final.
   std::optional<Start<Dim>> next(MetricSource& source) {
     if (pass_ > 0)
       if (auto start = with_growth_limited()) return start;

@@ -31,7 +31,7 @@ Splits split_edges_above(Workpiece<Dim>& work, double limit) {
 
 }  // namespace
 
-/// Where much is refined it renumbers the mesh, which also makes the lists of elements anew.
+/// Renumbers the mesh if much is refined, which also makes the lists of elements anew.
 /// New vertices of curved boundaries, which were made on chords, go to the model of the surface.
 template <int Dim>
 std::size_t run_refine(Workpiece<Dim>& work, const Step& step) {

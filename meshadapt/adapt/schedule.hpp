@@ -25,7 +25,7 @@ constexpr std::size_t index_of(Kernel kernel) { return static_cast<std::size_t>(
 /// find a better way to fill the same place; in the end no edge leaves its range any more.
 enum class Aim : std::uint8_t { approach, rearrange, finish };
 
-/// Where a kernel looks first in a phase: at changes since it last looked, at the whole mesh, or
+/// A kernel looks first in a phase at changes since it last looked, at the whole mesh, or
 /// only at later changes.
 enum class Look : std::uint8_t { news, all, what_comes };
 

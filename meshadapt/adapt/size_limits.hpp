@@ -1,6 +1,6 @@
 /// @file
-/// What an adaptation does to a metric before it uses it: tensors are validated, sizes kept within
-/// bounds, growth limited, and too many elements refused. Thread safety of all: one caller; they
+/// Prepares a metric for an adaptation: validates tensors, keeps sizes within bounds, limits their
+/// growth, and refuses too many elements. Thread safety of all: one caller; they
 /// run on the executor.
 #pragma once
 

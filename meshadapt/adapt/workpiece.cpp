@@ -103,7 +103,7 @@ SmoothOptions Workpiece<Dim>::smoothing(const Step& step) const {
           .optimise_below = to_surface ? 0 : step.below,
           .mean_below = aim_ == Aim::finish ? Tuning<Dim>::mean_below : 0,
           .far = care_of<Dim>(options_).far,
-          // What gets a little too long on the way to the surface is for the next splits.
+          // The next splits take edges that get a little too long on the way to the surface.
           .range = to_surface ? EdgeRange{} : range(),
           .to_surface = to_surface};
 }

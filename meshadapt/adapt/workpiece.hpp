@@ -20,7 +20,7 @@
 
 namespace ductile::meshadapt {
 
-/// What an adaptation begins with.
+/// The mesh, its adjacency and the metrics that an adaptation starts from.
 template <int Dim>
 struct Start {
   Mesh<Dim> mesh;

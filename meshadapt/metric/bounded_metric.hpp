@@ -1,6 +1,5 @@
 /// @file
-/// What bounds on sizes make of a tensor that is no metric by itself: they say what holds where it
-/// asks for nothing.
+/// Clamps eigenvalues so that a semidefinite or infinite tensor becomes a metric.
 #pragma once
 
 #include <algorithm>

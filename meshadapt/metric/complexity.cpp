@@ -15,7 +15,7 @@ using runtime::Executor;
 
 namespace {
 
-/// What is scaled: the metrics on their mesh, and where to.
+/// The metrics to be scaled, their mesh, and the goal.
 template <int Dim>
 struct Scaling {
   std::vector<Metric<Dim>>& metric_of;

@@ -49,7 +49,7 @@ double distance(const AnyMesh& mesh, std::size_t a, std::size_t b) {
   return std::sqrt(squares);
 }
 
-/// Of the box around the vertices, its diagonal; 1 if they are all in one place.
+/// The diagonal of the box around the vertices; 1 if they are all in one place.
 double extent(const AnyMesh& mesh) {
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
   std::array<double, 3> low{}, high{};
@@ -159,7 +159,7 @@ class DefaultMetric {
     return std::exp(-2 * mean_log_length(shape, v)) * shape;
   }
 
-  /// Of the edges that a vertex has in its elements.
+  /// The mean logarithm of the lengths of a vertex's edges, counted per element.
   double mean_log_length(const Metric<Dim>& metric, VertexId v) const {
     double sum = 0;
     int count = 0;

@@ -96,7 +96,7 @@ class Parts {
     constexpr auto bits = static_cast<unsigned>(std::bit_width(count - 1));
     return std::max(bits, static_cast<unsigned>(std::bit_width(range))) - bits;
   }
-  /// Of what is not a number, which has no place in the order, the last.
+  /// The part of a value; a NaN, which has no order, goes into the last part.
   std::size_t part_of(double value) const {
     return std::min<std::size_t>((place_in_order(value) - first_) >> shift_, count - 1);
   }

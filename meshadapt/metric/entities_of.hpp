@@ -61,8 +61,8 @@ inline EntityList entities_of(const AnyMesh& mesh, int dimension, std::int32_t r
   return list;
 }
 
-/// What carries the name: dimensions and references. Throws InputError, with the names that there
-/// are, if nothing does.
+/// The dimensions and references that carry the name. Throws InputError, which lists the existing
+/// names, if there are none.
 inline std::set<std::pair<int, std::int32_t>> references_named(const AnyMesh& mesh,
                                                                const std::string& name) {
   std::set<std::pair<int, std::int32_t>> found;

@@ -1,6 +1,6 @@
 /// @file
-/// Whether the tensors that a caller gives are metrics, to be asked before anything relies on it:
-/// with one that is not, roots are no numbers and kernels need not end.
+/// Checks that the tensors of a caller are metrics, before anything relies on it: an invalid one
+/// has no real roots, and kernels might not end.
 #pragma once
 
 #include <algorithm>

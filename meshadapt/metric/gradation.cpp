@@ -60,7 +60,7 @@ class Gradation {
     GradationReport report;
     const std::vector<VertexId> all = changed_;
     while (!changed_.empty() && report.sweeps < options_.sweeps) {
-      // Where many have changed, it takes less to look at all vertices than to sort those to wake.
+      // If many have changed, looking at all vertices takes less time than sorting those to wake.
       if (changed_.size() > all.size() / 32)
         sweep(all);
       else

@@ -173,7 +173,7 @@ class HessianMetric {
   Spectrum<Dim> spectrum_;
 };
 
-/// Whether second derivatives are nothing but the rounding of the values they come from: those of a
+/// True if second derivatives are only the rounding of the values they come from: those of a
 /// linear function are, and a metric of them would be noise. A Hessian H says that the function
 /// departs by d'Hd / 8 from its interpolant along an edge d. Values are rounded by eps/2 of the
 /// largest, more where they are sums, and fits to them amplify that, most where surroundings are
@@ -239,7 +239,7 @@ double local_error(const Metric<Dim>& metric, const Metric<Dim>& hessian) {
   return trace / (4 * (Dim + 2));
 }
 
-/// What HessianMetric::error() is, of any metrics.
+/// HessianMetric::error() for any metrics.
 template <int Dim>
 double error_of(const Executor& executor, const FixedMesh<Dim>& mesh,
                 const std::vector<Metric<Dim>>& metric_of,

@@ -31,7 +31,7 @@ double log_density_of_log(const Metric<Dim>& log_metric) {
   return trace / 2;
 }
 
-/// Where an element's corners lie.
+/// The positions of an element's corners.
 template <int Dim>
 using CornerPlaces = std::array<Vector<Dim>, Dim + 1>;
 

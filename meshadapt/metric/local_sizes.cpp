@@ -21,8 +21,8 @@ namespace {
 /// The finer of two bounds, of which 0 is none.
 double finer(double a, double b) { return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b); }
 
-/// What holds at each vertex. Entities of lower dimensions come later, and take the place of what
-/// those of higher ones have said.
+/// The bounds at each vertex. Entities of lower dimensions come later and replace the bounds of
+/// higher ones.
 std::vector<SizeBounds> bounds_of(const AnyMesh& mesh, const std::vector<LocalSize>& local_sizes,
                                   const SizeBounds& elsewhere) {
   std::vector<SizeBounds> bounds(mesh.vertex_count(), elsewhere);

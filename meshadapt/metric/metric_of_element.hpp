@@ -24,7 +24,7 @@ Metric<Dim> metric_of_element(const std::array<Vector<Dim>, Dim + 1>& corner) {
           sum.m[at] += edge.x[row] * edge.x[column];
     }
   PrincipalAxes<Dim> axes = principal_axes(sum);
-  // Of elements as flat as rounding the small ones may be anything, even negative.
+  // The small eigenvalues of elements as flat as rounding are arbitrary, even negative.
   const double least = 1e-15 * *std::max_element(axes.value.begin(), axes.value.end());
   for (double& value : axes.value) value = (Dim + 1) / (2 * std::max(value, least));
   return compose(axes);

@@ -1,7 +1,7 @@
 /// @file
-/// What a metric may be: positive definite, of sizes and an anisotropy within bounds. Readers hold
-/// metrics to it and writers keep to it, so that whatever is written is read again. What rounding
-/// may do to a metric of just the largest anisotropy lies within it.
+/// The range of valid metrics: positive definite, with sizes and an anisotropy within bounds.
+/// Readers and writers use the same range, so that every written metric is read again. It leaves
+/// room for the rounding of a metric of just the largest anisotropy.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ bool surely_in_range(const Metric<Dim>& metric) {
   return trace > 1e-90 && trace < 1e90 && eigenvalue_ratio_bound(metric) > 1e-12;
 }
 
-/// What is wrong with the eigenvalues of what is to be a metric, the first of these.
+/// The first fault found in the eigenvalues of a tensor that should be a metric.
 enum class RangeFault { nothing, indefinite, size, anisotropy };
 
 template <std::size_t N>

@@ -17,7 +17,7 @@ namespace ductile::meshadapt::raising {
 /// A relative excess of a squared length that may be nothing but rounding.
 inline constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
-/// What cholesky() adds to a diagonal, so that errors of its factor stay below `rounding`.
+/// cholesky() adds this to a diagonal, so that errors of its factor stay below `rounding`.
 inline constexpr double shift = 4 * rounding;
 
 template <int Dim>

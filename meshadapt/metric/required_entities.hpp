@@ -77,7 +77,7 @@ class RequiredAround {
   std::vector<EntityCorners<Dim>> found_;
 };
 
-/// Where a metric is the unit tensor: the symmetric root of it leads there.
+/// The space in which a metric is the unit tensor; its symmetric root maps into it.
 template <int Dim>
 struct UnitSpace {
   explicit UnitSpace(const Metric<Dim>& metric) : axes(principal_axes(metric)) {

@@ -234,7 +234,7 @@ class Evaluation {
         size_of_[corners[c]] = std::min(size_of_[corners[c]], size);
   }
 
-  /// Of the box around the vertices, its diagonal.
+  /// The diagonal of the box around the vertices.
   double extent() const {
     Box<3> box = Box<3>::empty();
     for (std::size_t v = 0; v < size_of_.size(); ++v) {

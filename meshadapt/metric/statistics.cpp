@@ -96,7 +96,7 @@ double length_of(const Site<Dim>& a, const Site<Dim>& b) {
   return squares.at_a + squares.at_b > 0 ? edge_length(squares) : 0;
 }
 
-/// Of every edge once.
+/// The lengths of all edges, each counted once.
 template <int Dim>
 runtime::UnsetVector<double> edge_lengths(const AdjacentMesh& mesh,
                                           const std::vector<Site<Dim>>& site_of) {

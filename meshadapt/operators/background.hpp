@@ -29,9 +29,9 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
-  /// Where a point lies, and the metric there: log-Euclidean interpolation (Arsigny, Fillard,
-  /// Pennec & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007) of the element's vertices; in an
-  /// element much too coarse for how they differ, with sizes that grow linearly.
+  /// The element that holds a point, and the metric there: log-Euclidean interpolation (Arsigny,
+  /// Fillard, Pennec & Ayache, SIAM J. Matrix Anal. Appl. 29, 2007) of the element's vertices; in
+  /// an element much too coarse for how they differ, with sizes that grow linearly.
   struct Sample {
     ElementId host;
     Metric<Dim> metric;

@@ -311,7 +311,7 @@ class VertexBall {
       mean_of([&](std::size_t k) -> const Lanes& { return metric[k][i]; }, block.metric[i]);
   }
 
-  /// What follows from the corners of the facets.
+  /// Computes what depends on the corners of the facets.
   void raise(Block& block, const std::array<LanesOf<Dim>, Dim>& corner) const {
     const Vector<Dim> origin = origin_;
     for (std::size_t l = 0; l < lane_count; ++l) {

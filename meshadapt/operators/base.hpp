@@ -25,7 +25,7 @@ inline Metric<3> spread_of(const Vector<3>& u, const Vector<3>& v) {
   return {{both(0, 0), 2 * both(0, 1), both(1, 1), 2 * both(0, 2), 2 * both(1, 2), both(2, 2)}};
 }
 
-/// Of a metric with a spread, in which what is off the diagonal is there twice already.
+/// The contraction of a metric with a spread, which holds off-diagonal components twice already.
 template <int Dim>
 double contraction(const Metric<Dim>& metric, const Metric<Dim>& spread) {
   double sum = 0;

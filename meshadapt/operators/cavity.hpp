@@ -1,5 +1,5 @@
 /// @file
-/// What the operators share: small buffers, changes to a vertex's lists, walks over a
+/// Parts that the operators share: small buffers, changes to a vertex's lists, walks over a
 /// vertex's neighbourhood, and the replacement of one set of elements by another.
 #pragma once
 

@@ -109,8 +109,8 @@ bool Coarsen<Dim>::keeps_patches(VertexId gone, VertexId kept) const {
   return true;
 }
 
-/// Where edges are too long already, new ones may be as long as the longest of them, nearly. The
-/// one that looks longest goes first, so that hardly any other has to be measured closely.
+/// If edges are too long already, new ones may be nearly as long as the longest of them. The one
+/// that looks longest is measured first, so that hardly any other has to be measured closely.
 template <int Dim>
 double Coarsen<Dim>::longest_allowed(const Ring& ring) const {
   if (!rules_.extends_long_edges) return rules_.stretched_edge;
@@ -171,9 +171,9 @@ bool Coarsen<Dim>::keeps_surface(const Plan& plan) const {
   });
 }
 
-/// Where another patch has the same rim, as on both sides of a closed crack, an edge from rim to
+/// If another patch has the same rim, as on both sides of a closed crack, an edge from rim to
 /// rim may be there as well. Both would become one, and the sides grow together. Such an edge is
-/// not made, as the other patch may be changed at the same time. Nor is a triangle from rim to rim
+/// not made, because the other patch may change at the same time. Nor is a triangle from rim to rim
 /// to rim, which might be all that is left of both.
 template <int Dim>
 bool Coarsen<Dim>::keeps_sides_apart(const Plan& plan) const {
@@ -286,7 +286,8 @@ void Coarsen<Dim>::pass_patch_on(ElementId element, const Plan& plan) {
   }
 }
 
-/// What else has a corner there loses it. Another collapse may take elements from the same vertex.
+/// Removes the element from the lists of its corners. Another collapse may take elements from the
+/// same vertex at the same time.
 template <int Dim>
 void Coarsen<Dim>::remove_element(ElementId element, const Plan& plan,
                                   const SharedLists<Dim>& lists) {

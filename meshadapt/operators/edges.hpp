@@ -60,8 +60,9 @@ inline std::size_t splits_of(const LongEdge& edge, double long_edge) {
   return static_cast<std::size_t>(edge.length / long_edge);
 }
 
-/// Of the elements around an edge that changed after an epoch, one stands for it. Of two triangles,
-/// that is the one where it goes from the lower number to the higher. `element` is one of them.
+/// One of the elements around an edge that changed after an epoch stands for the edge. Of two
+/// triangles it is the one in which the edge goes from the lower number to the higher. `element` is
+/// one of them.
 inline bool stands_for(const Mesh<2>& mesh, ElementId element, std::size_t edge,
                        std::uint32_t after) {
   const auto [p, q] = ends_of_edge<2>(mesh.corners_of[element], edge);

@@ -47,7 +47,7 @@ class MarkedSet {
   std::size_t size() const { return members_.size(); }
   std::uint32_t operator[](std::size_t place) const { return members_[place]; }
 
-  /// Where a member is: how many lower ones there are. Thread safety: any thread.
+  /// The index of a member: the number of lower ones. Thread safety: any thread.
   std::uint32_t place_of(std::uint32_t member) const {
     const std::uint64_t lower = (std::uint64_t{1} << member % word) - 1;
     return place_[member / word] +

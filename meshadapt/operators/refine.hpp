@@ -41,21 +41,21 @@ class Refine {
 
   /// Splits all of these edges, as if one after the other, the longest first, but those that a rule
   /// refuses. All are of the mesh, none comes twice. New vertices are numbered in their order.
-  /// Where many are split, elements_of is stale afterwards, unless all lists are deferred: it is
-  /// for the caller to make it anew. May be called once. Rounds and conflicts of the report are
+  /// If many edges are split, elements_of is stale afterwards, unless all lists are deferred; the
+  /// caller then makes it anew. May be called once. Rounds and conflicts of the report are
   /// those of refusals. Thread safety: one caller; runs on the executor. Throws std::length_error
   /// if the mesh would get more elements than there are numbers, or if there are more around the
   /// edges.
   runtime::RoundsReport run(runtime::UnsetVector<LongEdge> edges);
 
-  /// Whether elements_of does not know what run() has made.
+  /// True if elements_of lacks the elements that run() has made.
   bool lists_are_stale() const { return lists_are_stale_; }
 
   /// From which vertex on lists are empty then.
   VertexId first_vertex() const { return first_vertex_; }
 
  private:
-  /// What becomes of a long edge. Of no use until it is located.
+  /// The planned split of a long edge; valid once the new vertex is located.
   struct Split {
     Site<Dim> site;  // of the new vertex
     ElementId host;

@@ -20,7 +20,7 @@ class RemainingWork {
  public:
   static constexpr double poor = 0.3;  ///< mean ratio of elements that are moved for their sake
 
-  /// What the end of a run goes by.
+  /// The settings that decide when a run ends.
   struct Settings {
     Rules rules;
     SmoothOptions smooth;

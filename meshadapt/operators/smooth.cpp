@@ -192,9 +192,8 @@ bool Smooth<Dim>::keeps_lengths(VertexId vertex, const Site<Dim>& site) const {
   return keeps;
 }
 
-/// Whether a place scores better than a bar; sets `result` to it. It is looked at first as if the
-/// metric were the same there as nearby, as that needs no search; and a place with positive volumes
-/// lies inside the domain.
+/// True if a place scores better than a bar; sets `result` to it. The place is first scored with
+/// the metric nearby, which needs no search; a place with positive volumes lies inside the domain.
 template <int Dim>
 bool Smooth<Dim>::place(const VertexBall<Dim>& ball, const Vector<Dim>& position, const Place& near,
                         const Score& bar, Place& result) const {
@@ -229,7 +228,7 @@ Vector<Dim> Smooth<Dim>::tangent(VertexId vertex) const {
   return {};
 }
 
-/// Of a patch, where it is smooth the mean of the facets around the vertex.
+/// The normal of the vertex's patch; if that is smooth, the mean of the facets around the vertex.
 template <int Dim>
 Vector<Dim> Smooth<Dim>::normal(VertexId vertex) const {
   const PatchId patch = mesh_.entity_of[vertex];
@@ -263,8 +262,8 @@ Vector<Dim> Smooth<Dim>::allowed(VertexId vertex, Vector<Dim> displacement) cons
   return displacement - dot(displacement, across) * across;
 }
 
-/// Where a step ends: if it follows a smooth patch or curve, at the closest point of the model of
-/// what that was in the input.
+/// The end of a step: if it follows a smooth patch or curve, the closest point of the model of that
+/// patch or curve in the input.
 template <int Dim>
 std::optional<Vector<Dim>> Smooth<Dim>::stepped(VertexId vertex, const Vector<Dim>& from,
                                                 const Vector<Dim>& step) const {
@@ -349,7 +348,7 @@ bool Smooth<Dim>::optimise(VertexId vertex, const VertexBall<Dim>& ball, Aim aim
     const double bar = aim == Aim::worst ? best.score.worst * 1.001 : 0;
     const double most = aim == Aim::worst ? 0 : inverse_qualities(ball, best.site) * 0.999;
     for (int halving = 0; halving < halvings && !better; ++halving, reach *= 0.5) {
-      // What is left of a direction that was nearly normal to its patch is rounding, still normal.
+      // The rest of a direction that was nearly normal to its patch is rounding, still normal.
       const Vector<Dim> step = allowed(vertex, (reach / length) * direction);
       const auto position = stepped(vertex, best.site.position, step);
       if (!position || !place(ball, *position, best, {bar, 0}, trial)) continue;

@@ -86,7 +86,7 @@ class Smooth {
   bool keeps_lengths(VertexId vertex, const Site<Dim>& site) const;
 
  private:
-  /// What is climbed: the worst quality around, or the harmonic mean of all.
+  /// The quantity to raise: the worst quality around, or the harmonic mean of all.
   enum class Aim : std::uint8_t { worst, mean };
   using Score = typename VertexBall<Dim>::Score;
   struct Place {

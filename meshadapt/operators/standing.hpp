@@ -29,10 +29,10 @@ Standing standing_of(const runtime::Executor& executor, const Mesh<Dim>& mesh,
 struct Clearly {
   double part, least, qualities;
 };
-/// What differs by chance from run to run is not clear.
+/// Differences that occur by chance from run to run do not count as clear.
 inline constexpr Clearly after_a_run{.part = 0.85, .least = 0.01, .qualities = 1.02};
-/// What was mended differs only where it was, and lengths come first: qualities that were made for
-/// other lengths are better than those that are made for these.
+/// Mending changes few places, and lengths come first: qualities made for other lengths are better
+/// than those made for these.
 inline constexpr Clearly after_mending{
     .part = 0.9, .least = 0, .qualities = std::numeric_limits<double>::infinity()};
 

@@ -30,7 +30,7 @@ class Star {
   /// Places in the vertex's list of elements.
   using Around = std::array<std::uint16_t, most_around>;
 
-  /// What changed after this epoch counts as changed.
+  /// Elements that changed after this epoch count as changed.
   Star(const Mesh<3>& mesh, VertexId vertex, std::uint32_t after) {
     const auto ball = mesh.elements_of.of(vertex);
     if (ball.size() > Mesh<3>::largest_ball) return;

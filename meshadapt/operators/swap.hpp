@@ -94,7 +94,7 @@ class Swap {
     mesh_.grow(executor_, mesh_.vertex_slots(), room[0]);
     for (std::size_t e = before; e < room[0]; ++e) mesh_.corners_of[e].fill(none);
   }
-  /// What is beyond the count stays as elements that are gone.
+  /// Elements beyond the count stay and count as removed.
   void renumber(std::size_t, std::span<const runtime::Renumbered> moved, std::size_t) {
     for (const auto& [from, to] : moved) move_element(mesh_, from, to);
   }

@@ -85,7 +85,7 @@ class SwapByVertex {
   }
 
  private:
-  /// What was found of which the vertex has the lowest number.
+  /// The found swaps whose lowest vertex is this one.
   std::span<const Swappable> found_at(VertexId vertex) const {
     const auto [begin, end] = std::equal_range(
         found_.begin(), found_.end(), Swappable{vertex, 0},
@@ -104,7 +104,7 @@ class SwapByVertex {
     return shell;
   }
 
-  /// Of the elements to come, those edges that none of the elements to go has.
+  /// Visits the edges of the new elements that no removed element has.
   void visit_new_edges(const Plan& plan, auto&& visit) const {
     for (const Corners<Dim>& corners : plan.new_elements)
       for (std::size_t k = 0; k < Simplex<Dim>::edges; ++k) {
