@@ -32,7 +32,7 @@ struct Bends {
   std::vector<BendNode<Dim>> nodes;
   runtime::CsrRows next;  ///< [node], each neighbour once or more
 
-  /// What is within a distance of `flat` of one plane is a flat part. Nearly linear in the
+  /// Facets within a distance of `flat` of one plane form a flat part. Nearly linear in the
   /// mesh. Thread safety: one caller; runs on the executor.
   Bends(const runtime::Executor& executor, const Mesh<Dim>& mesh, double flat);
 };

@@ -14,7 +14,8 @@ namespace {
 /// Flat and straight mean: within this fraction of the mesh's extent of one plane or line; or as
 /// far from one as rounding explains (see rough_parts.hpp).
 constexpr double flatness = 1e-10;
-/// Of the extent. Coordinates that seem to be rounded by as much are round numbers by choice.
+/// As a share of the extent. Coordinates that seem to be rounded by this much are round numbers by
+/// choice.
 constexpr double coarsest = 0.02;
 
 template <int Dim>

@@ -64,7 +64,7 @@ struct BoundaryParts {
   bool turns_little(std::uint32_t f, std::uint32_t g, SideKey key) const;
   /// Does a smooth patch have an edge here, or in 2D a corner, that fades out elsewhere?
   bool is_sharp(std::span<const FacetSide> both) const;
-  /// Of the facets at a side, sorted.
+  /// The patches of the facets at a side, sorted.
   std::vector<PatchId> patches_at(SideKey key) const;
 };
 

@@ -1,5 +1,5 @@
 /// @file
-/// Whether what make_mesh() gets is a mesh that can be adapted, before anything is made of it.
+/// Checks that make_mesh() gets a mesh that can be adapted, before anything is made of it.
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,7 @@
 namespace ductile::meshadapt {
 namespace {
 
-/// Of sorted patches two that differ, 0 where there is no other.
+/// Two different patches of a sorted list; 0 if there is no other.
 std::array<PatchId, 2> first_two(const std::vector<PatchId>& patches) {
   if (patches.empty()) return {};
   return {patches.front(), patches.back() == patches.front() ? 0 : patches.back()};

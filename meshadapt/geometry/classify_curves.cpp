@@ -87,7 +87,7 @@ class CurveGrower {
     parts_.mesh.curves.push_back(curve);
   }
 
-  /// What a curve has to be close to if it is to be straight.
+  /// A straight curve stays close to this line.
   struct Line {
     Vector<3> origin, direction;
     double tolerance;
@@ -135,7 +135,7 @@ class CurveGrower {
     return line;
   }
 
-  /// Whether a curve turns at a vertex by more than rounding explains, or, if not, at all.
+  /// The turn of a curve at a vertex: none, little if rounding explains it, or more.
   enum class Turn { none, little, much };
   Turn turn_at(VertexId before, VertexId v, VertexId after) {
     const auto at = [&](VertexId w) { return parts_.mesh.site_of[w].position; };

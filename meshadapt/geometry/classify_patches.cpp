@@ -153,7 +153,7 @@ class PatchFinder {
 
   // ---- Smooth patches: flat ones that turn little where they meet ----
 
-  /// Where the boundary lies against itself both sides keep the facets they have, lest they cross.
+  /// If the boundary lies against itself, both sides keep their facets, so that they do not cross.
   void find_kept(const std::vector<VertexId>& more) {
     constexpr double touch = 1e-8;  // of the extent
     std::vector<Facet<Dim>> boundary;

@@ -1,5 +1,6 @@
 /// @file
-/// What every vertex of a mesh may do: stay, move along its curve or in its patch, or everywhere.
+/// The freedom of every vertex of a mesh: to stay, to move along its curve or in its patch, or
+/// everywhere.
 #pragma once
 
 #include "geometry/boundary_parts.hpp"

@@ -86,7 +86,7 @@ class CrossingFacets {
     return (determinant > 0 ? 1 : 0) - (determinant < 0 ? 1 : 0);
   }
 
-  /// Where the line through p and q, on either side of a facet, meets its plane: is that inside?
+  /// True if the line through p and q, on either side of a facet, meets its plane inside the facet.
   static bool goes_inside(const Points& facet, const Vector<Dim>& p, const Vector<Dim>& q) {
     std::array<int, Dim> side;
     for (std::size_t i = 0; i < Dim; ++i) {

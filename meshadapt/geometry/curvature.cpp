@@ -62,12 +62,12 @@ class Surroundings {
   }
 
  private:
-  /// What so many vertices say is not better for more.
+  /// More vertices than this do not improve a fit.
   static constexpr std::size_t most_nodes = 100;
   /// So many beside the node give directions.
   static constexpr std::size_t fewest_nodes = Dim == 2 ? 2 : 6;
-  /// Of chords as long as may be, up to where the surface is looked at from their ends: where
-  /// edges are as long, this reaches the next vertices, among which what bends to and fro cancels.
+  /// The distance, in longest allowed chords, up to which vertices are used: where edges are that
+  /// long, it reaches the next vertices, among which bends to and fro cancel.
   static constexpr double chords = 1.25;
   using Place = std::pair<double, std::uint32_t>;  // distance, node
 

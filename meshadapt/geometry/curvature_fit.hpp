@@ -22,7 +22,7 @@ class CurvatureFit {
 
  public:
   CurvatureFit() = default;
-  /// Of the point, of unit length.
+  /// `normal` is that of the point, of unit length.
   explicit CurvatureFit(const Vector<Dim>& normal) : normal_(normal) {
     int least = 0;
     for (int i = 1; i < Dim; ++i)
@@ -111,7 +111,7 @@ class CurvatureFit {
     return weight_ > 0 ? changes_[i][j] - change_[i] * place_[j] / weight_ : 0;
   }
 
-  /// Where all places are on a line, it bends in its direction alone.
+  /// If all places are on a line, the surface bends in its direction alone.
   Metric<2> solved() const {
     const double trace = square(0, 0) + square(1, 1);
     if (!(trace > 0)) return {};

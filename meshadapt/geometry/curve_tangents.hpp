@@ -126,7 +126,8 @@ class CurveTangents {
            norm(u - (dot(u, v) / dot(v, v)) * v) <= flat;
   }
 
-  /// Of the circle through both ends of an edge and the next point, or of a straight continuation.
+  /// The tangent of the circle through both ends of an edge and the next point, or of a straight
+  /// continuation.
   Vector<Dim> through(std::size_t edge, std::size_t end, const Vector<Dim>& chord) const {
     const std::uint32_t next = next_[edge][end];
     const Vector<Dim> before = -1.0 * along(next, end_at(next, edges_[edge].corner[end]));

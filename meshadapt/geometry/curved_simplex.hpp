@@ -27,7 +27,7 @@ struct CurvedSimplex {
 
   const Vector<Dim>& corner(std::size_t i) const { return control[i][i]; }
 
-  /// Where a side's control point lies if the side is straight and evenly passed through.
+  /// The control point of a side that is straight and has constant speed.
   static Vector<Dim> even(const Vector<Dim>& from, const Vector<Dim>& to) {
     return from + (1.0 / 3) * (to - from);
   }

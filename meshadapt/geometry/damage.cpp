@@ -28,7 +28,7 @@ Facet<Dim> in_order(Facet<Dim> facet) {
   return facet;
 }
 
-/// Where facets cross; nothing if those of `before` did.
+/// Adds the places where facets cross; nothing if those of `before` did.
 template <int Dim>
 void find_crossings(const Executor& executor, const AnyMesh& before, const AnyMesh& after,
                     std::vector<Box<Dim>>& places) {
@@ -47,7 +47,7 @@ void find_crossings(const Executor& executor, const AnyMesh& before, const AnyMe
     places.insert(places.end(), found.begin(), found.end());
 }
 
-/// Where a boundary meets itself.
+/// Adds the places where a boundary meets itself.
 template <int Dim>
 void find_non_manifold(const AnyMesh& mesh, BoundarySurface<Dim>& surface,
                        std::vector<Box<Dim>>& places) {
@@ -70,7 +70,8 @@ void find_non_manifold(const AnyMesh& mesh, BoundarySurface<Dim>& surface,
     }
 }
 
-/// Where facets are listed that are not on the boundary, though none were: their sides met.
+/// Adds the places of listed facets that are not on the boundary although none were before: their
+/// sides met.
 template <int Dim>
 void find_inner_facets(const AnyMesh& before, const AnyMesh& after,
                        const BoundarySurface<Dim>& surface, std::vector<Box<Dim>>& places) {

@@ -18,7 +18,8 @@
 
 namespace ductile::meshadapt {
 
-/// Of what facets share: a vertex in 2D, the ends of an edge in 3D, the lower in the upper half.
+/// The side that facets share: a vertex in 2D; in 3D the ends of an edge, the lower in the upper
+/// half.
 using SideKey = std::uint64_t;
 inline SideKey edge_key(VertexId a, VertexId b) {
   return SideKey{std::min(a, b)} << 32U | std::max(a, b);
@@ -42,7 +43,7 @@ struct FacetSide {
   auto operator<=>(const FacetSide&) const = default;
 };
 
-/// Of all facets, sorted.
+/// The sides of all facets, sorted.
 template <int Dim>
 class FacetSides {
  public:

@@ -152,7 +152,7 @@ class FlatNoise {
     return turns;
   }
 
-  /// Of the corner of `other` that is not in `facet`, over that one's plane.
+  /// The height of the corner of `other` that is not in `facet` above the plane of `facet`.
   double height(std::uint32_t facet, std::uint32_t other, const Vector<Dim>& upwards) const {
     Vector<Dim> n = normal(facet);
     n *= (dot(n, upwards) < 0 ? -1 : 1) / norm(n);

@@ -159,7 +159,7 @@ class Leveller {
     }
     return false;
   }
-  /// Where the curve from a vertex over the next one leaves what noise may be.
+  /// The point where the curve from a vertex over the next one leaves the range of noise.
   Vector<Dim> ahead(VertexId from, VertexId next) const {
     constexpr int most_steps = 200;
     const double reach = 2 * input_.tolerance;

@@ -225,7 +225,7 @@ Vector<3> PatchNormals::normal_at(Node node) const {
     quadric.measure(n.offset);
     farthest = std::max(farthest, dot(n.offset, n.offset));
   }
-  // What is close tells more of the normal, unless it is so close that noise does.
+  // Close neighbours say more about the normal, unless they are so close that noise decides.
   constexpr double too_close = 0.1;
   for (const Neighbour& n : neighbours)
     quadric.add(n.offset, n.weight / (dot(n.offset, n.offset) + too_close * farthest));

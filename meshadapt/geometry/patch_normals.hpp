@@ -14,7 +14,7 @@
 
 namespace ductile::meshadapt {
 
-/// What a side of a facet is: an edge of a curve, or between two facets of one patch.
+/// A side of a facet: an edge of a curve, or between two facets of one patch.
 struct ModelSide {
   std::uint32_t low, high;  ///< points
   std::uint32_t facet, opposite;

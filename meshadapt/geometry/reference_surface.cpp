@@ -13,7 +13,7 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// Of the tolerance: as far away a facet's sheet is looked for.
+/// The distance within which a facet's sheet is looked for, in tolerances.
 constexpr double near = 50;
 
 template <int Dim>

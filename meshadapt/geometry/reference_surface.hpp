@@ -24,7 +24,7 @@ struct ReferenceSurface {
   std::vector<std::int32_t> reference_of_curve;  ///< [sheet of edges], 3D
   bool in_parts = false;                         ///< as GeometryOptions::in_parts
 
-  /// Of each facet the sheet that is closest to its centre, of the same reference and turned by
+  /// For each facet the sheet that is closest to its centre, of the same reference and turned by
   /// less than 60 degrees against it; where that one is curved and more than twice the tolerance
   /// away, the one that is not, however it is turned: there facets are noise. `none` if there is
   /// none near, or the facet is required and stays as it is. Throws InputError if no facet has a

@@ -26,8 +26,8 @@ struct Rounding {
   std::vector<std::optional<Flat<Dim>>> plane_of;  ///< [patch], of those flat by rounding
   std::vector<std::optional<Flat<Dim>>> line_of;   ///< [curve], 3D
 
-  /// Where to look for a vertex of this class dimension that may not leave an entity: on its plane
-  /// or line, written as precisely as the input.
+  /// The nearest position for a vertex of this class dimension that may not leave an entity: on its
+  /// plane or line, written as precisely as the input.
   Vector<Dim> rounded(Vector<Dim> position, int class_dimension, std::uint32_t entity) const;
 };
 

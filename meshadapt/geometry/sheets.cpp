@@ -87,7 +87,7 @@ auto Sheets<Dim, Corners>::facet_of(std::uint32_t part) const -> Points {
 
 template <int Dim, std::size_t Corners>
 bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet) const {
-  // What is farther away than that is turned by more somewhere.
+  // Parts farther away than that are turned by more somewhere.
   const double reach = std::min(tolerance_, 0.5 * sphere_around(simplex).radius);
   if (cover(simplex, sheet, {*this, direction_of(simplex), reach})) return true;
   const auto direction = direction_around(simplex, sheet);
@@ -126,7 +126,7 @@ bool Sheets<Dim, Corners>::cover(const Points& simplex, std::uint32_t sheet,
   if (around.covering.empty()) return false;
   const auto graph = search.graph_over(simplex, around.covering);
   if (graph.too_far) return false;
-  // What is inside has elements on both sides, which keep it apart.
+  // An inner sheet has elements on both sides, which keep it apart.
   if (parts_[around.covering.front()].two_sided) around.facing.clear();
   around.facing = search.close_to(simplex, search.reach(graph), around.facing);
   return search.stays_smooth(simplex, around.covering) &&

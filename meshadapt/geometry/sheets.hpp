@@ -102,7 +102,7 @@ class Sheets {
     std::uint32_t part = 0;
   };
 
-  /// Where in a curved simplex a flat part comes from.
+  /// The curved simplex that a flat part comes from, and its place in it.
   struct Origin {
     std::uint32_t curved;  // its number, or none
     decltype(DividedPart<Dim, Corners>::weight) weight;

@@ -41,7 +41,8 @@ std::array<double, 3> weights_of(const std::array<Vector<3>, 3>& p, const Vector
 
 }  // namespace
 
-/// Of the point of the model near the closest one of its flat parts; none if it is flat there.
+/// The weights of the model's point near the closest point of its flat parts; none if the model is
+/// flat there.
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::weights_at(const Vector<Dim>& point, const Closest& closest) const
     -> std::optional<typename Curved::Weights> {
@@ -68,7 +69,7 @@ Vector<Dim> Sheets<Dim, Corners>::on_model(const Vector<Dim>& point, const Close
   return weights ? curved_[origin_of_[closest.part].curved].at(*weights) : closest.point;
 }
 
-/// Of a facet there: its unit normal, or what it counts as; or along the edge.
+/// The unit normal of a facet there, or the direction that counts as it; for an edge, its tangent.
 template <int Dim, std::size_t Corners>
 Vector<Dim> Sheets<Dim, Corners>::direction_at(const Vector<Dim>& point,
                                                const Closest& closest) const {
@@ -111,7 +112,7 @@ std::optional<Vector<Dim>> Sheets<Dim, Corners>::closest(const Vector<Dim>& poin
   return {};
 }
 
-/// Of the parts for which is_wanted(part) holds. Looks nearby first, too.
+/// The nearest of the parts for which is_wanted(part) holds. Looks nearby first.
 template <int Dim, std::size_t Corners>
 auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
                                       auto&& is_wanted) const -> std::optional<Nearest> {

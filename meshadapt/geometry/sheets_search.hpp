@@ -1,5 +1,5 @@
 /// @file
-/// Whether a simplex may be where it is: a question to Sheets, answered part by part.
+/// Decides part by part whether Sheets cover a simplex, that is, whether it may be where it is.
 #pragma once
 
 #include <algorithm>
@@ -197,8 +197,8 @@ struct Sheets<Dim, Corners>::Search {
            dot(direction_of(sheets.parts_[part].corner), sheets.parts_[part].turned) < 0;
   }
 
-  /// Whether each point of the simplex has one of the parts above or below; if so how far away at
-  /// most, and where that is so. Or whether the parts are too far from there anyway.
+  /// The sheet as a graph over the simplex: whether each point has one of the parts above or below,
+  /// and if so how far away at most, and where. Or whether the parts are too far away anyway.
   struct Graph {
     bool whole;
     double most_aside;
@@ -229,8 +229,8 @@ struct Sheets<Dim, Corners>::Search {
     return graph;
   }
 
-  /// Whether what is this far from its sheet, and from what faces it across a gap, cannot meet what
-  /// becomes of that: this would have to be within the tolerance of it, and closer to it than here.
+  /// True if a point at this distance from its sheet, and at this gap from a facing sheet, cannot
+  /// meet the future facets of the latter: these stay within the tolerance, and closer to it.
   bool keeps_apart(double distance, double gap) const {
     return gap > tolerance || distance <= 0.5 * gap;
   }
@@ -260,8 +260,8 @@ struct Sheets<Dim, Corners>::Search {
     return graph.whole ? std::min(tolerance, 2 * graph.most_aside) : tolerance;
   }
 
-  /// Whether all of the simplex, over which there is this graph, may be where it is: certainly if
-  /// so, but not always if not.
+  /// True if the whole simplex, over which there is this graph, surely may be where it is. May be
+  /// false although it may.
   bool covered(const Points& simplex, const Graph& graph, const Around& around, const Whole& whole,
                int depth = 0) const {
     constexpr int deepest = 3;
@@ -273,7 +273,7 @@ struct Sheets<Dim, Corners>::Search {
     const Sphere<Dim> sphere = sphere_around(simplex);
     const double distance = covering.closest(sheets, sphere.centre).distance;
     if (!(distance <= tolerance) && !is_low) return false;
-    // What is farther from the centre is farther from all of the simplex than matters.
+    // Parts farther from the centre are too far from all of the simplex to matter.
     const double gap = gap_at(sphere.centre, reach(graph) + sphere.radius, facing, whole);
     if (is_low && gap == std::numeric_limits<double>::infinity()) return true;
     if (!(distance <= tolerance) || !keeps_apart(distance, gap)) return false;
@@ -282,8 +282,8 @@ struct Sheets<Dim, Corners>::Search {
       if (is_low && keeps_apart(graph.most_aside, least_gap)) return true;
       if (covering.closest(sheets, graph.where).distance > tolerance) return false;
     }
-    // Where a sheet ends, at less than 45 degrees to what is next, the closest point is not the one
-    // at a right angle.
+    // At the end of a sheet that continues at less than 45 degrees, the closest point is not the
+    // one at a right angle.
     constexpr double at_ends = 0.92;  // the cosine of half of that
     if (least_gap > tolerance && !is_below(simplex, around.steep) &&
         farthest(simplex, covering, distance, sphere.radius) <= at_ends * tolerance)

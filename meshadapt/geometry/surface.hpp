@@ -26,7 +26,7 @@ struct Surface {
   Edges edges;    ///< of smooth curves, by CurveId; 3D only
 };
 
-/// Of the tolerance: as far a mesh may be from the surface that is given for it.
+/// The distance that a mesh may have from the surface given for it, in tolerances.
 inline constexpr double fitting = 2;
 
 /// An edge of a curve, in 3D.

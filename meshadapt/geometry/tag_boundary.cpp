@@ -19,7 +19,7 @@ namespace ductile::meshadapt {
 
 namespace {
 
-/// What is listed twice is all that either one is; its reference is that of the first.
+/// An entity that is listed twice has the properties of both and the reference of the first.
 template <class Listed>
 void merge(Listed& first, const Listed& again) {
   first.required = first.required || again.required;

@@ -1,6 +1,6 @@
 /// @file
-/// What of a new mesh is kept: the facets and edges that are listed, and those between regions and
-/// on the boundary that are not.
+/// The facets and edges of a new mesh to keep: listed ones, and unlisted ones between regions and
+/// on the boundary.
 #pragma once
 
 #include <cstdint>

@@ -11,9 +11,9 @@
 
 namespace ductile::meshadapt {
 
-/// Of these boundary facets, the vertices that are within a distance of a facet that has not got
-/// them, and the corners of such facets: flags, by vertex. A logarithm more than linear in the
-/// facets. Thread safety: one caller; runs on the executor.
+/// Marks the vertices of these boundary facets that are within a distance of a facet they do not
+/// belong to, and the corners of that facet. Takes a logarithm more than linear in the facets.
+/// Thread safety: one caller; runs on the executor.
 template <int Dim>
 std::vector<std::uint8_t> touching_vertices(const runtime::Executor& executor,
                                             const Mesh<Dim>& mesh,

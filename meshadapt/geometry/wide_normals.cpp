@@ -52,7 +52,7 @@ class WideNormals {
     return normal;
   }
 
-  /// Of the surface around a facet, if it is smooth.
+  /// The normal of the surface around a facet, if it is smooth.
   std::optional<Vector<Dim>> around(std::uint32_t facet) const {
     const std::vector<Place> places = places_around(facet);
     Vector<Dim> sum;
@@ -102,7 +102,7 @@ class WideNormals {
     return to - (dot(to, along) / dot(along, along)) * along;
   }
 
-  /// Of a facet and what goes on like it, as far as noise may reach, in a direction.
+  /// The rise of a facet and its smooth continuation in a direction, as far as noise may reach.
   double rise(std::uint32_t facet, const Vector<Dim>& direction) const {
     const Vector<Dim> origin = centre(points(facet)), normal = own(facet);
     const double far = reach * options_.tolerance;

@@ -286,8 +286,8 @@ void Coarsen<Dim>::pass_patch_on(ElementId element, const Plan& plan) {
   }
 }
 
-/// Removes the element from the lists of its corners. Another collapse may take elements from the
-/// same vertex at the same time.
+/// Removes the element, also from the lists of the corners that stay. Another collapse may take
+/// elements from the same vertex at the same time.
 template <int Dim>
 void Coarsen<Dim>::remove_element(ElementId element, const Plan& plan,
                                   const SharedLists<Dim>& lists) {
