@@ -103,7 +103,7 @@ class RefineTriangles {
   double size_;
 };
 
-/// All triangles, as the initial work.
+/// The work to start with: every triangle as an item.
 inline std::vector<RefineTriangles::Item> all_triangles(const Triangulation& mesh) {
   std::vector<RefineTriangles::Item> triangles;
   for (TriangleId t = 0; t < mesh.corners_of.size(); ++t)

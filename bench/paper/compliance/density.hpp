@@ -8,8 +8,8 @@
 
 namespace ductile::paper {
 
-/// Moves densities below the threshold towards 0 and those above towards 1; as the sharpness
-/// approaches 0, nothing changes (Wang, Lazarov & Sigmund, Struct. Multidiscip. Optim. 43, 2011).
+/// Moves densities below the threshold towards 0 and those above it towards 1. The sharper, the
+/// farther they move; with a sharpness near 0 they stay (Wang, Lazarov & Sigmund, Struct. Multidiscip. Optim. 43, 2011).
 struct Projection {
   double sharpness = 1;
   double threshold = 0.5;
