@@ -9,7 +9,8 @@
 namespace ductile::paper {
 
 /// Moves densities below the threshold towards 0 and those above it towards 1. The sharper, the
-/// farther they move; with a sharpness near 0 they stay (Wang, Lazarov & Sigmund, Struct. Multidiscip. Optim. 43, 2011).
+/// farther they move; with a sharpness near 0 they stay (Wang, Lazarov & Sigmund, Struct.
+/// Multidiscip. Optim. 43, 2011).
 struct Projection {
   double sharpness = 1;
   double threshold = 0.5;
