@@ -64,18 +64,17 @@ AnyField solution_of(const AnyMesh& mesh, int components, const double* values) 
           "values"};
 }
 
-meshadapt::SolutionMetricOptions goal_of(const AnyMesh& mesh, const ductile_options& options) {
+meshadapt::SolutionMetricOptions goal_of(const ductile_options& options) {
   if (!(options.elements > 0 && std::isfinite(options.elements)))
     throw InputError("option elements: expected a number above 0, found " +
                      number(options.elements));
-  return {
-      .goal = {.norm = options.norm,
-               .complexity = meshadapt::complexity_of_elements(mesh.dimension, options.elements),
-               .bounds = {.smallest = options.adapt.smallest_size,
-                          .largest = options.adapt.largest_size}},
-      .gradation = options.adapt.gradation,
-      .recovery = options.projection ? meshadapt::Recovery::double_projection
-                                     : meshadapt::Recovery::least_squares};
+  return {.goal = {.norm = options.norm,
+                   .elements = options.elements,
+                   .bounds = {.smallest = options.adapt.smallest_size,
+                              .largest = options.adapt.largest_size}},
+          .gradation = options.adapt.gradation,
+          .recovery = options.projection ? meshadapt::Recovery::double_projection
+                                         : meshadapt::Recovery::least_squares};
 }
 
 /// Throws unless entities can be counted by the C library's signed indices.

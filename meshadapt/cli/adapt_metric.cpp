@@ -24,18 +24,16 @@ AnyField metric_of_solution(const Executor& executor, const AdaptJob& job,
   AnyField field = side_by_side(chosen_solutions(job.solution, file, warnings), mesh);
   field.name = job.solution.back();
   meshadapt::SolutionMetricOptions options;
-  options.goal.complexity = meshadapt::complexity_of_elements(mesh.dimension, job.elements);
+  options.goal.elements = job.elements;
   options.goal.bounds = {job.adapt.smallest_size, job.adapt.largest_size};
   options.gradation = std::max(job.adapt.gradation, 0.0);
   options.recovery = job.recovery;
   const auto made = meshadapt::solution_metric(executor, mesh, field, options);
   if (!made.fit.reached)
-    warnings.push_back(
-        "no metric within the bounds asks for " +
-        with_commas(static_cast<std::size_t>(job.elements)) +
-        " elements; the nearest asks for about " +
-        with_commas(static_cast<std::size_t>(
-            made.fit.complexity / meshadapt::complexity_of_elements(mesh.dimension, 1))));
+    warnings.push_back("no metric within the bounds asks for " +
+                       with_commas(static_cast<std::size_t>(job.elements)) +
+                       " elements; the nearest asks for about " +
+                       with_commas(static_cast<std::size_t>(made.fit.elements)));
   return made.metric;
 }
 

@@ -59,7 +59,6 @@ struct Job {
   std::vector<fs::path> fields;
   meshadapt::SolutionMetricOptions fit;  // fit.goal.bounds hold for all operations
   SizeOptions sizes;
-  double elements = 0;
   double gradation = 0;
   int threads = 0, verbosity = 1;
 
@@ -131,8 +130,8 @@ void set_goal(Job& job, const Arguments& arguments) {
   goal.complexity = arguments.positive("--complexity").value_or(0);
   goal.error = arguments.positive("--error").value_or(0);
   goal.norm = norm_of(arguments);
-  job.elements = arguments.positive("--elements").value_or(0);
-  if ((makes || scales) && (goal.complexity > 0) + (goal.error > 0) + (job.elements > 0) != 1)
+  goal.elements = arguments.positive("--elements").value_or(0);
+  if ((makes || scales) && (goal.complexity > 0) + (goal.error > 0) + (goal.elements > 0) != 1)
     throw UsageError(job.operation + ": expected one of --complexity, --elements" +
                      (makes ? " and --error" : ""));
   job.fit.recovery = recovery_in(arguments);
@@ -188,7 +187,6 @@ class Work {
        meshadapt::Warnings& warnings)
       : executor_(executor), job_(job), file_(file), warnings_(warnings) {
     goal_ = job.fit.goal;
-    if (job.elements > 0) goal_.complexity = meshadapt::complexity_of_elements(Dim, job.elements);
   }
 
   AnyField run() {
@@ -210,7 +208,7 @@ class Work {
       }
     const double complexity = meshadapt::complexity<Dim>(
         executor_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh_), metric_of_);
-    const double elements = complexity / meshadapt::complexity_of_elements(Dim, 1);
+    const double elements = complexity * elements_per_unit_;
     char text[200];
     std::snprintf(
         text, sizeof text, "complexity %.6g, for about %s %s; sizes from %.3g to %.3g", complexity,
@@ -277,9 +275,9 @@ class Work {
   }
 
   void scale() {
-    check(meshadapt::scale_to_complexity<Dim>(executor_, metric_of_,
-                                              meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
-                                              {goal_.complexity, goal_.bounds, job_.gradation}));
+    check(meshadapt::scale_to_complexity<Dim>(
+        executor_, metric_of_, meshadapt::make_fixed_mesh<Dim>(executor_, mesh_),
+        {goal_.complexity, goal_.bounds, job_.gradation, goal_.elements}));
   }
 
   void grade() {
@@ -293,10 +291,16 @@ class Work {
   }
 
   void check(const meshadapt::MetricFit& fit) {
+    if (fit.complexity > 0) elements_per_unit_ = fit.elements / fit.complexity;
     if (fit.reached) return;
-    const char* const goal = goal_.error > 0 ? "error" : "complexity";
-    const bool finer = goal_.error > 0 ? !(fit.error <= 2 * goal_.error)
-                                       : !(fit.complexity >= goal_.complexity / 2);
+    const char* const goal = goal_.error > 0      ? "error"
+                             : goal_.elements > 0 ? "number of elements"
+                                                  : "complexity";
+    const double found = goal_.error > 0      ? fit.error
+                         : goal_.elements > 0 ? fit.elements
+                                              : fit.complexity;
+    const bool finer = goal_.error > 0 ? !(found <= 2 * goal_.error)
+                                       : !(found >= std::max(goal_.complexity, goal_.elements) / 2);
     if (finer && goal_.bounds.smallest == 0)  // so only the range of numbers is in the way
       throw meshadapt::InputError(job_.operation +
                                   ": no metric of sizes from 1e-75 to 1e75 has the " + goal +
@@ -304,7 +308,7 @@ class Work {
     char text[200];
     std::snprintf(text, sizeof text,
                   "no metric within the bounds has the %s asked for; the nearest found has %.6g",
-                  goal, goal_.error > 0 ? fit.error : fit.complexity);
+                  goal, found);
     warnings_.push_back(text);
   }
 
@@ -314,7 +318,8 @@ class Work {
   const AnyMesh& mesh_ = file_.mesh;
   meshadapt::Warnings& warnings_;
   meshadapt::HessianMetricOptions goal_;
-  std::vector<Metric<Dim>> metric_of_;  // [vertex]
+  double elements_per_unit_ = 1 / meshadapt::complexity_of_elements(Dim, 1);  ///< of complexity
+  std::vector<Metric<Dim>> metric_of_;                                        // [vertex]
 };
 
 template <int Dim>

@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/hessian_metric.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -76,6 +77,70 @@ MetricFit scale_graded(const Executor& executor, const Spectrum<Dim>& spectrum, 
   return best;
 }
 
+/// Elements of an adapted mesh per unit of complexity. The mesh at hand tells K = N m^3 / C, where
+/// m is the geometric mean of its edges' lengths. It counts the less, the more these differ, and
+/// not at all where m is not nearly 1 (measured in docs/decisions/0052-*).
+double elements_per_unit(const Executor& executor, const FixedMesh<3>& mesh,
+                         const std::vector<Metric<3>>& metric_of, double complexity) {
+  constexpr int Dim = 3;
+  constexpr double little_spread = 0.27, much_spread = 0.37, most_offset = 0.22;
+  using Sums = std::array<double, 2>;  // of logarithms of lengths, and of their squares
+  const auto add = [](const Sums& a, const Sums& b) { return Sums{a[0] + b[0], a[1] + b[1]}; };
+  const auto of_element = [&](std::size_t e) {
+    Sums sums{};
+    const Corners<Dim>& corner = mesh.corners_of[e];
+    for (std::size_t i = 0; i < Dim; ++i)
+      for (std::size_t j = i + 1; j <= Dim; ++j) {
+        const Vector<Dim> edge = mesh.position_of[corner[j]] - mesh.position_of[corner[i]];
+        const double length = 0.5 * (std::sqrt(squared_length(metric_of[corner[i]], edge)) +
+                                     std::sqrt(squared_length(metric_of[corner[j]], edge)));
+        const double logarithm = std::log(length);
+        sums = add(sums, {logarithm, logarithm * logarithm});
+      }
+    return sums;
+  };
+  const Sums sums =
+      runtime::parallel_reduce(executor, mesh.element_count(), Sums{}, of_element, add);
+  const double count = static_cast<double>(mesh.element_count());
+  const double edges = count * Dim * (Dim + 1) / 2;
+  const double mean = sums[0] / edges, spread = std::sqrt(sums[1] / edges - mean * mean);
+  const double average = 1 / complexity_of_elements(Dim, 1);
+  if (!(std::abs(mean) < most_offset && spread < much_spread && complexity > 0)) return average;
+  const double share = std::min((much_spread - spread) / (much_spread - little_spread), 1.0);
+  return average + share * (count * std::exp(Dim * mean) / complexity - average);
+}
+
+void expect_goal(const ComplexityGoal& goal) {
+  expect_bounds(goal.bounds);
+  expect_gradation(goal.gradation);
+  const auto sensible = [](double value) { return value >= 0 && std::isfinite(value); };
+  if (sensible(goal.complexity) && sensible(goal.elements) &&
+      (goal.complexity > 0) != (goal.elements > 0))
+    return;
+  throw InputError(
+      "complexity: expected either it or the number of elements to be above 0, found " +
+      number(goal.complexity) + " and " + number(goal.elements));
+}
+
+/// scale_to_complexity() with a goal of complexity.
+template <int Dim>
+MetricFit scale(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
+                const FixedMesh<Dim>& mesh, const ComplexityGoal& goal) {
+  Spectrum<Dim> spectrum{std::vector<PrincipalAxes<Dim>>(metric_of.size()), goal.bounds};
+  runtime::parallel_for(executor, metric_of.size(),
+                        [&](std::size_t v) { spectrum.axes_of[v] = principal_axes(metric_of[v]); });
+  const double now = complexity(executor, mesh, metric_of);
+  const double start = now > 0 ? std::pow(goal.complexity / now, 2.0 / Dim) : 1;
+  if (goal.gradation > 0) return scale_graded(executor, spectrum, start, {metric_of, mesh, goal});
+  const double factor = fitting_factor(
+      [&](double f) { return spectrum.complexity(executor, mesh, f); }, goal.complexity, start);
+  metric_of = spectrum.metrics(executor, factor);
+  MetricFit fit;
+  fit.complexity = spectrum.complexity(executor, mesh, factor);
+  fit.reached = std::abs(fit.complexity / goal.complexity - 1) < 1e-6;
+  return fit;
+}
+
 }  // namespace
 
 double complexity_of_elements(int dimension, double elements) {
@@ -100,22 +165,17 @@ template <int Dim>
 MetricFit scale_to_complexity(const Executor& executor, std::vector<Metric<Dim>>& metric_of,
                               const FixedMesh<Dim>& mesh, const ComplexityGoal& goal) {
   expect_metric_everywhere(executor, metric_of, mesh.vertex_count(), "metric_of");
-  expect_bounds(goal.bounds);
-  expect_gradation(goal.gradation);
-  if (!(goal.complexity > 0) || !std::isfinite(goal.complexity))
-    throw InputError("complexity: expected a number above 0, found " + number(goal.complexity));
-  Spectrum<Dim> spectrum{std::vector<PrincipalAxes<Dim>>(metric_of.size()), goal.bounds};
-  runtime::parallel_for(executor, metric_of.size(),
-                        [&](std::size_t v) { spectrum.axes_of[v] = principal_axes(metric_of[v]); });
-  const double now = complexity(executor, mesh, metric_of);
-  const double start = now > 0 ? std::pow(goal.complexity / now, 2.0 / Dim) : 1;
-  if (goal.gradation > 0) return scale_graded(executor, spectrum, start, {metric_of, mesh, goal});
-  const double factor = fitting_factor(
-      [&](double f) { return spectrum.complexity(executor, mesh, f); }, goal.complexity, start);
-  metric_of = spectrum.metrics(executor, factor);
-  MetricFit fit;
-  fit.complexity = spectrum.complexity(executor, mesh, factor);
-  fit.reached = std::abs(fit.complexity / goal.complexity - 1) < 1e-6;
+  expect_goal(goal);
+  ComplexityGoal in_units = goal;
+  double per_unit = 1 / complexity_of_elements(Dim, 1);
+  if (goal.elements > 0) in_units.complexity = goal.elements / per_unit;
+  MetricFit fit = scale(executor, metric_of, mesh, in_units);
+  if constexpr (Dim == 3) per_unit = elements_per_unit(executor, mesh, metric_of, fit.complexity);
+  if (Dim == 3 && goal.elements > 0) {
+    in_units.complexity = goal.elements / per_unit;
+    fit = scale(executor, metric_of, mesh, in_units);
+  }
+  fit.elements = per_unit * fit.complexity;
   return fit;
 }
 

@@ -1,6 +1,7 @@
 #include "ductile/meshadapt/hessian_metric.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -33,9 +34,11 @@ void expect_options(const HessianMetricOptions& options) {
     throw InputError("metric of a Hessian: expected an L^p norm with p of 1 or more, found " +
                      number(options.norm));
   const auto sensible = [](double goal) { return goal >= 0 && std::isfinite(goal); };
-  if (!sensible(options.complexity) || !sensible(options.error) ||
-      (options.complexity > 0) == (options.error > 0))
-    throw InputError("metric of a Hessian: expected either a complexity or an error above 0");
+  const std::array goals{options.complexity, options.elements, options.error};
+  if (!std::all_of(goals.begin(), goals.end(), sensible) ||
+      std::count_if(goals.begin(), goals.end(), [](double goal) { return goal > 0; }) != 1)
+    throw InputError(
+        "metric of a Hessian: expected one of complexity, elements and error to be above 0");
   expect_bounds(options.bounds);
 }
 
@@ -84,7 +87,6 @@ class HessianMetric {
   HessianMetric(const Executor& executor, const FixedMesh<Dim>& mesh,
                 const HessianMetricOptions& options)
       : executor_(executor), mesh_(mesh), options_(options) {
-    expect_options(options_);
     options_.bounds = bounds_in_force(executor, mesh, options_.bounds);
   }
 
@@ -102,6 +104,7 @@ class HessianMetric {
       factor = fitting_factor([&](double f) { return 1 / error(f); }, 1 / options_.error, 1);
     FittedMetric<Dim> result{spectrum_.metrics(executor_, factor), {}};
     result.fit.complexity = spectrum_.complexity(executor_, mesh_, factor);
+    result.fit.elements = result.fit.complexity / complexity_of_elements(Dim, 1);
     result.fit.error = error(factor);
     result.fit.reached = wanted > 0 ? std::abs(result.fit.complexity / wanted - 1) < 1e-6
                                     : result.fit.error <= options_.error * (1 + 1e-6);
@@ -172,6 +175,18 @@ class HessianMetric {
   std::vector<std::array<double, Dim>> curvature_of_;  // [vertex], |eigenvalues| of the Hessian
   Spectrum<Dim> spectrum_;
 };
+
+/// The metric for a goal of elements has the complexity of so many on an average mesh.
+template <int Dim>
+FittedMetric<Dim> fit(const Executor& executor, const FixedMesh<Dim>& mesh,
+                      const std::vector<Metric<Dim>>& hessian_of, HessianMetricOptions options) {
+  expect_options(options);
+  if (options.elements > 0) {
+    options.complexity = complexity_of_elements(Dim, options.elements);
+    options.elements = 0;
+  }
+  return HessianMetric<Dim>(executor, mesh, options).fit(hessian_of);
+}
 
 /// True if second derivatives are only the rounding of the values they come from: those of a
 /// linear function are, and a metric of them would be noise. A Hessian H says that the function
@@ -268,24 +283,27 @@ SolutionMetric solution_metric_in(const Executor& executor, const AnyMesh& any,
     hessians.push_back(recover_hessian<Dim>(executor, mesh, value_of, options.recovery));
     if (Roundoff<Dim>(mesh, value_of).explains(executor, hessians.back()))
       hessians.back().assign(mesh.vertex_count(), Metric<Dim>{});
-    FittedMetric<Dim> one = hessian_metric<Dim>(executor, mesh, hessians.back(), options.goal);
+    FittedMetric<Dim> one = fit<Dim>(executor, mesh, hessians.back(), options.goal);
     all.fit.reached = all.fit.reached && one.fit.reached;
     if (component == 0)
       all.metric_of = std::move(one.metric_of);
     else
       intersect(executor, all.metric_of, one.metric_of);
   }
-  if (options.goal.complexity > 0 && (stride > 1 || options.gradation > 0))
+  const bool changed = stride > 1 || options.gradation > 0;
+  if (options.goal.elements > 0 || (options.goal.complexity > 0 && changed))
     all.fit = scale_to_complexity<Dim>(
         executor, all.metric_of, mesh,
         {options.goal.complexity, bounds_in_force(executor, mesh, options.goal.bounds),
-         options.gradation});
+         options.gradation, options.goal.elements});
   else if (options.gradation > 0)
     limit_gradation(executor, all.metric_of, mesh, {.factor = options.gradation});
   for (const auto& hessian_of : hessians)
     all.fit.error = std::max(
         all.fit.error, error_of(executor, mesh, all.metric_of, hessian_of, options.goal.norm));
   all.fit.complexity = complexity<Dim>(executor, mesh, all.metric_of);
+  if (!(options.goal.elements > 0))
+    all.fit.elements = all.fit.complexity / complexity_of_elements(Dim, 1);
   return {symmetric_field(executor, all.metric_of, field.name), all.fit};
 }
 
@@ -295,7 +313,14 @@ template <int Dim>
 FittedMetric<Dim> hessian_metric(const Executor& executor, const FixedMesh<Dim>& mesh,
                                  const std::vector<Metric<Dim>>& hessian_of,
                                  const HessianMetricOptions& options) {
-  return HessianMetric<Dim>(executor, mesh, options).fit(hessian_of);
+  FittedMetric<Dim> fitted = fit(executor, mesh, hessian_of, options);
+  if (options.elements > 0) {
+    fitted.fit = scale_to_complexity<Dim>(
+        executor, fitted.metric_of, mesh,
+        {.bounds = bounds_in_force(executor, mesh, options.bounds), .elements = options.elements});
+    fitted.fit.error = error_of(executor, mesh, fitted.metric_of, hessian_of, options.norm);
+  }
+  return fitted;
 }
 
 SolutionMetric solution_metric(const Executor& executor, const AnyMesh& mesh, const AnyField& field,

@@ -45,6 +45,32 @@ TYPED_TEST(ComplexityIn, IsWhatStatisticsSay) {
   EXPECT_NEAR(complexity<Dim>(executor, scene.mesh, scene.metric_of), expected, 1e-9 * expected);
 }
 
+/// A mesh tells how many elements come per unit only if it is adapted to the metric, whatever the
+/// scale of it.
+TYPED_TEST(ComplexityIn, OfANumberOfElementsIsToldByAnAdaptedMesh) {
+  constexpr int Dim = TypeParam::value;
+  Scene<Dim> scene;
+  const double constant = 1 / complexity_of_elements(Dim, 1);
+  const MetricFit far =
+      scale_to_complexity<Dim>(executor, scene.metric_of, scene.mesh, {.elements = 4000});
+  EXPECT_TRUE(far.reached);
+  EXPECT_NEAR(far.elements, 4000, 1e-3);
+  EXPECT_NEAR(far.elements / far.complexity, constant, 1e-9);
+  for (const double scale : {1e-3, 1.0, 7.0}) {
+    std::vector<Metric<Dim>> own = tensors_of<Dim>(executor, constant_metric(scene.any, scale));
+    const double elements = static_cast<double>(scene.mesh.element_count());
+    const MetricFit near =
+        scale_to_complexity<Dim>(executor, own, scene.mesh, {.elements = elements});
+    EXPECT_NEAR(near.elements, elements, 1e-3 * elements);
+    const double offset = near.elements / near.complexity - constant;
+    EXPECT_EQ(std::abs(offset) > 0.01, Dim == 3) << offset;
+  }
+  EXPECT_THROW(scale_to_complexity<Dim>(executor, scene.metric_of, scene.mesh, {}), InputError);
+  EXPECT_THROW(scale_to_complexity<Dim>(executor, scene.metric_of, scene.mesh,
+                                        {.complexity = 1, .elements = 1}),
+               InputError);
+}
+
 TYPED_TEST(ComplexityIn, IsReachedByScaling) {
   constexpr int Dim = TypeParam::value;
   for (const double wanted : {10.0, 12345.0}) {

@@ -146,8 +146,6 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
     if not all(0 < value < np.inf for value in given.values()):
         name, value = next(iter(given.items()))
         raise InputError(f"{name}: expected a number above 0, found {value:g}")
-    if elements is not None:
-        given["complexity"] = _ductile.complexity_of_elements(mesh.dim, given["elements"])
     if not isinstance(recovery, str) or recovery not in ("least-squares", "projection"):
         said = repr(recovery) if isinstance(recovery, str) else type(recovery).__name__
         raise InputError(f"recovery: expected 'least-squares' or 'projection', found {said}")
@@ -158,7 +156,7 @@ def metric(mesh: Mesh, u: Any, *, elements: float | None = None, complexity: flo
     finite(values, "u")
     options = _ductile.SolutionMetricOptions(
         norm=number(norm, "norm"), complexity=given.get("complexity", 0.0),
-        error=given.get("error", 0.0),
+        elements=given.get("elements", 0.0), error=given.get("error", 0.0),
         bounds=_ductile.SizeBounds(number(hmin, "hmin"), number(hmax, "hmax"),
                                    number(anisotropy, "anisotropy")),
         gradation=number(hgrad, "hgrad"), projection=recovery == "projection")

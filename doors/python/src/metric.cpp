@@ -55,18 +55,17 @@ void bind_solution_metric(py::module_& module) {
       .def(py::init<double, double, double>(), py::arg("smallest") = 0., py::arg("largest") = 0.,
            py::arg("anisotropy") = 0.);
   py::class_<SolutionMetricOptions>(module, "SolutionMetricOptions")
-      .def(py::init([](double norm, double complexity, double error, const SizeBounds& bounds,
-                       double gradation, bool projection) {
-             return SolutionMetricOptions{.goal = {norm, complexity, error, bounds},
+      .def(py::init([](double norm, double complexity, double elements, double error,
+                       const SizeBounds& bounds, double gradation, bool projection) {
+             return SolutionMetricOptions{.goal = {norm, complexity, elements, error, bounds},
                                           .gradation = gradation,
                                           .recovery = projection
                                                           ? meshadapt::Recovery::double_projection
                                                           : meshadapt::Recovery::least_squares};
            }),
-           py::kw_only(), py::arg("norm"), py::arg("complexity"), py::arg("error"),
-           py::arg("bounds"), py::arg("gradation"), py::arg("projection"));
+           py::kw_only(), py::arg("norm"), py::arg("complexity"), py::arg("elements"),
+           py::arg("error"), py::arg("bounds"), py::arg("gradation"), py::arg("projection"));
   module.def("solution_metric", &solution_metric);
-  module.def("complexity_of_elements", &meshadapt::complexity_of_elements);
   module.def("implied", [](const AnyMesh& mesh) {
     return array_of(work(
         {}, [&](const Executor& executor) { return meshadapt::implied_tensors(executor, mesh); }));

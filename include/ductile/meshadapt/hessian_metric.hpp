@@ -81,25 +81,30 @@ double complexity(const runtime::Executor& executor, const FixedMesh<Dim>& mesh,
 /// and 8.49.
 double complexity_of_elements(int dimension, double elements);
 
-/// The complexity to reach, and the bounds on sizes.
+/// What to reach, either `complexity` or `elements`, and the bounds on sizes.
 struct ComplexityGoal {
   double complexity = 0;
   SizeBounds bounds = {};  ///< the scaled metric keeps within them
   double gradation = 0;    ///< sizes grow by at most this factor per unit of metric length (see
                            ///< limit_gradation); 0 or less: no limit
+  /// About how many elements an adapted mesh will have. A tetrahedral mesh that is adapted to
+  /// nearly these metrics already, as in a loop, tells by its own elements how many come per unit
+  /// of complexity; otherwise complexity_of_elements() does.
+  double elements = 0;
 };
 
 /// How close a metric is to its goal.
 struct MetricFit {
   double complexity = 0;  ///< of the metric
+  double elements = 0;    ///< about how many an adapted mesh will have
   double error = 0;       ///< its interpolation error, see FittedMetric; 0 if unknown
   bool reached = false;   ///< false: the bounds on sizes make the goal impossible
 };
 
 /// Scales all metrics by one factor and bounds them, so that the complexity is the wanted one, or
 /// as close as the bounds allow. With a gradation, also grades them; the complexity after that is
-/// within 2 % of the wanted one. Throws InputError if the goal is not above 0, bounds or gradation
-/// are out of range, or there is not a metric for each vertex.
+/// within 2 % of the wanted one. Throws InputError unless one goal is above 0 and the other 0, if
+/// bounds or gradation are out of range, or if there is not a metric for each vertex.
 template <int Dim>
 MetricFit scale_to_complexity(const runtime::Executor& executor,
                               std::vector<Metric<Dim>>& metric_of, const FixedMesh<Dim>& mesh,
@@ -116,10 +121,11 @@ extern template MetricFit scale_to_complexity(const runtime::Executor&, std::vec
 
 // ---- The metric of second derivatives ----
 
-/// The goal of the metric: either `complexity` or `error` is above 0.
+/// The goal of the metric: one of `complexity`, `elements` and `error` is above 0.
 struct HessianMetricOptions {
   double norm = 2;         ///< p, at least 1, or infinity. A small p also resolves weak features
-  double complexity = 0;   ///< see complexity_of_elements
+  double complexity = 0;   ///< see ComplexityGoal
+  double elements = 0;     ///< see ComplexityGoal
   double error = 0;        ///< the interpolation error in this norm, estimated as below
   SizeBounds bounds = {};  ///< largest size, if not given: the mesh's extent; anisotropy: 30
 };
@@ -157,8 +163,8 @@ struct SolutionMetric {
 
 /// Computes in one call the metric for every component of every field at the vertices of the mesh.
 /// Each component gives a metric from its Hessian, taken as 0 if the component is linear up to
-/// rounding; they are intersected, graded if wanted, and scaled once more if the goal is a
-/// complexity. A goal of error applies to each component before grading. The reported error is the
+/// rounding; they are intersected, graded if wanted, and scaled once more unless the goal is an
+/// error. A goal of error applies to each component before grading. The reported error is the
 /// largest, for the metric returned. Throws InputError as above, or if the field is not of this
 /// mesh or has values that are not finite. Thread safety: one caller; runs on the executor.
 SolutionMetric solution_metric(const runtime::Executor& executor, const AnyMesh& mesh,
