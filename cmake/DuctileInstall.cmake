@@ -69,6 +69,13 @@ if(TARGET ductile)
   endif()
 endif()
 
+if(TARGET ductile_python_module)
+  set(ductile_python_dir lib/python3/dist-packages/ductile)  # Debian's, for all versions of Python
+  install(TARGETS ductile_python_module LIBRARY DESTINATION ${ductile_python_dir} COMPONENT python)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/doors/python/ductile/ DESTINATION ${ductile_python_dir} COMPONENT python
+    FILES_MATCHING PATTERN *.py PATTERN *.pyi PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+endif()
+
 get_target_property(ductile_library_type ductile_runtime TYPE)
 configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/cmake/DuctileConfig.cmake.in ${PROJECT_BINARY_DIR}/DuctileConfig.cmake
