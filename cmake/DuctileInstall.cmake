@@ -63,6 +63,10 @@ if(TARGET ductile)
   install(TARGETS ductile RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
   install(FILES ${PROJECT_SOURCE_DIR}/meshadapt/cli/help/ductile.bash RENAME ductile
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/meshadapt/cli/help/_ductile
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/meshadapt/cli/help/ductile.fish
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
   if(NOT CMAKE_CROSSCOMPILING)
     install(FILES ${PROJECT_BINARY_DIR}/meshadapt/cli/ductile.1
       DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
