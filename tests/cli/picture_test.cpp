@@ -292,7 +292,7 @@ TEST(Page, HasAllOfTheMeshAndNothingFromElsewhere) {
   AnyMesh mesh = two_tetrahedra();
   mesh.names = {{2, 7, "</script><b>wall & \"door\""}};
   mesh.triangles.add({0, 2, 3}, 8);
-  const std::string page = turning_page({}, mesh, nullptr, {});
+  const std::string page = turning_page(runtime::Executor({.threads = 1}), mesh, nullptr, {});
   EXPECT_EQ(bytes_of(page, "points"), 12 * mesh.vertex_count());
   EXPECT_EQ(bytes_of(page, "elements"), 16 * mesh.tetrahedra.size());
   EXPECT_EQ(bytes_of(page, "colours"), 3 * mesh.tetrahedra.size());
@@ -306,11 +306,17 @@ TEST(Page, HasAllOfTheMeshAndNothingFromElsewhere) {
 }
 
 TEST(Page, HasAFlatMeshAndASurfaceToo) {
-  EXPECT_EQ(bytes_of(turning_page({}, square(), nullptr, {}), "elements"), 24U);
+  EXPECT_EQ(
+      bytes_of(turning_page(runtime::Executor({.threads = 1}), square(), nullptr, {}), "elements"),
+      24U);
   AnyMesh surface = two_tetrahedra();
   surface.tetrahedra = {};
-  EXPECT_EQ(bytes_of(turning_page({}, surface, nullptr, {}), "elements"), 12U);
-  EXPECT_THROW(turning_page({}, AnyMesh{.dimension = 3}, nullptr, {}), meshadapt::InputError);
+  EXPECT_EQ(
+      bytes_of(turning_page(runtime::Executor({.threads = 1}), surface, nullptr, {}), "elements"),
+      12U);
+  surface.triangles = {};
+  EXPECT_THROW(turning_page(runtime::Executor({.threads = 1}), surface, nullptr, {}),
+               meshadapt::InputError);
 }
 
 TEST(Draw, RefusesAnSvgOfTooManyPolygons) {
