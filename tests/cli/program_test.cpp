@@ -108,7 +108,7 @@ TEST(Program, TellsWhatIsWrongWithACommandLine) {
   expect("adapt", "expected one mesh, found 0");
   expect("adapt a.mesh b.mesh", "expected one mesh, found 2; -o says where");
   expect("adapt a.mesh -o b.xyz", "ending in .mesh, .meshb");
-  expect("view a.mesh -o b.gif", "ending in .png or .svg");
+  expect("view a.mesh -o b.gif", "ending in .png, .svg or .html");
   expect("view a.mesh --cut w", "x, y or z");
   expect("convert a.mesh", "expected an input and an output");
   expect("convert a.mesh a.sol", "as the input is a mesh");
