@@ -81,7 +81,7 @@ def link_faults(page, text):
         if not found:
             continue
         path, part = found
-        line = text.count("\n", 0, match.start()) + 1
+        line = text.count("\n", 0, match.start(3)) + 1
         if not os.path.exists(path):
             yield line, f"there is no {path}"
         elif part and not (path.endswith(".md") and part in slugs(read(path))):
