@@ -19,7 +19,7 @@ PAGES = ["README.md", "CONTRIBUTING.md", "doors/python/README.md", "docs/gallery
          *(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md"))]
 PROGRAM = os.environ.get("DUCTILE_PROGRAM", "")
 # What other tests run: ./dev's commands themselves, installs, the runtime's guide, PETSc.
-ELSEWHERE = {"cmake", "mkdir", "pip", "sudo", "apt", "python3", "env/bin/pip", "cc", "gfortran", "mpirun", "build/flips"}
+ELSEWHERE = {"cmake", "mkdir", "pip", "sudo", "apt", "python3", "env/bin/pip", "cc", "gfortran", "mmg3d_O3", "mpirun", "build/flips"}
 
 
 def blocks(page, *languages):
