@@ -83,6 +83,7 @@ def folder(parts, tmp_path, monkeypatch):
         monkeypatch.setenv("PATH", os.path.dirname(PROGRAM), prepend=os.pathsep)
     monkeypatch.chdir(shutil.copytree(parts, tmp_path / "work"))
     monkeypatch.syspath_prepend(tmp_path / "work")
+    pathlib.Path("docs").symlink_to(ROOT / "docs")  # some pages' commands are for the top of the tree
 
 
 @pytest.mark.skipif(not PROGRAM, reason="the program is not built with the package")
