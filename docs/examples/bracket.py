@@ -75,8 +75,8 @@ def facets_of(points, cells):
     facets = faces[first[count == 1]]
     corners = points[facets]
     refs = np.full(len(facets), NAMES["free"])
-    on_hole = np.abs(np.linalg.norm(corners[:, :, :2] - HOLE, axis=2) - RADIUS) < 1e-6
-    flat = np.ptp(corners[:, :, 2], axis=1) == 0
+    on_hole = np.abs(np.linalg.norm(corners[:, :, ::2] - HOLE, axis=2) - RADIUS) < 1e-6
+    flat = np.ptp(corners[:, :, 1], axis=1) == 0
     for name, found in (("wall", corners[:, :, 0] == 0), ("load", corners[:, :, 0] == LONG), ("hole", on_hole)):
         refs[found.all(axis=1) & ~flat] = NAMES[name]
     return facets, refs
@@ -85,8 +85,8 @@ def facets_of(points, cells):
 def mesh(size=6.0, layers=3):
     """points, cells, facets, references of facets: the outline in layers of prisms, each of three tetrahedra."""
     flat, triangles = outline(size)
-    heights = np.linspace(0, THICK, layers + 1)
-    points = np.concatenate([np.column_stack([flat, np.full(len(flat), z)]) for z in heights])
+    points = np.concatenate([np.column_stack([flat[:, 0], np.full(len(flat), y), flat[:, 1]])
+                             for y in np.linspace(0, THICK, layers + 1)])
     a, b, c = (np.sort(triangles, axis=1) + len(flat) * np.arange(layers)[:, None, None]).reshape(-1, 3).T
     above = len(flat)
     cells = np.concatenate([np.column_stack(four) for four in (
@@ -120,7 +120,7 @@ def solve(points, cells, facets, refs):
     loaded = facets[refs == NAMES["load"]]
     area = np.linalg.norm(np.cross(*(points[loaded[:, 1:]] - points[loaded[:, :1]]).transpose(1, 0, 2)), axis=1) / 2
     for corner in loaded.T:
-        np.add.at(force[:, 1], corner, -LOAD / area.sum() * area / 3)
+        np.add.at(force[:, 2], corner, -LOAD / area.sum() * area / 3)
     free = np.ones(len(points), bool)
     free[facets[refs == NAMES["wall"]]] = False
     free = np.repeat(free, 3)

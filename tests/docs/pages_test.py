@@ -2,10 +2,13 @@
 
 Run at the top of the repository."""
 
+import contextlib
+import io
 import os
 import random
 import re
 import sys
+import tempfile
 import unittest
 
 sys.path.insert(0, os.path.join(os.getcwd(), "docs", "site"))
@@ -107,6 +110,16 @@ class Site(unittest.TestCase):
                 pages.for_site(page, linked)
                 self.assertFalse([path for path in linked if path.endswith(".md") and pages.is_off_site(path)])
                 self.assertFalse([path for path in linked if not os.path.isfile(path)])
+
+    def test_what_is_built_has_no_broken_links_and_loads_nothing_from_elsewhere(self):
+        for html, faults_of in (('<img src="a.png"><a href="https://a.org/">', 0), ('<img src="none.png">', 1),
+                                ('<a href="none.html#part">', 1), ('<a href="a.png#part">', 0),
+                                ('<script src="https://a.org/a.js">', 1), ('<link href="//a.org/a.css">', 1),
+                                ('<a href="none.html"><img src="none.png">', 2)):
+            with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
+                pages.write(os.path.join(folder, "a.png"), "")
+                pages.write(os.path.join(folder, "page.html"), html)
+                self.assertEqual(pages.built(folder), faults_of, html)
 
     def test_navigation_has_each_page_of_the_guide(self):
         listed = [path for section in pages.navigation() for pages_of in section.values() if isinstance(pages_of, list)
