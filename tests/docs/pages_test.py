@@ -3,6 +3,7 @@
 Run at the top of the repository."""
 
 import contextlib
+import glob
 import io
 import os
 import random
@@ -94,6 +95,24 @@ class Faults(unittest.TestCase):
     def test_link_to_a_heading_that_is_not_there(self):
         self.put("part", lambda text: [line for line in lines_of_prose(text) if ".md#" in line[1]],
                  lambda line: ([line.replace(".md#", ".md#no-")], 0))
+
+
+class Excerpts(unittest.TestCase):
+    def test_lines_of_excerpts_are_in_the_examples(self):
+        """Blocks of `c++` show parts of docs/examples, which are compiled; those of `cpp` are compiled themselves."""
+
+        def plain(line):
+            return " ".join(re.sub(r"//.*", "", line).split())
+
+        examples = " ".join(plain(line) for path in glob.glob("docs/examples/*.hpp")
+                            for line in pages.read(path).split("\n"))
+        examples, found = " ".join(examples.split()), 0
+        for page, text in TEXTS.items():
+            for block in re.findall(r"^ *```c\+\+\n(.*?)^ *```", text, re.MULTILINE | re.DOTALL):
+                for line in filter(None, map(plain, block.splitlines())):
+                    self.assertIn(line, examples, page)
+                    found += 1
+        self.assertGreater(found, 20)
 
 
 class Site(unittest.TestCase):
