@@ -489,6 +489,17 @@ static void test_geometry(void) {
   ductile_mesh_destroy(mesh);
 }
 
+/* The piece of C in docs/c-and-fortran.md. */
+static void test_guide(void) {
+  const double *points = square, sizes[] = {0.1, 0.1, 0.1, 0.1};
+  const int32_t* triangles = halves;
+  const int vertices = 4, elements = 2;
+#include "guide.inc"
+  EXPECT(x != NULL && ductile_mesh_count(adapted, DUCTILE_VERTICES) > 50);
+  ductile_mesh_destroy(adapted);
+  ductile_mesh_destroy(mesh);
+}
+
 int main(void) {
   EXPECT(strcmp(ductile_last_error(), "") == 0 && strlen(ductile_version()) >= 5);
   test_meshes();
@@ -501,6 +512,7 @@ int main(void) {
   test_names();
   test_sizes();
   test_geometry();
+  test_guide();
   printf("%d failures\n", failures);
   return failures != 0;
 }
