@@ -73,18 +73,17 @@ class FlatNoise {
     std::array<std::uint32_t, Dim> nobody;
     nobody.fill(none);
     across_.assign(facets_.size(), nobody);
-    const FacetSides<Dim> sides(executor, facets_);
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      if (!sides.begins_run(i)) continue;
-      const auto both = sides.run_at(i);
-      if (both.size() != 2) continue;
+    const FacetSides<Dim> sides(executor, facets_.size(),
+                                [&](std::size_t f) { return facets_[f].corners; });
+    sides.each_run([&](std::span<const FacetSide> both) {
+      if (both.size() != 2) return;
       const std::uint32_t f = both[0].facet, g = both[1].facet;
       if (facets_[f].data.reference != facets_[g].data.reference ||
           !turns_by_rounding(normal(f), normal(g)))
-        continue;
+        return;
       across_[f][both[0].number] = g;
       across_[g][both[1].number] = f;
-    }
+    });
   }
 
   void grow(std::uint32_t seed, std::vector<std::uint8_t>& seen,

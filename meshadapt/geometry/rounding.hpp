@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/meshadapt/any_mesh.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/precision.hpp"
 
@@ -54,6 +55,14 @@ bool explains(const std::array<Vector<Dim>, Dim>& facet, const Vector<Dim>& poin
 bool explains_line(const Vector<3>& a, const Vector<3>& b, const Vector<3>& point,
                    double tolerance);
 
+/// How far flat boundaries and interfaces of a mesh may be from flat because of how precisely they
+/// were written; 0 where all that is flat is so by all digits, and for what is not a valid mesh.
+/// The result of adapt() may differ from the mesh by as much. Thread safety: any thread.
+template <int Dim>
+double roughness(const AnyMesh& mesh);
+
+extern template double roughness<2>(const AnyMesh&);
+extern template double roughness<3>(const AnyMesh&);
 extern template struct Rounding<2>;
 extern template struct Rounding<3>;
 
