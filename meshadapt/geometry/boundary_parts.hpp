@@ -91,6 +91,13 @@ struct BoundaryParts {
 template <int Dim>
 void classify_patches(BoundaryParts<Dim>& parts);
 
+/// Makes patches of what is flat up to how precisely its coordinates were written, and measures
+/// noise that their digits do not show: sets `rounding`. `across` is [facet][side], the next facet
+/// or none.
+template <int Dim>
+void find_flat_parts(BoundaryParts<Dim>& parts,
+                     std::span<const std::array<std::uint32_t, Dim>> across);
+
 /// Sets `noise_normals`: [facet], the unit normal, outwards, that noise counts as having; 0 for
 /// other facets. `beside` is [facet][side], the facet that has the side as well and may be of the
 /// same patch, or none. Thin facets of level sets and of rounded coordinates turn by anything

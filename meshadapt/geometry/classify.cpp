@@ -41,7 +41,8 @@ void classify(const runtime::Executor& executor, Mesh<Dim>& mesh,
     mesh.surface = parts.reference != nullptr ? parts.reference->surface
                                               : make_surface<Dim>(parts, curve_edges);
   classify_vertices(parts);
-  if (parts.is_rough()) mesh.rounding = std::move(parts.rounding);
+  if (parts.is_rough() || (parts.rounding && parts.rounding->noise > 0))
+    mesh.rounding = std::move(parts.rounding);
 }
 
 template void classify(const runtime::Executor&, Mesh<2>&, std::vector<TaggedFacet<2>>,

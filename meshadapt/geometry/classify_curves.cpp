@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "ductile/runtime/worklist.hpp"
-#include "geometry/rough_parts.hpp"
 
 namespace ductile::meshadapt {
 namespace {

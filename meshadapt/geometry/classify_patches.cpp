@@ -14,7 +14,6 @@
 #include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/parallel_for.hpp"
 #include "ductile/runtime/sort.hpp"
-#include "geometry/rough_parts.hpp"
 
 namespace ductile::meshadapt {
 namespace {
@@ -75,35 +74,9 @@ class PatchFinder {
                   static_cast<std::uint32_t>(f)};
     });
     runtime::parallel_sort(parts_.executor, std::span(order));
-    find_rough_patches();
+    find_flat_parts<Dim>(parts_, std::span(across_));
     for (const auto& [size, seed] : order)
       if (parts_.facets[seed].patch == 0) grow_patch(seed);
-  }
-
-  // ---- What is flat up to how precisely it was written ----
-
-  void find_rough_patches() {
-    const RoughParts<Dim, decltype(across_)> parts(parts_.mesh, parts_.facets, across_);
-    const bool rough = runtime::parallel_reduce(
-        parts_.executor, parts_.facets.size(), false,
-        [&](std::size_t f) {
-          return parts.is_rough(static_cast<std::uint32_t>(f), parts_.within.flat);
-        },
-        std::logical_or<>());
-    if (!rough || !(parts_.rounding_tolerance() > 0)) return;
-    const auto found = parts.all(parts_.rounding_tolerance(), parts_.within.flat);
-    // If none is rough, the coordinates are round numbers by choice.
-    if (std::none_of(found.begin(), found.end(), [](const auto& part) { return part.rough; }))
-      return;
-    for (const auto& [part, plane, _] : found) {
-      const auto id = static_cast<PatchId>(parts_.mesh.patches.size());
-      Patch<Dim> patch = parts_.facets[part.front()].data;
-      patch.normal = plane.direction;
-      for (const std::uint32_t f : part) parts_.facets[f].patch = id;
-      parts_.mesh.patches.push_back(patch);
-      parts_.rounding->plane_of.resize(parts_.mesh.patches.size());
-      parts_.rounding->plane_of.back() = plane;
-    }
   }
 
   void grow_patch(std::uint32_t seed) {

@@ -178,24 +178,51 @@ void PatchNormals::find_rims() {
 
 // ---- Normals ----
 
+Samples<3, 3> PatchNormals::samples() const {
+  constexpr double near = 0.95;
+  Samples<3, 3> result;
+  result.all.resize(normal_of_.size());
+  parallel_for(executor_, result.all.size(), [&](std::size_t i) {
+    const auto node = static_cast<Node>(i);
+    const auto facets = facets_at(node);
+    if (!input_.facets[facets[0].facet].smooth) return;
+    const Vector<3> mean = mean_normal(node), &normal = normal_of_[node];
+    auto& sample = result.all[node];
+    sample = {place(node), std::abs(dot(normal, mean)) > near ? normal : mean};
+    for (const NodeFacet& at : facets) sample.area += norm(facet_normal_of(at.facet)) / 6;
+  });
+  result.facets = node_of_;
+  for (std::size_t f = 0; f < result.facets.size(); ++f)
+    if (!input_.facets[f].smooth) result.facets[f].fill(none);
+  return result;
+}
+
+/// By area, to the side of the largest facet.
+Vector<3> PatchNormals::mean_normal(Node node) const {
+  Vector<3> largest, sum;
+  for (const NodeFacet& at : facets_at(node)) {
+    const Vector<3> normal = facet_normal_of(at.facet);
+    if (dot(normal, normal) > dot(largest, largest)) largest = normal;
+  }
+  for (const NodeFacet& at : facets_at(node)) {
+    const Vector<3> normal = facet_normal_of(at.facet);
+    sum += std::copysign(1.0, dot(normal, largest)) * normal;
+  }
+  return unit(sum);
+}
+
 Vector<3> PatchNormals::normal_at(Node node) const {
   const auto facets = facets_at(node);
   const std::uint32_t point = static_cast<std::uint32_t>(facets[0].key);
   if (!input_.facets[facets[0].facet].smooth || creased_[node] != 0 || input_.ends[point] != 0)
     return {};
-  Vector<3> largest, flat, sum;
+  Vector<3> flat;
   for (const NodeFacet& at : facets) {
     const Vector<3> normal = facet_normal_of(at.facet);
-    if (dot(normal, normal) > dot(largest, largest)) largest = normal;
     if (is_flat(at.facet) && dot(normal, normal) > dot(flat, flat)) flat = normal;
   }
   if (norm(flat) > 0) return unit(flat);
-  for (const NodeFacet& at : facets) {
-    const Vector<3> normal = facet_normal_of(at.facet);
-    sum += std::copysign(1.0, dot(normal, largest)) * normal;
-  }
-  const Vector<3> base = unit(sum);
-  Quadric quadric(base);
+  Quadric quadric(mean_normal(node));
   const auto neighbours = around(node);
   double farthest = 0;  // squared
   for (const Neighbour& n : neighbours) {
@@ -228,9 +255,6 @@ std::vector<PatchNormals::Neighbour> PatchNormals::around(Node node) const {
   std::vector<Node> beyond;
   for (const Node n : ring)
     if (creased_[n] == 0 && all.size() < most) add(n, beyond);
-  const auto place = [&](Node n) {
-    return input_.points[static_cast<std::uint32_t>(node_facets_[first_of_[n]].key)];
-  };
   std::vector<Neighbour> result;
   result.reserve(all.size());
   for (std::size_t i = 0; i < all.size(); ++i)

@@ -35,6 +35,10 @@ class PatchNormals {
     return normal_of_[node_of_[facet][corner]];
   }
 
+  /// Each vertex of a smooth patch. Where the normal is turned by more than 18 degrees against the
+  /// mean of the facets there it is that of needles, and the mean counts.
+  Samples<3, 3> samples() const;
+
  private:
   using Node = std::uint32_t;
   using Triple = std::array<std::uint32_t, 3>;
@@ -57,7 +61,11 @@ class PatchNormals {
   bool is_crease(std::span<const FacetSide> both) const;
   void find_rims();
   std::span<const NodeFacet> facets_at(Node node) const;
+  const Vector<3>& place(Node node) const {
+    return input_.points[static_cast<std::uint32_t>(node_facets_[first_of_[node]].key)];
+  }
   Vector<3> facet_normal_of(std::uint32_t facet) const;
+  Vector<3> mean_normal(Node node) const;
   Vector<3> normal_at(Node node) const;
   std::vector<Neighbour> around(Node node) const;
   Vector<3> along_rims(Node node, const Vector<3>& normal) const;

@@ -4,6 +4,8 @@
 /// again.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,6 +26,9 @@ template <int Dim>
 struct Rounding {
   Precision precision;
   double tolerance = 0;  ///< how far what is flat, or straight, may be from a plane, or a line
+  /// How far flat faces are from flat by noise that digits do not show; 0 if there is none, or not
+  /// enough to tell, and with a Hausdorff tolerance.
+  double noise = 0;
   std::vector<std::optional<Flat<Dim>>> plane_of;  ///< [patch], of those flat by rounding
   std::vector<std::optional<Flat<Dim>>> line_of;   ///< [curve], 3D
 
@@ -45,6 +50,15 @@ template <int Dim>
 std::optional<Flat<Dim>> plane_near(std::span<const Vector<Dim>> points, double distance);
 /// The same for a line in space.
 std::optional<Flat<3>> line_near(std::span<const Vector<3>> points, double distance);
+
+/// The cosine of how far rounding may turn facets, at most.
+inline constexpr double most_turn_by_rounding = 0.9;
+
+/// Is the angle between two facets, or edges, within rounding error?
+template <int Dim>
+bool turns_by_rounding(const Vector<Dim>& u, const Vector<Dim>& v) {
+  return std::abs(dot(u, v)) > most_turn_by_rounding * norm(u) * norm(v);
+}
 
 /// Is a point as far from the plane (2D: the line) of a facet as it may be if it is meant to be in
 /// it, and both were rounded by the tolerance at most?

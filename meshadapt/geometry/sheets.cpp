@@ -249,7 +249,9 @@ auto Sheets<Dim, Corners>::nearest_of(const Vector<Dim>& point, double reach,
     });
     const Closest best = near.closest(*this, point);
     if (!(best.distance <= within)) continue;
-    Nearest nearest{parts_[best.part].sheet, 0, best.point, shape_of_[best.part].direction};
+    const auto next = std::upper_bound(first_part_.begin(), first_part_.end(), best.part);
+    const auto facet = static_cast<std::uint32_t>(next - first_part_.begin() - 1);
+    Nearest nearest{parts_[best.part].sheet, facet, 0, best.point, shape_of_[best.part].direction};
     if (const auto weights = weights_at(point, best)) {
       const Curved& curved = curved_[origin_of_[best.part].curved];
       nearest.point = curved.at(*weights);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/first_bad.hpp"
@@ -43,17 +44,24 @@ class SurfaceMaker {
                              parts_.is_noise(f) ? parts_.noise_normals[f] : Vector<Dim>{}});
     std::vector<typename Sheets<Dim, 2>::Part> edge_parts;
     typename SmoothModel<Dim>::template Pieces<2> edge_pieces;
+    std::vector<typename Samples<Dim, 2>::Facet> sampled_edges;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       if (!mesh_.curves[edges_[e].curve].smooth) continue;
       edge_parts.push_back(
           {points(std::array{edges_[e].a, edges_[e].b}), edges_[e].curve, true, {}});
       edge_pieces.push_back(model.edges[e]);
+      sampled_edges.push_back(model.edge_samples.facets[e]);
     }
+    model.edge_samples.facets = std::move(sampled_edges);
+    model.edge_samples.connect();
+    model.facet_samples.connect();
     const auto on_patches = projections_of_patches(mesh_, parts_.options.functions, reach());
     expect_on(on_patches);
     return std::shared_ptr<const Surface<Dim>>(new Surface<Dim>{
         {facet_parts, parts_.within.surface, model.facets, on_patches, parts_.within.least_turn},
-        {edge_parts, parts_.within.surface, edge_pieces, on_curves(on_patches)}});
+        {edge_parts, parts_.within.surface, edge_pieces, on_curves(on_patches)},
+        std::move(model.facet_samples),
+        std::move(model.edge_samples)});
   }
 
  private:

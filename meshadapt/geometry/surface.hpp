@@ -24,6 +24,8 @@ struct Surface {
 
   Facets facets;  ///< of all patches, by PatchId
   Edges edges;    ///< of smooth curves, by CurveId; 3D only
+  Samples<Dim, Dim> facet_samples;
+  Samples<Dim, 2> edge_samples;
 };
 
 /// The distance that a mesh may have from the surface given for it, in tolerances.
