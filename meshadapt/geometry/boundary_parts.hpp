@@ -80,6 +80,11 @@ struct BoundaryParts {
   bool turns_little(std::uint32_t f, std::uint32_t g, SideKey key) const;
   /// Does a smooth patch have an edge here, or in 2D a corner, that fades out elsewhere?
   bool is_sharp(std::span<const FacetSide> both) const;
+  /// Does a patch end at a side?
+  bool ends_patch(std::span<const FacetSide> run) const {
+    return run.size() != 2 || facets[run[0].facet].patch != facets[run[1].facet].patch ||
+           is_sharp(run);
+  }
   /// The patches of the facets at a side, sorted.
   std::vector<PatchId> patches_at(SideKey key) const;
 };

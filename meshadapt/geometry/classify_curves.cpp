@@ -172,11 +172,7 @@ std::vector<CurveEdge> find_curve_edges(const BoundaryParts<3>& parts) {
   auto keys = runtime::parallel_collect<SideKey>(
       parts.executor, parts.sides.size(), [&](std::size_t i, auto&& append) {
         if (!parts.sides.begins_run(i)) return;
-        const auto both = parts.sides.run_at(i);
-        if (both.size() != 2 ||
-            parts.facets[both[0].facet].patch != parts.facets[both[1].facet].patch ||
-            parts.is_sharp(both))
-          append(both[0].key);
+        if (const auto run = parts.sides.run_at(i); parts.ends_patch(run)) append(run[0].key);
       });
   for (const auto& [key, edge] : parts.listed) keys.push_back(key);
   std::sort(keys.begin(), keys.end());

@@ -62,7 +62,6 @@ class CurveTangents {
       straight_[e] = !edges[e].smooth || is_collinear(e, 0) || is_collinear(e, 1);
   }
 
-  bool is_straight(std::size_t edge) const { return straight_[edge] != 0; }
   /// Does another edge continue this one at an end?
   bool is_continued(std::size_t edge, std::size_t end) const { return next_[edge][end] != no_edge; }
 

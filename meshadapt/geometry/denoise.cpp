@@ -83,14 +83,9 @@ class Denoiser {
       if (parts_.mesh.patches[facet.patch].required)
         for (const VertexId v : facet.corners) held[v] = 1;
     if constexpr (Dim == 2)
-      for (std::size_t i = 0; i < parts_.sides.size(); ++i) {
-        if (!parts_.sides.begins_run(i)) continue;
-        const auto both = parts_.sides.run_at(i);
-        if (both.size() != 2 ||
-            parts_.facets[both[0].facet].patch != parts_.facets[both[1].facet].patch ||
-            parts_.is_sharp(both))
-          held[static_cast<VertexId>(both[0].key)] = 1;
-      }
+      parts_.sides.each_run([&](std::span<const FacetSide> run) {
+        if (parts_.ends_patch(run)) held[static_cast<VertexId>(run[0].key)] = 1;
+      });
     for (const CurveEdge& edge : curve_edges)
       if (edge.data.required) held[edge.a] = held[edge.b] = 1;
     return held;
