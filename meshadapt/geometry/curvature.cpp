@@ -230,34 +230,41 @@ runtime::UnsetVector<OnSheet> on_curves(const runtime::Executor& executor, const
       });
 }
 
-template <int Dim, std::size_t Corners>
-void bound_on(const runtime::Executor& executor, const Sheets<Dim, Corners>& model,
-              const Samples<Dim, Corners>& samples, double tolerance,
-              runtime::UnsetVector<OnSheet> places, const Mesh<Dim>& mesh,
-              std::vector<Metric<Dim>>& metric_of) {
-  constexpr double flat = 0.02;  // of the tolerance: a tenth of the longest chord on an arc
-  if (places.empty()) return;
-  runtime::parallel_sort(executor, std::span(places));
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  const std::vector<double> width_at = samples.widths(executor, flat * tolerance);
-  std::vector<Metric<Dim>> sizes_of(places.size());
-  const std::size_t block_size = std::max<std::size_t>(1024, places.size() / 64);
-  runtime::parallel_for_blocks(
-      executor, places.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
-        ChordSizes<Dim, Corners> sizes(model, samples, width_at, tolerance);
-        for (std::size_t i = begin; i < end; ++i) {
-          const auto [v, sheet] = places[i];
-          const double largest = 1 / std::sqrt(smallest_value(metric_of[v]));
-          sizes_of[i] = sizes.at(mesh.site_of[v].position, sheet, largest);
-        }
-      });
-  runtime::parallel_for(executor, places.size(), [&](std::size_t begin) {
-    const VertexId v = places[begin].vertex;
-    if (begin > 0 && places[begin - 1].vertex == v) return;
-    for (std::size_t i = begin; i < places.size() && places[i].vertex == v; ++i)
-      metric_of[v] = bounded(metric_of[v], sizes_of[i]);
-  });
-}
+template <int Dim>
+struct SizeBounder {
+  const runtime::Executor& executor;
+  const Mesh<Dim>& mesh;
+  double tolerance;
+  std::vector<Metric<Dim>>& metric_of;
+
+  /// Bounds the metrics at places on these sheets of the model.
+  template <std::size_t Corners>
+  void bound(const Sheets<Dim, Corners>& model, const Samples<Dim, Corners>& samples,
+             runtime::UnsetVector<OnSheet> places) const {
+    constexpr double flat = 0.02;  // of the tolerance: a tenth of the longest chord on an arc
+    if (places.empty()) return;
+    runtime::parallel_sort(executor, std::span(places));
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    const std::vector<double> width_at = samples.widths(executor, flat * tolerance);
+    std::vector<Metric<Dim>> sizes_of(places.size());
+    const std::size_t block_size = std::max<std::size_t>(1024, places.size() / 64);
+    runtime::parallel_for_blocks(
+        executor, places.size(), block_size, [&](std::size_t, std::size_t begin, std::size_t end) {
+          ChordSizes<Dim, Corners> sizes(model, samples, width_at, tolerance);
+          for (std::size_t i = begin; i < end; ++i) {
+            const auto [v, sheet] = places[i];
+            const double largest = 1 / std::sqrt(smallest_value(metric_of[v]));
+            sizes_of[i] = sizes.at(mesh.site_of[v].position, sheet, largest);
+          }
+        });
+    runtime::parallel_for(executor, places.size(), [&](std::size_t begin) {
+      const VertexId v = places[begin].vertex;
+      if (begin > 0 && places[begin - 1].vertex == v) return;
+      for (std::size_t i = begin; i < places.size() && places[i].vertex == v; ++i)
+        metric_of[v] = bounded(metric_of[v], sizes_of[i]);
+    });
+  }
+};
 
 }  // namespace
 
@@ -265,10 +272,9 @@ template <int Dim>
 void bound_curved_sizes(const runtime::Executor& executor, const Mesh<Dim>& mesh, double tolerance,
                         std::vector<Metric<Dim>>& metric_of) {
   const Surface<Dim>& model = *mesh.surface;
-  bound_on(executor, model.facets, model.facet_samples, tolerance, on_patches(executor, mesh), mesh,
-           metric_of);
-  bound_on(executor, model.edges, model.edge_samples, tolerance, on_curves(executor, mesh), mesh,
-           metric_of);
+  const SizeBounder<Dim> bounder{executor, mesh, tolerance, metric_of};
+  bounder.bound(model.facets, model.facet_samples, on_patches(executor, mesh));
+  bounder.bound(model.edges, model.edge_samples, on_curves(executor, mesh));
 }
 
 template void bound_curved_sizes(const runtime::Executor&, const Mesh<2>&, double,
