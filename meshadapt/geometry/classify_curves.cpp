@@ -56,7 +56,7 @@ class CurveGrower {
       for (std::uint32_t e = next_edge(seed, v); e != none; e = next_edge(e, v)) {
         CurveEdge& edge = edges_[e];
         const VertexId end = edge.a == v ? edge.b : edge.a;
-        const Vector<3> d = place(end) - origin, step = place(end) - place(v);
+        const Vector<3> d = parts_.place(end) - origin, step = parts_.place(end) - parts_.place(v);
         const bool straight =
             !is_denoised(edge) && norm(d - dot(d, direction) * direction) <= tolerance;
         const double along = dot(step, heading);
@@ -95,7 +95,7 @@ class CurveGrower {
   /// Through an edge, or near what continues it, if only rounding makes that bend.
   Line line_along(std::uint32_t seed) {
     const CurveEdge& edge = edges_[seed];
-    Vector<3> direction = place(edge.b) - place(edge.a);
+    Vector<3> direction = parts_.place(edge.b) - parts_.place(edge.a);
     direction *= 1 / norm(direction);
     if (auto line = is_denoised(edge) ? std::nullopt : rough_line(seed)) {
       if (dot(line->direction, direction) < 0) line->direction *= -1;
@@ -103,7 +103,7 @@ class CurveGrower {
       parts_.rounding->line_of.back() = line;
       return {line->origin, line->direction, parts_.rounding_tolerance()};
     }
-    return {place(edge.a), direction, parts_.within.flat};
+    return {parts_.place(edge.a), direction, parts_.within.flat};
   }
 
   /// The line near a chain of edges that would lie on it without rounding.
@@ -156,7 +156,6 @@ class CurveGrower {
     return edges[0] == edge ? edges[1] : edges[0];
   }
 
-  const Vector<3>& place(VertexId v) const { return parts_.place(v); }
   bool is_denoised(const CurveEdge& edge) const {
     return parts_.is_denoised(edge.a) || parts_.is_denoised(edge.b);
   }

@@ -3,7 +3,6 @@
 /// around there.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 
 #include "ductile/runtime/parallel_for.hpp"
 #include "geometry/boundary_parts.hpp"

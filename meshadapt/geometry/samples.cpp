@@ -6,7 +6,6 @@
 
 #include "core/unit.hpp"
 #include "ductile/meshadapt/metric.hpp"
-#include "ductile/runtime/arrays.hpp"
 #include "ductile/runtime/sort.hpp"
 #include "geometry/sheets.hpp"
 
